@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+# Finds what the rooms link. What is optional and absent is named in one line, with its remedy.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(fmt REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(tl-expected REQUIRED)
+pkg_check_modules(libmd REQUIRED IMPORTED_TARGET libmd)
+
+pkg_check_modules(libmodbus IMPORTED_TARGET libmodbus>=3.1.6)
+if(NOT libmodbus_FOUND)
+  message(STATUS "Left out: the host's Modbus client, coupler_driver and the node's libmodbus oracle test "
+                 "(no libmodbus; apt install libmodbus-dev)")
+endif()
+
+set(COUPLER_WITH_GPIOD OFF)
+if(NOT COUPLER_GPIOD STREQUAL OFF)
+  pkg_check_modules(libgpiod IMPORTED_TARGET "libgpiod>=1.6" "libgpiod<2")
+  if(libgpiod_FOUND)
+    set(COUPLER_WITH_GPIOD ON)
+  elseif(COUPLER_GPIOD STREQUAL ON)
+    message(FATAL_ERROR "COUPLER_GPIOD=ON, but libgpiod 1.6 was not found (apt install libgpiod-dev)")
+  endif()
+endif()
+if(NOT COUPLER_WITH_GPIOD)
+  message(STATUS "Left out: GPIO lines; coupler-node runs with --sim only "
+                 "(no libgpiod 1.6, or COUPLER_GPIOD=OFF; apt install libgpiod-dev)")
+endif()
+
+if(BUILD_TESTING)
+  find_package(GTest REQUIRED)
+endif()

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+include(CTest)
+option(COUPLER_WERROR "Treat compiler warnings as errors (CI does)" OFF)
+option(COUPLER_COVERAGE "Instrument for gcov" OFF)
+set(COUPLER_SANITIZE "" CACHE STRING "Sanitizers, as -fsanitize= takes them")
+set(COUPLER_ROS AUTO CACHE STRING "Build the ROS driver: AUTO, ON or OFF")
+set(COUPLER_GPIOD AUTO CACHE STRING "Build the libgpiod backend: AUTO, ON or OFF")
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "" FORCE)
+endif()
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+find_program(COUPLER_CCACHE ccache)
+if(COUPLER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  # The sloppiness lets ccache serve files that use a precompiled header.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+      ${COUPLER_CCACHE})
+endif()
+
+add_library(coupler_flags INTERFACE)
+target_include_directories(coupler_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR})
+target_compile_options(coupler_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+  $<$<BOOL:${COUPLER_WERROR}>:-Werror>)
+if(COUPLER_SANITIZE)
+  target_compile_options(coupler_flags INTERFACE
+    -fsanitize=${COUPLER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1)
+  target_link_options(coupler_flags INTERFACE -fsanitize=${COUPLER_SANITIZE})
+endif()
+if(COUPLER_COVERAGE)
+  target_compile_options(coupler_flags INTERFACE --coverage -O0)
+  target_link_options(coupler_flags INTERFACE --coverage)
+endif()

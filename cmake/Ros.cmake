@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+# catkin in a plain CMake build: no workspace needed; build/<preset>/devel/setup.bash serves the ROS tools.
+set(COUPLER_WITH_ROS OFF)
+if(NOT COUPLER_ROS STREQUAL OFF AND libmodbus_FOUND)
+  # A python3 in front of the system's (pyenv, conda) has no catkin_pkg.
+  if(NOT PYTHON_EXECUTABLE AND EXISTS /usr/bin/python3)
+    set(PYTHON_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Python that has catkin_pkg")
+  endif()
+  find_package(catkin QUIET COMPONENTS roscpp std_msgs message_generation)
+  if(catkin_FOUND)
+    set(COUPLER_WITH_ROS ON)
+  elseif(COUPLER_ROS STREQUAL ON)
+    message(FATAL_ERROR "COUPLER_ROS=ON, but catkin with roscpp, std_msgs and message_generation was not found "
+                        "(apt install catkin libroscpp-dev libstd-msgs-dev ros-message-generation)")
+  endif()
+endif()
+
+if(COUPLER_WITH_ROS)
+  add_message_files(DIRECTORY host/ros/msg FILES BoolArray.msg)
+  generate_messages(DEPENDENCIES std_msgs)
+  catkin_package(CATKIN_DEPENDS roscpp std_msgs message_runtime)
+  # catkin wants shared libraries and devel/lib; the rooms are small static libraries.
+  set(BUILD_SHARED_LIBS OFF)
+else()
+  message(STATUS "Left out: coupler_driver, the ROS driver (no catkin/roscpp/libmodbus, or COUPLER_ROS=OFF; "
+                 "apt install catkin libroscpp-dev libstd-msgs-dev ros-message-generation ros-message-runtime)")
+endif()
+
+# Programs are in build/<preset>/bin. In a catkin workspace (another devel folder) catkin's own choice stands,
+# so that rosrun finds them.
+if(NOT COUPLER_WITH_ROS OR CATKIN_DEVEL_PREFIX STREQUAL "${PROJECT_BINARY_DIR}/devel")
+  set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+  set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+endif()

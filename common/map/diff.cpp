@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/diff.hpp"
+
+#include <array>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "common/map/fingerprint.hpp"
+
+namespace coupler {
+namespace {
+
+/// The fields of canonical_line(), in its order.
+constexpr std::array<std::string_view, 12> fields{"table",  "address",  "part",            "name",  "type", "order",
+                                                  "count",  "length",   "encoding",        "ignore_byteorder",
+                                                  "scale",  "access"};
+
+std::vector<std::string> split(const std::string& line) {
+  std::istringstream words(line);
+  std::vector<std::string> result;
+  for (std::string word; words >> word;) result.push_back(word);
+  return result;
+}
+
+std::string place(const Point& point) {
+  return fmt::format("{} {}, {}", to_string(point.table), point.address, to_string(point.format.type));
+}
+
+std::string changes(const Point& older, const Point& newer) {
+  const auto a = split(canonical_line(older));
+  const auto b = split(canonical_line(newer));
+  std::string text;
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (a[i] != b[i]) text += fmt::format("{}{} {} -> {}", text.empty() ? "" : ", ", fields[i], a[i], b[i]);
+  return text;
+}
+
+std::map<std::string_view, const Point*> by_name(const Map& map) {
+  std::map<std::string_view, const Point*> result;
+  for (const Point& point : map.points) result.emplace(point.name, &point);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Difference> diff(const Map& older, const Map& newer) {
+  std::vector<Difference> result;
+  const auto old_points = by_name(older);
+  const auto new_points = by_name(newer);
+  for (const Point& point : older.points) {
+    const auto found = new_points.find(point.name);
+    if (found == new_points.end()) {
+      result.push_back({Difference::Kind::missing, std::string(point.name), place(point)});
+    } else if (std::string what = changes(point, *found->second); !what.empty()) {
+      result.push_back({Difference::Kind::changed, std::string(point.name), std::move(what)});
+    }
+  }
+  for (const Point& point : newer.points)
+    if (old_points.count(point.name) == 0)
+      result.push_back({Difference::Kind::added, std::string(point.name), place(point)});
+  return result;
+}
+
+bool is_subset(const Map& known, const Map& device) {
+  for (const Difference& difference : diff(known, device))
+    if (difference.kind != Difference::Kind::added) return false;
+  return true;
+}
+
+std::string to_string(const Difference& difference) {
+  switch (difference.kind) {
+    case Difference::Kind::missing: return fmt::format("- {}: missing ({})", difference.point, difference.what);
+    case Difference::Kind::added: return fmt::format("+ {}: added ({})", difference.point, difference.what);
+    case Difference::Kind::changed: return fmt::format("~ {}: {}", difference.point, difference.what);
+  }
+  return {};
+}
+
+}  // namespace coupler

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/fingerprint.hpp"
+
+#include <sha256.h>  // libmd
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "common/codec/text.hpp"
+
+namespace coupler {
+namespace {
+
+std::string_view to_string(Access access) {
+  switch (access) {
+    case Access::read: return "read";
+    case Access::write: return "write";
+    case Access::read_write: return "read_write";
+  }
+  return "?";
+}
+
+std::string part(const Point& point) {
+  if (!is_partial(point)) return "-";
+  if (point.format.type == codec::Type::BOOL) return fmt::format("bit{}", point.format.bit);
+  return point.format.half == codec::Half::high ? "high" : "low";
+}
+
+std::string order(const Point& point) {
+  if (holds_bits(point.table)) return "-";
+  const bool one_register = codec::width(point.format.type) <= 16;  // STRING has width 0: its order is AB or BA
+  return std::string(codec::to_string(point.format.order, one_register));
+}
+
+}  // namespace
+
+std::string canonical_line(const Point& point) {
+  const bool text = point.format.type == codec::Type::STRING;
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}",
+                     to_string(point.table), point.address, part(point), point.name, to_string(point.format.type),
+                     order(point), 1, text ? fmt::to_string(point.format.length) : "-",
+                     text ? codec::to_string(point.format.encoding) : "-",
+                     text ? (ignores_byte_order(point.format) ? "true" : "false") : "-",
+                     "0x1p+0:0x0p+0", to_string(point.access));
+}
+
+std::string canonical_text(Span<const Point> sorted_points) {
+  std::string text;
+  for (const Point& point : sorted_points) text += canonical_line(point) + '\n';
+  return text;
+}
+
+std::uint64_t fingerprint(Span<const Point> sorted_points) {
+  const std::string text = canonical_text(sorted_points);
+  std::array<std::uint8_t, SHA256_DIGEST_LENGTH> digest{};
+  SHA2_CTX context;
+  SHA256Init(&context);
+  SHA256Update(&context, reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  SHA256Final(digest.data(), &context);
+  std::uint64_t first = 0;
+  for (std::size_t i = 0; i < sizeof first; ++i) first = first << 8 | digest[i];
+  return first;
+}
+
+std::string fingerprint_text(std::uint64_t fingerprint) { return fmt::format("{:016x}", fingerprint); }
+
+}  // namespace coupler
