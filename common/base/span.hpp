@@ -17,8 +17,8 @@ class Span {
   template <std::size_t N>
   constexpr Span(T (&array)[N]) : data_(array), size_(N) {}
   /// From any container with data() and size(): vector, array, string, another Span.
-  template <class C, class = std::enable_if_t<
-                         std::is_convertible_v<decltype(std::data(std::declval<C&>())), T*>>>
+  template <class C,
+            class = std::enable_if_t<std::is_convertible_v<decltype(std::data(std::declval<C&>())), T*>>>
   constexpr Span(C&& container) : data_(std::data(container)), size_(std::size(container)) {}
 
   constexpr T* data() const { return data_; }

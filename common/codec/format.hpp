@@ -17,10 +17,10 @@ enum class Encoding : std::uint8_t { utf8, ascii, latin1 };
 /// How one value stands in its registers (or, BOOL in a bit table, in one bit).
 struct Format {
   Type type = Type::BOOL;
-  Order order = Order::ABCD;           ///< ABCD or BADC for values of at most one register
-  Half half = Half::high;              ///< 8-bit types
-  std::uint8_t bit = 0;                ///< BOOL in a register: 0 … 15, counted after the byte order is undone
-  std::uint16_t length = 0;            ///< STRING: bytes, 1 … 250
+  Order order = Order::ABCD;  ///< ABCD or BADC for values of at most one register
+  Half half = Half::high;     ///< 8-bit types
+  std::uint8_t bit = 0;       ///< BOOL in a register: 0 … 15, counted after the byte order is undone
+  std::uint16_t length = 0;   ///< STRING: bytes, 1 … 250
   Encoding encoding = Encoding::utf8;  ///< STRING
 };
 
@@ -37,7 +37,8 @@ constexpr std::uint16_t registers(const Format& format) {
   return static_cast<std::uint16_t>(bits <= 16 ? 1 : bits / 16);
 }
 
-/// The bits of its (only) register that the value occupies, as they stand on the wire; 0xFFFF for whole registers.
+/// The bits of its (only) register that the value occupies, as they stand on the wire; 0xFFFF for whole
+/// registers.
 constexpr std::uint16_t mask(const Format& format) {
   const bool swapped = bytes_swapped(format.order);
   if (format.type == Type::BOOL) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers <-> registers. No heap, no exceptions; the compiler sees the type, so a poll's inner loop has no branches
-// on it.
+// Numbers <-> registers. No heap, no exceptions; the compiler sees the type, so a poll's inner loop has no
+// branches on it.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,22 @@ namespace detail {
 
 template <std::size_t Bytes>
 struct Unsigned;
-template <> struct Unsigned<1> { using type = std::uint8_t; };
-template <> struct Unsigned<2> { using type = std::uint16_t; };
-template <> struct Unsigned<4> { using type = std::uint32_t; };
-template <> struct Unsigned<8> { using type = std::uint64_t; };
+template <>
+struct Unsigned<1> {
+  using type = std::uint8_t;
+};
+template <>
+struct Unsigned<2> {
+  using type = std::uint16_t;
+};
+template <>
+struct Unsigned<4> {
+  using type = std::uint32_t;
+};
+template <>
+struct Unsigned<8> {
+  using type = std::uint64_t;
+};
 
 template <class To, class From>
 To bit_cast(From from) {

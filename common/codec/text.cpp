@@ -17,8 +17,8 @@ void set_wire_byte(std::uint16_t* registers, const Format& format, std::size_t i
   word = static_cast<std::uint16_t>(low ? (word & 0xFF00) | byte : (word & 0x00FF) | (byte << 8));
 }
 
-/// The code point at the front of `text`, which is shortened by it; -1 if `text` does not begin with valid UTF-8
-/// (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
+/// The code point at the front of `text`, which is shortened by it; -1 if `text` does not begin with valid
+/// UTF-8 (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
 std::int32_t take_code_point(std::string_view& text) {
   const auto lead = static_cast<std::uint8_t>(text.front());
   text.remove_prefix(1);
@@ -78,7 +78,8 @@ void decode_text(const std::uint16_t* registers, const Format& format, std::stri
 
 TextError encode_text(std::string_view text, const Format& format, std::uint16_t* registers) {
   std::size_t size = 0;
-  if (!for_each_encoded(text, format.encoding, [&](std::uint8_t) { ++size; })) return TextError::not_encodable;
+  if (!for_each_encoded(text, format.encoding, [&](std::uint8_t) { ++size; }))
+    return TextError::not_encodable;
   if (size > format.length) return TextError::too_long;
   for (std::size_t i = 0; i < codec::registers(format); ++i) registers[i] = 0;
   std::size_t at = 0;

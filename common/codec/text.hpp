@@ -10,8 +10,9 @@
 
 namespace coupler::codec {
 
-/// The text of a STRING, as UTF-8. It ends at the first NUL or at `format.length` bytes. Bytes that the encoding does
-/// not know become '?' (ascii) or stay as they are (utf-8). `text` keeps its capacity from call to call.
+/// The text of a STRING, as UTF-8. It ends at the first NUL or at `format.length` bytes. Bytes that the
+/// encoding does not know become '?' (ascii) or stay as they are (utf-8). `text` keeps its capacity from call
+/// to call.
 void decode_text(const std::uint16_t* registers, const Format& format, std::string& text);
 
 /// Why a text does not fit into a STRING.
@@ -21,7 +22,8 @@ enum class TextError : std::uint8_t {
   not_encodable  ///< a character that ascii or latin-1 does not have, or not UTF-8 at all
 };
 
-/// Writes UTF-8 `text`, padded with NUL, into codec::registers(format) registers; nothing is written on an error.
+/// Writes UTF-8 `text`, padded with NUL, into codec::registers(format) registers; nothing is written on an
+/// error.
 TextError encode_text(std::string_view text, const Format& format, std::uint16_t* registers);
 
 std::string_view to_string(Encoding encoding);

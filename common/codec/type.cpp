@@ -8,10 +8,22 @@ namespace coupler::codec {
 namespace {
 
 constexpr std::array<std::pair<Type, std::string_view>, 17> names{{
-    {Type::BOOL, "BOOL"},   {Type::BYTE, "BYTE"},   {Type::WORD, "WORD"},   {Type::DWORD, "DWORD"},
-    {Type::LWORD, "LWORD"}, {Type::SINT, "SINT"},   {Type::INT, "INT"},     {Type::DINT, "DINT"},
-    {Type::LINT, "LINT"},   {Type::USINT, "USINT"}, {Type::UINT, "UINT"},   {Type::UDINT, "UDINT"},
-    {Type::ULINT, "ULINT"}, {Type::REAL, "REAL"},   {Type::LREAL, "LREAL"}, {Type::CHAR, "CHAR"},
+    {Type::BOOL, "BOOL"},
+    {Type::BYTE, "BYTE"},
+    {Type::WORD, "WORD"},
+    {Type::DWORD, "DWORD"},
+    {Type::LWORD, "LWORD"},
+    {Type::SINT, "SINT"},
+    {Type::INT, "INT"},
+    {Type::DINT, "DINT"},
+    {Type::LINT, "LINT"},
+    {Type::USINT, "USINT"},
+    {Type::UINT, "UINT"},
+    {Type::UDINT, "UDINT"},
+    {Type::ULINT, "ULINT"},
+    {Type::REAL, "REAL"},
+    {Type::LREAL, "LREAL"},
+    {Type::CHAR, "CHAR"},
     {Type::STRING, "STRING"},
 }};
 

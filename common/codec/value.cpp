@@ -16,9 +16,12 @@ using Result = tl::expected<void, std::string>;
 
 template <class T>
 Value widen(T value) {
-  if constexpr (std::is_floating_point_v<T>) return value;
-  else if constexpr (std::is_signed_v<T>) return std::int64_t{value};
-  else return std::uint64_t{value};
+  if constexpr (std::is_floating_point_v<T>)
+    return value;
+  else if constexpr (std::is_signed_v<T>)
+    return std::int64_t{value};
+  else
+    return std::uint64_t{value};
 }
 
 /// Calls f with a value of the C++ type that stands for the IEC type (numbers only).
@@ -26,11 +29,14 @@ template <class F>
 auto with_number(Type type, F&& f) {
   switch (type) {
     case Type::SINT: return f(std::int8_t{});
-    case Type::WORD: case Type::UINT: return f(std::uint16_t{});
+    case Type::WORD:
+    case Type::UINT: return f(std::uint16_t{});
     case Type::INT: return f(std::int16_t{});
-    case Type::DWORD: case Type::UDINT: return f(std::uint32_t{});
+    case Type::DWORD:
+    case Type::UDINT: return f(std::uint32_t{});
     case Type::DINT: return f(std::int32_t{});
-    case Type::LWORD: case Type::ULINT: return f(std::uint64_t{});
+    case Type::LWORD:
+    case Type::ULINT: return f(std::uint64_t{});
     case Type::LINT: return f(std::int64_t{});
     case Type::REAL: return f(float{});
     case Type::LREAL: return f(double{});
@@ -53,8 +59,9 @@ tl::unexpected<std::string> out_of_range(const Value& value, Type type) {
   if constexpr (std::is_floating_point_v<To>)
     return tl::make_unexpected(fmt::format("{} does not fit into {}", to_string(value), to_string(type)));
   else
-    return tl::make_unexpected(fmt::format("{} does not fit into {} ({} … {})", to_string(value), to_string(type),
-                                           +std::numeric_limits<To>::min(), +std::numeric_limits<To>::max()));
+    return tl::make_unexpected(fmt::format("{} does not fit into {} ({} … {})", to_string(value),
+                                           to_string(type), +std::numeric_limits<To>::min(),
+                                           +std::numeric_limits<To>::max()));
 }
 
 template <class To, class From>
@@ -81,7 +88,8 @@ Result put_number(const Value& value, const Format& format, std::uint16_t* regis
         if constexpr (std::is_same_v<From, bool> || std::is_same_v<From, std::string>) {
           return tl::make_unexpected(fmt::format("'{}' is not a number", to_string(value)));
         } else if constexpr (std::is_floating_point_v<From> && !std::is_floating_point_v<To>) {
-          return tl::make_unexpected(fmt::format("{} is not a whole number, as {} needs", v, to_string(format.type)));
+          return tl::make_unexpected(
+              fmt::format("{} is not a whole number, as {} needs", v, to_string(format.type)));
         } else {
           if (!fits<To>(v)) return out_of_range<To>(value, format.type);
           put(static_cast<To>(v), format, registers);
@@ -98,7 +106,8 @@ Result put_text(const Value& value, const Format& format, std::uint16_t* registe
     case TextError::too_long:
       return tl::make_unexpected(fmt::format("'{}' is longer than {} bytes", *text, format.length));
     case TextError::not_encodable:
-      return tl::make_unexpected(fmt::format("'{}' cannot be written in {}", *text, to_string(format.encoding)));
+      return tl::make_unexpected(
+          fmt::format("'{}' cannot be written in {}", *text, to_string(format.encoding)));
     case TextError::none: break;
   }
   return {};
@@ -115,8 +124,10 @@ Value decode(const std::uint16_t* registers, const Format& format) {
   }
   return with_number(format.type, [&](auto zero) -> Value {
     using T = decltype(zero);
-    if constexpr (sizeof(T) == 1) return widen(static_cast<T>(decode_part(registers[0], format)));
-    else return widen(decode<T>(registers, format.order));
+    if constexpr (sizeof(T) == 1)
+      return widen(static_cast<T>(decode_part(registers[0], format)));
+    else
+      return widen(decode<T>(registers, format.order));
   });
 }
 
@@ -124,18 +135,22 @@ Result encode(const Value& value, const Format& format, std::uint16_t* registers
   if (format.type == Type::STRING) return put_text(value, format, registers);
   if (format.type == Type::BOOL) {
     const bool* on = std::get_if<bool>(&value);
-    if (on == nullptr) return tl::make_unexpected(fmt::format("{} is neither true nor false", to_string(value)));
+    if (on == nullptr)
+      return tl::make_unexpected(fmt::format("{} is neither true nor false", to_string(value)));
     put(static_cast<std::uint8_t>(*on), format, registers);
     return {};
   }
-  return with_number(format.type, [&](auto zero) { return put_number<decltype(zero)>(value, format, registers); });
+  return with_number(format.type,
+                     [&](auto zero) { return put_number<decltype(zero)>(value, format, registers); });
 }
 
 std::string to_string(const Value& value) {
   return std::visit(
       [](const auto& v) -> std::string {
-        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::string>) return v;
-        else return fmt::format("{}", v);
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::string>)
+          return v;
+        else
+          return fmt::format("{}", v);
       },
       value);
 }

@@ -6,8 +6,8 @@
 
 namespace coupler {
 
-/// CRC-32 as in IEEE 802.3, zlib and PNG: reflected polynomial 0xEDB88320, initial and final value 0xFFFFFFFF.
-/// crc32("123456789") is 0xCBF43926.
+/// CRC-32 as in IEEE 802.3, zlib and PNG: reflected polynomial 0xEDB88320, initial and final value
+/// 0xFFFFFFFF. crc32("123456789") is 0xCBF43926.
 constexpr std::uint32_t crc32(std::string_view bytes) {
   std::uint32_t crc = 0xFFFFFFFF;
   for (const char byte : bytes) {

@@ -13,9 +13,9 @@ namespace coupler {
 namespace {
 
 /// The fields of canonical_line(), in its order.
-constexpr std::array<std::string_view, 12> fields{"table",  "address",  "part",            "name",  "type", "order",
-                                                  "count",  "length",   "encoding",        "ignore_byteorder",
-                                                  "scale",  "access"};
+constexpr std::array<std::string_view, 12> fields{
+    "table",    "address",          "part",  "name",  "type", "order", "count", "length",
+    "encoding", "ignore_byteorder", "scale", "access"};
 
 std::vector<std::string> split(const std::string& line) {
   std::istringstream words(line);
@@ -71,7 +71,8 @@ bool is_subset(const Map& known, const Map& device) {
 
 std::string to_string(const Difference& difference) {
   switch (difference.kind) {
-    case Difference::Kind::missing: return fmt::format("- {}: missing ({})", difference.point, difference.what);
+    case Difference::Kind::missing:
+      return fmt::format("- {}: missing ({})", difference.point, difference.what);
     case Difference::Kind::added: return fmt::format("+ {}: added ({})", difference.point, difference.what);
     case Difference::Kind::changed: return fmt::format("~ {}: {}", difference.point, difference.what);
   }

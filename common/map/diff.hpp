@@ -16,8 +16,8 @@ struct Difference {
   std::string what;  ///< "address 5 -> 7, type INT -> UINT"; for missing and added the point's place and type
 };
 
-/// The differences that both sides of a connection must agree on (the fields of canonical_line()), in the order of
-/// the old map, then what was added. Points are matched by name.
+/// The differences that both sides of a connection must agree on (the fields of canonical_line()), in the
+/// order of the old map, then what was added. Points are matched by name.
 std::vector<Difference> diff(const Map& older, const Map& newer);
 
 /// Everything that `known` says is unchanged in `device`, which may have more: the driver may go on.

@@ -29,7 +29,8 @@ std::string part(const Point& point) {
 
 std::string order(const Point& point) {
   if (holds_bits(point.table)) return "-";
-  const bool one_register = codec::width(point.format.type) <= 16;  // STRING has width 0: its order is AB or BA
+  const bool one_register =
+      codec::width(point.format.type) <= 16;  // STRING has width 0: its order is AB or BA
   return std::string(codec::to_string(point.format.order, one_register));
 }
 
@@ -37,12 +38,12 @@ std::string order(const Point& point) {
 
 std::string canonical_line(const Point& point) {
   const bool text = point.format.type == codec::Type::STRING;
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}",
-                     to_string(point.table), point.address, part(point), point.name, to_string(point.format.type),
-                     order(point), 1, text ? fmt::to_string(point.format.length) : "-",
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", to_string(point.table), point.address,
+                     part(point), point.name, to_string(point.format.type), order(point), 1,
+                     text ? fmt::to_string(point.format.length) : "-",
                      text ? codec::to_string(point.format.encoding) : "-",
-                     text ? (ignores_byte_order(point.format) ? "true" : "false") : "-",
-                     "0x1p+0:0x0p+0", to_string(point.access));
+                     text ? (ignores_byte_order(point.format) ? "true" : "false") : "-", "0x1p+0:0x0p+0",
+                     to_string(point.access));
 }
 
 std::string canonical_text(Span<const Point> sorted_points) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fingerprint of a map: what both sides of a connection must agree on, in 64 bits. docs/identity.md has the
-// grammar with examples.
+// The fingerprint of a map: what both sides of a connection must agree on, in 64 bits. docs/identity.md has
+// the grammar with examples.
 #pragma once
 
 #include <cstdint>

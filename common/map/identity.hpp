@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a node tells what it is: a few input registers and the map as a file. The driver reads them at every connect.
-// docs/identity.md holds the layout as a table.
+// How a node tells what it is: a few input registers and the map as a file. The driver reads them at every
+// connect. docs/identity.md holds the layout as a table.
 #pragma once
 
 #include <array>
@@ -18,18 +18,18 @@ constexpr modbus::Range reserved = modbus::Range::of(0xFF00, 0x100);
 
 /// Places in the area, relative to reserved.start().
 enum : std::uint16_t {
-  at_magic = 0,           ///< "OCPL", 2 registers
-  at_layout = 2,          ///< layout version, now 1
-  at_fingerprint = 3,     ///< 4 registers, most significant first
-  at_map_size = 7,        ///< bytes, 2 registers, most significant first
-  at_map_crc = 9,         ///< CRC-32 of the map, 2 registers
-  at_watchdog_state = 11, ///< 0 not configured, 1 idle, 2 armed, 3 expired
-  at_watchdog_left = 12,  ///< remaining time, ms (65535: that or more)
-  at_statistics = 13,     ///< from here: 32-bit counters, most significant register first
-  at_uptime = 13,         ///< seconds
+  at_magic = 0,            ///< "OCPL", 2 registers
+  at_layout = 2,           ///< layout version, now 1
+  at_fingerprint = 3,      ///< 4 registers, most significant first
+  at_map_size = 7,         ///< bytes, 2 registers, most significant first
+  at_map_crc = 9,          ///< CRC-32 of the map, 2 registers
+  at_watchdog_state = 11,  ///< 0 not configured, 1 idle, 2 armed, 3 expired
+  at_watchdog_left = 12,   ///< remaining time, ms (65535: that or more)
+  at_statistics = 13,      ///< from here: 32-bit counters, most significant register first
+  at_uptime = 13,          ///< seconds
   at_requests = 15,
   at_exceptions = 17,
-  at_connections = 19,    ///< accepted since start
+  at_connections = 19,  ///< accepted since start
   at_hardware_errors = 21,
   size = 23,
 };
@@ -52,19 +52,20 @@ Head head_of(const Map& map);
 /// Registers at_magic … at_map_crc + 1; the rest of the area is the node's own.
 void write_head(const Head& head, std::uint16_t* area);
 
-/// nullopt if the registers do not begin with the magic and a layout that this program knows: a foreign coupler.
+/// nullopt if the registers do not begin with the magic and a layout that this program knows: a foreign
+/// coupler.
 std::optional<Head> read_head(const std::array<std::uint16_t, head_size>& area);
 
-/// Where a piece of the map's text is, for FC 20: two bytes a record, most significant first, records_per_file records
-/// a file, files from 1 upward; an odd last byte is followed by a zero.
+/// Where a piece of the map's text is, for FC 20: two bytes a record, most significant first,
+/// records_per_file records a file, files from 1 upward; an odd last byte is followed by a zero.
 struct FileRecord {
   std::uint16_t file = 1;
   std::uint16_t record = 0;
   std::uint16_t registers = 0;
 };
 
-/// The record of the `first`-th register of the text (first = byte offset / 2), as many registers as one request may
-/// carry without leaving the file or the text of `map_size` bytes.
+/// The record of the `first`-th register of the text (first = byte offset / 2), as many registers as one
+/// request may carry without leaving the file or the text of `map_size` bytes.
 FileRecord record_at(std::uint32_t first, std::uint32_t map_size);
 
 }  // namespace coupler::identity

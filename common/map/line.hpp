@@ -17,11 +17,13 @@ enum class Safe : std::uint8_t { off, on, hold };
 struct Line {
   std::string_view chip;  ///< "gpiochip0", "/dev/gpiochip0" or the chip's label
   std::uint32_t offset = 0;
-  std::string_view name;  ///< "GPIO17": the kernel's name of the line, on whichever chip; empty if `chip` is given
+  std::string_view
+      name;  ///< "GPIO17": the kernel's name of the line, on whichever chip; empty if `chip` is given
   bool active_low = false;
   Bias bias = Bias::as_is;
-  Drive drive = Drive::push_pull;            ///< outputs
-  std::chrono::microseconds debounce{0};     ///< inputs: an edge counts once the level has been stable for so long
+  Drive drive = Drive::push_pull;  ///< outputs
+  std::chrono::microseconds debounce{
+      0};  ///< inputs: an edge counts once the level has been stable for so long
 
   constexpr bool present() const { return !chip.empty() || !name.empty(); }
 };

@@ -14,7 +14,9 @@ unsigned part(const Point& point) {
   return point.format.half == codec::Half::high ? 1 : 2;
 }
 
-auto key(const Point& point) { return std::make_tuple(index(point.table), point.address, part(point), point.name); }
+auto key(const Point& point) {
+  return std::make_tuple(index(point.table), point.address, part(point), point.name);
+}
 
 }  // namespace
 

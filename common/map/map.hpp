@@ -18,8 +18,8 @@ struct Connection {
   std::chrono::milliseconds timeout{3000};
 };
 
-/// How the host reads it. A gap is the distance between the end of one point and the start of the next; points are
-/// joined when it is strictly below the limit and unmapped addresses may be read.
+/// How the host reads it. A gap is the distance between the end of one point and the start of the next;
+/// points are joined when it is strictly below the limit and unmapped addresses may be read.
 struct Polling {
   double rate = 10;  ///< Hz
   bool discrete_continuous = false;
@@ -48,7 +48,8 @@ struct SimWire {
   std::chrono::microseconds square{0};  ///< the wave's period, half of it on
 };
 
-/// One coupler. A view of constant data: a generated table, or what OwnedMap holds. Copy it to override a field.
+/// One coupler. A view of constant data: a generated table, or what OwnedMap holds. Copy it to override a
+/// field.
 struct Map {
   std::string_view name;  ///< namespace of the topics
   Connection connection;
@@ -64,7 +65,8 @@ struct Map {
 /// The point of that name, or nullptr.
 const Point* find(const Map& map, std::string_view name);
 
-/// The order of the fingerprint: table, wire address, part of the register (whole, high, low, bit 0 … 15), name.
+/// The order of the fingerprint: table, wire address, part of the register (whole, high, low, bit 0 … 15),
+/// name.
 bool canonical_less(const Point& a, const Point& b);
 
 }  // namespace coupler

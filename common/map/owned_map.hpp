@@ -10,8 +10,8 @@
 
 namespace coupler {
 
-/// A map built at run time, with everything it points to. It stays where it is: views into it remain valid as long
-/// as it lives.
+/// A map built at run time, with everything it points to. It stays where it is: views into it remain valid as
+/// long as it lives.
 class OwnedMap {
  public:
   OwnedMap() = default;
@@ -25,8 +25,9 @@ class OwnedMap {
   /// Keeps a copy of the registers.
   Span<const std::uint16_t> keep(std::vector<std::uint16_t> registers);
 
-  /// Ends the building: sorts the points and fills in fingerprint and checksum. `head` brings all fields but those and
-  /// `points` and `sim`; its views, and those of points and wires, must point into what was kept here.
+  /// Ends the building: sorts the points and fills in fingerprint and checksum. `head` brings all fields but
+  /// those and `points` and `sim`; its views, and those of points and wires, must point into what was kept
+  /// here.
   void finish(Map head, std::vector<Point> points, std::vector<SimWire> sim);
 
  private:

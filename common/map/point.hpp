@@ -22,8 +22,8 @@ struct Point {
   std::uint16_t address = 0;  ///< on the wire
   codec::Format format;
   Access access = Access::read;
-  /// The value at start: codec::registers(format) registers as they stand on the wire, the bits of other points zero
-  /// (for bit tables one element, 0 or 1). Empty: all zero.
+  /// The value at start: codec::registers(format) registers as they stand on the wire, the bits of other
+  /// points zero (for bit tables one element, 0 or 1). Empty: all zero.
   Span<const std::uint16_t> initial;
   Safe safe = Safe::off;  ///< coils with a line
   Line line;

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/codec/value.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <limits>
+
+namespace coupler::codec {
+namespace {
+
+using testing::HasSubstr;
+
+Format format(Type type) {
+  Format f;
+  f.type = type;
+  return f;
+}
+
+std::string refusal(const Value& value, const Format& f) {
+  std::array<std::uint16_t, 8> registers{1, 2, 3, 4, 5, 6, 7, 8};
+  const auto before = registers;
+  const auto result = encode(value, f, registers.data());
+  EXPECT_EQ(registers, before) << "a refused value changed the registers";
+  return result ? "" : result.error();
+}
+
+TEST(Value, An_integer_out_of_its_type_is_refused_and_the_range_is_named) {
+  EXPECT_EQ(refusal(std::int64_t{300}, format(Type::USINT)), "300 does not fit into USINT (0 … 255)");
+  EXPECT_EQ(refusal(std::int64_t{-1}, format(Type::ULINT)),
+            "-1 does not fit into ULINT (0 … 18446744073709551615)");
+  EXPECT_EQ(refusal(std::int64_t{-129}, format(Type::SINT)), "-129 does not fit into SINT (-128 … 127)");
+  EXPECT_EQ(refusal(std::uint64_t{1} << 63, format(Type::LINT)).substr(0, 38),
+            "9223372036854775808 does not fit into ");
+  EXPECT_EQ(refusal(std::uint64_t{65536}, format(Type::WORD)), "65536 does not fit into WORD (0 … 65535)");
+}
+
+TEST(Value, A_fraction_is_never_rounded_into_an_integer) {
+  EXPECT_EQ(refusal(1.5, format(Type::INT)), "1.5 is not a whole number, as INT needs");
+}
+
+TEST(Value, A_double_beyond_float_is_refused_but_infinity_is_a_REAL) {
+  EXPECT_THAT(refusal(1e300, format(Type::REAL)), HasSubstr("does not fit into REAL"));
+  EXPECT_EQ(refusal(std::numeric_limits<double>::infinity(), format(Type::USINT)).empty(), false);
+  std::array<std::uint16_t, 2> registers{};
+  EXPECT_TRUE(encode(std::numeric_limits<double>::infinity(), format(Type::REAL), registers.data()));
+  EXPECT_EQ(registers[0], 0x7F80);
+}
+
+TEST(Value, A_kind_that_does_not_suit_the_type_is_refused) {
+  EXPECT_EQ(refusal(std::int64_t{1}, format(Type::BOOL)), "1 is neither true nor false");
+  EXPECT_EQ(refusal(true, format(Type::INT)), "'true' is not a number");
+  EXPECT_EQ(refusal(std::string("7"), format(Type::INT)), "'7' is not a number");
+}
+
+TEST(Text, A_text_longer_than_its_length_is_refused) {
+  Format f = format(Type::STRING);
+  f.length = 3;
+  EXPECT_EQ(refusal(std::string("ABCD"), f), "'ABCD' is longer than 3 bytes");
+  EXPECT_EQ(refusal(std::string("aé€"), f), "'aé€' is longer than 3 bytes");
+}
+
+TEST(Text, A_character_that_the_encoding_lacks_is_refused) {
+  Format f = format(Type::STRING);
+  f.length = 8;
+  f.encoding = Encoding::latin1;
+  EXPECT_EQ(refusal(std::string("5 €"), f), "'5 €' cannot be written in latin-1");
+  f.encoding = Encoding::ascii;
+  EXPECT_EQ(refusal(std::string("5 °"), f), "'5 °' cannot be written in ascii");
+  f.encoding = Encoding::utf8;
+  EXPECT_THAT(refusal(std::string("\xC3("), f), HasSubstr("cannot be written in utf-8"));
+  EXPECT_THAT(refusal(std::string("\xED\xA0\x80"), f), HasSubstr("cannot be written"));
+}
+
+TEST(Text, A_value_ends_at_the_first_NUL) {
+  Format f = format(Type::STRING);
+  f.length = 6;
+  f.order = Order::ABCD;
+  const std::array<std::uint16_t, 3> registers{0x4142, 0x0043, 0x4445};
+  EXPECT_EQ(std::get<std::string>(decode(registers.data(), f)), "AB");
+}
+
+TEST(Text, A_byte_that_ascii_lacks_reads_as_a_question_mark) {
+  Format f = format(Type::STRING);
+  f.length = 2;
+  f.order = Order::ABCD;
+  f.encoding = Encoding::ascii;
+  const std::uint16_t word = 0x41E9;
+  EXPECT_EQ(std::get<std::string>(decode(&word, f)), "A?");
+}
+
+TEST(Format, Halves_and_bits_mask_exactly_their_part) {
+  Format f = format(Type::SINT);
+  EXPECT_EQ(mask(f), 0xFF00);
+  f.half = Half::low;
+  EXPECT_EQ(mask(f), 0x00FF);
+  f.order = Order::BADC;
+  EXPECT_EQ(mask(f), 0xFF00);
+  f = format(Type::BOOL);
+  f.bit = 3;
+  EXPECT_EQ(mask(f), 0x0008);
+  f.order = Order::BADC;
+  EXPECT_EQ(mask(f), 0x0800);
+  EXPECT_EQ(mask(format(Type::UINT)), 0xFFFF);
+}
+
+TEST(Format, Registers_follow_from_the_type) {
+  Format f = format(Type::STRING);
+  f.length = 5;
+  EXPECT_EQ(registers(f), 3);
+  EXPECT_EQ(registers(format(Type::CHAR)), 1);
+  EXPECT_EQ(registers(format(Type::REAL)), 2);
+  EXPECT_EQ(registers(format(Type::LWORD)), 4);
+}
+
+TEST(Type, Names_are_read_in_any_case_and_written_in_capitals) {
+  EXPECT_EQ(parse_type("lreal"), Type::LREAL);
+  EXPECT_EQ(parse_type("Udint"), Type::UDINT);
+  EXPECT_EQ(parse_type("FLOAT"), std::nullopt);
+  EXPECT_EQ(to_string(Type::UDINT), "UDINT");
+}
+
+}  // namespace
+}  // namespace coupler::codec
