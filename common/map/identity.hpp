@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/map/map.hpp"
+#include "common/modbus/file_record.hpp"
 #include "common/modbus/limits.hpp"
 #include "common/modbus/range.hpp"
 
@@ -56,13 +57,9 @@ void write_head(const Head& head, std::uint16_t* area);
 /// coupler.
 std::optional<Head> read_head(const std::array<std::uint16_t, head_size>& area);
 
-/// Where a piece of the map's text is, for FC 20: two bytes a record, most significant first,
-/// records_per_file records a file, files from 1 upward; an odd last byte is followed by a zero.
-struct FileRecord {
-  std::uint16_t file = 1;
-  std::uint16_t record = 0;
-  std::uint16_t registers = 0;
-};
+/// Where a piece of the map's text is, for FC 20: two bytes a record, most significant first, records_per_file records
+/// a file, files from 1 upward; an odd last byte is followed by a zero.
+using modbus::FileRecord;
 
 /// The record of the `first`-th register of the text (first = byte offset / 2), as many registers as one
 /// request may carry without leaving the file or the text of `map_size` bytes.

@@ -17,6 +17,10 @@ enum class Function : std::uint8_t {
   write_multiple_registers = 16,
   read_file_record = 20,
   mask_write_register = 22,
+  read_write_multiple_registers = 23,
 };
+
+/// Set in the function code of a reply that is an exception (MAP 4.1). Function codes are 1 … 127.
+constexpr std::uint8_t exception_bit = 0x80;
 
 }  // namespace coupler::modbus
