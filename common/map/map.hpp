@@ -10,6 +10,10 @@
 
 namespace coupler {
 
+/// Raised with every change to Map, Point or what they hold: a table that was generated for another one does not
+/// compile.
+constexpr int model_version = 1;
+
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {
   std::string_view address;  ///< host name or IP address; empty: not in the map

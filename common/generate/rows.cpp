@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/generate/rows.hpp"
+
+#include <fmt/format.h>
+
+#include "common/generate/literal.hpp"
+
+namespace coupler::generate {
+namespace {
+
+using codec::Encoding;
+using codec::Format;
+using codec::Half;
+using codec::Type;
+
+std::string_view enumerator(Access access) {
+  switch (access) {
+    case Access::read: return "Access::read";
+    case Access::write: return "Access::write";
+    case Access::read_write: return "Access::read_write";
+  }
+  return {};
+}
+
+std::string_view enumerator(Safe safe) {
+  switch (safe) {
+    case Safe::off: return "Safe::off";
+    case Safe::on: return "Safe::on";
+    case Safe::hold: return "Safe::hold";
+  }
+  return {};
+}
+
+std::string_view enumerator(Bias bias) {
+  switch (bias) {
+    case Bias::as_is: return "Bias::as_is";
+    case Bias::none: return "Bias::none";
+    case Bias::pull_up: return "Bias::pull_up";
+    case Bias::pull_down: return "Bias::pull_down";
+  }
+  return {};
+}
+
+std::string_view enumerator(Drive drive) {
+  switch (drive) {
+    case Drive::push_pull: return "Drive::push_pull";
+    case Drive::open_drain: return "Drive::open_drain";
+    case Drive::open_source: return "Drive::open_source";
+  }
+  return {};
+}
+
+std::string_view enumerator(Encoding encoding) {
+  switch (encoding) {
+    case Encoding::utf8: return "Encoding::utf8";
+    case Encoding::ascii: return "Encoding::ascii";
+    case Encoding::latin1: return "Encoding::latin1";
+  }
+  return {};
+}
+
+/// Fields after the last one that differs from its default are left out.
+std::string format(const Format& format) {
+  const Format usual;
+  std::string out = fmt::format("{{Type::{}", to_string(format.type));
+  const bool text = format.length != usual.length || format.encoding != usual.encoding;
+  const bool part = text || format.half != usual.half || format.bit != usual.bit;
+  if (part || format.order != usual.order)
+    out += fmt::format(", Order::{}", codec::to_string(format.order, false));
+  if (part)
+    out += fmt::format(", {}, {}", format.half == Half::high ? "Half::high" : "Half::low", format.bit);
+  if (text) out += fmt::format(", {}, {}", format.length, enumerator(format.encoding));
+  return out + '}';
+}
+
+std::string registers(Span<const std::uint16_t> words) {
+  if (words.empty()) return "{}";
+  std::string out;
+  for (const std::uint16_t word : words) out += fmt::format("{}0x{:04X}", out.empty() ? "" : ", ", word);
+  return fmt::format("registers<{}>", out);
+}
+
+std::string line(const Line& line) {
+  if (!line.present()) return "{}";
+  return fmt::format("{{{}, {}, {}, {}, {}, {}, {}us}}", literal(line.chip), line.offset, literal(line.name),
+                     line.active_low, enumerator(line.bias), enumerator(line.drive), line.debounce.count());
+}
+
+std::string place(const Point& point) {
+  std::string out = fmt::format("{} {}", to_string(point.table), point.address);
+  if (range(point).count() > 1) out += fmt::format("-{}", range(point).last());
+  if (!is_partial(point)) return out;
+  if (point.format.type == Type::BOOL) return out + fmt::format(", bit {}", point.format.bit);
+  return out + (point.format.half == Half::high ? ", high byte" : ", low byte");
+}
+
+}  // namespace
+
+std::string row(const Point& point) {
+  const std::string what = point.description.empty() ? "" : comment(point.description) + ": ";
+  return fmt::format(
+      "    // {}{}\n"
+      "    {{{}, Table::{}, {}, {}, {},\n"
+      "     {}, {}, {},\n"
+      "     {}, {}}},\n",
+      what, place(point), literal(point.name), to_string(point.table), point.address, format(point.format),
+      enumerator(point.access), registers(point.initial), enumerator(point.safe), line(point.line),
+      literal(point.description), literal(point.units));
+}
+
+std::string row(const SimWire& wire) {
+  return fmt::format("    {{{}, {}, {}, {}us}},\n", literal(wire.from), literal(wire.to), wire.invert,
+                     wire.square.count());
+}
+
+}  // namespace coupler::generate

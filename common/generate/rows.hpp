@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/map/map.hpp"
+
+namespace coupler::generate {
+
+/// The point as an aggregate, `{"lamp", Table::coils, 0, …}`, under a comment that says what it is and where.
+/// Fields that a reader expects at their default are left to it.
+std::string row(const Point& point);
+
+std::string row(const SimWire& wire);
+
+}  // namespace coupler::generate

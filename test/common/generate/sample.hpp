@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "common/map/owned_map.hpp"
+
+namespace coupler::testing {
+
+using namespace std::chrono_literals;
+
+/// A small map with something in every field that the generator writes.
+inline std::shared_ptr<const OwnedMap> sample() {
+  auto owned = std::make_shared<OwnedMap>();
+  Point lamp;
+  lamp.name = "lamp";
+  lamp.table = Table::coils;
+  lamp.address = 3;
+  lamp.access = Access::read_write;
+  lamp.initial = owned->keep(std::vector<std::uint16_t>{1});
+  lamp.safe = Safe::hold;
+  lamp.line = {"gpiochip0", 17, "", true, Bias::pull_up, Drive::open_drain, 0us};
+  lamp.description = "Lamp above the door";
+  Point button;
+  button.name = "button";
+  button.table = Table::discrete_inputs;
+  button.line = {"", 0, "GPIO4", false, Bias::as_is, Drive::push_pull, 5000us};
+  Point level;
+  level.name = "tank/level";
+  level.table = Table::input_registers;
+  level.address = 100;
+  level.format = {codec::Type::REAL, codec::Order::CDAB};
+  level.units = "°C";
+  Point label;
+  label.name = "label";
+  label.table = Table::holding_registers;
+  label.address = 7;
+  label.format = {codec::Type::STRING, codec::Order::BADC, codec::Half::high, 0, 3, codec::Encoding::latin1};
+  label.access = Access::write;
+  label.initial = owned->keep(std::vector<std::uint16_t>{0x6261, 0x0063});
+  Point flag;
+  flag.name = "flag";
+  flag.table = Table::holding_registers;
+  flag.address = 9;
+  flag.format = {codec::Type::BOOL, codec::Order::ABCD, codec::Half::high, 12};
+
+  Map head;
+  head.name = "cell";
+  head.connection = {"cell.local", 1502, 7, 250ms};
+  head.polling = {2.5, true, 65, false, 13};
+  head.limits = {100, 1000, 90, 900, 2ms, 3ms, 4, true};
+  head.text = "name: cell\nrest: \"ü?\?/\\\"";
+  owned->finish(head, {lamp, button, level, label, flag},
+                {{"lamp", "button", true, 0us}, {"", "button", false, 1000000us}});
+  return owned;
+}
+
+}  // namespace coupler::testing

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/generate/table.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "test/common/generate/sample.hpp"
+
+namespace coupler::generate {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const Stamp stamp{"cell", "cell.yaml", "1.2.3"};
+
+std::string source() { return table_source(testing::sample()->map(), stamp); }
+
+TEST(Table, A_coil_is_written_with_its_line_and_initial_state) {
+  EXPECT_THAT(source(), HasSubstr(R"(
+    // Lamp above the door: coils 3
+    {"lamp", Table::coils, 3, {Type::BOOL}, Access::read_write,
+     registers<0x0001>, Safe::hold, {"gpiochip0", 17, "", true, Bias::pull_up, Drive::open_drain, 0us},
+     "Lamp above the door", ""},
+)"));
+}
+
+TEST(Table, A_line_is_known_by_its_name_too) {
+  EXPECT_THAT(source(), HasSubstr(R"({"", 0, "GPIO4", false, Bias::as_is, Drive::push_pull, 5000us})"));
+}
+
+TEST(Table, A_format_names_its_fields_up_to_the_last_that_is_not_the_default) {
+  EXPECT_THAT(source(), AllOf(HasSubstr("{Type::REAL, Order::CDAB},"),
+                              HasSubstr("{Type::STRING, Order::BADC, Half::high, 0, 3, Encoding::latin1},"),
+                              HasSubstr("{Type::BOOL, Order::ABCD, Half::high, 12},")));
+}
+
+TEST(Table, A_point_without_a_line_has_none) {
+  EXPECT_THAT(source(), HasSubstr("     registers<0x6261, 0x0063>, Safe::off, {},\n"));
+}
+
+TEST(Table, The_comment_says_every_address_or_the_bit) {
+  EXPECT_THAT(source(),
+              AllOf(HasSubstr("// input_registers 100-101\n"), HasSubstr("// holding_registers 7-8\n"),
+                    HasSubstr("// holding_registers 9, bit 12\n")));
+}
+
+TEST(Table, Bytes_outside_ASCII_are_escaped_in_data) { EXPECT_THAT(source(), HasSubstr(R"("\302\260C"})")); }
+
+TEST(Table, Wires_of_the_simulated_chip_are_rows) {
+  EXPECT_THAT(
+      source(),
+      HasSubstr("    {\"lamp\", \"button\", true, 0us},\n    {\"\", \"button\", false, 1000000us},\n"));
+}
+
+TEST(Table, Connection_polling_and_limits_are_in_it) {
+  EXPECT_THAT(source(),
+              AllOf(HasSubstr(R"({"cell.local", 1502, 7, 250ms})"), HasSubstr("{2.5, true, 65, false, 13}"),
+                    HasSubstr("{100, 1000, 90, 900, 2ms, 3ms, 4, true}")));
+}
+
+TEST(Table, The_text_is_one_literal_a_line) {
+  EXPECT_THAT(source(), HasSubstr("    \"name: cell\\n\"\n    \"rest: \\\"\\303\\274?\\?/\\\\\\\"\";\n"));
+}
+
+TEST(Table, A_map_without_points_has_no_empty_arrays) {
+  OwnedMap empty;
+  empty.finish({}, {}, {});
+  EXPECT_THAT(table_source(empty.map(), stamp), AllOf(Not(HasSubstr("points[]")), Not(HasSubstr("sim[]")),
+                                                      HasSubstr("    {},\n    {},\n    fingerprint,\n")));
+}
+
+TEST(Table, The_header_carries_fingerprint_and_model_version) {
+  const auto map = testing::sample();
+  const std::string header = table_header(map->map(), stamp);
+  EXPECT_THAT(header, AllOf(HasSubstr(fmt::format("fingerprint = 0x{:016x};", map->map().fingerprint)),
+                            HasSubstr(fmt::format("model_version == {}", model_version)),
+                            HasSubstr("namespace coupler::maps::cell {"),
+                            HasSubstr("// cell.yaml as constant data")));
+}
+
+TEST(Table, A_file_name_cannot_leave_its_comment) {
+  const Stamp odd{"cell", "a\n#error b", "1.2.3"};
+  EXPECT_THAT(table_source(testing::sample()->map(), odd), Not(HasSubstr("\n#error")));
+}
+
+}  // namespace
+}  // namespace coupler::generate
