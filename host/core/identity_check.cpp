@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/core/identity_check.hpp"
+
+#include "common/map/diff.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using Verdict = Identity::Verdict;
+
+Identity unreadable(std::uint64_t fingerprint, const std::string& why) {
+  return {Verdict::different, fingerprint, {"the node's map cannot be compared: " + why}};
+}
+
+Identity compare(const Map& known, const Map& device, std::uint64_t fingerprint) {
+  Identity identity{Verdict::superset, fingerprint, {}};
+  for (const Difference& difference : diff(known, device)) {
+    if (difference.kind != Difference::Kind::added) identity.verdict = Verdict::different;
+    identity.differences.push_back(to_string(difference));
+  }
+  return identity;
+}
+
+}  // namespace
+
+Result<Identity> check_identity(Transport& transport, const Map& known, const MapLoader& load) {
+  const auto read = read_identity(transport);
+  if (!read) return tl::make_unexpected(read.error());
+  if (!read->has_value()) return Identity{};
+  const identity::Head& head = **read;
+  if (head.fingerprint == known.fingerprint) return Identity{Verdict::equal, head.fingerprint, {}};
+
+  const auto text = fetch_map_text(transport, head.map_size);
+  if (!text) {
+    if (exception_in(text.error()) == nullptr) return tl::make_unexpected(text.error());
+    return unreadable(head.fingerprint, to_string(text.error()));
+  }
+  const auto device = load_node_map(*text, head, load);
+  if (!device) return unreadable(head.fingerprint, device.error());
+  return compare(known, (*device)->map(), head.fingerprint);
+}
+
+}  // namespace coupler::driver

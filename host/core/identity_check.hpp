@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/core/node_map.hpp"
+
+namespace coupler::driver {
+
+/// What to do when the two sides do not agree.
+enum class Verify {
+  require,  ///< do not talk to the device
+  warn,     ///< say so and go on
+  off       ///< do not ask
+};
+
+/// How the device's map compares with the driver's.
+struct Identity {
+  enum class Verdict {
+    foreign,   ///< no identity: not a node of this project
+    equal,     ///< the same fingerprint
+    superset,  ///< the device has every point of the driver's map, unchanged, and more
+    different  ///< a point is missing or changed there, or its map cannot be read
+  };
+  Verdict verdict = Verdict::foreign;
+  std::uint64_t fingerprint = 0;  ///< the device's
+  std::vector<std::string>
+      differences;  ///< one line each, the driver's map first; or why there are none to show
+};
+
+/// Asks the device. An error is a broken connection, never a difference.
+Result<Identity> check_identity(Transport& transport, const Map& known, const MapLoader& load);
+
+}  // namespace coupler::driver

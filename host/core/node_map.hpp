@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a node of this project says of itself: its identity and its map. Foreign couplers have neither.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "common/map/identity.hpp"
+#include "common/map/loader/load.hpp"
+#include "host/core/transport.hpp"
+
+namespace coupler::driver {
+
+/// load_map(), passed in so that the core needs no YAML.
+using MapLoader = std::function<LoadResult(std::string_view text, std::string_view file)>;
+
+/// nullopt: a foreign coupler, which answers with an exception or with something else.
+Result<std::optional<identity::Head>> read_identity(Transport& transport);
+
+/// The text of the map by FC 20, unchecked.
+Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size);
+
+/// The map of a text that was fetched, or why it is none: a wrong checksum, errors.
+tl::expected<MapPtr, std::string> load_node_map(const std::string& text, const identity::Head& head,
+                                                const MapLoader& load);
+
+}  // namespace coupler::driver

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/base/span.hpp"
+#include "host/core/clock.hpp"
+#include "host/core/read_plan.hpp"
+
+namespace coupler::driver {
+
+enum class Level { info, warning, error };
+
+/// Where a device's news go. All calls come from the connection's thread, values while the next request
+/// waits: what is done here delays it.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  /// `bits[i]` is the coil or discrete input `span.range.start() + i`, as of `at`.
+  virtual void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) = 0;
+  /// `registers[i]` is the register `span.range.start() + i`, as of `at`.
+  virtual void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) = 0;
+  /// The device answers (or no longer does). Only changes are told; it begins offline.
+  virtual void on_online(bool online) = 0;
+  virtual void on_report(Level level, const std::string& text) = 0;
+};
+
+}  // namespace coupler::driver
