@@ -41,6 +41,7 @@ tl::expected<void, FileRefusal> parse_file_reply(Bytes pdu, Span<std::uint16_t> 
 /// The groups of a request that parse_file_request() found valid. A view of the request's PDU.
 class FileGroups {
  public:
+  FileGroups() = default;
   std::size_t size() const;
   FileRecord operator[](std::size_t i) const;
 
