@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <tl/expected.hpp>
+
+#include "common/modbus/limits.hpp"
+#include "common/modbus/request.hpp"
+#include "device/core/image.hpp"
+#include "device/core/lines.hpp"
+#include "device/core/statistics.hpp"
+
+namespace coupler::node {
+
+/// Carries out requests, one at a time and each as a whole: everything is validated, then the hardware is
+/// driven, then the image is changed, then the reply is made. What fails leaves no trace. Allocates nothing.
+class Handler {
+ public:
+  /// All of them outlive the handler.
+  Handler(const Map& map, Image& image, Lines& lines, Statistics& statistics);
+
+  /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
+  /// returns its size. Exceptions: those of parse_request(); 02 an address that is not mapped, or not
+  /// writable; 04 a line that cannot be read or driven.
+  std::size_t handle(modbus::Bytes request, TimePoint now, Span<std::uint8_t> reply);
+
+ private:
+  using Answer = tl::expected<std::size_t, modbus::Exception>;
+  /// A request on its way to its answer.
+  struct Call {
+    modbus::Bytes request;
+    TimePoint now;
+    Span<std::uint8_t> reply;
+  };
+
+  Answer answer(const Call& call);
+  Answer carry_out(const modbus::Read& read, const Call& call);
+  Answer carry_out(const modbus::WriteBits& write, const Call& call);
+  Answer carry_out(const modbus::WriteRegisters& write, const Call& call);
+  Answer carry_out(const modbus::MaskWrite& write, const Call& call);
+  Answer carry_out(const modbus::ReadWriteRegisters& both, const Call& call);
+  Answer carry_out(const modbus::FileGroups& groups, const Call& call);
+
+  const Map& map_;
+  Image& image_;
+  Lines& lines_;
+  Statistics& statistics_;
+  std::array<std::uint16_t, modbus::max_write_bits> bits_{};  ///< those of a write, before it is committed
+};
+
+}  // namespace coupler::node

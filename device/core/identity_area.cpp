@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/core/identity_area.hpp"
+
+#include "common/codec/number.hpp"
+#include "common/map/identity.hpp"
+
+namespace coupler::node {
+namespace {
+
+Span<std::uint16_t> area_of(Image& image) {
+  return image.find(Table::input_registers, modbus::Range::of(identity::reserved.start(), identity::size));
+}
+
+}  // namespace
+
+void write_identity(const Map& map, Image& image) {
+  identity::write_head(identity::head_of(map), area_of(image).data());
+}
+
+void write_statistics(const Statistics& statistics, TimePoint now, Image& image) {
+  const auto area = area_of(image);
+  const auto put = [&](std::size_t at, std::uint32_t value) {
+    codec::encode(value, codec::Order::ABCD, &area[at]);
+  };
+  const auto uptime = std::chrono::duration_cast<std::chrono::seconds>(now - statistics.started);
+  put(identity::at_uptime, static_cast<std::uint32_t>(uptime.count()));
+  put(identity::at_requests, statistics.requests);
+  put(identity::at_exceptions, statistics.exceptions);
+  put(identity::at_connections, statistics.connections);
+  put(identity::at_hardware_errors, statistics.hardware_errors);
+}
+
+}  // namespace coupler::node

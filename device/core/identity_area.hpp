@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/core/image.hpp"
+#include "device/core/statistics.hpp"
+
+namespace coupler::node {
+
+/// Writes what the node says of itself (common/map/identity.hpp) into its area of the image: what never
+/// changes.
+void write_identity(const Map& map, Image& image);
+
+/// The same for the counters, which are brought up to date whenever a master reads there.
+void write_statistics(const Statistics& statistics, TimePoint now, Image& image);
+
+}  // namespace coupler::node

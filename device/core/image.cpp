@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/core/image.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "common/map/identity.hpp"
+
+namespace coupler::node {
+namespace {
+
+using modbus::Range;
+
+enum class Which { mapped, writable };
+
+bool belongs(const Point& point, Table table, Which which) {
+  return point.table == table && (which == Which::mapped || is_writable(point));
+}
+
+/// Calls `use` with each maximal range without holes, in order; the map's points are sorted.
+template <class Use>
+void each_range(const Map& map, Table table, Which which, Use use) {
+  std::uint32_t start = 0;
+  std::uint32_t end = 0;
+  for (const Point& point : map.points) {
+    if (!belongs(point, table, which)) continue;
+    const Range next = range(point);
+    if (start != end && next.start() > end) use(Range::of(start, end - start));
+    if (start == end || next.start() > end) start = next.start();
+    end = std::max(end, next.end());
+  }
+  if (start != end) use(Range::of(start, end - start));
+  if (table == Table::input_registers && which == Which::mapped)
+    use(Range::of(identity::reserved.start(), identity::size));
+}
+
+const Image::Area* covering(Span<Image::Area> areas, Range range) {
+  const auto* after =
+      std::upper_bound(areas.begin(), areas.end(), range.start(),
+                       [](std::uint32_t address, const auto& area) { return address < area.start; });
+  if (after == areas.begin()) return nullptr;
+  const Image::Area* area = after - 1;
+  return range.end() <= area->end ? area : nullptr;
+}
+
+/// A point that shares its register leaves the others' bits alone.
+void put_initial(const Point& point, Span<std::uint16_t> cells) {
+  const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
+  for (std::size_t i = 0; i < point.initial.size(); ++i)
+    cells[i] = static_cast<std::uint16_t>((cells[i] & ~mask) | (point.initial[i] & mask));
+}
+
+}  // namespace
+
+Image::Size Image::size_for(const Map& map) {
+  Size size;
+  for (const Table table : tables) {
+    each_range(map, table, Which::mapped, [&](Range range) {
+      ++size.areas;
+      size.cells += range.count();
+    });
+    if (is_writable(table)) each_range(map, table, Which::writable, [&](Range) { ++size.areas; });
+  }
+  return size;
+}
+
+Image::Image(const Map& map, Span<Area> areas, Span<std::uint16_t> cells) : cells_(cells) {
+  std::size_t used = 0;
+  std::uint32_t cell = 0;
+  const auto list = [&](Table table, Which which) {
+    const std::size_t first = used;
+    each_range(map, table, which, [&](Range range) {
+      areas[used++] = {range.start(), range.end(), cell};
+      if (which == Which::mapped) cell += range.count();
+    });
+    return areas.sub(first, used - first);
+  };
+  for (const Table table : tables) {
+    mapped_[index(table)] = list(table, Which::mapped);
+    if (is_writable(table)) writable_[index(table)] = list(table, Which::writable);
+  }
+  std::fill(cells_.begin(), cells_.end(), std::uint16_t{0});
+  for (const Point& point : map.points) put_initial(point, find(point.table, range(point)));
+}
+
+Span<std::uint16_t> Image::find(Table table, Range range) const {
+  const Area* area = covering(mapped_[index(table)], range);
+  if (area == nullptr) return {};
+  return cells_.sub(area->cell + (range.start() - area->start), range.count());
+}
+
+Span<std::uint16_t> Image::find_writable(Table table, Range range) const {
+  return covering(writable_[index(table)], range) == nullptr ? Span<std::uint16_t>() : find(table, range);
+}
+
+}  // namespace coupler::node

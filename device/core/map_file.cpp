@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/core/map_file.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "common/modbus/limits.hpp"
+
+namespace coupler::node {
+
+bool read_map_file(std::string_view text, modbus::FileRecord wanted, Span<std::uint8_t> bytes) {
+  const std::size_t first = (wanted.file - std::size_t{1}) * modbus::records_per_file + wanted.record;
+  const std::size_t total = (text.size() + 1) / 2;
+  if (first >= total || wanted.registers > total - first) return false;
+
+  const std::string_view piece = text.substr(2 * first, bytes.size());
+  std::memcpy(bytes.data(), piece.data(), piece.size());
+  std::fill(bytes.begin() + piece.size(), bytes.end(), std::uint8_t{0});
+  return true;
+}
+
+}  // namespace coupler::node
