@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "common/map/fingerprint.hpp"
+#include "test/host/core/device_fixture.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using test::DeviceTest;
+using testing::ElementsAre;
+
+struct DeviceIdentityTest : DeviceTest {
+  static MapBuilder here() { return MapBuilder().coil("a", 1).coil("b", 9); }
+  static MapBuilder there() { return MapBuilder().coil("a", 2).coil("b", 9); }
+};
+
+TEST_F(DeviceIdentityTest, Equal_maps_are_quiet) {
+  serve(here());
+  start(here());
+  run_for(milliseconds(150));
+  EXPECT_THAT(sink->reports, ElementsAre("connected"));
+}
+
+TEST_F(DeviceIdentityTest, A_foreign_coupler_is_quiet) {
+  device.missing.insert({Table::input_registers, 0xFF00});
+  start(here());
+  run_for(milliseconds(150));
+  EXPECT_THAT(sink->reports, ElementsAre("connected"));
+  EXPECT_EQ(sink->values["a"].size(), 2U);
+}
+
+TEST_F(DeviceIdentityTest, A_different_map_is_neither_read_nor_written) {
+  serve(there());
+  start(here());
+  run_for(milliseconds(50));
+  push("b", 1);
+  run_for(seconds(20));
+  EXPECT_TRUE(sink->values.empty());
+  EXPECT_EQ(device.count("write coil 9"), 0U);
+  EXPECT_TRUE(sink->online.empty());
+  EXPECT_FALSE(device.connected) << "the connection may be the only one the device has";
+}
+
+TEST_F(DeviceIdentityTest, Both_fingerprints_and_the_points_that_differ_are_reported_once) {
+  serve(there());
+  start(here());
+  run_for(seconds(20));
+  EXPECT_EQ(sink->reported("~ a: address 1 -> 2"), 1);
+  EXPECT_EQ(sink->reported(fingerprint_text(owned->map().fingerprint)), 1);
+  EXPECT_EQ(sink->reported(fingerprint_text(served->map().fingerprint)), 1);
+  EXPECT_EQ(sink->reported("b:"), 0);
+}
+
+TEST_F(DeviceIdentityTest, A_device_that_gets_the_right_map_is_taken_without_a_restart) {
+  serve(there());
+  start(here());
+  run_for(seconds(2));
+  serve(here());
+  run_for(seconds(6));
+  EXPECT_THAT(sink->online, ElementsAre(true));
+}
+
+TEST_F(DeviceIdentityTest, A_device_with_more_points_is_read_and_written) {
+  serve(here().coil("c", 20));
+  start(here());
+  run_for(milliseconds(50));
+  push("b", 1);
+  run_for(milliseconds(1));
+  EXPECT_EQ(sink->values["a"].size(), 1U);
+  EXPECT_EQ((device.values[{Table::coils, 9}]), 1);
+}
+
+TEST_F(DeviceIdentityTest, With_warn_a_different_map_is_reported_and_used) {
+  serve(there());
+  start(here(), Verify::warn);
+  run_for(milliseconds(150));
+  EXPECT_EQ(sink->reported("~ a: address 1 -> 2"), 1);
+  EXPECT_EQ(sink->values["a"].size(), 2U);
+}
+
+TEST_F(DeviceIdentityTest, With_off_nobody_asks) {
+  serve(there());
+  start(here(), Verify::off);
+  run_for(milliseconds(150));
+  EXPECT_THAT(sink->reports, ElementsAre("connected"));
+  EXPECT_EQ(device.count("read input_registers 65280+13"), 0U);
+}
+
+}  // namespace
+}  // namespace coupler::driver

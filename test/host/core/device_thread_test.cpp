@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/core/device_thread.hpp"
+
+#include <gtest/gtest.h>
+
+#include <future>
+
+#include "test/host/core/fake_device.hpp"
+#include "test/host/core/make_map.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using test::FakeDevice;
+using test::MapBuilder;
+
+LoadResult no_map(std::string_view, std::string_view) { return {}; }
+
+/// Tells when the first value and a written value arrive.
+struct WaitingSink : Sink {
+  std::promise<void> first;
+  std::promise<void> written;
+  bool seen = false;
+  bool seen_written = false;
+  void on_bits(const ReadSpan&, Span<const std::uint8_t> bits, Time) override {
+    if (!std::exchange(seen, true)) first.set_value();
+    if (bits[0] != 0 && !std::exchange(seen_written, true)) written.set_value();
+  }
+  void on_registers(const ReadSpan&, Span<const std::uint16_t>, Time) override {}
+  void on_online(bool) override {}
+  void on_report(Level, const std::string&) override {}
+};
+
+TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
+  auto builder = MapBuilder().coil("a", 1);
+  builder.head().polling.rate = 100;
+  const auto owned = builder.build();
+  FakeDevice device;
+  WaitingSink sink;
+  DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+  ASSERT_EQ(sink.first.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  Write on;
+  on.registers[0] = 1;
+  ASSERT_TRUE(thread.writes().push(on));
+  EXPECT_EQ(sink.written.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
+}
+
+TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {
+  const auto owned = MapBuilder().coil("a", 1).build();
+  FakeDevice device;
+  device.refuse_connect = NotConnected{"refused"};
+  WaitingSink sink;
+  const auto begin = std::chrono::steady_clock::now();
+  { const DeviceThread thread(owned->map(), Verify::off, no_map, device, sink); }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
+}  // namespace
+}  // namespace coupler::driver

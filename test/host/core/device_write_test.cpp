@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "test/host/core/device_fixture.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using std::chrono::milliseconds;
+using test::DeviceTest;
+using testing::ElementsAre;
+
+struct DeviceWriteTest : DeviceTest {
+  void start_online(const MapBuilder& builder) {
+    start(builder);
+    run_for(milliseconds(50));
+    device.requests.clear();
+  }
+};
+
+TEST_F(DeviceWriteTest, A_write_goes_out_although_no_read_is_due) {
+  start_online(MapBuilder().holding("a", 5));
+  push("a", 7);
+  engine->step();
+  EXPECT_THAT(device.requests, ElementsAre("write register 5"));
+  EXPECT_EQ((device.values[{Table::holding_registers, 5}]), 7);
+}
+
+TEST_F(DeviceWriteTest, Writes_go_before_the_reads_that_are_due_and_keep_their_order) {
+  start_online(MapBuilder().holding("a", 5).holding("b", 50));
+  clock.advance(milliseconds(200));
+  engine->step();
+  push("b", 1);
+  push("a", 2);
+  for (int i = 0; i < 3; ++i) engine->step();
+  EXPECT_THAT(device.requests, ElementsAre("read holding_registers 5+1", "write register 50",
+                                           "write register 5", "read holding_registers 50+1"));
+}
+
+TEST_F(DeviceWriteTest, A_refused_write_is_reported_and_keeps_the_connection) {
+  start_online(MapBuilder().coil("a", 5));
+  device.next_errors.push_back(ExceptionReply{modbus::Exception::server_device_failure});
+  push("a", 1);
+  run_for(milliseconds(200));
+  EXPECT_EQ(sink->reported("write to a refused: exception 04 (server device failure)"), 1);
+  EXPECT_EQ(device.count("connect"), 0U);
+}
+
+TEST_F(DeviceWriteTest, A_write_without_an_answer_is_reported_as_lost_and_not_repeated) {
+  start_online(MapBuilder().coil("a", 5));
+  device.next_errors.push_back(Timeout{milliseconds(3000)});
+  push("a", 1);
+  run_for(milliseconds(500));
+  EXPECT_EQ(sink->reported("write to a lost: no reply within 3000 ms"), 1);
+  EXPECT_EQ(device.count("write coil 5"), 1U);
+  EXPECT_THAT(sink->online, ElementsAre(true, false, true));
+}
+
+TEST_F(DeviceWriteTest, Writes_while_offline_are_dropped_and_reported_once_with_their_number_later) {
+  device.refuse_connect = NotConnected{"refused"};
+  start(MapBuilder().coil("a", 5));
+  for (int i = 0; i < 3; ++i) {
+    push("a", 1);
+    run_for(milliseconds(50));
+  }
+  EXPECT_EQ(sink->reported("write to a dropped"), 1);
+  device.refuse_connect.reset();
+  run_for(milliseconds(500));
+  EXPECT_EQ(device.count("write coil 5"), 0U);
+  EXPECT_EQ(sink->reported("3 writes were dropped"), 1);
+}
+
+TEST_F(DeviceWriteTest, A_map_of_outputs_that_cannot_be_read_is_online_by_its_writes) {
+  MapBuilder builder;
+  builder.point("a", Table::coils, 5, {}, Access::write);
+  start(builder, Verify::off);
+  run_for(milliseconds(50));
+  EXPECT_TRUE(sink->online.empty());
+  push("a", 1);
+  engine->step();
+  EXPECT_EQ((device.values[{Table::coils, 5}]), 1);
+  EXPECT_THAT(sink->online, ElementsAre(true));
+}
+
+}  // namespace
+}  // namespace coupler::driver

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/core/identity_check.hpp"
+
+#include <gmock/gmock.h>
+
+#include "test/host/core/fake_device.hpp"
+#include "test/host/core/make_map.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using test::FakeDevice;
+using test::MapBuilder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using Verdict = Identity::Verdict;
+
+struct IdentityCheck : testing::Test {
+  IdentityCheck() { device.connected = true; }
+
+  /// Checks `known` against a node that serves `served`.
+  Identity check(const MapBuilder& known, const MapBuilder& served) {
+    const auto here = known.build();
+    const auto there = served.build();
+    device.serve(there->map());
+    return *check_identity(device, here->map(), [&](std::string_view text, std::string_view) {
+      EXPECT_EQ(text, there->map().text);
+      return LoadResult{there, {}};
+    });
+  }
+  static LoadResult no_map(std::string_view, std::string_view) {
+    return {nullptr, {{Diagnostic::Severity::error, "map", 1, 2, "no name", "add one"}}};
+  }
+  FakeDevice device;
+};
+
+TEST_F(IdentityCheck, A_device_that_rejects_the_area_is_foreign) {
+  device.missing.insert({Table::input_registers, 0xFF00});
+  const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+  EXPECT_EQ(identity->verdict, Verdict::foreign);
+}
+
+TEST_F(IdentityCheck, A_device_with_other_values_there_is_foreign) {
+  device.values[{Table::input_registers, 0xFF00}] = 0x4F43;
+  const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+  EXPECT_EQ(identity->verdict, Verdict::foreign);
+}
+
+TEST_F(IdentityCheck, Equal_fingerprints_need_one_request) {
+  const auto map = MapBuilder().coil("a", 1);
+  EXPECT_EQ(check(map, map).verdict, Verdict::equal);
+  EXPECT_THAT(device.requests, ElementsAre("read input_registers 65280+13"));
+}
+
+TEST_F(IdentityCheck, A_driver_may_know_a_part_of_the_nodes_points) {
+  EXPECT_EQ(check(MapBuilder().coil("a", 1), MapBuilder().coil("a", 1).coil("b", 2)).verdict,
+            Verdict::superset);
+}
+
+TEST_F(IdentityCheck, A_point_that_moved_is_a_difference) {
+  const auto served = MapBuilder().coil("a", 2);
+  const Identity identity = check(MapBuilder().coil("a", 1), served);
+  EXPECT_EQ(identity.verdict, Verdict::different);
+  EXPECT_EQ(identity.fingerprint, served.build()->map().fingerprint);
+  EXPECT_THAT(identity.differences, ElementsAre(HasSubstr("a: address 1 -> 2")));
+}
+
+TEST_F(IdentityCheck, A_point_that_the_node_does_not_have_is_a_difference) {
+  const Identity identity = check(MapBuilder().coil("a", 1).coil("b", 2), MapBuilder().coil("a", 1));
+  EXPECT_EQ(identity.verdict, Verdict::different);
+  EXPECT_THAT(identity.differences, ElementsAre(HasSubstr("b: missing")));
+}
+
+TEST_F(IdentityCheck, A_long_map_is_fetched_piece_by_piece_across_files) {
+  auto served = MapBuilder().coil("a", 1).coil("b", 2);
+  std::string text(20001, ' ');
+  for (std::size_t i = 0; i < text.size(); ++i) text[i] = static_cast<char>('a' + i % 26);
+  served.head().text = text;
+  EXPECT_EQ(check(MapBuilder().coil("a", 1), served).verdict, Verdict::superset);
+  EXPECT_EQ(device.requests.back(), "read file 2 0+1");
+}
+
+TEST_F(IdentityCheck, A_map_with_a_wrong_checksum_is_not_believed) {
+  device.serve(MapBuilder().coil("a", 1).build()->map());
+  device.file[0] = '?';
+  const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+  EXPECT_EQ(identity->verdict, Verdict::different);
+  EXPECT_THAT(identity->differences, ElementsAre(HasSubstr("checksum")));
+}
+
+TEST_F(IdentityCheck, A_map_that_does_not_load_is_a_difference_with_its_diagnostics) {
+  device.serve(MapBuilder().coil("a", 1).build()->map());
+  const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+  EXPECT_EQ(identity->verdict, Verdict::different);
+  EXPECT_THAT(identity->differences, ElementsAre(HasSubstr("map:1:2: error: no name; add one")));
+}
+
+TEST_F(IdentityCheck, A_node_that_does_not_serve_its_map_cannot_be_compared) {
+  device.serve(MapBuilder().coil("a", 1).build()->map());
+  device.file.clear();
+  const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+  EXPECT_EQ(identity->verdict, Verdict::different);
+  EXPECT_THAT(identity->differences, ElementsAre(HasSubstr("illegal function")));
+}
+
+TEST_F(IdentityCheck, A_timeout_is_no_verdict) {
+  device.next_errors.push_back(Timeout{std::chrono::seconds(3)});
+  EXPECT_FALSE(check_identity(device, MapBuilder().build()->map(), no_map));
+}
+
+}  // namespace
+}  // namespace coupler::driver

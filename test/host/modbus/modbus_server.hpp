@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <modbus/modbus.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include <arpa/inet.h>
+
+#include "host/modbus/event.hpp"
+
+namespace coupler::driver::test {
+
+/// A socket that listens on a free loopback port, and what a thread does with each connection to it.
+class LoopbackServer {
+ public:
+  /// `serve` gets the connection's descriptor and is called again until it returns false.
+  explicit LoopbackServer(std::function<bool(int)> serve) : serve_(std::move(serve)) {
+    listener_ = Descriptor(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ::bind(listener_.get(), reinterpret_cast<sockaddr*>(&address), size);
+    ::listen(listener_.get(), 4);
+    ::getsockname(listener_.get(), reinterpret_cast<sockaddr*>(&address), &size);
+    port_ = ntohs(address.sin_port);
+    thread_ = std::thread([this] { run(); });
+  }
+  ~LoopbackServer() {
+    stop_.set();
+    thread_.join();
+  }
+  std::uint16_t port() const { return port_; }
+
+ private:
+  bool readable(int fd) const {
+    std::array<pollfd, 2> wanted{{{fd, POLLIN, 0}, {stop_.fd(), POLLIN, 0}}};
+    ::poll(wanted.data(), wanted.size(), -1);
+    return wanted[1].revents == 0;
+  }
+  void run() {
+    while (readable(listener_.get())) {
+      const Descriptor connection(::accept(listener_.get(), nullptr, nullptr));
+      while (readable(connection.get()) && serve_(connection.get())) {
+      }
+    }
+  }
+
+  std::function<bool(int)> serve_;
+  Descriptor listener_;
+  Event stop_;
+  std::uint16_t port_ = 0;
+  std::thread thread_;
+};
+
+/// libmodbus's own server with 100 elements in each table.
+class ModbusServer {
+ public:
+  ModbusServer() : server_([this](int fd) { return answer(fd); }) {}
+
+  std::uint16_t port() const { return server_.port(); }
+  /// Safe before a request and after its reply: the reply orders the accesses.
+  modbus_mapping_t& tables() { return *tables_; }
+
+ private:
+  bool answer(int fd) {
+    std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> query{};
+    modbus_set_socket(context_.get(), fd);
+    const int size = modbus_receive(context_.get(), query.data());
+    if (size < 0) return false;
+    return size == 0 || modbus_reply(context_.get(), query.data(), size, tables_.get()) >= 0;
+  }
+
+  std::unique_ptr<modbus_t, void (*)(modbus_t*)> context_{modbus_new_tcp("127.0.0.1", 0), modbus_free};
+  std::unique_ptr<modbus_mapping_t, void (*)(modbus_mapping_t*)> tables_{
+      modbus_mapping_new(100, 100, 100, 100), modbus_mapping_free};
+  LoopbackServer server_;  // last: its thread uses the others
+};
+
+}  // namespace coupler::driver::test

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/modbus/modbus_transport.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "test/host/modbus/modbus_server.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using modbus::Range;
+using std::chrono::milliseconds;
+
+Connection connection_to(std::uint16_t port, milliseconds timeout = milliseconds(5000)) {
+  Connection connection;
+  connection.address = "localhost";  // a name, and not only an address, must do
+  connection.port = port;
+  connection.timeout = timeout;
+  return connection;
+}
+
+template <class E>
+bool is(const Result<>& result) {
+  return !result && std::holds_alternative<E>(result.error());
+}
+
+struct ModbusTransportTest : testing::Test {
+  ModbusTransportTest() { EXPECT_TRUE(transport.connect()); }
+  test::ModbusServer server;
+  ModbusTransport transport{connection_to(server.port())};
+};
+
+TEST_F(ModbusTransportTest, Each_table_is_read_with_its_own_function) {
+  server.tables().tab_bits[3] = 1;
+  server.tables().tab_input_bits[4] = 1;
+  server.tables().tab_input_registers[5] = 500;
+  server.tables().tab_registers[6] = 600;
+  std::uint8_t bits[2]{};
+  std::uint16_t registers[2]{};
+  ASSERT_TRUE(transport.read_bits(Table::coils, Range::of(2, 2), bits));
+  EXPECT_EQ(bits[1], 1);
+  ASSERT_TRUE(transport.read_bits(Table::discrete_inputs, Range::of(4, 2), bits));
+  EXPECT_EQ(bits[0], 1);
+  ASSERT_TRUE(transport.read_registers(Table::input_registers, Range::of(4, 2), registers));
+  EXPECT_EQ(registers[1], 500);
+  ASSERT_TRUE(transport.read_registers(Table::holding_registers, Range::of(6, 2), registers));
+  EXPECT_EQ(registers[0], 600);
+}
+
+TEST_F(ModbusTransportTest, What_is_written_arrives) {
+  const std::uint8_t bits[] = {1, 0, 1};
+  const std::uint16_t registers[] = {7, 8, 9};
+  ASSERT_TRUE(transport.write_coil(1, true));
+  ASSERT_TRUE(transport.write_coils(10, bits));
+  ASSERT_TRUE(transport.write_register(1, 0xBEEF));
+  ASSERT_TRUE(transport.write_registers(10, registers));
+  EXPECT_EQ(server.tables().tab_bits[1], 1);
+  EXPECT_EQ(server.tables().tab_bits[12], 1);
+  EXPECT_EQ(server.tables().tab_registers[1], 0xBEEF);
+  EXPECT_EQ(server.tables().tab_registers[12], 9);
+}
+
+TEST_F(ModbusTransportTest, A_mask_write_changes_the_bits_outside_the_and_mask) {
+  server.tables().tab_registers[1] = 0x1234;
+  ASSERT_TRUE(transport.mask_write(1, 0xFF00, 0x00AB));
+  EXPECT_EQ(server.tables().tab_registers[1], 0x12AB);
+}
+
+TEST_F(ModbusTransportTest, An_exception_is_told_with_its_code_and_the_connection_lives) {
+  std::uint16_t word = 0;
+  const auto read = transport.read_registers(Table::holding_registers, Range::of(100, 1), &word);
+  ASSERT_TRUE(is<ExceptionReply>(read));
+  EXPECT_EQ(exception_in(read.error())->code, modbus::Exception::illegal_data_address);
+  EXPECT_TRUE(transport.read_registers(Table::holding_registers, Range::of(99, 1), &word));
+}
+
+TEST_F(ModbusTransportTest, Without_a_connection_a_request_fails) {
+  transport.close();
+  std::uint16_t word = 0;
+  EXPECT_TRUE(
+      is<TransportFailure>(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+  EXPECT_TRUE(is<NotConnected>(transport.read_file_record(1, 0, {&word, 1})));
+}
+
+TEST(ModbusTransport, Nobody_there_is_told_with_host_port_and_cause) {
+  std::uint16_t free_port = 0;
+  { free_port = test::ModbusServer().port(); }
+  ModbusTransport transport(connection_to(free_port));
+  const auto connected = transport.connect();
+  ASSERT_TRUE(is<NotConnected>(connected));
+  EXPECT_EQ(to_string(connected.error()),
+            "localhost port " + std::to_string(free_port) + ": Connection refused");
+}
+
+TEST(ModbusTransport, A_unit_that_modbus_does_not_have_is_told) {
+  Connection connection = connection_to(1);
+  connection.unit = 250;
+  ModbusTransport transport(connection);
+  EXPECT_EQ(to_string(transport.connect().error()),
+            "unit 250 is reserved; Modbus has units 0 to 247 and 255");
+}
+
+TEST(ModbusTransport, Silence_is_a_timeout) {
+  test::LoopbackServer silent([](int fd) {
+    std::uint8_t byte = 0;
+    return ::recv(fd, &byte, 1, 0) > 0;
+  });
+  ModbusTransport transport(connection_to(silent.port(), milliseconds(50)));
+  ASSERT_TRUE(transport.connect());
+  std::uint16_t word = 0;
+  EXPECT_TRUE(is<Timeout>(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+  EXPECT_TRUE(is<Timeout>(transport.read_file_record(1, 0, {&word, 1})));
+}
+
+TEST(ModbusTransport, A_reply_to_another_request_is_a_bad_frame) {
+  test::LoopbackServer confused([](int fd) {
+    std::uint8_t query[12];
+    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+    const std::uint8_t reply[] = {0xEE, 0xEE, 0, 0, 0, 5, 1, 3, 2, 0, 7};
+    return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
+  });
+  ModbusTransport transport(connection_to(confused.port()));
+  ASSERT_TRUE(transport.connect());
+  std::uint16_t word = 0;
+  EXPECT_TRUE(is<BadFrame>(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+}
+
+TEST(ModbusTransport, A_device_that_hangs_up_is_a_transport_failure) {
+  test::LoopbackServer rude([](int) { return false; });
+  ModbusTransport transport(connection_to(rude.port()));
+  ASSERT_TRUE(transport.connect());
+  std::uint16_t word = 0;
+  EXPECT_TRUE(
+      is<TransportFailure>(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+}
+
+TEST(ModbusTransport, An_interrupt_ends_a_request_in_progress_and_every_later_connect) {
+  test::LoopbackServer silent([](int fd) {
+    std::uint8_t byte = 0;
+    return ::recv(fd, &byte, 1, 0) > 0;
+  });
+  ModbusTransport transport(connection_to(silent.port(), milliseconds(60000)));
+  ASSERT_TRUE(transport.connect());
+  const auto begin = std::chrono::steady_clock::now();
+  std::thread interrupter([&] {
+    std::this_thread::sleep_for(milliseconds(50));
+    transport.interrupt();
+  });
+  std::uint16_t word = 0;
+  EXPECT_FALSE(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word));
+  EXPECT_FALSE(transport.connect());
+  interrupter.join();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+}
+
+/// Serves two records, 0x4142 and 0x4344, or an exception.
+bool answer_file_request(int fd, bool refuse) {
+  std::uint8_t query[16];
+  if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+  const std::uint8_t data[] = {query[0], query[1], 0, 0,    0,    9,    query[6], 0x14,
+                               6,        5,        6, 0x41, 0x42, 0x43, 0x44};
+  const std::uint8_t exception[] = {query[0], query[1], 0, 0, 0, 3, query[6], 0x94, 2};
+  return refuse ? ::send(fd, exception, sizeof exception, MSG_NOSIGNAL) > 0
+                : ::send(fd, data, sizeof data, MSG_NOSIGNAL) > 0;
+}
+
+TEST(ModbusTransport, A_file_record_is_read) {
+  test::LoopbackServer server([](int fd) { return answer_file_request(fd, false); });
+  ModbusTransport transport(connection_to(server.port()));
+  ASSERT_TRUE(transport.connect());
+  std::uint16_t words[2]{};
+  ASSERT_TRUE(transport.read_file_record(1, 0, words));
+  EXPECT_EQ(words[0], 0x4142);
+  EXPECT_EQ(words[1], 0x4344);
+}
+
+TEST(ModbusTransport, A_device_without_files_answers_an_exception) {
+  test::LoopbackServer server([](int fd) { return answer_file_request(fd, true); });
+  ModbusTransport transport(connection_to(server.port()));
+  ASSERT_TRUE(transport.connect());
+  std::uint16_t words[2]{};
+  EXPECT_TRUE(is<ExceptionReply>(transport.read_file_record(1, 0, words)));
+}
+
+}  // namespace
+}  // namespace coupler::driver
