@@ -14,8 +14,8 @@ struct LoadResult {
   Diagnostics diagnostics;  ///< in the order of the file
 };
 
-/// Reads a map from YAML or JSON text; `file` names it in the diagnostics. Every problem is reported, not the first
-/// one (after a syntax error only that one). Never throws.
+/// Reads a map from YAML or JSON text; `file` names it in the diagnostics. Every problem is reported, not the
+/// first one (after a syntax error only that one). Never throws.
 LoadResult load_map(std::string_view text, std::string_view file);
 
 /// The same from a file; "-" is standard input. A file that cannot be read is a diagnostic.

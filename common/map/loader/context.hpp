@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/map/loader/problems.hpp"
+#include "common/map/owned_map.hpp"
+
+namespace coupler::loader {
+
+/// What all readers of one file share.
+struct Context {
+  Problems& problems;
+  OwnedMap& map;  ///< keeps the texts that points refer to
+  bool only_origin =
+      false;  ///< the file uses no key of this project: what the origin would ignore is a warning
+
+  void ignored(Position at, std::string what, std::string remedy) {
+    if (only_origin)
+      problems.warning(at, std::move(what), std::move(remedy));
+    else
+      problems.error(at, std::move(what), std::move(remedy));
+  }
+};
+
+}  // namespace coupler::loader

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/map/loader/node.hpp"
+#include "common/map/point.hpp"
+
+namespace coupler::loader {
+
+/// A point as far as it could be read, and where it stands in the file.
+struct DraftPoint {
+  Point point;
+  Position name_at;
+  Position address_at;
+  Position line_at;
+  bool placed = false;  ///< address and format are known, and the range ends by 65535
+};
+
+using DraftPoints = std::vector<DraftPoint>;
+
+}  // namespace coupler::loader

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/loader/format_reader.hpp"
+
+#include <array>
+
+#include <fmt/format.h>
+
+namespace coupler::loader {
+namespace {
+
+using codec::Encoding;
+using codec::Format;
+using codec::Half;
+using codec::Order;
+using codec::Type;
+
+bool is_text(Type type) { return type == Type::STRING; }
+bool is_byte(Type type) { return codec::width(type) == 8; }
+bool is_bit(Type type) { return type == Type::BOOL; }
+
+/// The keys that only some types have.
+struct TypeKey {
+  std::string_view name;
+  bool (*applies)(Type);
+  std::string_view missing;  ///< the remedy when it is absent; empty if it may be
+};
+constexpr std::array<TypeKey, 5> type_keys{{
+    {"offset", is_byte, "add 'offset: high' or 'offset: low'"},
+    {"length", is_text, "add 'length: BYTES'"},
+    {"bit", is_bit, "add 'bit: 0' … 'bit: 15'"},
+    {"encoding", is_text, ""},
+    {"ignore_byteorder", is_text, ""},
+}};
+
+void check_type_keys(const Reader& reader, const Node& point, Type type, Context& context) {
+  for (const TypeKey& key : type_keys) {
+    const bool given = reader.has(key.name);
+    if (given && !key.applies(type))
+      reader.ignored(key.name, fmt::format("'{}' does not apply to {}", key.name, to_string(type)),
+                     "remove it");
+    if (!given && key.applies(type) && !key.missing.empty())
+      context.problems.error(
+          point.key_at,
+          fmt::format("{} is a {} and has no '{}'", shown(point.key), to_string(type), key.name),
+          std::string(key.missing));
+  }
+}
+
+/// False if the point's order does not go with its type.
+bool check_order(const Node& order, Type type, Context& context) {
+  const bool one_register = codec::width(type) <= 16;
+  const bool two_letters = order.text.size() == 2;
+  if (is_text(type)) {
+    context.problems.error(order.key_at, "'order' does not apply to STRING",
+                           "write 'ignore_byteorder: true' if its first character is in the high byte");
+  } else if (one_register && !two_letters) {
+    context.problems.error(
+        order.at, fmt::format("{} has one register, 'order: {}' is for more", to_string(type), order.text),
+        "write AB (high byte first) or BA");
+  } else if (!one_register && two_letters) {
+    context.problems.error(order.at,
+                           fmt::format("{} has {} registers, 'order: {}' is for one", to_string(type),
+                                       codec::width(type) / 16, order.text),
+                           "write ABCD, CDAB, BADC or DCBA");
+  } else {
+    return true;
+  }
+  return false;
+}
+
+void read_order(const Reader& reader, Order map_order, Format& format, Context& context) {
+  std::optional<Order> own;
+  reader.choice<std::optional<Order>>(
+      "order", {Order::ABCD, Order::CDAB, Order::BADC, Order::DCBA, Order::ABCD, Order::BADC}, own);
+  if (own && !check_order(*reader.find("order"), format.type, context)) own.reset();
+  const Order order = own.value_or(map_order);
+  const bool several = codec::width(format.type) > 16;
+  format.order = codec::make_order(several && words_reversed(order), bytes_swapped(order));
+}
+
+void read_text_order(const Reader& reader, Format& format, Context& context) {
+  if (const Node* order = reader.find("order")) check_order(*order, format.type, context);
+  bool ignore_byteorder = false;
+  reader.boolean("ignore_byteorder", ignore_byteorder);
+  format.order = ignore_byteorder ? Order::ABCD : Order::BADC;
+}
+
+}  // namespace
+
+void read_format(const Reader& reader, const Node& point, Order order, Format& format, Context& context) {
+  const std::size_t errors = context.problems.errors();
+  if (!reader.has("type")) {
+    context.problems.error(
+        point.key_at, fmt::format("{} has no type", shown(point.key)),
+        reader.has("bit") ? "add 'type: BOOL'" : "add 'type: INT', or what the registers hold");
+    return;
+  }
+  using T = Type;
+  reader.choice("type",
+                {T::BOOL, T::BYTE, T::WORD, T::DWORD, T::LWORD, T::SINT, T::INT, T::DINT, T::LINT, T::USINT,
+                 T::UINT, T::UDINT, T::ULINT, T::REAL, T::LREAL, T::CHAR, T::STRING},
+                format.type);
+  if (context.problems.errors() != errors) return;
+  check_type_keys(reader, point, format.type, context);
+  if (is_byte(format.type)) reader.choice("offset", {Half::high, Half::low}, format.half);
+  if (is_bit(format.type)) reader.integer("bit", format.bit);
+  if (!is_text(format.type)) return read_order(reader, order, format, context);
+  reader.integer("length", format.length);
+  reader.choice("encoding", {Encoding::utf8, Encoding::ascii, Encoding::latin1}, format.encoding);
+  read_text_order(reader, format, context);
+}
+
+}  // namespace coupler::loader

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+
+#include "common/map/loader/keys.hpp"
+#include "common/modbus/limits.hpp"
+
+namespace coupler::loader {
+namespace {
+
+using K = ValueKind;
+using S = Section;
+
+constexpr S bits = S::coil | S::discrete_input;
+constexpr S registers = S::input_register | S::holding_register;
+constexpr S point = bits | registers;
+constexpr S line = S::coil_line | S::input_line;
+
+constexpr Key origin(std::string_view name, S sections, K kind, std::string_view example,
+                     std::string_view summary) {
+  return {name, sections, kind, example, summary, Owner::origin};
+}
+constexpr Key project(std::string_view name, S sections, K kind, std::string_view example,
+                      std::string_view summary) {
+  return {name, sections, kind, example, summary};
+}
+constexpr Key later(std::string_view name, S sections, std::string_view example, std::string_view summary) {
+  return {name, sections, K::other, example, summary, Owner::project, Status::later};
+}
+constexpr Key within(double least, double most, Key key) {
+  key.least = least;
+  key.most = most;
+  return key;
+}
+constexpr Key one_of(std::string_view choices, Key key) {
+  key.choices = choices;
+  return key;
+}
+constexpr Key same_as(std::string_view name, Key key) {
+  key.same_as = name;
+  return key;
+}
+
+constexpr double most_address = 65535;
+constexpr double most_seconds = 3600;
+
+constexpr std::array keys{
+    // The map: the origin's keys.
+    origin("name", S::map, K::text, "press", "namespace of the topics"),
+    origin("address", S::map, K::text, "192.168.0.10", "host name or IP address of the coupler"),
+    within(1, 65535, origin("port", S::map, K::integer, "502", "TCP port")),
+    within(0, 255, origin("unit", S::map, K::integer, "1", "unit id")),
+    within(0.001, most_seconds, origin("timeout", S::map, K::seconds, "3", "longest wait for a reply")),
+    within(0.001, 10000, origin("rate", S::map, K::number, "10", "polling rate in Hz")),
+    origin("byteorder_reverse", S::map, K::boolean, "false", "the low byte of a register comes first"),
+    origin("wordorder_reverse", S::map, K::boolean, "false",
+           "the most significant register of a value comes first"),
+    origin("discrete_read_continuous", S::map, K::boolean, "false",
+           "unmapped bits between points may be read"),
+    within(0, most_address,
+           origin("discrete_read_separation_gap", S::map, K::integer, "64",
+                  "gap from which bits are read apart")),
+    origin("registers_read_continuous", S::map, K::boolean, "false",
+           "unmapped registers between points may be read"),
+    within(0, most_address,
+           origin("registers_read_separation_gap", S::map, K::integer, "12",
+                  "gap from which registers are read apart")),
+    within(0, most_address,
+           same_as("registers_read_separation_gap",
+                   origin("register_read_separation_gap", S::map, K::integer, "12", "another spelling"))),
+    origin("mapping", S::map, K::section, "{coils: {valve: 0}}", "the points, by table"),
+    // The map: this project's keys.
+    one_of("zero_based|modicon",
+           project("addressing", S::map, K::choice, "modicon", "what the addresses count")),
+    project("limits", S::map, K::section, "{read_registers: 64}", "what the device takes in one request"),
+    project("sim", S::map, K::section, "[{from: valve, to: valve_is_open}]", "wires of the simulated chip"),
+    later("defaults", S::map, "{rate: 5}", "host behaviour of all points"),
+    later("on_reconnect", S::map, "restore", "what becomes of writes when the link returns"),
+    later("on_shutdown", S::map, "safe", "what becomes of outputs when the driver ends"),
+    later("unreadable", S::map, "[{table: coils, from: 8, to: 15}]", "addresses that the device refuses"),
+    later("reserve", S::map, "[{table: coils, from: 8, to: 15}]", "addresses kept free"),
+    later("listen", S::map, "127.0.0.1", "interface of the node"),
+    later("allow", S::map, "[192.168.0.0/24]", "who may connect to the node"),
+    later("watchdog", S::map, "{timeout: 500ms}", "safe state when the master is silent"),
+    later("readback", S::map, "true", "compare a line's level after driving it"),
+    // The tables.
+    origin("coils", S::mapping, K::section, "{valve: 0}", "bits that can be written"),
+    origin("discrete_inputs", S::mapping, K::section, "{button: 0}", "bits that can be read"),
+    origin("input_registers", S::mapping, K::section, "{weight: {address: 0, type: INT}}",
+           "registers that can be read"),
+    origin("holding_registers", S::mapping, K::section, "{speed: {address: 0, type: INT}}",
+           "registers that can be written"),
+    // Points.
+    origin("address", point, K::address, "0", "where the point is in its table"),
+    one_of("BOOL|BYTE|WORD|DWORD|LWORD|SINT|INT|DINT|LINT|USINT|UINT|UDINT|ULINT|REAL|LREAL|CHAR|STRING",
+           origin("type", registers, K::choice, "INT", "data type of IEC 61131-3")),
+    one_of("high|low",
+           origin("offset", registers, K::choice, "high", "which byte of the register an 8-bit value is")),
+    within(1, 2 * modbus::max_read_registers,
+           origin("length", registers, K::integer, "12", "bytes of a STRING")),
+    one_of("utf-8|ascii|latin-1",
+           origin("encoding", registers, K::choice, "utf-8", "how a STRING is encoded")),
+    origin("ignore_byteorder", registers, K::boolean, "true",
+           "a STRING's first character is in the high byte"),
+    one_of("ABCD|CDAB|BADC|DCBA|AB|BA",
+           project("order", registers, K::choice, "ABCD",
+                   "order of the bytes, A the most significant; AB or BA for one register")),
+    within(0, 15, project("bit", registers, K::integer, "3", "which bit of the register a BOOL is")),
+    project("description", point, K::text, "the left door", "for people"),
+    project("units", point, K::text, "mm", "for people"),
+    project("initial", point, K::value, "0", "value when the node starts"),
+    project("line", bits, K::section, "{chip: gpiochip0, offset: 17}",
+            "the GPIO line; just its name will do"),
+    one_of("off|on|hold",
+           project("safe", S::coil, K::choice, "off", "what the line does when nobody is in command")),
+    project("active_low", bits | line, K::boolean, "true", "on is the low level"),
+    one_of("none|pull_up|pull_down",
+           project("bias", bits | line, K::choice, "pull_up", "the line's resistor")),
+    one_of("push_pull|open_drain|open_source",
+           project("drive", S::coil | S::coil_line, K::choice, "open_drain", "how the line is driven")),
+    within(0, 60,
+           project("debounce", S::discrete_input | S::input_line, K::duration, "5ms",
+                   "how long a level must last to count")),
+    later("count", point, "4", "an array of values"),
+    later("scale", registers, "0.1", "published value = raw × gain + offset"),
+    later("access", point, "read", "what the master may do"),
+    later("read_address", point, "512", "where an output reads back"),
+    later("rate", point, "1", "polling rate of the point"),
+    later("publish", point, "on_change", "when a value is published"),
+    later("deadband", point, "0.5", "the least change that is published"),
+    later("max_interval", point, "1s", "the longest silence of a topic"),
+    later("latch", point, "true", "late subscribers get the last value"),
+    later("queue_size", point, "10", "queue of the topic"),
+    later("write_function", point, "single", "function code of writes"),
+    later("verify_write", point, "true", "read back after a write"),
+    later("write_queue", point, "every", "which waiting writes are sent"),
+    later("deadman", point, "{timeout: 1s, value: 0}", "value when no message comes"),
+    later("counter", registers, "{of: pulse, edge: rising}", "counts the edges of an input"),
+    later("latched", S::coil | S::holding_register, "{of: pulse, edge: rising}",
+          "set by an edge, cleared by a write"),
+    later("iio", registers, "{device: adc0, channel: 0}", "an analogue input"),
+    later("pwm", registers, "{chip: pwmchip0, channel: 0, period: 1ms}", "an analogue output"),
+    // `line:`
+    project("chip", line, K::text, "gpiochip0", "the chip: name, device file or label"),
+    within(0, 65535, project("offset", line, K::integer, "17", "the line's number on the chip")),
+    project("name", line, K::text, "GPIO17", "the line's name, instead of chip and offset"),
+    // `limits:`
+    within(1, modbus::max_read_registers,
+           project("read_registers", S::limits, K::integer, "125", "registers in one read")),
+    within(1, modbus::max_read_bits, project("read_bits", S::limits, K::integer, "2000", "bits in one read")),
+    within(1, modbus::max_write_registers,
+           project("write_registers", S::limits, K::integer, "123", "registers in one write")),
+    within(1, modbus::max_write_bits,
+           project("write_bits", S::limits, K::integer, "1968", "bits in one write")),
+    within(
+        0, most_seconds,
+        project("request_gap", S::limits, K::duration, "5ms", "pause between a reply and the next request")),
+    within(0, most_seconds,
+           project("connect_delay", S::limits, K::duration, "100ms", "pause after connecting")),
+    within(1, 65535, project("connections", S::limits, K::integer, "1", "connections that the device takes")),
+    project("mask_write", S::limits, K::boolean, "true", "the device has FC 22"),
+    // `sim:`
+    project("from", S::wire, K::text, "valve", "the coil that drives the wire"),
+    project("to", S::wire, K::text, "valve_is_open", "the discrete input at its end"),
+    project("invert", S::wire, K::boolean, "true", "the input is on when the coil is off"),
+    within(0.001, most_seconds,
+           project("square", S::wire, K::duration, "1s", "a square wave instead of a coil: its period")),
+};
+
+}  // namespace
+
+Span<const Key> all_keys() { return keys; }
+
+}  // namespace coupler::loader

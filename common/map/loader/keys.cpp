@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/loader/keys.hpp"
+
+namespace coupler::loader {
+
+std::string_view describe(Section section) {
+  switch (section) {
+    case Section::map: return "the map";
+    case Section::mapping: return "'mapping'";
+    case Section::coil: return "a coil";
+    case Section::discrete_input: return "a discrete input";
+    case Section::input_register: return "an input register";
+    case Section::holding_register: return "a holding register";
+    case Section::coil_line: return "a coil's 'line'";
+    case Section::input_line: return "a discrete input's 'line'";
+    case Section::limits: return "'limits'";
+    case Section::wire: return "a wire of 'sim'";
+    case Section::none: break;
+  }
+  return "nothing";
+}
+
+const Key* find_key(std::string_view name, Section section) {
+  for (const Key& key : all_keys())
+    if (key.name == name && overlap(key.sections, section)) return &key;
+  return nullptr;
+}
+
+Section sections_with(std::string_view name) {
+  Section result = Section::none;
+  for (const Key& key : all_keys())
+    if (key.name == name) result = result | key.sections;
+  return result;
+}
+
+std::vector<std::string_view> key_names(Section section) {
+  std::vector<std::string_view> names;
+  for (const Key& key : all_keys())
+    if (overlap(key.sections, section) && key.status == Status::supported && key.same_as.empty())
+      names.push_back(key.name);
+  return names;
+}
+
+std::vector<std::string_view> words(std::string_view choices) {
+  std::vector<std::string_view> result;
+  while (!choices.empty()) {
+    const std::size_t bar = choices.find('|');
+    result.push_back(choices.substr(0, bar));
+    choices = bar == std::string_view::npos ? std::string_view{} : choices.substr(bar + 1);
+  }
+  return result;
+}
+
+}  // namespace coupler::loader

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every key that a map may have, as data: the loader checks maps against it, and it describes the format to
+// others.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "common/base/span.hpp"
+#include "common/map/table.hpp"
+
+namespace coupler::loader {
+
+/// The places in a map that have keys of their own. Bits, so that a key may belong to several.
+enum class Section : std::uint16_t {
+  none = 0,
+  map = 1,      ///< the top of the file
+  mapping = 2,  ///< the tables
+  coil = 4,     ///< options of a point, by its table
+  discrete_input = 8,
+  input_register = 16,
+  holding_register = 32,
+  coil_line = 64,    ///< `line:` of a coil
+  input_line = 128,  ///< `line:` of a discrete input
+  limits = 256,
+  wire = 512,  ///< one element of `sim:`
+};
+constexpr Section operator|(Section a, Section b) {
+  return static_cast<Section>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+constexpr bool overlap(Section a, Section b) {
+  return (static_cast<unsigned>(a) & static_cast<unsigned>(b)) != 0;
+}
+
+/// The section of a point's options.
+constexpr Section section_of(Table table) { return static_cast<Section>(4U << index(table)); }
+
+/// "a coil", "the map": for messages.
+std::string_view describe(Section section);
+
+enum class ValueKind : std::uint8_t {
+  integer,
+  number,
+  boolean,
+  text,
+  choice,
+  duration,  ///< with a unit
+  seconds,   ///< a duration; a bare number means seconds
+  address,   ///< as Addressing says
+  value,     ///< of the point's type
+  section,   ///< a map with keys of its own, or a list of such maps
+  other,     ///< not read yet
+};
+
+enum class Owner : std::uint8_t { origin, project };
+enum class Status : std::uint8_t { supported, later };
+
+struct Key {
+  std::string_view name;
+  Section sections = Section::none;
+  ValueKind kind = ValueKind::other;
+  std::string_view example;  ///< a good value, as it stands behind "key: "
+  std::string_view summary;
+  Owner owner = Owner::project;
+  Status status = Status::supported;
+  double least = std::numeric_limits<double>::lowest();  ///< numbers; durations in seconds
+  double most = std::numeric_limits<double>::max();
+  std::string_view choices = {};  ///< separated by "|"
+  std::string_view same_as = {};  ///< another spelling of that key
+};
+
+Span<const Key> all_keys();
+
+/// The key of that name in the section, or nullptr.
+const Key* find_key(std::string_view name, Section section);
+
+/// The sections that have a key of that name.
+Section sections_with(std::string_view name);
+
+/// The names of a section's supported keys.
+std::vector<std::string_view> key_names(Section section);
+
+/// The words of Key::choices.
+std::vector<std::string_view> words(std::string_view choices);
+
+}  // namespace coupler::loader

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include "common/map/loader/context.hpp"
+#include "common/map/loader/node.hpp"
+
+namespace coupler::loader {
+
+/// Reads the whole map and finishes context.map, unless there were errors. `text` is the file.
+void read_map(const Node& root, std::string_view text, Context& context);
+
+}  // namespace coupler::loader

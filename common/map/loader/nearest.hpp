@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace coupler::loader {
+
+/// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
+unsigned edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate that was most likely meant, whatever the case; empty if none is near.
+std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
+
+/// "did you mean 'x'?", or "write one of a, b, c" when nothing is near.
+std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates);
+
+}  // namespace coupler::loader

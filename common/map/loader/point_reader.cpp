@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/loader/point_reader.hpp"
+
+#include <fmt/format.h>
+
+#include "common/map/loader/format_reader.hpp"
+#include "common/map/loader/initial_reader.hpp"
+#include "common/map/loader/line_reader.hpp"
+#include "common/map/loader/reader.hpp"
+
+namespace coupler::loader {
+namespace {
+
+void read_address(const Node* node, const Node& point, Addressing addressing, DraftPoint& draft,
+                  Context& context) {
+  if (node == nullptr) {
+    context.problems.error(
+        point.key_at, fmt::format("{} has no address; leaving it out is not supported yet", shown(point.key)),
+        "add 'address: NUMBER'");
+    return;
+  }
+  draft.address_at = node->at;
+  if (node->kind != Node::Kind::scalar || node->quoted) {
+    context.problems.error(node->at, fmt::format("the address is a number, not {}", shown(*node)),
+                           "write the number, without quotes");
+    return;
+  }
+  const auto address = parse_address(node->text, draft.point.table, addressing);
+  if (address)
+    draft.point.address = *address;
+  else
+    context.problems.error(node->at, address.error().what, address.error().remedy);
+}
+
+void check_range(const DraftPoint& draft, Context& context) {
+  const Point& point = draft.point;
+  const std::uint32_t count = codec::registers(point.format);
+  if (modbus::Range::make(point.address, count)) return;
+  context.problems.error(
+      draft.address_at,
+      fmt::format("{} needs {} registers from {} on, past 65535", shown(point.name), count, point.address),
+      fmt::format("the last address for it is {}", 65536 - count));
+}
+
+void read_options(const Node& node, const PointDefaults& defaults, DraftPoint& draft, Context& context) {
+  Point& point = draft.point;
+  const Reader reader(node, section_of(point.table), context);
+  const std::size_t errors = context.problems.errors();
+  read_address(reader.find("address"), node, defaults.addressing, draft, context);
+  if (!holds_bits(point.table)) read_format(reader, node, defaults.order, point.format, context);
+  if (context.problems.errors() == errors) check_range(draft, context);
+  draft.placed = context.problems.errors() == errors;
+  if (draft.placed) read_initial(reader, point, context);
+  if (holds_bits(point.table)) read_line(reader, draft, context);
+  reader.text("description", point.description);
+  reader.text("units", point.units);
+}
+
+}  // namespace
+
+DraftPoint read_point(const Node& node, Table table, const PointDefaults& defaults, Context& context) {
+  DraftPoint draft;
+  draft.name_at = node.key_at;
+  draft.address_at = node.key_at;
+  draft.point.name = context.map.keep(node.key);
+  draft.point.table = table;
+  draft.point.access = is_writable(table) ? Access::read_write : Access::read;
+  if (node.kind == Node::Kind::map || node.kind == Node::Kind::null) {
+    read_options(node, defaults, draft, context);
+  } else if (holds_bits(table)) {
+    const std::size_t errors = context.problems.errors();
+    read_address(&node, node, defaults.addressing, draft, context);
+    draft.placed = context.problems.errors() == errors;
+  } else {
+    const std::string given = node.kind == Node::Kind::scalar ? node.text.substr(0, 10) : "0";
+    context.problems.error(
+        node.at, fmt::format("{} has no type", shown(node.key)),
+        fmt::format("write it as in '{}: {{address: {}, type: INT}}'", node.key.substr(0, 40), given));
+  }
+  return draft;
+}
+
+}  // namespace coupler::loader

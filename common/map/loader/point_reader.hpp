@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/codec/order.hpp"
+#include "common/map/loader/address.hpp"
+#include "common/map/loader/context.hpp"
+#include "common/map/loader/draft_point.hpp"
+#include "common/map/loader/node.hpp"
+
+namespace coupler::loader {
+
+/// What the top of the file says about all points.
+struct PointDefaults {
+  Addressing addressing = Addressing::zero_based;
+  codec::Order order =
+      codec::Order::CDAB;  ///< of values of two and four registers; fewer keep the bytes' part
+};
+
+/// One entry of a table: `name: address` (coils and discrete inputs) or `name: {options}`.
+DraftPoint read_point(const Node& node, Table table, const PointDefaults& defaults, Context& context);
+
+}  // namespace coupler::loader

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "common/map/diagnostic.hpp"
+#include "common/map/loader/node.hpp"
+
+namespace coupler::loader {
+
+/// Collects what is wrong with one file.
+class Problems {
+ public:
+  explicit Problems(std::string_view file) : file_(file) {}
+
+  void error(Position at, std::string what, std::string remedy);
+  void warning(Position at, std::string what, std::string remedy);
+
+  bool has_errors() const { return errors_ > 0; }
+  std::size_t errors() const { return errors_; }
+  /// In the order of the file.
+  Diagnostics sorted() &&;
+
+ private:
+  void add(Diagnostic::Severity severity, Position at, std::string what, std::string remedy);
+
+  std::string file_;
+  Diagnostics found_;
+  std::size_t errors_ = 0;
+};
+
+/// Text of the file as a message shows it: in quotes, on one line, no longer than about 40 characters.
+std::string shown(std::string_view text);
+
+}  // namespace coupler::loader

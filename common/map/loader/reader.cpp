@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/loader/reader.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "common/map/loader/letters.hpp"
+#include "common/map/loader/nearest.hpp"
+#include "common/map/loader/scalar.hpp"
+
+namespace coupler::loader {
+namespace {
+
+std::string_view canonical(const Key& key) { return key.same_as.empty() ? key.name : key.same_as; }
+
+bool is_bare(const Node& value) { return value.kind == Node::Kind::scalar && !value.quoted; }
+
+/// "UTF_8" and "utf-8" are the same word in the origin's files, not in this project's keys.
+std::string folded(std::string_view word, Owner owner) {
+  std::string result(word);
+  if (owner == Owner::project) return result;
+  result.erase(std::remove_if(result.begin(), result.end(), [](char c) { return c == '-' || c == '_'; }),
+               result.end());
+  return lower(result);
+}
+
+std::string range_text(const Key& key, std::string_view unit) {
+  const bool has_least = key.least != std::numeric_limits<double>::lowest();
+  return has_least ? fmt::format(" from {} to {}{}", key.least, key.most, unit) : std::string();
+}
+
+}  // namespace
+
+Reader::Reader(const Node& map, Section section, Context& context) : section_(section), context_(context) {
+  if (map.kind != Node::Kind::map) return;
+  for (const Node& entry : map.children) check_key(entry);
+}
+
+void Reader::check_key(const Node& entry) {
+  const Key* key = find_key(entry.key, section_);
+  if (key == nullptr) return unknown(entry);
+  if (key->status == Status::later)
+    return context_.problems.error(entry.key_at, fmt::format("'{}' is not supported yet", key->name),
+                                   "remove it, or put a '#' before it, until a later version reads it");
+  const Field* first = field(canonical(*key));
+  if (first != nullptr)
+    return context_.problems.error(
+        entry.key_at,
+        fmt::format("'{}' is given twice, first in line {}", key->name, first->value->key_at.line),
+        "keep one of the two");
+  fields_.push_back({key, &entry});
+}
+
+void Reader::unknown(const Node& entry) const {
+  const Section elsewhere = sections_with(entry.key);
+  if (elsewhere != Section::none) {
+    std::string places;
+    for (unsigned bit = 1; bit <= static_cast<unsigned>(Section::wire); bit <<= 1U)
+      if (overlap(elsewhere, static_cast<Section>(bit)))
+        places += fmt::format("{}{}", places.empty() ? "" : ", ", describe(static_cast<Section>(bit)));
+    return context_.ignored(entry.key_at,
+                            fmt::format("'{}' does not apply to {}", entry.key, describe(section_)),
+                            fmt::format("remove it; it is a key of {}", places));
+  }
+  context_.ignored(entry.key_at, fmt::format("unknown key {} of {}", shown(entry.key), describe(section_)),
+                   suggestion(entry.key, key_names(section_)));
+}
+
+const Reader::Field* Reader::field(std::string_view key) const {
+  const auto found =
+      std::find_if(fields_.begin(), fields_.end(), [&](const Field& f) { return canonical(*f.key) == key; });
+  return found == fields_.end() ? nullptr : &*found;
+}
+
+const Node* Reader::find(std::string_view key) const {
+  assert(find_key(key, section_) != nullptr);
+  const Field* found = field(key);
+  return found == nullptr ? nullptr : found->value;
+}
+
+void Reader::wrong(std::string_view key, std::string_view expected) const {
+  const Field& f = *field(key);
+  context_.problems.error(f.value->at,
+                          fmt::format("'{}' is {}, not {}", f.key->name, expected, shown(*f.value)),
+                          fmt::format("write it as in '{}: {}'", f.key->name, f.key->example));
+}
+
+void Reader::ignored(std::string_view key, std::string what, std::string remedy) const {
+  context_.ignored(field(key)->value->key_at, std::move(what), std::move(remedy));
+}
+
+std::optional<std::int64_t> Reader::integer_in_range(std::string_view key) const {
+  const Node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const Key& known = *field(key)->key;
+  const auto value = is_bare(*node) ? parse_integer(node->text) : std::nullopt;
+  if (value && static_cast<double>(*value) >= known.least && static_cast<double>(*value) <= known.most)
+    return value;
+  wrong(key, "a whole number" + range_text(known, ""));
+  return std::nullopt;
+}
+
+void Reader::number(std::string_view key, double& out) const {
+  const Node* node = find(key);
+  if (node == nullptr) return;
+  const Key& known = *field(key)->key;
+  const auto value = is_bare(*node) ? parse_number(node->text) : std::nullopt;
+  if (value && *value >= known.least && *value <= known.most)
+    out = *value;
+  else
+    wrong(key, "a number" + range_text(known, ""));
+}
+
+void Reader::boolean(std::string_view key, bool& out) const {
+  const Node* node = find(key);
+  if (node == nullptr) return;
+  const auto value = is_bare(*node) ? parse_boolean(node->text) : std::nullopt;
+  if (value)
+    out = *value;
+  else
+    wrong(key, "true or false");
+}
+
+void Reader::text(std::string_view key, std::string_view& out) const {
+  const Node* node = find(key);
+  if (node == nullptr) return;
+  if (node->kind == Node::Kind::scalar)
+    out = context_.map.keep(node->text);
+  else
+    wrong(key, "text");
+}
+
+std::optional<std::chrono::microseconds> Reader::duration_in_range(std::string_view key) const {
+  const Node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const Key& known = *field(key)->key;
+  const bool seconds = known.kind == ValueKind::seconds;
+  std::optional<std::chrono::microseconds> value;
+  if (node->kind == Node::Kind::scalar) {
+    const bool bare_number = seconds && !node->quoted && parse_number(node->text).has_value();
+    value = parse_duration(bare_number ? node->text + "s" : node->text);
+  }
+  const double in_seconds = value ? std::chrono::duration<double>(*value).count() : -1;
+  if (in_seconds >= known.least && in_seconds <= known.most) return value;
+  wrong(key, fmt::format("a duration{} with its unit (us, ms, s, min){}", range_text(known, " s"),
+                         seconds ? " or a number of seconds" : ""));
+  return std::nullopt;
+}
+
+std::optional<std::size_t> Reader::choice_index(std::string_view key) const {
+  const Node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const Key& known = *field(key)->key;
+  const auto choices = words(known.choices);
+  const std::string given =
+      node->kind == Node::Kind::scalar ? folded(node->text, known.owner) : std::string();
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    if (given == folded(choices[i], known.owner)) return i;
+  const std::string_view near = nearest(given, choices);
+  context_.problems.error(
+      node->at, fmt::format("'{}' is one of {}, not {}", known.name, fmt::join(choices, ", "), shown(*node)),
+      near.empty() ? fmt::format("write it as in '{}: {}'", known.name, known.example)
+                   : fmt::format("did you mean '{}'?", near));
+  return std::nullopt;
+}
+
+void Reader::too_fine(std::string_view key) const { wrong(key, "a whole number of milliseconds"); }
+
+std::string shown(const Node& value) {
+  switch (value.kind) {
+    case Node::Kind::null: return "nothing";
+    case Node::Kind::list: return "a list";
+    case Node::Kind::map: return "a map";
+    case Node::Kind::scalar: break;
+  }
+  return (value.quoted ? "the text " : "") + shown(std::string_view(value.text));
+}
+
+bool check_map(const Node& node, std::string_view expected, std::string_view remedy, Context& context) {
+  if (node.kind == Node::Kind::map || node.kind == Node::Kind::null) return true;
+  context.problems.error(node.at, fmt::format("{}, not {}", expected, shown(node)), std::string(remedy));
+  return false;
+}
+
+bool has_only_origin_keys(const Node& root) {
+  const auto foreign = [](const Node& map, Section section) {
+    return std::any_of(map.children.begin(), map.children.end(), [&](const Node& entry) {
+      const Key* key = find_key(entry.key, section);
+      return key != nullptr && key->owner == Owner::project;
+    });
+  };
+  if (foreign(root, Section::map)) return false;
+  for (const Node& mapping : root.children) {
+    if (mapping.key != "mapping") continue;
+    for (const Node& table : mapping.children)
+      for (const Table which : tables)
+        for (const Node& point : table.children)
+          if (table.key == to_string(which) && foreign(point, section_of(which))) return false;
+  }
+  return true;
+}
+
+}  // namespace coupler::loader

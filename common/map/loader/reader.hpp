@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cassert>
+#include <chrono>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/map/loader/context.hpp"
+#include "common/map/loader/keys.hpp"
+#include "common/map/loader/node.hpp"
+
+namespace coupler::loader {
+
+/// One map of the file, read by the table of keys. Whatever is wrong becomes a problem; the getters then
+/// leave `out` as it was, as they do when the key is absent.
+class Reader {
+ public:
+  /// Checks the keys: known in this section, supported, given once. `map` must be a map, or nothing.
+  Reader(const Node& map, Section section, Context& context);
+
+  /// The value of a supported key, or nullptr.
+  const Node* find(std::string_view key) const;
+  bool has(std::string_view key) const { return find(key) != nullptr; }
+
+  template <class T>
+  void integer(std::string_view key, T& out) const {
+    if (const auto value = integer_in_range(key)) out = static_cast<T>(*value);
+  }
+  void number(std::string_view key, double& out) const;
+  void boolean(std::string_view key, bool& out) const;
+  /// Kept by the map under construction.
+  void text(std::string_view key, std::string_view& out) const;
+  /// Whole units of Duration.
+  template <class Duration>
+  void duration(std::string_view key, Duration& out) const {
+    const auto value = duration_in_range(key);
+    if (!value) return;
+    const auto rounded = std::chrono::duration_cast<Duration>(*value);
+    if (rounded == *value)
+      out = rounded;
+    else
+      too_fine(key);
+  }
+  /// `values` stand for the words of Key::choices, in their order.
+  template <class E>
+  void choice(std::string_view key, std::initializer_list<E> values, E& out) const {
+    if (const auto chosen = choice_index(key)) {
+      assert(*chosen < values.size());
+      out = values.begin()[*chosen];
+    }
+  }
+
+  /// "'key' is …, not …", with the key's example as the remedy.
+  void wrong(std::string_view key, std::string_view expected) const;
+  /// The key says something that cannot be used here.
+  void ignored(std::string_view key, std::string what, std::string remedy) const;
+
+ private:
+  struct Field {
+    const Key* key;
+    const Node* value;
+  };
+
+  void check_key(const Node& entry);
+  void unknown(const Node& entry) const;
+  const Field* field(std::string_view key) const;
+  std::optional<std::int64_t> integer_in_range(std::string_view key) const;
+  std::optional<std::chrono::microseconds> duration_in_range(std::string_view key) const;
+  std::optional<std::size_t> choice_index(std::string_view key) const;
+  void too_fine(std::string_view key) const;
+
+  Section section_;
+  Context& context_;
+  std::vector<Field> fields_;
+};
+
+/// The scalar's text as a message shows it; what else the value is ("a list") if it is no scalar.
+std::string shown(const Node& value);
+
+/// The node is a map, or nothing at all; otherwise a problem that says what `expected` is.
+bool check_map(const Node& node, std::string_view expected, std::string_view remedy, Context& context);
+
+/// A file that has none of this project's keys, as far as they can be seen without reading it.
+bool has_only_origin_keys(const Node& root);
+
+}  // namespace coupler::loader

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/loader/sim_reader.hpp"
+
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+namespace coupler::loader {
+namespace {
+
+class SimReader {
+ public:
+  SimReader(const DraftPoints& points, Context& context) : context_(context) {
+    for (const DraftPoint& draft : points) tables_.emplace(draft.point.name, draft.point.table);
+  }
+
+  SimWire wire(const Node& node) {
+    const Reader reader(node, Section::wire, context_);
+    SimWire wire;
+    reader.text("from", wire.from);
+    reader.text("to", wire.to);
+    reader.boolean("invert", wire.invert);
+    reader.duration("square", wire.square);
+    check_source(reader, node);
+    if (const Node* to = reader.find("to"))
+      check_input(*to);
+    else
+      context_.problems.error(node.at, "the wire has no 'to'",
+                              "add 'to: NAME', the discrete input at its end");
+    return wire;
+  }
+
+ private:
+  void check_source(const Reader& reader, const Node& wire) {
+    const Node* from = reader.find("from");
+    if ((from != nullptr) == reader.has("square"))
+      context_.problems.error(
+          wire.at, "the wire has either 'from' or 'square'",
+          "write it as in '{from: valve, to: valve_is_open}' or '{square: 1s, to: pulse}'");
+    if (from != nullptr) check_end(*from, Table::coils);
+    if (from == nullptr && reader.has("invert"))
+      context_.problems.error(reader.find("invert")->key_at, "'invert' is for a wire with 'from'",
+                              "remove it");
+  }
+
+  void check_input(const Node& to) {
+    check_end(to, Table::discrete_inputs);
+    const auto [first, is_new] = sources_.emplace(to.text, to.at.line);
+    if (!is_new && to.kind == Node::Kind::scalar)
+      context_.problems.error(to.at,
+                              fmt::format("{} already has a wire, in line {}", shown(to.text), first->second),
+                              "keep one wire for each input");
+  }
+
+  void check_end(const Node& end, Table table) {
+    if (end.kind != Node::Kind::scalar) return;  // a problem already
+    const auto found = tables_.find(end.text);
+    if (found != tables_.end() && found->second == table) return;
+    const std::string_view expected = table == Table::coils ? "a coil" : "a discrete input";
+    if (found == tables_.end())
+      context_.problems.error(end.at, fmt::format("no point is called {}", shown(end.text)),
+                              fmt::format("write the name of {}", expected));
+    else
+      context_.problems.error(
+          end.at, fmt::format("{} is in {}, not {}", shown(end.text), to_string(found->second), expected),
+          "a wire goes from a coil to a discrete input");
+  }
+
+  Context& context_;
+  std::unordered_map<std::string_view, Table> tables_;
+  std::unordered_map<std::string, int> sources_;  ///< input -> line in the file
+};
+
+}  // namespace
+
+std::vector<SimWire> read_sim(const Reader& top, const DraftPoints& points, Context& context) {
+  std::vector<SimWire> wires;
+  const Node* node = top.find("sim");
+  if (node == nullptr) return wires;
+  if (node->kind != Node::Kind::list) {
+    top.wrong("sim", "a list of wires");
+    return wires;
+  }
+  SimReader reader(points, context);
+  for (const Node& wire : node->children) {
+    if (wire.kind == Node::Kind::map)
+      wires.push_back(reader.wire(wire));
+    else
+      context.problems.error(wire.at, fmt::format("a wire of 'sim' is a map, not {}", shown(wire)),
+                             "write it as in '- {from: valve, to: valve_is_open}'");
+  }
+  return wires;
+}
+
+}  // namespace coupler::loader

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/map/loader/node.hpp"
+
+namespace coupler::loader {
+
+/// Why a text is no document. Thrown through yaml-cpp, which knows no other way to stop; never leaves
+/// document.cpp.
+struct SyntaxError {
+  Position at;
+  std::string what;
+  std::string remedy;
+};
+
+/// yaml-cpp's `message` about `offset` of `text`, in words that help.
+SyntaxError explain(std::string_view text, std::size_t offset, std::string_view message);
+
+}  // namespace coupler::loader
