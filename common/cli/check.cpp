@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "common/cli/commands.hpp"
+#include "common/cli/report.hpp"
+#include "common/map/loader/load.hpp"
+
+namespace coupler::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> maps;
+  bool json = false;
+};
+
+Exit check(const Arguments& arguments) {
+  Exit exit = ok;
+  for (const std::string& file : arguments.maps) {
+    const LoadResult loaded = load_map_file(file);
+    if (!loaded.map) exit = bad_input;
+    if (arguments.json) {
+      std::puts(json_report(file, loaded).c_str());
+    } else {
+      print(loaded.diagnostics);
+      if (loaded.map) std::puts(summary(file, loaded.map->map()).c_str());
+    }
+  }
+  return exit;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, Exit& exit) {
+  auto* command =
+      program.add_subcommand("check", "Say what is wrong with a map, where, and what to do about it.");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("MAP", arguments->maps, "YAML or JSON files; - is standard input")
+      ->required()
+      ->type_name("");
+  command->add_flag("--json", arguments->json,
+                    "One JSON object per map on standard output, for editors and scripts");
+  command->footer(
+      "Example:\n  coupler check device.yaml\nExits with 0 if every map is good, with 1 if one is not.");
+  command->callback([arguments, &exit] { exit = check(*arguments); });
+}
+
+}  // namespace coupler::cli

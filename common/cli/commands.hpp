@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands of `coupler`, one file each. Each function adds one to the program; when the user calls it,
+// `exit` tells how it went.
+#pragma once
+
+#include "common/cli/exit.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace coupler::cli {
+
+void add_check(CLI::App& program, Exit& exit);
+void add_generate(CLI::App& program, Exit& exit);
+
+}  // namespace coupler::cli

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/generate/generate.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "common/cli/commands.hpp"
+#include "common/cli/report.hpp"
+#include "common/generate/identifier.hpp"
+#include "common/generate/output.hpp"
+#include "common/map/loader/load.hpp"
+
+namespace coupler::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string map;
+  std::string out;
+  std::string name;
+  bool quiet = false;
+};
+
+Exit complain(Exit exit, std::string_view what, std::string_view remedy) {
+  fmt::print(stderr, "coupler generate: error: {}; {}\n", what, remedy);
+  return exit;
+}
+
+Exit write(const Arguments& arguments, const Map& map, const generate::Stamp& stamp) {
+  constexpr auto remedy = "give a folder that you may write to with --out";
+  std::error_code failed;
+  fs::create_directories(arguments.out, failed);
+  if (failed)
+    return complain(bad_call, fmt::format("cannot make the folder {}: {}", arguments.out, failed.message()),
+                    remedy);
+  for (const generate::File& file : generate::generate(map, stamp)) {
+    const fs::path path = fs::path(arguments.out) / file.name;
+    const auto outcome = generate::write_if_changed(path, file.content);
+    if (!outcome) return complain(bad_call, outcome.error(), remedy);
+    if (!arguments.quiet)
+      fmt::print("{}: {}\n", path.string(), *outcome == generate::Outcome::written ? "written" : "unchanged");
+  }
+  return ok;
+}
+
+Exit run(const Arguments& arguments) {
+  const LoadResult loaded = load_map_file(arguments.map);
+  print(loaded.diagnostics);
+  if (!loaded.map) return bad_input;
+  const Map& map = loaded.map->map();
+  const std::string source =
+      arguments.map == "-" ? "standard input" : fs::path(arguments.map).filename().string();
+  const generate::Stamp stamp{arguments.name.empty() ? std::string(map.name) : arguments.name, source,
+                              COUPLER_VERSION};
+  if (generate::is_identifier(stamp.name)) return write(arguments, map, stamp);
+  const auto remedy = "give one with --name: letters, digits and underscores, a letter first, no word of C++";
+  if (!arguments.name.empty())
+    return complain(bad_call, fmt::format("'{}' cannot name C++ code", stamp.name), remedy);
+  return complain(bad_input, fmt::format("the map's name '{}' cannot name C++ code", stamp.name), remedy);
+}
+
+}  // namespace
+
+void add_generate(CLI::App& program, Exit& exit) {
+  auto* command =
+      program.add_subcommand("generate", "Make C++ from a map: a constant table, a node and a driver.");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("MAP", arguments->map, "YAML or JSON file; - is standard input")
+      ->required()
+      ->type_name("");
+  command->add_option("--out", arguments->out, "Folder for the files; made if it is not there")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("--name", arguments->name,
+                   "What the files and the C++ namespace are called; default: the map's name")
+      ->type_name("NAME");
+  command->add_flag("--quiet", arguments->quiet, "Say nothing of files when all is well");
+  command->footer(
+      "Example:\n  coupler generate device.yaml --out generated\n"
+      "makes device_map.hpp, device_map.cpp, device_node.cpp and device_driver.cpp. Files that would not "
+      "change are "
+      "not touched.\nIn a CMake build, coupler_add_map(device device.yaml) does this and builds the "
+      "programs.");
+  command->callback([arguments, &exit] { exit = run(*arguments); });
+}
+
+}  // namespace coupler::cli

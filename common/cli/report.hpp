@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said of a map that was read: texts for people, JSON for programs.
+#pragma once
+
+#include <string>
+
+#include "common/map/loader/load.hpp"
+
+namespace coupler::cli {
+
+/// "device.yaml: ok: device, 3 points (1 coil, 2 discrete inputs), fingerprint 0123456789abcdef"
+std::string summary(const std::string& file, const Map& map);
+
+/// One line of JSON: {file, ok, name, points, fingerprint, diagnostics: [{severity, file, line, column, what,
+/// remedy}]}. name, points and fingerprint are null if there is no map.
+std::string json_report(const std::string& file, const LoadResult& loaded);
+
+/// All of them, one a line, on standard error.
+void print(const Diagnostics& diagnostics);
+
+}  // namespace coupler::cli

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The program `coupler` as a script sees it: exit status, output, files. COUPLER is the program."""
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+GOOD = """\
+name: cell
+mapping:
+  coils: {lamp: 0}
+  discrete_inputs: {button: 0, door: 1}
+  input_registers:
+    level: {address: 0, type: REAL}
+"""
+BAD = GOOD.replace("REAL", "REEL")
+WARNED = GOOD + "nobody_knows_this: 1\n"  # the origin ignores it, so it is a warning in an origin's file
+
+
+class Cli(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def file(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+        return name
+
+    def coupler(self, *arguments, stdin=""):
+        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, input=stdin, timeout=30,
+                              capture_output=True, text=True, encoding="utf-8", check=False)
+
+
+class TheCall(Cli):
+    def refused(self, *arguments):
+        done = self.coupler(*arguments)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertTrue(done.stderr.startswith("coupler"), done.stderr)
+        self.assertIn(" --help`", done.stderr)
+        return done.stderr
+
+    def test_without_a_command_is_wrong(self):
+        self.refused()
+
+    def test_with_an_unknown_command_names_it(self):
+        self.assertIn("'frobnicate' is not a command", self.refused("frobnicate", "a", "b"))
+
+    def test_with_an_unknown_option_names_it(self):
+        self.assertIn("--nope", self.refused("check", "map.yaml", "--nope"))
+
+    def test_without_a_map_is_wrong(self):
+        self.assertIn("MAP", self.refused("check"))
+        self.assertIn("MAP", self.refused("generate", "--out", "out"))
+
+    def test_of_generate_needs_a_folder(self):
+        self.assertIn("--out", self.refused("generate", self.file("cell.yaml", GOOD)))
+
+    def test_for_help_shows_an_example(self):
+        for command in ([], ["check"], ["generate"]):
+            done = self.coupler(*command, "--help")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn("Example:\n  coupler " + "".join(command), done.stdout)
+
+    def test_for_the_version_prints_it(self):
+        done = self.coupler("--version")
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stdout, r"^coupler \d+\.\d+\.\d+\n$")
+
+
+class Check(Cli):
+    def test_a_good_map_is_summed_up(self):
+        done = self.coupler("check", self.file("cell.yaml", GOOD))
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertRegex(done.stdout, r"^cell\.yaml: ok: cell, 4 points "
+                                      r"\(1 coil, 2 discrete inputs, 1 input register\), fingerprint [0-9a-f]{16}\n$")
+
+    def test_a_bad_map_is_told_with_its_place(self):
+        done = self.coupler("check", self.file("cell.yaml", BAD))
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertRegex(done.stderr, r"^cell\.yaml:6:\d+: error: .*REEL.*; .+\n$")
+
+    def test_a_warning_leaves_the_map_good(self):
+        done = self.coupler("check", self.file("cell.yaml", WARNED))
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stderr, r"^cell\.yaml:7:1: warning: .*nobody_knows_this.*; .+\n$")
+        self.assertIn("cell.yaml: ok: ", done.stdout)
+
+    def test_a_missing_file_is_wrong_input(self):
+        done = self.coupler("check", "missing.yaml")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertRegex(done.stderr, r"^missing\.yaml: error: .+; .+\n$")
+
+    def test_one_bad_map_of_several_is_wrong_input(self):
+        done = self.coupler("check", self.file("bad.yaml", BAD), self.file("cell.yaml", GOOD))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("bad.yaml:6:", done.stderr)
+        self.assertIn("cell.yaml: ok: ", done.stdout)
+
+    def test_a_dash_is_standard_input(self):
+        self.assertEqual(self.coupler("check", "-", stdin=GOOD).returncode, 0)
+        self.assertEqual(self.coupler("check", "-", stdin=BAD).returncode, 1)
+
+    def test_json_of_a_good_map(self):
+        done = self.coupler("check", "--json", self.file("cell.yaml", GOOD))
+        report = json.loads(done.stdout)
+        self.assertRegex(report.pop("fingerprint"), "^[0-9a-f]{16}$")
+        self.assertEqual(report, {"file": "cell.yaml", "ok": True, "name": "cell", "points": 4, "diagnostics": []})
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_json_of_a_bad_map(self):
+        done = self.coupler("check", "--json", self.file("cell.yaml", BAD))
+        report = json.loads(done.stdout)
+        self.assertEqual((done.returncode, done.stderr), (1, ""))
+        self.assertEqual((report["ok"], report["name"], report["points"], report["fingerprint"]),
+                         (False, None, None, None))
+        (found,) = report["diagnostics"]
+        self.assertEqual((found["severity"], found["file"], found["line"]), ("error", "cell.yaml", 6))
+        self.assertEqual(sorted(found), ["column", "file", "line", "remedy", "severity", "what"])
+
+    def test_json_of_several_maps_is_one_line_each(self):
+        done = self.coupler("check", "--json", self.file("bad.yaml", BAD), self.file("cell.yaml", GOOD))
+        self.assertEqual([json.loads(line)["ok"] for line in done.stdout.splitlines()], [False, True])
+
+    def test_json_stays_json_when_the_map_is_not_text(self):
+        (self.folder / "cell.yaml").write_bytes(b"name: \xff\xfe\nmapping: {}\n")
+        self.assertIn("ok", json.loads(self.coupler("check", "--json", "cell.yaml").stdout))
+
+
+class Generate(Cli):
+    def files(self):
+        return {path.name: path.read_bytes() for path in (self.folder / "out").iterdir()}
+
+    def test_makes_a_table_and_two_programs(self):
+        done = self.coupler("generate", self.file("cell.yaml", GOOD), "--out", "out")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(sorted(self.files()), ["cell_driver.cpp", "cell_map.cpp", "cell_map.hpp", "cell_node.cpp"])
+
+    def test_gives_the_same_bytes_anywhere(self):
+        self.coupler("generate", self.file("cell.yaml", GOOD), "--out", "out")
+        first = self.files()
+        (self.folder / "elsewhere").mkdir()
+        self.coupler("generate", str(self.folder / self.file("elsewhere/cell.yaml", GOOD)), "--out", "out")
+        self.assertEqual(self.files(), first)
+        for name, content in first.items():
+            self.assertNotIn(str(self.folder).encode(), content, name)
+
+    def test_says_what_it_wrote(self):
+        call = ("generate", self.file("cell.yaml", GOOD), "--out", "out")
+        self.assertEqual([line.split(": ")[1] for line in self.coupler(*call).stdout.splitlines()], ["written"] * 4)
+        self.assertEqual([line.split(": ")[1] for line in self.coupler(*call).stdout.splitlines()], ["unchanged"] * 4)
+        self.assertEqual(self.coupler(*call, "--quiet").stdout, "")
+
+    def test_leaves_files_alone_that_would_not_change(self):
+        self.coupler("generate", self.file("cell.yaml", GOOD), "--out", "out")
+        os.utime(self.folder / "out/cell_map.cpp", (1, 1))
+        self.coupler("generate", "cell.yaml", "--out", "out")
+        self.assertEqual((self.folder / "out/cell_map.cpp").stat().st_mtime, 1)
+
+    def test_calls_it_as_it_is_told(self):
+        self.coupler("generate", self.file("cell.yaml", GOOD), "--out", "out", "--name", "press_2")
+        self.assertIn(b"namespace coupler::maps::press_2 {", self.files()["press_2_map.hpp"])
+
+    def test_refuses_a_name_that_cannot_be_one(self):
+        for name in ("2nd", "a-b", "class"):
+            done = self.coupler("generate", self.file("cell.yaml", GOOD), "--out", "out", "--name", name)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(f"'{name}'", done.stderr)
+            self.assertIn("--name", done.stderr)
+
+    def test_asks_for_a_name_when_the_maps_own_cannot_be_one(self):
+        done = self.coupler("generate", self.file("cell.yaml", GOOD.replace("cell", "hall/cell")), "--out", "out")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("'hall/cell'", done.stderr)
+        self.assertIn("--name", done.stderr)
+
+    def test_writes_nothing_for_a_bad_map(self):
+        done = self.coupler("generate", self.file("cell.yaml", BAD), "--out", "out")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("cell.yaml:6:", done.stderr)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_a_folder_that_cannot_be_made_is_a_wrong_call(self):
+        self.file("out", "a file is in the way")
+        done = self.coupler("generate", self.file("cell.yaml", GOOD), "--out", "out/deeper")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("out/deeper", done.stderr)
+        self.assertIn("--out", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
