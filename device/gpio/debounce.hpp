@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+
+#include "device/core/time.hpp"
+
+namespace coupler::node {
+
+/// An input's level without its bouncing: a new level counts once the line has kept it for the period. Fed
+/// with edges and their times, asked at any time; it needs no timer.
+class Debounce {
+ public:
+  Debounce(std::chrono::microseconds period, bool level) : period_(period), settled_(level), latest_(level) {}
+
+  /// The line changed to `level`. Two edges to the same level mean that one between them was missed: the line
+  /// was not quiet, so the period begins anew.
+  void edge(bool level, TimePoint at) {
+    settle(at);
+    latest_ = level;
+    since_ = at;
+  }
+
+  /// The level that counts.
+  bool level(TimePoint now) {
+    settle(now);
+    return settled_;
+  }
+
+  /// The level that the last edge brought.
+  bool latest() const { return latest_; }
+
+ private:
+  void settle(TimePoint now) {
+    if (now - since_ >= period_) settled_ = latest_;
+  }
+
+  std::chrono::microseconds period_;
+  bool settled_;
+  bool latest_;
+  TimePoint since_{};
+};
+
+}  // namespace coupler::node

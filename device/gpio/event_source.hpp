@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace coupler::node {
+
+/// A file descriptor on which the kernel reports edges. Whoever runs the event loop watches it.
+class EventSource {
+ public:
+  virtual ~EventSource() = default;
+  virtual int descriptor() const = 0;
+  /// Takes the waiting edges without blocking. False: the line is gone (its chip was unplugged); the
+  /// descriptor stays readable for ever, so do not watch it any more.
+  [[nodiscard]] virtual bool take_edges() = 0;
+};
+
+}  // namespace coupler::node

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/gpio/fault.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+namespace coupler::node {
+
+bool Fault::note(int error) {
+  if (error != error_) {
+    if (error == 0)
+      log_(what_ + " works again");
+    else
+      log_(fmt::format(
+          "{} failed: {}; requests that need it are answered with exception 04 until it works again", what_,
+          std::strerror(error)));
+    error_ = error;
+  }
+  return error == 0;
+}
+
+}  // namespace coupler::node

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "device/core/log.hpp"
+
+namespace coupler::node {
+
+/// Whether some hardware works, said in the log once per change.
+class Fault {
+ public:
+  /// `what` begins the sentence: "gpiochip0 line 5 (GPIO5)".
+  Fault(std::string what, Log log) : what_(std::move(what)), log_(std::move(log)) {}
+
+  /// The outcome of a call: 0 or an errno. Returns whether it was good.
+  bool note(int error);
+
+ private:
+  std::string what_;
+  Log log_;
+  int error_ = 0;
+};
+
+}  // namespace coupler::node

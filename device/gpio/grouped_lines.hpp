@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "common/map/line.hpp"
+#include "device/core/lines.hpp"
+#include "device/gpio/fault.hpp"
+#include "device/gpio/line_group.hpp"
+
+namespace coupler::node {
+
+/// An output group and the coils that it drives. The vectors have one element for each line of the group.
+struct WiredOutputs {
+  std::unique_ptr<OutputGroup> group;
+  std::vector<std::uint16_t> addresses;  ///< ascending
+  std::vector<Safe> safe;
+  std::vector<int> levels;  ///< at which the group was requested
+};
+
+/// An input group and the discrete inputs that it reads.
+struct WiredInputs {
+  std::unique_ptr<InputGroup> group;
+  std::vector<std::uint16_t> addresses;  ///< ascending
+};
+
+/// Drives and reads any number of groups as one: a write that needs several of them is done by all or by
+/// none.
+class GroupedLines : public Lines {
+ public:
+  GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs, const Log& log);
+
+  bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint now) override;
+  bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override;
+  bool drive_safe() override;
+
+ private:
+  struct Output {
+    WiredOutputs wired;
+    std::vector<int> next;  ///< what a write asks for
+    Fault fault;
+    bool driven = false;  ///< by the write in progress
+  };
+  struct Input {
+    WiredInputs wired;
+    Fault fault;
+  };
+
+  void restore();
+
+  std::vector<Output> outputs_;
+  std::vector<Input> inputs_;
+  std::array<int, max_group_size> scratch_{};
+};
+
+}  // namespace coupler::node

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/gpio/simulated_chip.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace coupler::node {
+namespace {
+
+using modbus::Range;
+
+/// The lines whose address is in the range.
+template <class Lines>
+auto in_range(Lines& lines, Range range) {
+  const auto below = [](const auto& line, std::uint32_t address) { return line.point->address < address; };
+  const auto first = std::lower_bound(lines.begin(), lines.end(), std::uint32_t{range.start()}, below);
+  const auto last = std::lower_bound(first, lines.end(), range.end(), below);
+  return Span<typename Lines::value_type>(lines).sub(static_cast<std::size_t>(first - lines.begin()),
+                                                     static_cast<std::size_t>(last - first));
+}
+
+template <class Lines>
+auto* named(Lines& lines, std::string_view name) {
+  const auto found =
+      std::find_if(lines.begin(), lines.end(), [&](const auto& l) { return l.point->name == name; });
+  return found == lines.end() ? nullptr : &*found;
+}
+
+bool starts_on(const Point& point) { return !point.initial.empty() && point.initial[0] != 0; }
+
+}  // namespace
+
+SimulatedChip::SimulatedChip(const Map& map, TimePoint now) : start_(now) {
+  for (const Point& point : map.points) {
+    if (point.table == Table::coils) outputs_.push_back({&point, starts_on(point)});
+    if (point.table == Table::discrete_inputs)
+      inputs_.push_back({&point, starts_on(point), nullptr, nullptr});
+  }
+  for (const SimWire& wire : map.sim) {
+    Input* to = named(inputs_, wire.to);
+    if (to == nullptr) continue;
+    to->wire = &wire;
+    to->from = named(outputs_, wire.from);
+  }
+}
+
+std::uint16_t SimulatedChip::level_of(const Input& input, TimePoint now) const {
+  if (input.wire == nullptr) return input.level ? 1 : 0;
+  bool level = false;
+  if (input.from != nullptr)
+    level = input.from->level;
+  else if (const auto period = input.wire->square; period.count() > 0)
+    level = (now - start_) % period < period / 2;
+  return level != input.wire->invert ? 1 : 0;
+}
+
+bool SimulatedChip::read(Range inputs, Span<std::uint16_t> levels, TimePoint now) {
+  if (!plugged_) return false;
+  for (const Input& input : in_range(inputs_, inputs))
+    levels[input.point->address - inputs.start()] = level_of(input, now);
+  return true;
+}
+
+bool SimulatedChip::drive(Range coils, Span<const std::uint16_t> levels) {
+  if (!plugged_) return false;
+  for (Output& output : in_range(outputs_, coils))
+    output.level = levels[output.point->address - coils.start()] != 0;
+  return true;
+}
+
+bool SimulatedChip::drive_safe() {
+  if (!plugged_) return false;
+  for (Output& output : outputs_)
+    if (output.point->safe != Safe::hold) output.level = output.point->safe == Safe::on;
+  return true;
+}
+
+void SimulatedChip::pull(std::string_view input, bool level) {
+  Input* line = named(inputs_, input);
+  assert(line != nullptr && line->wire == nullptr);
+  line->level = level;
+}
+
+bool SimulatedChip::level(std::string_view output) const {
+  const Output* line = named(outputs_, output);
+  assert(line != nullptr);
+  return line->level;
+}
+
+}  // namespace coupler::node

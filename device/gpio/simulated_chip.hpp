@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "common/map/map.hpp"
+#include "device/core/lines.hpp"
+
+namespace coupler::node {
+
+/// Hardware without hardware (`--sim`): every coil and discrete input of the map has a line here, wired as
+/// the map's `sim:` says. An input with no wire keeps the level that it was given.
+class SimulatedChip : public Lines {
+ public:
+  /// Outputs and unwired inputs are at their initial levels; square waves begin now, with their `on` half.
+  SimulatedChip(const Map& map, TimePoint now);
+
+  bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint now) override;
+  bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override;
+  bool drive_safe() override;
+
+  /// What a test does from outside. Names are those of points of the map.
+  void pull(std::string_view input, bool level);  ///< an unwired input
+  bool level(std::string_view output) const;
+  void plug(bool in) { plugged_ = in; }  ///< unplugged, nothing can be read or driven
+
+ private:
+  struct Output {
+    const Point* point;
+    bool level;
+  };
+  struct Input {
+    const Point* point;
+    bool level;
+    const SimWire* wire;  ///< null: none
+    const Output* from;   ///< null: no wire, or a square wave
+  };
+
+  std::uint16_t level_of(const Input& input, TimePoint now) const;
+
+  std::vector<Output> outputs_;  ///< ascending addresses
+  std::vector<Input> inputs_;    ///< ascending addresses
+  TimePoint start_;
+  bool plugged_ = true;
+};
+
+}  // namespace coupler::node

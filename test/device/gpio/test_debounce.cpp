@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "device/gpio/debounce.hpp"
+
+namespace coupler::node {
+namespace {
+
+using std::chrono::milliseconds;
+
+class Debouncing : public testing::Test {
+ protected:
+  static TimePoint at(int ms) { return TimePoint(std::chrono::hours(1)) + milliseconds(ms); }
+  Debounce input_{milliseconds(5), false};
+};
+
+TEST_F(Debouncing, A_line_that_never_changed_has_its_first_level) {
+  EXPECT_FALSE(input_.level(at(0)));
+  EXPECT_TRUE(Debounce(milliseconds(5), true).level(at(0)));
+}
+
+TEST_F(Debouncing, An_edge_counts_when_the_level_has_been_stable_for_the_period) {
+  input_.edge(true, at(0));
+  EXPECT_FALSE(input_.level(at(0)));
+  EXPECT_FALSE(input_.level(at(4)));
+  EXPECT_TRUE(input_.level(at(5)));
+}
+
+TEST_F(Debouncing, A_pulse_shorter_than_the_period_is_not_seen) {
+  input_.edge(true, at(0));
+  input_.edge(false, at(4));
+  EXPECT_FALSE(input_.level(at(4)));
+  EXPECT_FALSE(input_.level(at(100)));
+}
+
+TEST_F(Debouncing, Bouncing_delays_the_new_level_until_the_last_edge_is_old_enough) {
+  for (int i = 0; i < 10; ++i) input_.edge(i % 2 == 0, at(i));
+  input_.edge(true, at(10));
+  EXPECT_FALSE(input_.level(at(14)));
+  EXPECT_TRUE(input_.level(at(15)));
+}
+
+TEST_F(Debouncing, A_level_that_was_stable_counts_even_if_nobody_asked_meanwhile) {
+  input_.edge(true, at(0));
+  input_.edge(false, at(20));
+  EXPECT_TRUE(input_.level(at(21))) << "on from 5 ms until the edge at 20 ms has settled";
+  EXPECT_FALSE(input_.level(at(25)));
+}
+
+TEST_F(Debouncing, Two_edges_to_the_same_level_hide_a_third_and_begin_the_period_anew) {
+  input_.edge(true, at(0));
+  input_.edge(true, at(4));
+  EXPECT_FALSE(input_.level(at(8)));
+  EXPECT_TRUE(input_.level(at(9)));
+}
+
+}  // namespace
+}  // namespace coupler::node

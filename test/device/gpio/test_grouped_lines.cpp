@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "device/gpio/grouped_lines.hpp"
+
+namespace coupler::node {
+namespace {
+
+using modbus::Range;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using Levels = std::vector<std::uint16_t>;
+
+/// A chip's lines as the test sees them.
+struct Hardware {
+  std::vector<int> levels;
+  int error = 0;
+  int calls = 0;
+};
+
+class FakeOutputs : public OutputGroup {
+ public:
+  FakeOutputs(std::string name, Hardware& hardware) : name_(std::move(name)), hardware_(hardware) {}
+  const std::string& name() const override { return name_; }
+  int drive(Span<const int> levels) override {
+    ++hardware_.calls;
+    if (hardware_.error == 0) hardware_.levels.assign(levels.begin(), levels.end());
+    return hardware_.error;
+  }
+
+ private:
+  std::string name_;
+  Hardware& hardware_;
+};
+
+class FakeInputs : public InputGroup {
+ public:
+  explicit FakeInputs(Hardware& hardware) : hardware_(hardware) {}
+  const std::string& name() const override { return name_; }
+  int read(Span<int> levels, TimePoint) override {
+    std::copy(hardware_.levels.begin(), hardware_.levels.end(), levels.begin());
+    return hardware_.error;
+  }
+
+ private:
+  std::string name_ = "chip2 line 0";
+  Hardware& hardware_;
+};
+
+/// Coils 0, 2, 10 on one chip, 1 and 11 on another; discrete inputs 4 and 6 on a third.
+class Grouped : public testing::Test {
+ protected:
+  GroupedLines make() {
+    std::vector<WiredOutputs> outputs;
+    outputs.push_back({std::make_unique<FakeOutputs>("chip0", first_),
+                       {0, 2, 10},
+                       {Safe::off, Safe::on, Safe::hold},
+                       first_.levels});
+    outputs.push_back(
+        {std::make_unique<FakeOutputs>("chip1", second_), {1, 11}, {Safe::on, Safe::on}, second_.levels});
+    std::vector<WiredInputs> inputs;
+    inputs.push_back({std::make_unique<FakeInputs>(third_), {4, 6}});
+    return GroupedLines(std::move(outputs), std::move(inputs),
+                        [this](std::string_view line) { log_.emplace_back(line); });
+  }
+
+  Hardware first_{{0, 0, 1}};
+  Hardware second_{{0, 0}};
+  Hardware third_{{0, 1}};
+  std::vector<std::string> log_;
+  GroupedLines lines_ = make();
+};
+
+TEST_F(Grouped, A_write_drives_each_chip_it_needs_once_and_leaves_the_other_lines_as_they_are) {
+  EXPECT_TRUE(lines_.drive(Range::of(0, 3), Levels{1, 1, 1}));
+  EXPECT_THAT(first_.levels, ElementsAre(1, 1, 1));
+  EXPECT_THAT(second_.levels, ElementsAre(1, 0));
+  EXPECT_EQ(first_.calls, 1);
+  EXPECT_EQ(second_.calls, 1);
+  EXPECT_TRUE(lines_.drive(Range::of(11, 1), Levels{1}));
+  EXPECT_EQ(first_.calls, 1);
+  EXPECT_THAT(second_.levels, ElementsAre(1, 1));
+}
+
+TEST_F(Grouped, Coils_without_a_line_need_no_hardware) {
+  first_.error = second_.error = EIO;
+  EXPECT_TRUE(lines_.drive(Range::of(3, 7), Levels(7, 1)));
+}
+
+TEST_F(Grouped, When_one_chip_refuses_the_others_go_back) {
+  second_.error = EIO;
+  EXPECT_FALSE(lines_.drive(Range::of(0, 2), Levels{1, 1}));
+  EXPECT_THAT(first_.levels, ElementsAre(0, 0, 1));
+  EXPECT_THAT(second_.levels, ElementsAre(0, 0));
+  second_.error = 0;
+  EXPECT_TRUE(lines_.drive(Range::of(11, 1), Levels{1}));
+  EXPECT_THAT(second_.levels, ElementsAre(0, 1)) << "nothing of the refused write is left over";
+}
+
+TEST_F(Grouped, A_read_brings_the_levels_of_the_lines_in_the_range) {
+  Levels levels{7, 7, 7};
+  EXPECT_TRUE(lines_.read(Range::of(5, 3), levels, {}));
+  EXPECT_THAT(levels, ElementsAre(7, 1, 7)) << "addresses without a line are left alone";
+  third_.error = ENODEV;
+  EXPECT_FALSE(lines_.read(Range::of(6, 1), levels, {}));
+  EXPECT_TRUE(lines_.read(Range::of(7, 3), levels, {})) << "none of these has a line";
+}
+
+TEST_F(Grouped, The_safe_state_holds_what_is_to_be_held_and_tries_every_chip) {
+  EXPECT_TRUE(lines_.drive(Range::of(0, 1), Levels{1}));
+  first_.error = EIO;
+  EXPECT_FALSE(lines_.drive_safe());
+  EXPECT_THAT(second_.levels, ElementsAre(1, 1));
+  first_.error = 0;
+  EXPECT_TRUE(lines_.drive_safe());
+  EXPECT_THAT(first_.levels, ElementsAre(0, 1, 1));
+}
+
+TEST_F(Grouped, A_failure_is_logged_once_per_change_of_state) {
+  second_.error = ENODEV;
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(lines_.drive(Range::of(1, 1), Levels{1}));
+  ASSERT_EQ(log_.size(), 1U);
+  EXPECT_THAT(log_[0], HasSubstr("chip1 failed: No such device"));
+  second_.error = 0;
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(lines_.drive(Range::of(1, 1), Levels{1}));
+  ASSERT_EQ(log_.size(), 2U);
+  EXPECT_EQ(log_[1], "chip1 works again");
+}
+
+}  // namespace
+}  // namespace coupler::node

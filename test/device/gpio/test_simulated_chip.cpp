@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "device/gpio/simulated_chip.hpp"
+#include "test/fakes/map_builder.hpp"
+
+namespace coupler::node {
+namespace {
+
+using codec::Type;
+using fakes::MapBuilder;
+using modbus::Range;
+using std::chrono::milliseconds;
+using Levels = std::vector<std::uint16_t>;
+
+constexpr Table coils = Table::coils;
+constexpr Table inputs = Table::discrete_inputs;
+
+Levels read(SimulatedChip& chip, unsigned start, unsigned count, TimePoint now = {}) {
+  Levels levels(count, 9);
+  EXPECT_TRUE(chip.read(Range::of(start, count), levels, now));
+  return levels;
+}
+
+TEST(SimulatedChip, A_wire_shows_the_output_at_the_input_inverted_if_the_map_says_so) {
+  const auto map = MapBuilder()
+                       .add(coils, "out", 5, Type::BOOL)
+                       .add(inputs, "same", 0, Type::BOOL)
+                       .add(inputs, "opposite", 1, Type::BOOL)
+                       .wire("out", "same")
+                       .wire("out", "opposite", true)
+                       .build();
+  SimulatedChip chip(map->map(), {});
+  EXPECT_EQ(read(chip, 0, 2), Levels({0, 1}));
+  EXPECT_TRUE(chip.drive(Range::of(5, 1), Levels{1}));
+  EXPECT_EQ(read(chip, 0, 2), Levels({1, 0}));
+  EXPECT_EQ(read(chip, 1, 1), Levels({0}));
+}
+
+TEST(SimulatedChip, A_square_wave_is_on_for_the_first_half_of_its_period) {
+  const auto map =
+      MapBuilder().add(inputs, "clock", 3, Type::BOOL).square("clock", milliseconds(100)).build();
+  const TimePoint start{std::chrono::hours(5)};
+  SimulatedChip chip(map->map(), start);
+  EXPECT_EQ(read(chip, 3, 1, start), Levels({1}));
+  EXPECT_EQ(read(chip, 3, 1, start + milliseconds(49)), Levels({1}));
+  EXPECT_EQ(read(chip, 3, 1, start + milliseconds(50)), Levels({0}));
+  EXPECT_EQ(read(chip, 3, 1, start + milliseconds(99)), Levels({0}));
+  EXPECT_EQ(read(chip, 3, 1, start + milliseconds(1000)), Levels({1}));
+}
+
+TEST(SimulatedChip, An_input_with_no_wire_has_its_initial_level_until_it_is_pulled) {
+  MapBuilder builder;
+  const auto on = builder.keep({1});
+  const auto map = builder.add(inputs, "a", 0, Type::BOOL, [&](Point& p) { p.initial = on; })
+                       .add(inputs, "b", 1, Type::BOOL)
+                       .build();
+  SimulatedChip chip(map->map(), {});
+  EXPECT_EQ(read(chip, 0, 2), Levels({1, 0}));
+  chip.pull("a", false);
+  chip.pull("b", true);
+  EXPECT_EQ(read(chip, 0, 2), Levels({0, 1}));
+}
+
+TEST(SimulatedChip, Outputs_begin_with_their_initial_level_and_end_in_their_safe_state) {
+  MapBuilder builder;
+  const auto on = builder.keep({1});
+  const auto safe = [](Safe state) { return [state](Point& p) { p.safe = state; }; };
+  const auto map = builder.add(coils, "lit", 0, Type::BOOL, [&](Point& p) { p.initial = on; })
+                       .add(coils, "safe_on", 1, Type::BOOL, safe(Safe::on))
+                       .add(coils, "held", 2, Type::BOOL, safe(Safe::hold))
+                       .build();
+  SimulatedChip chip(map->map(), {});
+  EXPECT_TRUE(chip.level("lit"));
+  EXPECT_FALSE(chip.level("safe_on"));
+  EXPECT_TRUE(chip.drive(Range::of(0, 3), Levels{1, 0, 1}));
+  EXPECT_TRUE(chip.drive_safe());
+  EXPECT_FALSE(chip.level("lit"));
+  EXPECT_TRUE(chip.level("safe_on"));
+  EXPECT_TRUE(chip.level("held"));
+}
+
+TEST(SimulatedChip, Unplugged_it_refuses_everything_and_changes_nothing) {
+  const auto map = MapBuilder().add(coils, "out", 0, Type::BOOL).add(inputs, "in", 0, Type::BOOL).build();
+  SimulatedChip chip(map->map(), {});
+  chip.plug(false);
+  Levels levels(1);
+  EXPECT_FALSE(chip.read(Range::of(0, 1), levels, {}));
+  EXPECT_FALSE(chip.drive(Range::of(0, 1), Levels{1}));
+  chip.plug(true);
+  EXPECT_FALSE(chip.level("out"));
+}
+
+}  // namespace
+}  // namespace coupler::node
