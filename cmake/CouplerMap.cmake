@@ -1,1 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
+
+# coupler_add_map(NAME map.yaml): both sides of a coupler from one map.
+#   NAME_map     library: the map as constant data, coupler::maps::NAME::map in "NAME_map.hpp"
+#   NAME_node    program: the node that serves it (links no YAML parser)
+#   NAME_driver  program: the ROS driver for it, where the ROS driver itself is built
+# Both programs link the same NAME_map, so they cannot disagree. Works in this tree and in a project that adds this
+# tree by add_subdirectory().
+function(coupler_add_map name map)
+  get_filename_component(map ${map} ABSOLUTE BASE_DIR ${CMAKE_CURRENT_SOURCE_DIR})
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/${name}_generated)
+  set(stamp ${out}/${name}.stamp)
+  set(files ${out}/${name}_driver.cpp ${out}/${name}_map.cpp ${out}/${name}_map.hpp ${out}/${name}_node.cpp)
+
+  # The stamp is what gets newer; the files keep their time unless their content changes, so that a map that was only
+  # touched compiles nothing. The program carries the templates: a change to them comes through it.
+  add_custom_command(OUTPUT ${stamp} BYPRODUCTS ${files}
+    COMMAND coupler generate ${map} --out ${out} --name ${name} --quiet
+    COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
+    DEPENDS ${map} coupler
+    COMMENT "Generating ${name} from its map" VERBATIM)
+  add_custom_target(${name}_generate DEPENDS ${stamp})
+  set_source_files_properties(${files} PROPERTIES GENERATED TRUE)
+
+  add_library(${name}_map STATIC ${out}/${name}_map.cpp)
+  target_include_directories(${name}_map PUBLIC ${out})
+  target_compile_features(${name}_map PUBLIC cxx_std_17)
+  target_link_libraries(${name}_map PUBLIC coupler_map)
+  add_dependencies(${name}_map ${name}_generate)
+
+  add_executable(${name}_node ${out}/${name}_node.cpp)
+  target_link_libraries(${name}_node PRIVATE ${name}_map coupler_node_program)
+  add_dependencies(${name}_node ${name}_generate)
+
+  if(TARGET coupler_driver_program)
+    add_executable(${name}_driver ${out}/${name}_driver.cpp)
+    target_link_libraries(${name}_driver PRIVATE ${name}_map coupler_driver_program)
+    add_dependencies(${name}_driver ${name}_generate)
+  endif()
+endfunction()
