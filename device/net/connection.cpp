@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/net/connection.hpp"
+
+#include <sys/socket.h>
+
+#include <cassert>
+#include <cerrno>
+#include <utility>
+
+namespace coupler::node {
+namespace {
+
+bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
+
+}  // namespace
+
+void Connection::open(Descriptor socket, TimePoint now) {
+  assert(!is_open());
+  framer_.reset();
+  output_begin_ = output_end_ = 0;
+  ended_ = has_asked_ = false;
+  last_active_ = now;
+  waiting_ = Waiting::for_request;
+  deadline_.reset();
+  if (loop_.watch(socket.get(), Interest::read, *this)) socket_ = std::move(socket);
+}
+
+void Connection::close() {
+  if (!is_open()) return;
+  loop_.forget(socket_.get(), *this);
+  socket_.close();
+  deadline_.reset();
+}
+
+void Connection::ready(TimePoint now) {
+  const bool was_sending = has_output();
+  const TimePoint before = last_active_;
+  if (!take_turn(now)) return close();
+  if (has_output() != was_sending)
+    loop_.change(socket_.get(), has_output() ? Interest::write : Interest::read, *this);
+  set_deadline(now, last_active_ != before);
+}
+
+/// False: the connection is to be closed.
+bool Connection::take_turn(TimePoint now) {
+  if (!send()) return false;
+  if (has_output()) return true;
+  if (!ended_ && !receive()) return false;
+  const bool good = answer(now);
+  if (!send()) return false;
+  return good && (!ended_ || has_output());
+}
+
+bool Connection::receive() {
+  const auto room = framer_.room();
+  const ssize_t size = ::recv(socket_.get(), room.data(), room.size(), 0);
+  if (size < 0) return would_block();
+  if (size == 0) ended_ = true;
+  framer_.filled(static_cast<std::size_t>(size));
+  return true;
+}
+
+bool Connection::answer(TimePoint now) {
+  for (;;) {
+    switch (framer_.next()) {
+      case modbus::Framer::Outcome::nothing: return true;
+      case modbus::Framer::Outcome::bad: ++statistics_.bad_frames; return false;
+      case modbus::Framer::Outcome::frame: break;
+    }
+    assert(output_.size() - output_end_ >= modbus::max_adu_size);
+    output_end_ += server_.answer(framer_.frame(), now, Span<std::uint8_t>(output_).from(output_end_));
+    has_asked_ = true;
+    last_active_ = now;
+  }
+}
+
+bool Connection::send() {
+  while (has_output()) {
+    const ssize_t size = ::send(socket_.get(), &output_[output_begin_], output_end_ - output_begin_,
+                                MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (size < 0) return would_block();
+    output_begin_ += static_cast<std::size_t>(size);
+  }
+  output_begin_ = output_end_ = 0;
+  return true;
+}
+
+void Connection::set_deadline(TimePoint now, bool had_frame) {
+  const Waiting waiting = has_output()           ? Waiting::for_client_to_read
+                          : framer_.is_partial() ? Waiting::for_rest_of_frame
+                                                 : Waiting::for_request;
+  if (waiting == Waiting::for_request)
+    deadline_.reset();
+  else if (waiting != waiting_ || had_frame)
+    deadline_ = now + patience;
+  waiting_ = waiting;
+}
+
+}  // namespace coupler::node

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "common/modbus/frame.hpp"
+#include "device/core/server.hpp"
+#include "device/net/loop.hpp"
+
+namespace coupler::node {
+
+/// One client. In a turn it receives once, at most as much as the longest frame, and answers what that
+/// completes; so clients that pipeline thousands of requests take turns with the others. While a reply waits
+/// for the client to read, nothing more is received from it: what it is owed is bounded. Its memory is used
+/// again for the next client.
+class Connection : public Watcher {
+ public:
+  /// For the rest of a frame once its beginning is there, and for a client to take a reply; absolute, so that
+  /// single bytes do not extend it.
+  static constexpr std::chrono::seconds patience{5};
+
+  Connection(Loop& loop, Server& server, Statistics& statistics)
+      : loop_(loop), server_(server), statistics_(statistics) {}
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection() { close(); }
+
+  /// Takes over a connected, non-blocking socket.
+  void open(Descriptor socket, TimePoint now);
+  bool is_open() const { return socket_.is_open(); }
+  void close();
+
+  void ready(TimePoint now) override;
+
+  /// When it is closed unless something happens; nullopt: never.
+  std::optional<TimePoint> deadline() const { return deadline_; }
+
+  /// It has sent at least one whole frame.
+  bool has_asked() const { return has_asked_; }
+  /// Of its last whole frame, or of its beginning.
+  TimePoint last_active() const { return last_active_; }
+
+ private:
+  /// A request that is answered with a long reply has at least 12 bytes: what one turn receives is answered
+  /// in this.
+  static constexpr std::size_t output_size = (modbus::max_adu_size / 12 + 1) * modbus::max_adu_size;
+  enum class Waiting { for_request, for_rest_of_frame, for_client_to_read };
+
+  bool take_turn(TimePoint now);
+  bool receive();
+  bool answer(TimePoint now);
+  bool send();
+  bool has_output() const { return output_begin_ != output_end_; }
+  void set_deadline(TimePoint now, bool had_frame);
+
+  Loop& loop_;
+  Server& server_;
+  Statistics& statistics_;
+  Descriptor socket_;
+  modbus::Framer framer_;
+  std::array<std::uint8_t, output_size> output_;
+  std::size_t output_begin_ = 0;
+  std::size_t output_end_ = 0;
+  bool ended_ = false;  ///< the client sends no more, but may wait for replies
+  bool has_asked_ = false;
+  TimePoint last_active_{};
+  Waiting waiting_ = Waiting::for_request;
+  std::optional<TimePoint> deadline_;
+};
+
+}  // namespace coupler::node

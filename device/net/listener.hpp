@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "device/net/descriptor.hpp"
+
+namespace coupler::node {
+
+/// A non-blocking socket that listens.
+struct Listener {
+  Descriptor socket;
+  std::string name;  ///< "127.0.0.1:1502", "[::]:502"
+};
+
+/// Listens on a TCP port (0: any free one, which `name` tells). `address` is an IP address or host name;
+/// empty: every interface, IPv6 and IPv4. The error says what is in the way and how to get around it.
+tl::expected<Listener, std::string> listen_on(const std::string& address, std::uint16_t port);
+
+}  // namespace coupler::node

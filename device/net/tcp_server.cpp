@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/net/tcp_server.hpp"
+
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <tuple>
+#include <utility>
+
+namespace coupler::node {
+namespace {
+
+constexpr std::chrono::milliseconds sweep_period{250};
+constexpr int accepts_per_turn = 16;      ///< a storm of connections leaves turns for the others
+constexpr std::size_t other_files = 160;  ///< GPIO lines with edges, logs, libraries
+constexpr int send_buffer = 16 * 1024;    ///< what the kernel holds for a client that does not read
+
+std::size_t affordable(std::size_t wanted) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return wanted;
+  const std::size_t files = limit.rlim_cur;
+  return std::clamp<std::size_t>(files > other_files ? files - other_files : 1, 1, wanted);
+}
+
+void configure(int socket) {
+  const int on = 1;
+  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+  ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &send_buffer, sizeof send_buffer);
+}
+
+/// What accept(2) calls an error although only this one client is concerned.
+bool concerns_the_client(int error) {
+  for (const int known : {EINTR, ECONNABORTED, EPROTO, EPERM, ENETDOWN, ENOPROTOOPT, EHOSTDOWN, ENONET,
+                          EHOSTUNREACH, EOPNOTSUPP, ENETUNREACH})
+    if (error == known) return true;
+  return false;
+}
+
+}  // namespace
+
+TcpServer::TcpServer(Loop& loop, Listener listener, Server& server, Statistics& statistics, Log log,
+                     std::size_t capacity)
+    : loop_(loop), listener_(std::move(listener)), statistics_(statistics), log_(std::move(log)) {
+  for (std::size_t i = affordable(capacity); i > 0; --i) connections_.emplace_back(loop, server, statistics);
+  [[maybe_unused]] const bool watched = loop_.watch(listener_.socket.get(), Interest::read, *this);
+  assert(watched);
+}
+
+TcpServer::~TcpServer() { loop_.forget(listener_.socket.get(), *this); }
+
+std::size_t TcpServer::size() const {
+  return static_cast<std::size_t>(
+      std::count_if(connections_.begin(), connections_.end(), [](const auto& c) { return c.is_open(); }));
+}
+
+void TcpServer::ready(TimePoint now) {
+  for (int i = 0; i < accepts_per_turn; ++i)
+    if (!accept_one(now)) return;
+}
+
+/// False: nobody waits, or nobody can be let in now.
+bool TcpServer::accept_one(TimePoint now) {
+  Descriptor socket(::accept4(listener_.socket.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  if (!socket.is_open()) {
+    const int error = errno;
+    if (concerns_the_client(error)) return true;
+    if (error != EAGAIN && error != EWOULDBLOCK) pause(error);
+    return false;
+  }
+  configure(socket.get());
+  ++statistics_.connections;
+  in_use_ = true;
+  pause_logged_ = false;
+  free_connection().open(std::move(socket), now);
+  return true;
+}
+
+/// The listener stays readable while it cannot accept; watching it would spin.
+void TcpServer::pause(int error) {
+  if (!pause_logged_)
+    log_(fmt::format("cannot accept connections: {}; trying again until it works", std::strerror(error)));
+  pause_logged_ = paused_ = true;
+  loop_.change(listener_.socket.get(), Interest::nothing, *this);
+}
+
+Connection& TcpServer::free_connection() {
+  const auto order = [](const Connection& c) {
+    return std::make_tuple(c.is_open(), c.has_asked(), c.last_active());
+  };
+  Connection& chosen = *std::min_element(connections_.begin(), connections_.end(),
+                                         [&](const auto& a, const auto& b) { return order(a) < order(b); });
+  if (chosen.is_open()) {
+    ++statistics_.evictions;
+    chosen.close();
+  }
+  return chosen;
+}
+
+std::optional<std::chrono::milliseconds> TcpServer::patience() const {
+  return in_use_ || paused_ ? std::optional(sweep_period) : std::nullopt;
+}
+
+void TcpServer::tick(TimePoint now) {
+  if (now < next_sweep_) return;
+  next_sweep_ = now + sweep_period;
+  for (Connection& connection : connections_) {
+    if (!connection.deadline() || *connection.deadline() > now) continue;
+    ++statistics_.timeouts;
+    connection.close();
+  }
+  in_use_ = size() > 0;
+  if (!paused_) return;
+  paused_ = false;
+  loop_.change(listener_.socket.get(), Interest::read, *this);
+}
+
+}  // namespace coupler::node

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "device/core/log.hpp"
+#include "device/net/connection.hpp"
+#include "device/net/listener.hpp"
+
+namespace coupler::node {
+
+/// Accepts clients and ends those that overstay: a fixed number of connections, and when all are taken, the
+/// longest idle one makes room, first of those that never asked anything. Allocates at the start only.
+class TcpServer : public Watcher {
+ public:
+  static constexpr std::size_t max_connections = 256;
+
+  /// `capacity` is lowered to what the limit of open files leaves.
+  TcpServer(Loop& loop, Listener listener, Server& server, Statistics& statistics, Log log,
+            std::size_t capacity = max_connections);
+  TcpServer(const TcpServer&) = delete;
+  TcpServer& operator=(const TcpServer&) = delete;
+  ~TcpServer();
+
+  const std::string& name() const { return listener_.name; }
+  std::size_t capacity() const { return connections_.size(); }
+  /// Connections that are open now.
+  std::size_t size() const;
+
+  /// Somebody wants to connect.
+  void ready(TimePoint now) override;
+
+  /// How long the loop may wait before it calls tick() again; nullopt: as long as it likes.
+  std::optional<std::chrono::milliseconds> patience() const;
+  /// Closes what is overdue.
+  void tick(TimePoint now);
+
+ private:
+  Connection& free_connection();
+  bool accept_one(TimePoint now);
+  void pause(int error);
+
+  Loop& loop_;
+  Listener listener_;
+  Statistics& statistics_;
+  Log log_;
+  std::deque<Connection> connections_;  ///< never grows after the start: addresses are stable
+  bool paused_ = false;                 ///< out of descriptors or memory
+  bool pause_logged_ = false;           ///< and nobody was let in since
+  bool in_use_ = false;                 ///< connections are open, or were at the last sweep
+  TimePoint next_sweep_{};
+};
+
+}  // namespace coupler::node

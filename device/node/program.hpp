@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/map/map.hpp"
+
+namespace coupler::node {
+
+/// The whole of a node whose map is built in: options, service, exit status (0 ok, 1 the map cannot be
+/// served, 2 the call is wrong, 3 network or hardware failed). Generated programs call it and nothing else.
+int main_with(const Map& map, int argc, char** argv);
+
+}  // namespace coupler::node

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/node/servable.hpp"
+
+#include <fmt/format.h>
+
+#include "common/map/identity.hpp"
+
+namespace coupler::node {
+
+tl::expected<void, std::string> check_servable(const Map& map) {
+  std::string errors;
+  for (const Point& point : map.points) {
+    if (holds_bits(point.table) || !range(point).overlaps(identity::reserved)) continue;
+    errors += fmt::format(
+        "{}point '{}': {} {} is in the area that every node keeps for its identity (0x{:04X} … 0x{:04X}); "
+        "move it below",
+        errors.empty() ? "" : "\n", point.name, to_string(point.table), point.address,
+        identity::reserved.start(), identity::reserved.last());
+  }
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return {};
+}
+
+}  // namespace coupler::node

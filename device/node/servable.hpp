@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+
+#include "common/map/map.hpp"
+
+namespace coupler::node {
+
+/// Whether a node can serve this map, which is stricter than a map of somebody else's coupler. The error says
+/// which points are in the way, one a line, and what to do.
+tl::expected<void, std::string> check_servable(const Map& map);
+
+}  // namespace coupler::node

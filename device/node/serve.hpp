@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/map/map.hpp"
+#include "device/node/options.hpp"
+
+namespace coupler::node {
+
+/// Serves the map until a signal asks to stop, then drives the outputs to their safe state. Says on stderr
+/// what it does. Returns the exit status: 0 stopped, 1 a node cannot serve this map, 3 network or hardware
+/// cannot be had.
+int serve(const Map& map, const Options& options);
+
+}  // namespace coupler::node
