@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fstream>
+#include <iterator>
+
+#include "common/map/loader/load.hpp"
+#include "example_map.hpp"
+#include "hard_map.hpp"
+#include "test/generate/same_map.hpp"
+
+namespace coupler {
+namespace {
+
+MapPtr load(const std::string& path) {
+  const LoadResult loaded = load_map_file(path);
+  for (const Diagnostic& diagnostic : loaded.diagnostics) ADD_FAILURE() << to_string(diagnostic);
+  return loaded.map;
+}
+
+std::string read(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Generated, The_table_is_the_map_that_the_loader_reads) {
+  const MapPtr loaded = load(COUPLER_SOURCE_DIR "/config/example-node.yaml");
+  ASSERT_TRUE(loaded);
+  testing::expect_same(maps::example::map, loaded->map());
+}
+
+TEST(Generated, Everything_that_is_hard_to_write_in_cpp_survives) {
+  const MapPtr loaded = load(HARD_MAP);
+  ASSERT_TRUE(loaded);
+  testing::expect_same(maps::hard::map, loaded->map());
+}
+
+TEST(Generated, The_text_is_the_file_byte_by_byte) {
+  const std::string file = read(HARD_MAP);
+  ASSERT_GT(file.size(), 65536U);  // longer than compilers must take
+  EXPECT_TRUE(maps::hard::map.text == file);
+}
+
+TEST(Generated, The_header_knows_the_fingerprint_at_compile_time) {
+  static_assert(maps::example::fingerprint != maps::hard::fingerprint);
+  EXPECT_EQ(maps::example::fingerprint, maps::example::map.fingerprint);
+}
+
+}  // namespace
+}  // namespace coupler

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "common/map/map.hpp"
+
+namespace coupler::testing {
+
+static_assert(model_version == 1, "Compare the new fields of the model here, too");
+
+inline void expect_same(const Line& a, const Line& b) {
+  EXPECT_EQ(a.chip, b.chip);
+  EXPECT_EQ(a.offset, b.offset);
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.active_low, b.active_low);
+  EXPECT_EQ(a.bias, b.bias);
+  EXPECT_EQ(a.drive, b.drive);
+  EXPECT_EQ(a.debounce, b.debounce);
+}
+
+inline void expect_same(const codec::Format& a, const codec::Format& b) {
+  EXPECT_EQ(a.type, b.type);
+  EXPECT_EQ(a.order, b.order);
+  EXPECT_EQ(a.half, b.half);
+  EXPECT_EQ(a.bit, b.bit);
+  EXPECT_EQ(a.length, b.length);
+  EXPECT_EQ(a.encoding, b.encoding);
+}
+
+inline void expect_same(const Point& a, const Point& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.table, b.table);
+  EXPECT_EQ(a.address, b.address);
+  expect_same(a.format, b.format);
+  EXPECT_EQ(a.access, b.access);
+  EXPECT_TRUE(std::equal(a.initial.begin(), a.initial.end(), b.initial.begin(), b.initial.end()));
+  EXPECT_EQ(a.safe, b.safe);
+  expect_same(a.line, b.line);
+  EXPECT_EQ(a.description, b.description);
+  EXPECT_EQ(a.units, b.units);
+}
+
+inline void expect_same(const SimWire& a, const SimWire& b) {
+  EXPECT_EQ(a.from, b.from);
+  EXPECT_EQ(a.to, b.to);
+  EXPECT_EQ(a.invert, b.invert);
+  EXPECT_EQ(a.square, b.square);
+}
+
+inline void expect_same(const Connection& a, const Connection& b) {
+  EXPECT_EQ(a.address, b.address);
+  EXPECT_EQ(a.port, b.port);
+  EXPECT_EQ(a.unit, b.unit);
+  EXPECT_EQ(a.timeout, b.timeout);
+}
+
+inline void expect_same(const Polling& a, const Polling& b) {
+  EXPECT_EQ(a.rate, b.rate);
+  EXPECT_EQ(a.discrete_continuous, b.discrete_continuous);
+  EXPECT_EQ(a.discrete_gap, b.discrete_gap);
+  EXPECT_EQ(a.register_continuous, b.register_continuous);
+  EXPECT_EQ(a.register_gap, b.register_gap);
+}
+
+inline void expect_same(const Limits& a, const Limits& b) {
+  EXPECT_EQ(a.read_registers, b.read_registers);
+  EXPECT_EQ(a.read_bits, b.read_bits);
+  EXPECT_EQ(a.write_registers, b.write_registers);
+  EXPECT_EQ(a.write_bits, b.write_bits);
+  EXPECT_EQ(a.request_gap, b.request_gap);
+  EXPECT_EQ(a.connect_delay, b.connect_delay);
+  EXPECT_EQ(a.connections, b.connections);
+  EXPECT_EQ(a.mask_write, b.mask_write);
+}
+
+/// Every field of the model, deep.
+inline void expect_same(const Map& a, const Map& b) {
+  EXPECT_EQ(a.name, b.name);
+  expect_same(a.connection, b.connection);
+  expect_same(a.polling, b.polling);
+  expect_same(a.limits, b.limits);
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t i = 0; i < a.points.size(); ++i) {
+    SCOPED_TRACE(a.points[i].name);
+    expect_same(a.points[i], b.points[i]);
+  }
+  ASSERT_EQ(a.sim.size(), b.sim.size());
+  for (std::size_t i = 0; i < a.sim.size(); ++i) expect_same(a.sim[i], b.sim[i]);
+  EXPECT_EQ(a.fingerprint, b.fingerprint);
+  EXPECT_EQ(a.text, b.text);
+  EXPECT_EQ(a.text_crc, b.text_crc);
+}
+
+}  // namespace coupler::testing
