@@ -19,7 +19,7 @@ class FakeLines : public Lines {
   }
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override {
     if (broken) return false;
-    driven.emplace_back(coils, std::vector<std::uint16_t>(levels.begin(), levels.end()));
+    if (remembers) driven.emplace_back(coils, std::vector<std::uint16_t>(levels.begin(), levels.end()));
     return true;
   }
   bool drive_safe() override { return !broken; }
@@ -27,6 +27,7 @@ class FakeLines : public Lines {
   void set_input(std::uint16_t address, std::uint16_t level) { inputs_[address] = level; }
 
   bool broken = false;
+  bool remembers = true;
   std::vector<std::pair<modbus::Range, std::vector<std::uint16_t>>> driven;
 
  private:

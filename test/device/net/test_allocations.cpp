@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program of its own: it counts what the whole program takes from the heap.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "test/device/net/tcp_under_test.hpp"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace coupler::node {
+namespace {
+
+const std::vector<Pdu>& every_kind_of_request() {
+  static const std::vector<Pdu> requests{
+      pdu(1, {0, 2000}),
+      pdu(2, {0, 2000}),
+      pdu(3, {0, 125}),
+      pdu(4, {0xFF00, 23}),
+      pdu(5, {0, 0xFF00}),
+      pdu(6, {0, 1}),
+      pdu(15, {0, 10}, {2, 0xFF, 3}),
+      pdu(16, {0, 2}, {4, 0, 0, 0, 0}),
+      {20, 7, 6, 0, 1, 0, 0, 0, 100},
+      pdu(22, {0, 0, 0}),
+      pdu(23, {0, 2, 0, 1}, {2, 0, 0}),
+      pdu(3, {60000, 1}),
+      pdu(99, {}),
+      pdu(5, {0, 1}),
+  };
+  return requests;
+}
+
+TEST(Allocations, They_are_counted_here) {
+  const long before = allocations;
+  const Pdu something(100);
+  EXPECT_GT(allocations, before);
+}
+
+TEST(Allocations, From_the_socket_to_the_reply_there_is_none) {
+  TcpUnderTest node;
+  node.node.lines.remembers = false;
+  Client client = node.connect();
+  for (const Pdu& request : every_kind_of_request()) {
+    const Pdu bytes = adu(1, request);
+    const std::uint32_t requests = node.node.statistics.requests;
+    client.send(bytes);
+    const long before = allocations;
+    while (node.node.statistics.requests == requests) node.tcp.tick(node.loop.run_once(node.tcp.patience()));
+    EXPECT_EQ(allocations, before) << "function " << int{request[0]};
+    client.received();
+  }
+}
+
+TEST(Allocations, Connecting_and_leaving_cost_none) {
+  TcpUnderTest node;
+  Client first(node.tcp.name());
+  const long before = allocations;
+  node.settle();
+  EXPECT_EQ(allocations, before);
+  first.vanish();
+  node.settle();
+  EXPECT_EQ(node.tcp.size(), 0U);
+  EXPECT_EQ(allocations, before);
+}
+
+}  // namespace
+}  // namespace coupler::node
