@@ -15,7 +15,7 @@ struct Context {
 
   void ignored(Position at, std::string what, std::string remedy) {
     if (only_origin)
-      problems.warning(at, std::move(what), std::move(remedy));
+      problems.warning(at, what + ", ignored", std::move(remedy));
     else
       problems.error(at, std::move(what), std::move(remedy));
   }

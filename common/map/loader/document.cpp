@@ -23,7 +23,8 @@ constexpr std::size_t deepest = 16;  // a map needs five
 /// Builds the tree from yaml-cpp's events, and looks at the text again wherever yaml-cpp lets mistakes pass.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(std::string_view text, bool json) : text_(text), json_(json) {}
+  TreeBuilder(std::string_view text, bool json)
+      : text_(text), end_(position_of(text, text.size())), json_(json) {}
 
   Node take() && { return std::move(root_); }
 
@@ -44,7 +45,8 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
-    if (awaits_key()) fail(mark, "an entry without a key", "write 'key: value'");
+    if (awaits_key())
+      fail(mark, "an entry without a key", "write 'key: value', and a key called null in quotes");
     if (!stack_.empty() && stack_.back().has_key) check_colon(stack_.back());
     Node node;
     node.at = position(mark);
@@ -87,8 +89,12 @@ class TreeBuilder : public YAML::EventHandler {
   };
 
   static std::size_t offset(const YAML::Mark& mark) { return static_cast<std::size_t>(mark.pos); }
-  static Position position(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
-  [[noreturn]] static void fail(const YAML::Mark& mark, std::string what, std::string remedy) {
+  /// yaml-cpp may mean the newline that was added to the text.
+  Position position(const YAML::Mark& mark) const {
+    if (offset(mark) >= text_.size()) return end_;
+    return {mark.line + 1, mark.column + 1};
+  }
+  [[noreturn]] void fail(const YAML::Mark& mark, std::string what, std::string remedy) const {
     throw SyntaxError{position(mark), std::move(what), std::move(remedy)};
   }
 
@@ -96,7 +102,7 @@ class TreeBuilder : public YAML::EventHandler {
     return !stack_.empty() && stack_.back().node.kind == Node::Kind::map && !stack_.back().has_key;
   }
 
-  static void check_tag(const YAML::Mark& mark, const std::string& tag) {
+  void check_tag(const YAML::Mark& mark, const std::string& tag) const {
     if (!tag.empty() && tag != "?" && tag != "!")
       fail(mark, "tags are not supported", "remove the '!' and its name");
   }
@@ -161,6 +167,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   std::string_view text_;
+  Position end_;
   bool json_;
   int documents_ = 0;
   std::vector<Open> stack_;

@@ -61,10 +61,11 @@ void read_initial(const Reader& reader, Point& point, Context& context) {
   if (node == nullptr) return;
   const auto value = value_of(*node, point.format.type);
   if (!value) {
-    context.problems.error(node->at,
-                           fmt::format("'initial' of a {} is {}, not {}", to_string(point.format.type),
-                                       expected(point.format.type), shown(*node)),
-                           "write a value of the point's type");
+    const std::string wanted = expected(point.format.type);
+    context.problems.error(
+        node->at,
+        fmt::format("'initial' of type {} is {}, not {}", to_string(point.format.type), wanted, shown(*node)),
+        "write " + wanted);
     return;
   }
   std::vector<std::uint16_t> registers(codec::registers(point.format));

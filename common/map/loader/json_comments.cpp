@@ -2,6 +2,9 @@
 #include "common/map/loader/json_comments.hpp"
 
 #include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "common/map/loader/source_text.hpp"
 #include "common/map/loader/syntax_check.hpp"
@@ -37,11 +40,60 @@ std::size_t string_end(std::string_view text, std::size_t at) {
   return quoted_end(text.substr(0, std::min(text.find('\n', at), text.size())), at);
 }
 
-void blank(std::string& text, std::size_t from, std::size_t to) {
-  const auto at = [&](std::size_t i) { return text.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::replace_if(
-      at(from), at(to), [](char c) { return c != '\n' && c != '\r'; }, ' ');
-}
+class CommentBlanker {
+ public:
+  CommentBlanker(std::string& text, Problems& problems) : text_(text), problems_(problems) {}
+
+  bool run() {
+    for (at_ = 0; at_ < text_.size(); ++at_) {
+      if (!skip_comment()) return false;
+      if (at_ == text_.size()) break;
+      if (!skip_string()) return false;
+      count_bracket();
+      if (blanks.find(text_[at_]) == std::string_view::npos) previous_ = text_[at_];
+    }
+    return open_.empty() || fail(open_.back(), fmt::format("the '{}' is never closed", text_[open_.back()]),
+                                 "count the brackets that follow");
+  }
+
+ private:
+  bool fail(std::size_t at, std::string what, std::string remedy) {
+    problems_.error(position_of(text_, at), std::move(what), std::move(remedy));
+    return false;
+  }
+
+  /// To the character behind the comments that begin here.
+  bool skip_comment() {
+    while (at_ < text_.size()) {
+      const std::size_t end = comment_end(text_, at_);
+      if (end == std::string::npos) return fail(at_, "the comment '/*' is never closed", "end it with '*/'");
+      if (end == at_) return true;
+      for (; at_ < end; ++at_)
+        if (text_[at_] != '\n' && text_[at_] != '\r') text_[at_] = ' ';
+    }
+    return true;
+  }
+
+  /// To the closing quote of the string that begins here.
+  bool skip_string() {
+    if (!opens_string(text_[at_], previous_)) return true;
+    const std::size_t end = string_end(text_, at_);
+    if (end == std::string::npos) return fail(at_, "the quote is never closed", "close it in the same line");
+    at_ = end - 1;
+    return true;
+  }
+
+  void count_bracket() {
+    if (text_[at_] == '{' || text_[at_] == '[') open_.push_back(at_);
+    if ((text_[at_] == '}' || text_[at_] == ']') && !open_.empty()) open_.pop_back();
+  }
+
+  std::string& text_;
+  Problems& problems_;
+  std::size_t at_ = 0;
+  char previous_ = '\0';           ///< the last character that is neither blank nor comment
+  std::vector<std::size_t> open_;  ///< brackets
+};
 
 }  // namespace
 
@@ -55,31 +107,6 @@ bool is_json(std::string_view text) {
   return false;
 }
 
-bool blank_comments(std::string& text, Problems& problems) {
-  char previous = '\0';  // the last character that is neither blank nor comment
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t end = comment_end(text, i);
-    if (end == std::string::npos) {
-      problems.error(position_of(text, i), "the comment '/*' is never closed", "end it with '*/'");
-      return false;
-    }
-    if (end != i) {
-      blank(text, i, end);
-      i = end;
-      continue;
-    }
-    if (opens_string(text[i], previous)) {
-      const std::size_t after = string_end(text, i);
-      if (after == std::string::npos) {
-        problems.error(position_of(text, i), "the quote is never closed", "close it in the same line");
-        return false;
-      }
-      i = after - 1;
-    }
-    if (blanks.find(text[i]) == std::string_view::npos) previous = text[i];
-    ++i;
-  }
-  return true;
-}
+bool blank_comments(std::string& text, Problems& problems) { return CommentBlanker(text, problems).run(); }
 
 }  // namespace coupler::loader

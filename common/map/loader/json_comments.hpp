@@ -12,7 +12,7 @@ namespace coupler::loader {
 bool is_json(std::string_view text);
 
 /// Puts blanks in the place of // and /* */ comments outside strings, so that lines and columns stay.
-/// False, with the reason in `problems`, if a comment or a string has no end.
+/// False, with the reason in `problems`, if a comment, a string or a bracket has no end.
 bool blank_comments(std::string& text, Problems& problems);
 
 }  // namespace coupler::loader

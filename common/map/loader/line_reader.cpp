@@ -47,7 +47,7 @@ void read_place(const Reader& reader, const Node& node, Line& line, Context& con
   for (const std::string_view key : {"chip", "name"})
     if (const Node* given = reader.find(key);
         given != nullptr && given->kind == Node::Kind::scalar && given->text.empty())
-      reader.wrong(key, "the kernel's name of it");
+      reader.wrong(key, "a name");
 }
 
 }  // namespace

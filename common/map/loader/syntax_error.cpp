@@ -16,7 +16,7 @@ struct Explanation {
   std::string_view remedy;
 };
 
-constexpr std::array<Explanation, 12> explanations{{
+constexpr std::array<Explanation, 13> explanations{{
     {"end of map flow not found", "',' or '}' is missing before this",
      "separate entries with ',' and end them with '}'"},
     {"end of sequence flow not found", "',' or ']' is missing before this",
@@ -25,7 +25,8 @@ constexpr std::array<Explanation, 12> explanations{{
      "check the indentation, and what follows a closing quote"},
     {"end of sequence not found", "this does not belong to the list above", "check the indentation"},
     {"illegal map value", "':' does not belong here",
-     "write one 'key: value' a line, all at one indentation; put text that contains ': ' in quotes"},
+     "write 'key: value' here and in the line before, at one indentation; put text that contains ': ' in "
+     "quotes"},
     {"illegal map key", "a key does not belong here",
      "write one 'key: value' a line, all at one indentation"},
     {"illegal block entry", "'- ' does not belong here", "begin the list in the line below its key"},
@@ -35,6 +36,8 @@ constexpr std::array<Explanation, 12> explanations{{
      "write '\\\\' for a backslash, or use single quotes"},
     {"invalid unicode", "the escape stands for no character (half of a surrogate pair)",
      "write the character itself"},
+    {"the referenced anchor is not defined", "aliases are not supported",
+     "write the values out where they are used"},
     {"bad file", "the values are nested too deep", "a map has at most five levels"},
 }};
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// One bad map for each rule, in test/maps/bad. Each says in its first comments what the loader must answer.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "test/common/map/loader/loaded.hpp"
+
+namespace coupler {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> bad_maps() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(COUPLER_TEST_DIR "/maps/bad"))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// "# expect: LINE:COLUMN: …" or "// expect: …", as the loader would say it of a file called "map".
+std::string expectations(const std::string& path) {
+  std::ifstream in(path);
+  std::string result;
+  const std::string mark = " expect: ";
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t at = line.find(mark);
+    if (at == 1 || at == 2) result += "map:" + line.substr(at + mark.size()) + '\n';
+  }
+  return result;
+}
+
+class BadMap : public testing::TestWithParam<std::string> {};
+
+TEST_P(BadMap, Is_answered_with_exactly_the_lines_that_it_expects) {
+  const std::string path = COUPLER_TEST_DIR "/maps/bad/" + GetParam();
+  const std::string expected = expectations(path);
+  ASSERT_NE(expected, "") << "the file says nothing about what to expect";
+  LoadResult result = load_map_file(path);
+  for (Diagnostic& diagnostic : result.diagnostics) diagnostic.file = "map";
+  EXPECT_EQ(test::text_of(result.diagnostics), expected);
+  EXPECT_EQ(result.map == nullptr, has_errors(result.diagnostics));
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& map) {
+  std::string name = map.param;
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Maps, BadMap, testing::ValuesIn(bad_maps()), test_name);
+
+}  // namespace
+}  // namespace coupler

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/loader/keys.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace coupler::loader {
+namespace {
+
+TEST(Keys, No_section_has_a_name_twice) {
+  const auto all = all_keys();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t k = i + 1; k < all.size(); ++k)
+      EXPECT_FALSE(all[i].name == all[k].name && overlap(all[i].sections, all[k].sections)) << all[i].name;
+}
+
+TEST(Keys, Every_key_is_described_with_an_example) {
+  for (const Key& key : all_keys()) {
+    EXPECT_NE(key.sections, Section::none) << key.name;
+    EXPECT_FALSE(key.example.empty()) << key.name;
+    EXPECT_FALSE(key.summary.empty()) << key.name;
+    EXPECT_EQ(key.kind == ValueKind::choice, !key.choices.empty()) << key.name;
+    EXPECT_LE(key.least, key.most) << key.name;
+  }
+}
+
+TEST(Keys, The_example_of_a_choice_is_one_of_its_words) {
+  for (const Key& key : all_keys()) {
+    if (key.choices.empty()) continue;
+    const auto choices = words(key.choices);
+    EXPECT_NE(std::find(choices.begin(), choices.end(), key.example), choices.end()) << key.name;
+  }
+}
+
+TEST(Keys, Another_spelling_belongs_to_the_same_section) {
+  for (const Key& key : all_keys())
+    EXPECT_TRUE(key.same_as.empty() || find_key(key.same_as, key.sections) != nullptr) << key.name;
+}
+
+TEST(Keys, Later_keys_are_known_but_not_offered) {
+  EXPECT_NE(find_key("scale", Section::holding_register), nullptr);
+  const auto names = key_names(Section::holding_register);
+  EXPECT_EQ(std::find(names.begin(), names.end(), "scale"), names.end());
+  EXPECT_NE(std::find(names.begin(), names.end(), "order"), names.end());
+}
+
+TEST(Keys, A_key_is_found_only_where_it_belongs) {
+  EXPECT_EQ(find_key("drive", Section::discrete_input), nullptr);
+  EXPECT_NE(find_key("drive", Section::coil_line), nullptr);
+  EXPECT_EQ(sections_with("debounce"), Section::discrete_input | Section::input_line);
+  EXPECT_EQ(sections_with("nothing"), Section::none);
+  for (const Table table : tables) EXPECT_NE(find_key("address", section_of(table)), nullptr);
+}
+
+}  // namespace
+}  // namespace coupler::loader

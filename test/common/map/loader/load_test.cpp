@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "common/map/crc32.hpp"
+#include "common/map/fingerprint.hpp"
+#include "test/common/map/loader/loaded.hpp"
+
+namespace coupler {
+namespace {
+
+TEST(Load, The_map_keeps_its_text_as_it_was_read) {
+  const std::string text =
+      "{ \"name\": \"press\", // a comment\r\n\"mapping\": {\"coils\": {\"valve\": 0,}}}";
+  const MapPtr owned = test::load_clean(text);
+  EXPECT_EQ(owned->map().text, text);
+  EXPECT_EQ(owned->map().text_crc, crc32(text));
+}
+
+TEST(Load, Points_are_in_the_order_of_the_fingerprint) {
+  const MapPtr owned = test::load_clean(
+      "name: press\n"
+      "mapping:\n"
+      "  holding_registers: {speed: {address: 0, type: INT}}\n"
+      "  coils: {lamp: 7, valve: 3}\n");
+  const auto points = owned->map().points;
+  ASSERT_EQ(points.size(), 3U);
+  EXPECT_EQ(points[0].name, "valve");
+  EXPECT_EQ(points[1].name, "lamp");
+  EXPECT_EQ(points[2].name, "speed");
+  EXPECT_EQ(owned->map().fingerprint, fingerprint(points));
+}
+
+TEST(Load, Empty_tables_and_an_empty_mapping_are_no_mistake) {
+  EXPECT_EQ(test::load_clean("name: press\nmapping:\n  coils:\n  discrete_inputs: {}\n")->map().points.size(),
+            0U);
+  EXPECT_EQ(test::load_clean("name: press\nmapping:\n")->map().points.size(), 0U);
+}
+
+TEST(Load, Names_may_have_parts) {
+  const MapPtr owned =
+      test::load_clean("name: hall/press_2\nmapping: {coils: {arm/left: 0, arm/right: 1}}\n");
+  EXPECT_EQ(owned->map().name, "hall/press_2");
+  EXPECT_NE(find(owned->map(), "arm/left"), nullptr);
+}
+
+TEST(Load, An_input_may_be_called_like_the_write_topic_of_another_input) {
+  const MapPtr owned = test::load_clean("name: press\nmapping: {discrete_inputs: {pen: 0, pen/write: 1}}\n");
+  EXPECT_EQ(owned->map().points.size(), 2U);
+}
+
+TEST(Load, Problems_come_in_the_order_of_the_file) {
+  const LoadResult result = load_map(
+      "name: 1\n"
+      "mapping:\n"
+      "  holding_registers: {a: 0}\n"
+      "  coils: {b: -1, b: 2}\n"
+      "port: 0\n",
+      "map");
+  ASSERT_EQ(result.diagnostics.size(), 5U) << test::text_of(result.diagnostics);
+  for (std::size_t i = 1; i < result.diagnostics.size(); ++i)
+    EXPECT_LE(result.diagnostics[i - 1].line, result.diagnostics[i].line);
+  EXPECT_EQ(result.map, nullptr);
+}
+
+TEST(Load, A_file_that_cannot_be_read_is_a_diagnostic) {
+  const LoadResult missing = load_map_file("/no/such/map.yaml");
+  EXPECT_EQ(missing.map, nullptr);
+  EXPECT_EQ(test::text_of(missing.diagnostics),
+            "/no/such/map.yaml: error: the file cannot be read: No such file or directory; give the path of "
+            "a map\n");
+  EXPECT_EQ(test::text_of(load_map_file(COUPLER_TEST_DIR).diagnostics),
+            COUPLER_TEST_DIR ": error: the file cannot be read: Is a directory; give the path of a map\n");
+}
+
+}  // namespace
+}  // namespace coupler

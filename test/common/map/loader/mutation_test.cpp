@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// No file makes the loader throw, crash or contradict itself: random damage to good and bad maps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "test/common/map/loader/loaded.hpp"
+
+namespace coupler {
+namespace {
+
+std::vector<std::string> seeds() {
+  std::vector<std::string> texts;
+  for (const char* folder : {"/maps/origin", "/maps/bad"})
+    for (const auto& file : std::filesystem::directory_iterator(std::string(COUPLER_TEST_DIR) + folder)) {
+      std::ifstream in(file.path(), std::ios::binary);
+      texts.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+    }
+  std::sort(texts.begin(), texts.end());  // a folder has no order
+  return texts;
+}
+
+class Mutator {
+ public:
+  explicit Mutator(std::vector<std::string> texts) : texts_(std::move(texts)) {}
+
+  std::string next() {
+    std::string text = texts_[below(texts_.size())];
+    for (std::size_t changes = 1 + below(4); changes > 0 && !text.empty(); --changes) change(text);
+    return text;
+  }
+
+ private:
+  std::size_t below(std::size_t limit) {
+    return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random_);
+  }
+
+  void change(std::string& text) {
+    static constexpr std::string_view pieces[] = {"{",
+                                                  "}",
+                                                  "[",
+                                                  "]",
+                                                  ":",
+                                                  ",",
+                                                  "\"",
+                                                  "'",
+                                                  "\n",
+                                                  "#",
+                                                  "//",
+                                                  "/*",
+                                                  "- ",
+                                                  "? ",
+                                                  "| ",
+                                                  "&a ",
+                                                  "*a ",
+                                                  "!t ",
+                                                  "<<: ",
+                                                  "null",
+                                                  "---\n",
+                                                  "-1",
+                                                  "99999999999999999999",
+                                                  "\\",
+                                                  "\t",
+                                                  "\\ud83d",
+                                                  "%",
+                                                  "address: "};
+    const std::size_t at = below(text.size());
+    switch (below(5)) {
+      case 0: text.erase(at, 1 + below(12)); break;
+      case 1: text.insert(at, pieces[below(std::size(pieces))]); break;
+      case 2: text[at] = static_cast<char>(below(256)); break;
+      case 3: text.insert(at, text.substr(below(text.size()), 1 + below(60))); break;
+      default: text.resize(at); break;
+    }
+  }
+
+  std::vector<std::string> texts_;
+  std::mt19937 random_{20240521};  // the same damage in every run
+};
+
+TEST(Mutation, A_damaged_map_is_either_loaded_or_answered) {
+  Mutator mutator(seeds());
+  for (int i = 0; i < 20000; ++i) {
+    const std::string text = mutator.next();
+    const LoadResult result = load_map(text, "map");
+    ASSERT_EQ(result.map == nullptr, has_errors(result.diagnostics)) << text;
+    const int lines = 1 + static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+    for (const Diagnostic& diagnostic : result.diagnostics) {
+      ASSERT_TRUE(diagnostic.line >= 1 && diagnostic.line <= lines && diagnostic.column >= 1)
+          << to_string(diagnostic) << '\n'
+          << text;
+      ASSERT_FALSE(diagnostic.what.empty() || diagnostic.remedy.empty()) << text;
+    }
+    ASSERT_TRUE(result.map == nullptr || result.map->map().text == text);
+  }
+}
+
+}  // namespace
+}  // namespace coupler

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/loader/nearest.hpp"
+
+#include <gtest/gtest.h>
+
+namespace coupler::loader {
+namespace {
+
+TEST(Nearest, Edits_are_insertions_deletions_replacements_and_swaps) {
+  EXPECT_EQ(edit_distance("unit", "unit"), 0U);
+  EXPECT_EQ(edit_distance("", "unit"), 4U);
+  EXPECT_EQ(edit_distance("unt", "unit"), 1U);
+  EXPECT_EQ(edit_distance("unnit", "unit"), 1U);
+  EXPECT_EQ(edit_distance("unot", "unit"), 1U);
+  EXPECT_EQ(edit_distance("unti", "unit"), 1U);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
+}
+
+TEST(Nearest, A_typing_mistake_finds_the_word_that_was_meant) {
+  EXPECT_EQ(nearest("adress", {"name", "address", "port"}), "address");
+  EXPECT_EQ(nearest("UNIT", {"INT", "UINT", "unit"}), "unit") << "case does not count";
+  EXPECT_EQ(nearest("registers_read_seperation_gap", {"registers_read_separation_gap"}),
+            "registers_read_separation_gap");
+}
+
+TEST(Nearest, Nothing_is_suggested_for_another_word) {
+  EXPECT_EQ(nearest("colour", {"name", "address", "port"}), "");
+  EXPECT_EQ(nearest("x", {"to"}), "");
+  EXPECT_EQ(nearest(std::string(100000, 'a'), {"name"}), "");
+  EXPECT_EQ(suggestion("colour", {"to", "from"}), "write one of to, from");
+  EXPECT_EQ(suggestion("form", {"to", "from"}), "did you mean 'from'?");
+}
+
+}  // namespace
+}  // namespace coupler::loader
