@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/identity.hpp"
+
+#include <gtest/gtest.h>
+
+#include "test/common/map/sample_points.hpp"
+
+namespace coupler::identity {
+namespace {
+
+std::array<std::uint16_t, head_size> area_of(const Head& head) {
+  std::array<std::uint16_t, head_size> area{};
+  write_head(head, area.data());
+  return area;
+}
+
+TEST(Identity, The_head_stands_in_the_area_as_documented) {
+  const auto area = area_of({0x0123456789ABCDEF, 0x00010203, 0xF409A1FE});
+  const std::array<std::uint16_t, head_size> expected{0x4F43, 0x504C,  // "OCPL"
+                                                      1,               // layout
+                                                      0x0123, 0x4567, 0x89AB, 0xCDEF,
+                                                      0x0001, 0x0203, 0xF409, 0xA1FE};
+  EXPECT_EQ(area, expected);
+}
+
+TEST(Identity, What_is_written_is_read_again) {
+  const Head head = head_of(test::map_of(test::sample_points())->map());
+  const auto again = read_head(area_of(head));
+  ASSERT_TRUE(again.has_value());
+  EXPECT_EQ(again->fingerprint, 0xb3aaa998215aab0fU);
+  EXPECT_EQ(again->map_size, 12U);
+  EXPECT_EQ(again->map_crc, 0xF409A1FEU) << "zlib.crc32(b'name: press\\n')";
+}
+
+TEST(Identity, Without_the_magic_or_with_another_layout_it_is_a_foreign_coupler) {
+  EXPECT_FALSE(read_head({}).has_value());
+  auto other_layout = area_of({});
+  other_layout[at_layout] = 2;
+  EXPECT_FALSE(read_head(other_layout).has_value());
+  auto other_magic = area_of({});
+  other_magic[at_magic + 1] ^= 1;
+  EXPECT_FALSE(read_head(other_magic).has_value());
+}
+
+TEST(Identity, A_piece_of_the_map_stays_in_its_file_and_in_the_text) {
+  constexpr std::uint32_t size = 50000;  // bytes: 25000 records, two and a half files
+  const auto expect = [](std::uint32_t first, std::uint32_t file, std::uint32_t record,
+                         std::uint32_t registers) {
+    const FileRecord piece = record_at(first, size);
+    EXPECT_EQ(piece.file, file) << first;
+    EXPECT_EQ(piece.record, record) << first;
+    EXPECT_EQ(piece.registers, registers) << first;
+  };
+  expect(0, 1, 0, 124);
+  expect(9875, 1, 9875, 124);
+  expect(9999, 1, 9999, 1);
+  expect(10000, 2, 0, 124);
+  expect(20000, 3, 0, 124);
+  expect(24990, 3, 4990, 10);
+}
+
+TEST(Identity, An_odd_last_byte_has_a_record_of_its_own) {
+  EXPECT_EQ(record_at(0, 1).registers, 1);
+  EXPECT_EQ(record_at(0, 3).registers, 2);
+}
+
+TEST(Identity, The_pieces_of_a_map_make_the_whole) {
+  constexpr std::uint32_t size = 45001;
+  std::uint32_t first = 0;
+  while (first < (size + 1) / 2) {
+    const FileRecord piece = record_at(first, size);
+    ASSERT_GT(piece.registers, 0);
+    ASSERT_EQ((piece.file - 1U) * modbus::records_per_file + piece.record, first);
+    first += piece.registers;
+  }
+  EXPECT_EQ(first, (size + 1) / 2);
+}
+
+}  // namespace
+}  // namespace coupler::identity
