@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <memory>
+#include <vector>
+
+#include "host/core/device_thread.hpp"
+#include "host/modbus/modbus_transport.hpp"
+#include "host/ros/point_publisher.hpp"
+#include "host/ros/point_subscriber.hpp"
+
+namespace coupler::driver {
+
+/// One device in ROS: `<name>/<point>` for each readable point, `<name>/<point>/write` for each writable one,
+/// the latched `<name>/online`, and the thread that drives the device. Values are published in that thread as
+/// they are decoded.
+class DeviceTopics : public Sink {
+ public:
+  /// The map's views must outlive it; ROS must have been shut down before it ends, since callbacks refer to
+  /// it.
+  DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verify);
+
+  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) override;
+  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) override;
+  void on_online(bool online) override;
+  void on_report(Level level, const std::string& text) override;
+
+ private:
+  void accept(const Write& write);
+
+  Map map_;
+  std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
+  ros::Publisher online_;
+  ModbusTransport transport_;
+  DeviceThread thread_;
+  WriteHandler writes_;
+  std::vector<ros::Subscriber> subscribers_;
+};
+
+}  // namespace coupler::driver

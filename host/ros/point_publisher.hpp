@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <memory>
+#include <string>
+
+#include "common/map/point.hpp"
+
+namespace coupler::driver {
+
+/// The topic of one readable point. It keeps its message, so that a value costs no allocation of ours.
+class PointPublisher {
+ public:
+  virtual ~PointPublisher() = default;
+  /// The point's registers as they came; a bit table's bit as one register, 0 or 1.
+  virtual void publish(const std::uint16_t* registers) = 0;
+};
+
+/// Advertises `topic` with the message type of the point, which must outlive it.
+std::unique_ptr<PointPublisher> advertise(ros::NodeHandle& handle, const std::string& topic,
+                                          const Point& point);
+
+}  // namespace coupler::driver

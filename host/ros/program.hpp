@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/map/map.hpp"
+
+namespace coupler::driver {
+
+/// The whole of a driver program: coupler_driver (without a built-in map) and generated ones. Returns the
+/// exit code: 0 after SIGINT or SIGTERM, 1 the map or a parameter is wrong, 2 the call is wrong.
+int main_with(const Map* built_in, int argc, char** argv);
+
+}  // namespace coupler::driver

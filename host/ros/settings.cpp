@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/ros/settings.hpp"
+
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+namespace coupler::driver {
+namespace {
+
+using Outcome = tl::expected<void, std::string>;
+
+tl::unexpected<std::string> wrong(std::string_view key, const std::string& text, std::string_view expected) {
+  return tl::make_unexpected(fmt::format("{}: '{}' is not {}", key, text, expected));
+}
+
+std::optional<double> number(const std::string& text) {
+  char* end = nullptr;
+  errno = 0;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || errno != 0 || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// A whole number from 0 to what fits into T.
+template <class T>
+Outcome set_whole(std::optional<T>& field, std::string_view key, const std::string& text, double smallest) {
+  constexpr double largest = std::numeric_limits<T>::max();
+  const auto value = number(text);
+  if (!value || *value != std::floor(*value) || *value < smallest || *value > largest)
+    return wrong(key, text, fmt::format("a whole number from {} to {}", smallest, largest));
+  field = static_cast<T>(*value);
+  return {};
+}
+
+Outcome set_rate(Settings& settings, const std::string& text) {
+  const auto hertz = number(text);
+  if (!hertz || *hertz < 0.001 || *hertz > 10000) return wrong("rate", text, "a rate from 0.001 to 10000 Hz");
+  settings.rate = *hertz;
+  return {};
+}
+
+Outcome set_timeout(Settings& settings, const std::string& text) {
+  const auto seconds = number(text);
+  if (!seconds || *seconds < 0.001 || *seconds > 3600)
+    return wrong("timeout", text, "a time from 0.001 to 3600 s");
+  settings.timeout = std::chrono::milliseconds(std::lround(*seconds * 1000));
+  return {};
+}
+
+Outcome set_verify(Settings& settings, const std::string& text) {
+  if (text == "require")
+    settings.verify = Verify::require;
+  else if (text == "warn")
+    settings.verify = Verify::warn;
+  // ROS reads "off" as a boolean where a parameter comes from YAML.
+  else if (text == "off" || text == "false")
+    settings.verify = Verify::off;
+  else
+    return wrong("verify", text, "require, warn or off");
+  return {};
+}
+
+Outcome set_text(std::optional<std::string>& field, std::string_view key, const std::string& text) {
+  if (text.empty()) return wrong(key, text, "a text; leave it out if there is nothing to say");
+  field = text;
+  return {};
+}
+
+template <class T>
+void prefer(std::optional<T>& field, const std::optional<T>& strong) {
+  if (strong) field = strong;
+}
+
+}  // namespace
+
+const std::array<SettingKey, 8> setting_keys{{
+    {"map", "mapping", "the device's map, a YAML or JSON file"},
+    {"name", "", "namespace of the topics, instead of the map's"},
+    {"address", "", "host name or IP address; alone, without a map: a node that serves its own"},
+    {"port", "", "TCP port, 502 if the map says nothing"},
+    {"unit", "", "unit id"},
+    {"rate", "", "polling rate in Hz"},
+    {"timeout", "", "longest wait for a reply, in seconds"},
+    {"verify", "",
+     "if the node's map differs: require (default: do not talk to it), warn (go on) or off (do not ask)"},
+}};
+
+Outcome set(Settings& settings, std::string_view key, const std::string& text) {
+  if (key == "map") return set_text(settings.map, key, text);
+  if (key == "name") return set_text(settings.name, key, text);
+  if (key == "address") return set_text(settings.address, key, text);
+  if (key == "port") return set_whole(settings.port, key, text, 1);
+  if (key == "unit") return set_whole(settings.unit, key, text, 0);
+  if (key == "rate") return set_rate(settings, text);
+  if (key == "timeout") return set_timeout(settings, text);
+  if (key == "verify") return set_verify(settings, text);
+  return tl::make_unexpected(fmt::format("there is no setting '{}'", key));
+}
+
+Settings overlay(Settings weak, const Settings& strong) {
+  prefer(weak.map, strong.map);
+  prefer(weak.name, strong.name);
+  prefer(weak.address, strong.address);
+  prefer(weak.port, strong.port);
+  prefer(weak.unit, strong.unit);
+  prefer(weak.rate, strong.rate);
+  prefer(weak.timeout, strong.timeout);
+  prefer(weak.verify, strong.verify);
+  return weak;
+}
+
+void apply(const Settings& settings, Map& map) {
+  if (settings.name) map.name = *settings.name;
+  if (settings.address) map.connection.address = *settings.address;
+  if (settings.port) map.connection.port = *settings.port;
+  if (settings.unit) map.connection.unit = *settings.unit;
+  if (settings.timeout) map.connection.timeout = *settings.timeout;
+  if (settings.rate) map.polling.rate = *settings.rate;
+}
+
+}  // namespace coupler::driver

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/map/map.hpp"
+#include "host/core/identity_check.hpp"
+
+namespace coupler::driver {
+
+/// What may be said about a device outside its map. Precedence: map < ROS parameter < argument.
+struct Settings {
+  std::optional<std::string> map;  ///< path
+  std::optional<std::string> name;
+  std::optional<std::string> address;
+  std::optional<std::uint16_t> port;
+  std::optional<std::uint8_t> unit;
+  std::optional<double> rate;                        ///< Hz, above 0
+  std::optional<std::chrono::milliseconds> timeout;  ///< above 0; given in seconds
+  std::optional<Verify> verify;
+};
+
+/// One setting by its name, as ROS parameter (`~key`) and as argument (`_key:=VALUE`, `--key VALUE`).
+struct SettingKey {
+  std::string_view key;
+  std::string_view alias;  ///< the origin's name for it, or empty
+  std::string_view help;
+};
+extern const std::array<SettingKey, 8> setting_keys;
+
+/// Sets what the text says. The error says what the value should have been.
+tl::expected<void, std::string> set(Settings& settings, std::string_view key, const std::string& text);
+
+/// `strong` where it says something, `weak` elsewhere.
+Settings overlay(Settings weak, const Settings& strong);
+
+/// Overrides the map's fields. The map then refers to the settings' texts.
+void apply(const Settings& settings, Map& map);
+
+}  // namespace coupler::driver
