@@ -26,7 +26,7 @@ class TreeBuilder : public YAML::EventHandler {
   TreeBuilder(std::string_view text, bool json)
       : text_(text), end_(position_of(text, text.size())), json_(json) {}
 
-  Node take() && { return std::move(root_); }
+  Entry take() && { return std::move(root_); }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (++documents_ == 1) return;
@@ -48,9 +48,9 @@ class TreeBuilder : public YAML::EventHandler {
     if (awaits_key())
       fail(mark, "an entry without a key", "write 'key: value', and a key called null in quotes");
     if (!stack_.empty() && stack_.back().has_key) check_colon(stack_.back());
-    Node node;
-    node.at = position(mark);
-    add(std::move(node), true);
+    Entry entry;
+    entry.at = position(mark);
+    add(std::move(entry), true);
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
@@ -58,29 +58,29 @@ class TreeBuilder : public YAML::EventHandler {
     check_tag(mark, tag);
     check_text_at(mark, value, tag == "!");
     if (awaits_key()) return set_key(mark, value);
-    Node node;
-    node.kind = Node::Kind::scalar;
-    node.at = position(mark);
-    node.text = value;
-    node.quoted = tag == "!";
-    add(std::move(node), false);
+    Entry entry;
+    entry.kind = Entry::Kind::scalar;
+    entry.at = position(mark);
+    entry.text = value;
+    entry.quoted = tag == "!";
+    add(std::move(entry), false);
   }
 
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                        YAML::EmitterStyle::value style) override {
-    open(mark, tag, style, Node::Kind::list);
+    open(mark, tag, style, Entry::Kind::list);
   }
   void OnSequenceEnd() override { close(); }
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                   YAML::EmitterStyle::value style) override {
-    open(mark, tag, style, Node::Kind::map);
+    open(mark, tag, style, Entry::Kind::map);
   }
   void OnMapEnd() override { close(); }
 
  private:
   /// A list or map that is not complete.
   struct Open {
-    Node node;
+    Entry entry;
     bool block = false;
     bool has_key = false;  ///< of the value that comes next
     std::string key;
@@ -99,7 +99,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   bool awaits_key() const {
-    return !stack_.empty() && stack_.back().node.kind == Node::Kind::map && !stack_.back().has_key;
+    return !stack_.empty() && stack_.back().entry.kind == Entry::Kind::map && !stack_.back().has_key;
   }
 
   void check_tag(const YAML::Mark& mark, const std::string& tag) const {
@@ -132,38 +132,38 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void open(const YAML::Mark& mark, const std::string& tag, YAML::EmitterStyle::value style,
-            Node::Kind kind) {
+            Entry::Kind kind) {
     check_tag(mark, tag);
     if (awaits_key()) fail(mark, "a key is not text", "write 'key: value'");
     if (stack_.size() == deepest)
       fail(mark, "the values are nested too deep", "a map has at most five levels");
     Open opened;
     opened.block = style == YAML::EmitterStyle::Block;
-    opened.node.kind = kind;
-    opened.node.at = position(mark);
+    opened.entry.kind = kind;
+    opened.entry.at = position(mark);
     stack_.push_back(std::move(opened));
   }
 
   void close() {
     Open closed = std::move(stack_.back());
     stack_.pop_back();
-    add(std::move(closed.node), closed.block);
+    add(std::move(closed.entry), closed.block);
   }
 
   /// `placeless`: nothing, or a block; yaml-cpp's mark is then somewhere behind the key.
-  void add(Node node, bool placeless) {
+  void add(Entry entry, bool placeless) {
     if (stack_.empty()) {
-      root_ = std::move(node);
+      root_ = std::move(entry);
       return;
     }
     Open& parent = stack_.back();
     if (parent.has_key) {
-      node.key = std::move(parent.key);
-      node.key_at = parent.key_at;
-      if (placeless) node.at = node.key_at;
+      entry.key = std::move(parent.key);
+      entry.key_at = parent.key_at;
+      if (placeless) entry.at = entry.key_at;
       parent.has_key = false;
     }
-    parent.node.children.push_back(std::move(node));
+    parent.entry.children.push_back(std::move(entry));
   }
 
   std::string_view text_;
@@ -171,11 +171,11 @@ class TreeBuilder : public YAML::EventHandler {
   bool json_;
   int documents_ = 0;
   std::vector<Open> stack_;
-  Node root_;
+  Entry root_;
 };
 
 /// With a newline at the end yaml-cpp reports an open quote's beginning to the builder instead of stopping.
-Node build_tree(const std::string& text, bool json) {
+Entry build_tree(const std::string& text, bool json) {
   std::istringstream in(text + '\n');
   TreeBuilder builder(text, json);
   try {
@@ -192,7 +192,7 @@ Node build_tree(const std::string& text, bool json) {
 
 }  // namespace
 
-std::optional<Node> parse_document(std::string_view text, Problems& problems) {
+std::optional<Entry> parse_document(std::string_view text, Problems& problems) {
   text = without_byte_order_mark(text);
   if (!check_text(text, problems)) return std::nullopt;
   std::string source(text);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "common/map/loader/node.hpp"
+#include "common/map/loader/entry.hpp"
 #include "common/map/loader/problems.hpp"
 
 namespace coupler::loader {
@@ -12,6 +12,6 @@ namespace coupler::loader {
 /// The tree of a YAML or JSON text; nullopt, with the first syntax error in `problems`, if it is neither.
 /// What YAML allows and a map has no use for is a syntax error too: several documents, tags, aliases, merge
 /// keys, keys that are not text.
-std::optional<Node> parse_document(std::string_view text, Problems& problems);
+std::optional<Entry> parse_document(std::string_view text, Problems& problems);
 
 }  // namespace coupler::loader

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/map/loader/node.hpp"
+#include "common/map/loader/entry.hpp"
 #include "common/map/point.hpp"
 
 namespace coupler::loader {

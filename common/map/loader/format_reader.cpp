@@ -32,7 +32,7 @@ constexpr std::array<TypeKey, 5> type_keys{{
     {"ignore_byteorder", is_text, ""},
 }};
 
-void check_type_keys(const Reader& reader, const Node& point, Type type, Context& context) {
+void check_type_keys(const Reader& reader, const Entry& point, Type type, Context& context) {
   for (const TypeKey& key : type_keys) {
     const bool given = reader.has(key.name);
     if (given && !key.applies(type))
@@ -47,7 +47,7 @@ void check_type_keys(const Reader& reader, const Node& point, Type type, Context
 }
 
 /// False if the point's order does not go with its type.
-bool check_order(const Node& order, Type type, Context& context) {
+bool check_order(const Entry& order, Type type, Context& context) {
   const bool one_register = codec::width(type) <= 16;
   const bool two_letters = order.text.size() == 2;
   if (is_text(type)) {
@@ -79,7 +79,7 @@ void read_order(const Reader& reader, Order map_order, Format& format, Context& 
 }
 
 void read_text_order(const Reader& reader, Format& format, Context& context) {
-  if (const Node* order = reader.find("order")) check_order(*order, format.type, context);
+  if (const Entry* order = reader.find("order")) check_order(*order, format.type, context);
   bool ignore_byteorder = false;
   reader.boolean("ignore_byteorder", ignore_byteorder);
   format.order = ignore_byteorder ? Order::ABCD : Order::BADC;
@@ -87,7 +87,7 @@ void read_text_order(const Reader& reader, Format& format, Context& context) {
 
 }  // namespace
 
-void read_format(const Reader& reader, const Node& point, Order order, Format& format, Context& context) {
+void read_format(const Reader& reader, const Entry& point, Order order, Format& format, Context& context) {
   const std::size_t errors = context.problems.errors();
   if (!reader.has("type")) {
     context.problems.error(

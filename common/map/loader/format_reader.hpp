@@ -8,7 +8,7 @@ namespace coupler::loader {
 
 /// The type of a register point and the keys that go with it. `order` is the map's; the point's own overrides
 /// it.
-void read_format(const Reader& reader, const Node& point, codec::Order order, codec::Format& format,
+void read_format(const Reader& reader, const Entry& point, codec::Order order, codec::Format& format,
                  Context& context);
 
 }  // namespace coupler::loader

@@ -25,19 +25,19 @@ std::string expected(Type type) {
 }
 
 /// Element i is bit i.
-std::optional<Value> bits(const Node& list, Type type) {
+std::optional<Value> bits(const Entry& list, Type type) {
   if (!is_bit_string(type) || list.children.size() != codec::width(type)) return std::nullopt;
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < list.children.size(); ++i) {
-    const Node& element = list.children[i];
-    const auto on = element.kind == Node::Kind::scalar ? parse_boolean(element.text) : std::nullopt;
+    const Entry& element = list.children[i];
+    const auto on = element.kind == Entry::Kind::scalar ? parse_boolean(element.text) : std::nullopt;
     if (!on) return std::nullopt;
     if (*on) value |= std::uint64_t{1} << i;
   }
   return value;
 }
 
-std::optional<Value> number(const Node& scalar) {
+std::optional<Value> number(const Entry& scalar) {
   if (scalar.quoted) return std::nullopt;
   if (const auto value = parse_unsigned(scalar.text)) return *value;
   if (const auto value = parse_integer(scalar.text)) return *value;
@@ -45,32 +45,33 @@ std::optional<Value> number(const Node& scalar) {
   return std::nullopt;
 }
 
-std::optional<Value> value_of(const Node& node, Type type) {
-  if (node.kind == Node::Kind::list) return bits(node, type);
-  if (node.kind != Node::Kind::scalar) return std::nullopt;
-  if (type == Type::STRING) return node.text;
-  if (type != Type::BOOL) return number(node);
-  if (const auto on = parse_boolean(node.text)) return *on;
+std::optional<Value> value_of(const Entry& entry, Type type) {
+  if (entry.kind == Entry::Kind::list) return bits(entry, type);
+  if (entry.kind != Entry::Kind::scalar) return std::nullopt;
+  if (type == Type::STRING) return entry.text;
+  if (type != Type::BOOL) return number(entry);
+  if (const auto on = parse_boolean(entry.text)) return *on;
   return std::nullopt;
 }
 
 }  // namespace
 
 void read_initial(const Reader& reader, Point& point, Context& context) {
-  const Node* node = reader.find("initial");
-  if (node == nullptr) return;
-  const auto value = value_of(*node, point.format.type);
+  const Entry* entry = reader.find("initial");
+  if (entry == nullptr) return;
+  const auto value = value_of(*entry, point.format.type);
   if (!value) {
     const std::string wanted = expected(point.format.type);
-    context.problems.error(
-        node->at,
-        fmt::format("'initial' of type {} is {}, not {}", to_string(point.format.type), wanted, shown(*node)),
-        "write " + wanted);
+    context.problems.error(entry->at,
+                           fmt::format("'initial' of type {} is {}, not {}", to_string(point.format.type),
+                                       wanted, shown(*entry)),
+                           "write " + wanted);
     return;
   }
   std::vector<std::uint16_t> registers(codec::registers(point.format));
   if (const auto encoded = codec::encode(*value, point.format, registers.data()); !encoded) {
-    context.problems.error(node->at, "'initial': " + encoded.error(), "write a value that the type can hold");
+    context.problems.error(entry->at, "'initial': " + encoded.error(),
+                           "write a value that the type can hold");
     return;
   }
   point.initial = context.map.keep(std::move(registers));

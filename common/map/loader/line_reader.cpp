@@ -28,16 +28,16 @@ void refuse_without_line(const Reader& point, Table table, Context& context) {
   auto keys = option_keys(table);
   if (table == Table::coils) keys.emplace_back("safe");
   for (const std::string_view key : keys)
-    if (const Node* node = point.find(key))
-      context.problems.error(node->key_at,
+    if (const Entry* entry = point.find(key))
+      context.problems.error(entry->key_at,
                              fmt::format("'{}' is for a point with a GPIO line, this one has none", key),
                              "add 'line: {chip: gpiochip0, offset: 17}', or remove it");
 }
 
-void read_place(const Reader& reader, const Node& node, Line& line, Context& context) {
+void read_place(const Reader& reader, const Entry& entry, Line& line, Context& context) {
   const bool by_offset = reader.has("chip") && reader.has("offset");
   if (by_offset == reader.has("name") || reader.has("chip") != reader.has("offset")) {
-    context.problems.error(node.key_at, "'line' has either 'chip' and 'offset' or 'name'",
+    context.problems.error(entry.key_at, "'line' has either 'chip' and 'offset' or 'name'",
                            "write it as in 'line: {chip: gpiochip0, offset: 17}' or 'line: GPIO17'");
     return;
   }
@@ -45,8 +45,8 @@ void read_place(const Reader& reader, const Node& node, Line& line, Context& con
   reader.integer("offset", line.offset);
   reader.text("name", line.name);
   for (const std::string_view key : {"chip", "name"})
-    if (const Node* given = reader.find(key);
-        given != nullptr && given->kind == Node::Kind::scalar && given->text.empty())
+    if (const Entry* given = reader.find(key);
+        given != nullptr && given->kind == Entry::Kind::scalar && given->text.empty())
       reader.wrong(key, "a name");
 }
 
@@ -54,15 +54,15 @@ void read_place(const Reader& reader, const Node& node, Line& line, Context& con
 
 void read_line(const Reader& point, DraftPoint& draft, Context& context) {
   const Table table = draft.point.table;
-  const Node* node = point.find("line");
-  if (node == nullptr) return refuse_without_line(point, table, context);
+  const Entry* entry = point.find("line");
+  if (entry == nullptr) return refuse_without_line(point, table, context);
   Line& line = draft.point.line;
-  draft.line_at = node->at;
+  draft.line_at = entry->at;
   read_options(point, table, line);
   if (table == Table::coils) point.choice("safe", {Safe::off, Safe::on, Safe::hold}, draft.point.safe);
-  if (node->kind == Node::Kind::map) {
-    const Reader inside(*node, table == Table::coils ? Section::coil_line : Section::input_line, context);
-    read_place(inside, *node, line, context);
+  if (entry->kind == Entry::Kind::map) {
+    const Reader inside(*entry, table == Table::coils ? Section::coil_line : Section::input_line, context);
+    read_place(inside, *entry, line, context);
     read_options(inside, table, line);
     for (const std::string_view key : option_keys(table))
       if (point.has(key) && inside.has(key))
@@ -70,8 +70,8 @@ void read_line(const Reader& point, DraftPoint& draft, Context& context) {
             inside.find(key)->key_at,
             fmt::format("'{}' is given twice, also in line {}", key, point.find(key)->key_at.line),
             "keep one of the two");
-  } else if (node->kind == Node::Kind::scalar && !node->text.empty() && !parse_unsigned(node->text)) {
-    line.name = context.map.keep(node->text);
+  } else if (entry->kind == Entry::Kind::scalar && !entry->text.empty() && !parse_unsigned(entry->text)) {
+    line.name = context.map.keep(entry->text);
   } else {
     point.wrong("line", "the name of a GPIO line, or its chip and offset");
   }

@@ -16,12 +16,12 @@
 namespace coupler::loader {
 namespace {
 
-std::string_view read_name(const Reader& top, const Node& root, Context& context) {
+std::string_view read_name(const Reader& top, const Entry& root, Context& context) {
   std::string_view name;
   const std::size_t errors = context.problems.errors();
   top.text("name", name);
-  if (const Node* node = top.find("name")) {
-    if (context.problems.errors() == errors) check_map_name(name, node->at, context);
+  if (const Entry* entry = top.find("name")) {
+    if (context.problems.errors() == errors) check_map_name(name, entry->at, context);
   } else {
     context.problems.error(root.at, "the map has no 'name'", "add 'name: NAME', the namespace of its topics");
   }
@@ -39,17 +39,17 @@ PointDefaults read_point_defaults(const Reader& top) {
   return defaults;
 }
 
-void read_table(const Node& node, Table table, const PointDefaults& defaults, DraftPoints& points,
+void read_table(const Entry& entry, Table table, const PointDefaults& defaults, DraftPoints& points,
                 Context& context) {
   const std::string expected = fmt::format("'{}' holds points", to_string(table));
-  if (!check_map(node, expected, "write one 'name: …' a point below it", context)) return;
-  for (const Node& point : node.children) points.push_back(read_point(point, table, defaults, context));
+  if (!check_map(entry, expected, "write one 'name: …' a point below it", context)) return;
+  for (const Entry& point : entry.children) points.push_back(read_point(point, table, defaults, context));
 }
 
 /// In the order of the file.
-DraftPoints read_points(const Reader& top, const Node& root, Context& context) {
+DraftPoints read_points(const Reader& top, const Entry& root, Context& context) {
   DraftPoints points;
-  const Node* mapping = top.find("mapping");
+  const Entry* mapping = top.find("mapping");
   if (mapping == nullptr) {
     context.problems.error(root.at, "the map has no 'mapping'",
                            "add 'mapping:' with the tables and their points");
@@ -61,7 +61,8 @@ DraftPoints read_points(const Reader& top, const Node& root, Context& context) {
   const PointDefaults defaults = read_point_defaults(top);
   const Reader reader(*mapping, Section::mapping, context);
   for (const Table table : tables)
-    if (const Node* node = reader.find(to_string(table))) read_table(*node, table, defaults, points, context);
+    if (const Entry* entry = reader.find(to_string(table)))
+      read_table(*entry, table, defaults, points, context);
   std::stable_sort(points.begin(), points.end(), [](const DraftPoint& a, const DraftPoint& b) {
     return std::tie(a.name_at.line, a.name_at.column) < std::tie(b.name_at.line, b.name_at.column);
   });
@@ -78,8 +79,8 @@ void check_points(const DraftPoints& points, const Limits& limits, bool addressi
 
 }  // namespace
 
-void read_map(const Node& root, std::string_view text, Context& context) {
-  if (root.kind != Node::Kind::map) {
+void read_map(const Entry& root, std::string_view text, Context& context) {
+  if (root.kind != Entry::Kind::map) {
     context.problems.error(root.at, fmt::format("a map of a coupler has keys, this is {}", shown(root)),
                            "begin with 'name: NAME'");
     return;

@@ -11,25 +11,25 @@
 namespace coupler::loader {
 namespace {
 
-void read_address(const Node* node, const Node& point, Addressing addressing, DraftPoint& draft,
+void read_address(const Entry* entry, const Entry& point, Addressing addressing, DraftPoint& draft,
                   Context& context) {
-  if (node == nullptr) {
+  if (entry == nullptr) {
     context.problems.error(
         point.key_at, fmt::format("{} has no address; leaving it out is not supported yet", shown(point.key)),
         "add 'address: NUMBER'");
     return;
   }
-  draft.address_at = node->at;
-  if (node->kind != Node::Kind::scalar || node->quoted) {
-    context.problems.error(node->at, fmt::format("the address is a number, not {}", shown(*node)),
+  draft.address_at = entry->at;
+  if (entry->kind != Entry::Kind::scalar || entry->quoted) {
+    context.problems.error(entry->at, fmt::format("the address is a number, not {}", shown(*entry)),
                            "write the number, without quotes");
     return;
   }
-  const auto address = parse_address(node->text, draft.point.table, addressing);
+  const auto address = parse_address(entry->text, draft.point.table, addressing);
   if (address)
     draft.point.address = *address;
   else
-    context.problems.error(node->at, address.error().what, address.error().remedy);
+    context.problems.error(entry->at, address.error().what, address.error().remedy);
 }
 
 void check_range(const DraftPoint& draft, Context& context) {
@@ -42,12 +42,12 @@ void check_range(const DraftPoint& draft, Context& context) {
       fmt::format("the last address for it is {}", 65536 - count));
 }
 
-void read_options(const Node& node, const PointDefaults& defaults, DraftPoint& draft, Context& context) {
+void read_options(const Entry& entry, const PointDefaults& defaults, DraftPoint& draft, Context& context) {
   Point& point = draft.point;
-  const Reader reader(node, section_of(point.table), context);
+  const Reader reader(entry, section_of(point.table), context);
   const std::size_t errors = context.problems.errors();
-  read_address(reader.find("address"), node, defaults.addressing, draft, context);
-  if (!holds_bits(point.table)) read_format(reader, node, defaults.order, point.format, context);
+  read_address(reader.find("address"), entry, defaults.addressing, draft, context);
+  if (!holds_bits(point.table)) read_format(reader, entry, defaults.order, point.format, context);
   if (context.problems.errors() == errors) check_range(draft, context);
   draft.placed = context.problems.errors() == errors;
   if (draft.placed) read_initial(reader, point, context);
@@ -58,24 +58,24 @@ void read_options(const Node& node, const PointDefaults& defaults, DraftPoint& d
 
 }  // namespace
 
-DraftPoint read_point(const Node& node, Table table, const PointDefaults& defaults, Context& context) {
+DraftPoint read_point(const Entry& entry, Table table, const PointDefaults& defaults, Context& context) {
   DraftPoint draft;
-  draft.name_at = node.key_at;
-  draft.address_at = node.key_at;
-  draft.point.name = context.map.keep(node.key);
+  draft.name_at = entry.key_at;
+  draft.address_at = entry.key_at;
+  draft.point.name = context.map.keep(entry.key);
   draft.point.table = table;
   draft.point.access = is_writable(table) ? Access::read_write : Access::read;
-  if (node.kind == Node::Kind::map || node.kind == Node::Kind::null) {
-    read_options(node, defaults, draft, context);
+  if (entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null) {
+    read_options(entry, defaults, draft, context);
   } else if (holds_bits(table)) {
     const std::size_t errors = context.problems.errors();
-    read_address(&node, node, defaults.addressing, draft, context);
+    read_address(&entry, entry, defaults.addressing, draft, context);
     draft.placed = context.problems.errors() == errors;
   } else {
-    const std::string given = node.kind == Node::Kind::scalar ? node.text.substr(0, 10) : "0";
+    const std::string given = entry.kind == Entry::Kind::scalar ? entry.text.substr(0, 10) : "0";
     context.problems.error(
-        node.at, fmt::format("{} has no type", shown(node.key)),
-        fmt::format("write it as in '{}: {{address: {}, type: INT}}'", node.key.substr(0, 40), given));
+        entry.at, fmt::format("{} has no type", shown(entry.key)),
+        fmt::format("write it as in '{}: {{address: {}, type: INT}}'", entry.key.substr(0, 40), given));
   }
   return draft;
 }

@@ -5,7 +5,7 @@
 #include "common/map/loader/address.hpp"
 #include "common/map/loader/context.hpp"
 #include "common/map/loader/draft_point.hpp"
-#include "common/map/loader/node.hpp"
+#include "common/map/loader/entry.hpp"
 
 namespace coupler::loader {
 
@@ -17,6 +17,6 @@ struct PointDefaults {
 };
 
 /// One entry of a table: `name: address` (coils and discrete inputs) or `name: {options}`.
-DraftPoint read_point(const Node& node, Table table, const PointDefaults& defaults, Context& context);
+DraftPoint read_point(const Entry& entry, Table table, const PointDefaults& defaults, Context& context);
 
 }  // namespace coupler::loader

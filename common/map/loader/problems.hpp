@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "common/map/diagnostic.hpp"
-#include "common/map/loader/node.hpp"
+#include "common/map/loader/entry.hpp"
 
 namespace coupler::loader {
 

@@ -14,7 +14,7 @@ namespace {
 
 std::string_view canonical(const Key& key) { return key.same_as.empty() ? key.name : key.same_as; }
 
-bool is_bare(const Node& value) { return value.kind == Node::Kind::scalar && !value.quoted; }
+bool is_bare(const Entry& value) { return value.kind == Entry::Kind::scalar && !value.quoted; }
 
 /// "UTF_8" and "utf-8" are the same word in the origin's files, not in this project's keys.
 std::string folded(std::string_view word, Owner owner) {
@@ -32,12 +32,12 @@ std::string range_text(const Key& key, std::string_view unit) {
 
 }  // namespace
 
-Reader::Reader(const Node& map, Section section, Context& context) : section_(section), context_(context) {
-  if (map.kind != Node::Kind::map) return;
-  for (const Node& entry : map.children) check_key(entry);
+Reader::Reader(const Entry& map, Section section, Context& context) : section_(section), context_(context) {
+  if (map.kind != Entry::Kind::map) return;
+  for (const Entry& entry : map.children) check_key(entry);
 }
 
-void Reader::check_key(const Node& entry) {
+void Reader::check_key(const Entry& entry) {
   const Key* key = find_key(entry.key, section_);
   if (key == nullptr) return unknown(entry);
   if (key->status == Status::later)
@@ -52,7 +52,7 @@ void Reader::check_key(const Node& entry) {
   fields_.push_back({key, &entry});
 }
 
-void Reader::unknown(const Node& entry) const {
+void Reader::unknown(const Entry& entry) const {
   const Section elsewhere = sections_with(entry.key);
   if (elsewhere != Section::none) {
     std::string places;
@@ -73,7 +73,7 @@ const Reader::Field* Reader::field(std::string_view key) const {
   return found == fields_.end() ? nullptr : &*found;
 }
 
-const Node* Reader::find(std::string_view key) const {
+const Entry* Reader::find(std::string_view key) const {
   assert(find_key(key, section_) != nullptr);
   const Field* found = field(key);
   return found == nullptr ? nullptr : found->value;
@@ -91,10 +91,10 @@ void Reader::ignored(std::string_view key, std::string what, std::string remedy)
 }
 
 std::optional<std::int64_t> Reader::integer_in_range(std::string_view key) const {
-  const Node* node = find(key);
-  if (node == nullptr) return std::nullopt;
+  const Entry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
   const Key& known = *field(key)->key;
-  const auto value = is_bare(*node) ? parse_integer(node->text) : std::nullopt;
+  const auto value = is_bare(*entry) ? parse_integer(entry->text) : std::nullopt;
   if (value && static_cast<double>(*value) >= known.least && static_cast<double>(*value) <= known.most)
     return value;
   wrong(key, "a whole number" + range_text(known, ""));
@@ -102,10 +102,10 @@ std::optional<std::int64_t> Reader::integer_in_range(std::string_view key) const
 }
 
 void Reader::number(std::string_view key, double& out) const {
-  const Node* node = find(key);
-  if (node == nullptr) return;
+  const Entry* entry = find(key);
+  if (entry == nullptr) return;
   const Key& known = *field(key)->key;
-  const auto value = is_bare(*node) ? parse_number(node->text) : std::nullopt;
+  const auto value = is_bare(*entry) ? parse_number(entry->text) : std::nullopt;
   if (value && *value >= known.least && *value <= known.most)
     out = *value;
   else
@@ -113,9 +113,9 @@ void Reader::number(std::string_view key, double& out) const {
 }
 
 void Reader::boolean(std::string_view key, bool& out) const {
-  const Node* node = find(key);
-  if (node == nullptr) return;
-  const auto value = is_bare(*node) ? parse_boolean(node->text) : std::nullopt;
+  const Entry* entry = find(key);
+  if (entry == nullptr) return;
+  const auto value = is_bare(*entry) ? parse_boolean(entry->text) : std::nullopt;
   if (value)
     out = *value;
   else
@@ -123,23 +123,23 @@ void Reader::boolean(std::string_view key, bool& out) const {
 }
 
 void Reader::text(std::string_view key, std::string_view& out) const {
-  const Node* node = find(key);
-  if (node == nullptr) return;
-  if (node->kind == Node::Kind::scalar)
-    out = context_.map.keep(node->text);
+  const Entry* entry = find(key);
+  if (entry == nullptr) return;
+  if (entry->kind == Entry::Kind::scalar)
+    out = context_.map.keep(entry->text);
   else
     wrong(key, "text");
 }
 
 std::optional<std::chrono::microseconds> Reader::duration_in_range(std::string_view key) const {
-  const Node* node = find(key);
-  if (node == nullptr) return std::nullopt;
+  const Entry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
   const Key& known = *field(key)->key;
   const bool seconds = known.kind == ValueKind::seconds;
   std::optional<std::chrono::microseconds> value;
-  if (node->kind == Node::Kind::scalar) {
-    const bool bare_number = seconds && !node->quoted && parse_number(node->text).has_value();
-    value = parse_duration(bare_number ? node->text + "s" : node->text);
+  if (entry->kind == Entry::Kind::scalar) {
+    const bool bare_number = seconds && !entry->quoted && parse_number(entry->text).has_value();
+    value = parse_duration(bare_number ? entry->text + "s" : entry->text);
   }
   const double in_seconds = value ? std::chrono::duration<double>(*value).count() : -1;
   if (in_seconds >= known.least && in_seconds <= known.most) return value;
@@ -149,17 +149,18 @@ std::optional<std::chrono::microseconds> Reader::duration_in_range(std::string_v
 }
 
 std::optional<std::size_t> Reader::choice_index(std::string_view key) const {
-  const Node* node = find(key);
-  if (node == nullptr) return std::nullopt;
+  const Entry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
   const Key& known = *field(key)->key;
   const auto choices = words(known.choices);
   const std::string given =
-      node->kind == Node::Kind::scalar ? folded(node->text, known.owner) : std::string();
+      entry->kind == Entry::Kind::scalar ? folded(entry->text, known.owner) : std::string();
   for (std::size_t i = 0; i < choices.size(); ++i)
     if (given == folded(choices[i], known.owner)) return i;
   const std::string_view near = nearest(given, choices);
   context_.problems.error(
-      node->at, fmt::format("'{}' is one of {}, not {}", known.name, fmt::join(choices, ", "), shown(*node)),
+      entry->at,
+      fmt::format("'{}' is one of {}, not {}", known.name, fmt::join(choices, ", "), shown(*entry)),
       near.empty() ? fmt::format("write it as in '{}: {}'", known.name, known.example)
                    : fmt::format("did you mean '{}'?", near));
   return std::nullopt;
@@ -167,35 +168,35 @@ std::optional<std::size_t> Reader::choice_index(std::string_view key) const {
 
 void Reader::too_fine(std::string_view key) const { wrong(key, "a whole number of milliseconds"); }
 
-std::string shown(const Node& value) {
+std::string shown(const Entry& value) {
   switch (value.kind) {
-    case Node::Kind::null: return "nothing";
-    case Node::Kind::list: return "a list";
-    case Node::Kind::map: return "a map";
-    case Node::Kind::scalar: break;
+    case Entry::Kind::null: return "nothing";
+    case Entry::Kind::list: return "a list";
+    case Entry::Kind::map: return "a map";
+    case Entry::Kind::scalar: break;
   }
   return (value.quoted ? "the text " : "") + shown(std::string_view(value.text));
 }
 
-bool check_map(const Node& node, std::string_view expected, std::string_view remedy, Context& context) {
-  if (node.kind == Node::Kind::map || node.kind == Node::Kind::null) return true;
-  context.problems.error(node.at, fmt::format("{}, not {}", expected, shown(node)), std::string(remedy));
+bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy, Context& context) {
+  if (entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null) return true;
+  context.problems.error(entry.at, fmt::format("{}, not {}", expected, shown(entry)), std::string(remedy));
   return false;
 }
 
-bool has_only_origin_keys(const Node& root) {
-  const auto foreign = [](const Node& map, Section section) {
-    return std::any_of(map.children.begin(), map.children.end(), [&](const Node& entry) {
+bool has_only_origin_keys(const Entry& root) {
+  const auto foreign = [](const Entry& map, Section section) {
+    return std::any_of(map.children.begin(), map.children.end(), [&](const Entry& entry) {
       const Key* key = find_key(entry.key, section);
       return key != nullptr && key->owner == Owner::project;
     });
   };
   if (foreign(root, Section::map)) return false;
-  for (const Node& mapping : root.children) {
+  for (const Entry& mapping : root.children) {
     if (mapping.key != "mapping") continue;
-    for (const Node& table : mapping.children)
+    for (const Entry& table : mapping.children)
       for (const Table which : tables)
-        for (const Node& point : table.children)
+        for (const Entry& point : table.children)
           if (table.key == to_string(which) && foreign(point, section_of(which))) return false;
   }
   return true;

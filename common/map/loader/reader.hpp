@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "common/map/loader/context.hpp"
+#include "common/map/loader/entry.hpp"
 #include "common/map/loader/keys.hpp"
-#include "common/map/loader/node.hpp"
 
 namespace coupler::loader {
 
@@ -21,10 +21,10 @@ namespace coupler::loader {
 class Reader {
  public:
   /// Checks the keys: known in this section, supported, given once. `map` must be a map, or nothing.
-  Reader(const Node& map, Section section, Context& context);
+  Reader(const Entry& map, Section section, Context& context);
 
   /// The value of a supported key, or nullptr.
-  const Node* find(std::string_view key) const;
+  const Entry* find(std::string_view key) const;
   bool has(std::string_view key) const { return find(key) != nullptr; }
 
   template <class T>
@@ -63,11 +63,11 @@ class Reader {
  private:
   struct Field {
     const Key* key;
-    const Node* value;
+    const Entry* value;
   };
 
-  void check_key(const Node& entry);
-  void unknown(const Node& entry) const;
+  void check_key(const Entry& entry);
+  void unknown(const Entry& entry) const;
   const Field* field(std::string_view key) const;
   std::optional<std::int64_t> integer_in_range(std::string_view key) const;
   std::optional<std::chrono::microseconds> duration_in_range(std::string_view key) const;
@@ -80,12 +80,12 @@ class Reader {
 };
 
 /// The scalar's text as a message shows it; what else the value is ("a list") if it is no scalar.
-std::string shown(const Node& value);
+std::string shown(const Entry& value);
 
-/// The node is a map, or nothing at all; otherwise a problem that says what `expected` is.
-bool check_map(const Node& node, std::string_view expected, std::string_view remedy, Context& context);
+/// The entry is a map, or nothing at all; otherwise a problem that says what `expected` is.
+bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy, Context& context);
 
 /// A file that has none of this project's keys, as far as they can be seen without reading it.
-bool has_only_origin_keys(const Node& root);
+bool has_only_origin_keys(const Entry& root);
 
 }  // namespace coupler::loader

@@ -26,13 +26,13 @@ Polling read_polling(const Reader& top) {
 
 Limits read_limits(const Reader& top, Context& context) {
   Limits limits;
-  const Node* node = top.find("limits");
-  if (node == nullptr) return limits;
-  if (node->kind != Node::Kind::map) {
+  const Entry* entry = top.find("limits");
+  if (entry == nullptr) return limits;
+  if (entry->kind != Entry::Kind::map) {
     top.wrong("limits", "a map of limits");
     return limits;
   }
-  const Reader reader(*node, Section::limits, context);
+  const Reader reader(*entry, Section::limits, context);
   reader.integer("read_registers", limits.read_registers);
   reader.integer("read_bits", limits.read_bits);
   reader.integer("write_registers", limits.write_registers);

@@ -14,25 +14,25 @@ class SimReader {
     for (const DraftPoint& draft : points) tables_.emplace(draft.point.name, draft.point.table);
   }
 
-  SimWire wire(const Node& node) {
-    const Reader reader(node, Section::wire, context_);
+  SimWire wire(const Entry& entry) {
+    const Reader reader(entry, Section::wire, context_);
     SimWire wire;
     reader.text("from", wire.from);
     reader.text("to", wire.to);
     reader.boolean("invert", wire.invert);
     reader.duration("square", wire.square);
-    check_source(reader, node);
-    if (const Node* to = reader.find("to"))
+    check_source(reader, entry);
+    if (const Entry* to = reader.find("to"))
       check_input(*to);
     else
-      context_.problems.error(node.at, "the wire has no 'to'",
+      context_.problems.error(entry.at, "the wire has no 'to'",
                               "add 'to: NAME', the discrete input at its end");
     return wire;
   }
 
  private:
-  void check_source(const Reader& reader, const Node& wire) {
-    const Node* from = reader.find("from");
+  void check_source(const Reader& reader, const Entry& wire) {
+    const Entry* from = reader.find("from");
     if ((from != nullptr) == reader.has("square"))
       context_.problems.error(
           wire.at, "the wire has either 'from' or 'square'",
@@ -43,17 +43,17 @@ class SimReader {
                               "remove it");
   }
 
-  void check_input(const Node& to) {
+  void check_input(const Entry& to) {
     check_end(to, Table::discrete_inputs);
     const auto [first, is_new] = sources_.emplace(to.text, to.at.line);
-    if (!is_new && to.kind == Node::Kind::scalar)
+    if (!is_new && to.kind == Entry::Kind::scalar)
       context_.problems.error(to.at,
                               fmt::format("{} already has a wire, in line {}", shown(to.text), first->second),
                               "keep one wire for each input");
   }
 
-  void check_end(const Node& end, Table table) {
-    if (end.kind != Node::Kind::scalar) return;  // a problem already
+  void check_end(const Entry& end, Table table) {
+    if (end.kind != Entry::Kind::scalar) return;  // a problem already
     const auto found = tables_.find(end.text);
     if (found != tables_.end() && found->second == table) return;
     const std::string_view expected = table == Table::coils ? "a coil" : "a discrete input";
@@ -75,15 +75,15 @@ class SimReader {
 
 std::vector<SimWire> read_sim(const Reader& top, const DraftPoints& points, Context& context) {
   std::vector<SimWire> wires;
-  const Node* node = top.find("sim");
-  if (node == nullptr) return wires;
-  if (node->kind != Node::Kind::list) {
+  const Entry* entry = top.find("sim");
+  if (entry == nullptr) return wires;
+  if (entry->kind != Entry::Kind::list) {
     top.wrong("sim", "a list of wires");
     return wires;
   }
   SimReader reader(points, context);
-  for (const Node& wire : node->children) {
-    if (wire.kind == Node::Kind::map)
+  for (const Entry& wire : entry->children) {
+    if (wire.kind == Entry::Kind::map)
       wires.push_back(reader.wire(wire));
     else
       context.problems.error(wire.at, fmt::format("a wire of 'sim' is a map, not {}", shown(wire)),

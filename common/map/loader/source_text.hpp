@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "common/map/loader/node.hpp"
+#include "common/map/loader/entry.hpp"
 #include "common/map/loader/problems.hpp"
 
 namespace coupler::loader {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/map/loader/node.hpp"
+#include "common/map/loader/entry.hpp"
 
 namespace coupler::loader {
 

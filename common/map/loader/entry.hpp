@@ -12,8 +12,8 @@ struct Position {
   int column = 0;
 };
 
-/// One value of the file, with everything below it. Duplicate keys are still there.
-struct Node {
+/// One value of the file, with its key and everything below it. Duplicate keys are still there.
+struct Entry {
   enum class Kind { null, scalar, list, map };
 
   std::string key;  ///< if it stands in a map
@@ -22,7 +22,7 @@ struct Node {
   Position at;  ///< the value; the key's for what has no place of its own (nothing, or a block below the key)
   std::string text;     ///< scalar
   bool quoted = false;  ///< a scalar that can only be text
-  std::vector<Node> children;
+  std::vector<Entry> children;
 };
 
 }  // namespace coupler::loader
