@@ -15,8 +15,9 @@ namespace {
 
 std::vector<std::string> seeds() {
   std::vector<std::string> texts;
-  for (const char* folder : {"/maps/origin", "/maps/bad"})
+  for (const char* folder : {"/maps", "/maps/origin", "/maps/bad"})
     for (const auto& file : std::filesystem::directory_iterator(std::string(COUPLER_TEST_DIR) + folder)) {
+      if (!file.is_regular_file()) continue;
       std::ifstream in(file.path(), std::ios::binary);
       texts.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
     }
@@ -39,41 +40,25 @@ class Mutator {
     return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random_);
   }
 
+  /// Any line, with its newline.
+  std::string line_of(const std::string& text) {
+    const std::size_t start = text.rfind('\n', below(text.size())) + 1;
+    return text.substr(start, text.find('\n', start) + 1 - start);
+  }
+
   void change(std::string& text) {
-    static constexpr std::string_view pieces[] = {"{",
-                                                  "}",
-                                                  "[",
-                                                  "]",
-                                                  ":",
-                                                  ",",
-                                                  "\"",
-                                                  "'",
-                                                  "\n",
-                                                  "#",
-                                                  "//",
-                                                  "/*",
-                                                  "- ",
-                                                  "? ",
-                                                  "| ",
-                                                  "&a ",
-                                                  "*a ",
-                                                  "!t ",
-                                                  "<<: ",
-                                                  "null",
-                                                  "---\n",
-                                                  "-1",
-                                                  "99999999999999999999",
-                                                  "\\",
-                                                  "\t",
-                                                  "\\ud83d",
-                                                  "%",
-                                                  "address: "};
+    // clang-format off
+    static constexpr std::string_view pieces[] = {
+        "{", "}", "[", "]", ":", ",", "\"", "'", "\n", "#", "//", "/*", "- ", "? ", "| ", "&a ", "*a ", "!t ", "<<: ",
+        "null", "---\n", "-1", "99999999999999999999", "\\", "\t", "\\ud83d", "%", "address: "};
+    // clang-format on
     const std::size_t at = below(text.size());
-    switch (below(5)) {
+    switch (below(6)) {
       case 0: text.erase(at, 1 + below(12)); break;
       case 1: text.insert(at, pieces[below(std::size(pieces))]); break;
       case 2: text[at] = static_cast<char>(below(256)); break;
       case 3: text.insert(at, text.substr(below(text.size()), 1 + below(60))); break;
+      case 4: text.insert(text.find('\n', at) + 1, line_of(texts_[below(texts_.size())])); break;
       default: text.resize(at); break;
     }
   }
