@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# The whole chain on a chip of the kernel: line, coupler-node, coupler_driver, topic, and back.
+#   test/kernel/run --mem 1G test/kernel/driver.sh BUILD_DIR
+set -euo pipefail
+build=$(realpath "${1:?the build folder}")
+bin=$build/bin
+cd "$(dirname "$0")"
+# shellcheck source=plant.sh
+. ./plant.sh
+set +u
+# shellcheck disable=SC1091
+. "$build/devel/setup.bash"
+set -u
+plant_chip
+plant_node plant.yaml
+
+start core roscore
+check "a roscore answers" wait_until 60 rosnode list
+start driver "$bin/coupler_driver" _address:=127.0.0.1 _port:=1502
+check "the driver connects, with the node's own map" wait_until 20 says driver 'connected'
+
+echo "# pulling a line shows on its topic"
+start button rostopic echo /plant/button
+check "the topic tells that the line is low" wait_until 30 says button 'data: False'
+sim_pull plant 2 up
+check "pulled up, it tells so" wait_until 5 says button 'data: True'
+
+echo "# publishing drives a line"
+sim_pull plant 0 down
+check "a message is published" rostopic pub --once /plant/lamp/write std_msgs/Bool 'data: true'
+check "the line is high, against its pull" wait_until 5 level_is 0 1
+sim_pull plant 0 up
+check "another message" rostopic pub --once /plant/lamp/write std_msgs/Bool 'data: false'
+check "the line is low, against its pull" wait_until 5 level_is 0 0
+
+echo "# unplugging the chip is told, and crashes nobody"
+sim_unplug plant
+check "the driver tells of exception 04" wait_until 10 says driver 'device failure'
+check "the node names the line" wait_until 10 says node 'BUTTON'
+check "the driver runs" running driver
+check "the node runs" running node
+check "the driver ends well on SIGINT" stop driver INT
+check "the node ends well on SIGINT" stop node INT

@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# coupler-node on a chip of the kernel, with mbpoll as the master.
+#   test/kernel/run test/kernel/node.sh BUILD_DIR
+set -euo pipefail
+bin=$(realpath "${1:?the build folder}")/bin
+cd "$(dirname "$0")"
+# shellcheck source=plant.sh
+. ./plant.sh
+plant_chip
+
+echo "# lines follow, both ways"
+plant_node plant.yaml
+for level in up down up; do
+  sim_pull plant 2 "$level"
+  check "pulling a line $level shows in its input" wait_until 2 input_is 0 "$([ "$level" = up ] && echo 1 || echo 0)"
+done
+sim_pull plant 3 down
+expect "an active-low input is on while its line is low" 1 "$(input 1)"
+sim_pull plant 3 up
+expect "and off while it is high" 0 "$(input 1)"
+
+sim_pull plant 0 down
+check "a coil is written" set_coil 0 1
+expect "its line is driven, against its pull" 1 "$(sim_value plant 0)"
+expect "it reads back" 1 "$(coil 0)"
+sim_pull plant 0 up
+check "a coil is cleared" set_coil 0 0
+expect "its line is driven low, against its pull" 0 "$(sim_value plant 0)"
+sim_pull plant 1 down
+expect "an active-low output that is off is high, against its pull" 1 "$(sim_value plant 1)"
+check "an active-low coil is written" set_coil 1 1
+sim_pull plant 1 up
+expect "its line is low, against its pull" 0 "$(sim_value plant 1)"
+
+echo "# debounce"
+for _ in 1 2 3 4 5; do sim_pull plant 4 up; sleep 0.03; sim_pull plant 4 down; sleep 0.03; done
+expect "a level that does not last is not seen" 0 "$(input 2)"
+sim_pull plant 4 up
+check "one that lasts is" wait_until 2 input_is 2 1
+
+echo "# who holds a line is named"
+sed 's/chip: plant, offset: 0/chip: plant, offset: 6/' plant.yaml >/tmp/busy.yaml
+status=0
+"$bin/coupler-node" /tmp/busy.yaml --port 1503 >/tmp/busy.log 2>&1 || status=$?
+cat /tmp/busy.log
+expect "a busy line ends the start with 3" 3 "$status"
+check "the message names the chip" grep -q 'plant\|gpiochip' /tmp/busy.log
+check "the line" grep -qE 'line 6' /tmp/busy.log
+check "and its holder" grep -q 'hog-a' /tmp/busy.log
+sed 's/BUTTON/BOTTON/' plant.yaml >/tmp/missing.yaml
+refuse "a line that no chip has ends the start" "$bin/coupler-node" /tmp/missing.yaml --port 1503
+
+echo "# unplugged"
+sim_unplug plant
+refuse "reading an input fails" input 0
+said=$(answered master -t 1 -r 0 -c 1 127.0.0.1 2>&1) || true
+check "with exception 04, which mbpoll calls a server failure" grep -qi 'device or server failure' <<<"$said"
+refuse "writing a coil fails" set_coil 0 1
+expect "registers are served as before" 7 "$(register 0)"
+expect "coils without a line too" 0 "$(coil 2)"
+check "the node runs" running node
+check "and tells what happened" says node 'plant|gpiochip'
+cp "$(log node)" /tmp/before
+for _ in 1 2 3; do input 0 >/dev/null 2>&1 || true; done
+check "once, not at each request" cmp "$(log node)" /tmp/before
+check "it ends well on SIGTERM" stop node TERM
+cat "$(log node)"

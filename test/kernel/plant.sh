@@ -1,0 +1,44 @@
+# shellcheck shell=bash
+# SPDX-License-Identifier: Apache-2.0
+# The chip of plant.yaml and a Modbus master, for the tests that run the project's programs. To be sourced:
+#   plant_chip                 makes the chip "plant" with 8 lines; line 2 is BUTTON, line 6 belongs to "hog-a"
+#   plant_node MAP [ARGS…]     starts the node with a map and waits until it serves
+#   input N, coil N            prints 0 or 1, as mbpoll reads it
+#   set_coil N 0|1             writes it
+# A request that is answered with an exception fails and prints mbpoll's text.
+
+# shellcheck source=gpio-sim.sh
+. "$(dirname "${BASH_SOURCE[0]}")/gpio-sim.sh"
+
+plant_chip() {
+  sim_define plant 8
+  sim_name plant 2 BUTTON
+  sim_hog plant 6 output-low hog-a
+  sim_plug plant
+}
+
+plant_node() {
+  start node "$bin/coupler-node" "$@"
+  check "the node serves" wait_until 5 says node 'serving plant'
+}
+
+master() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 1502 "$@"; }
+
+# mbpoll reports a failed request on stderr and exits with 0 all the same.
+answered() {
+  local output
+  output=$("$@" 2>&1)
+  if grep -q 'failed' <<<"$output"; then
+    echo "$output"
+    return 1
+  fi
+  echo "$output"
+}
+
+read_one() { answered master -t "$1" -r "$2" -c 1 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*(-?[0-9]+).*/\1/p'; }
+input() { read_one 1 "$1"; }
+coil() { read_one 0 "$1"; }
+register() { read_one 4 "$1"; }
+set_coil() { answered master -t 0 -r "$1" 127.0.0.1 -- "$2" >/dev/null; }
+input_is() { [ "$(input "$1")" = "$2" ]; }
+level_is() { [ "$(sim_value plant "$1")" = "$2" ]; }
