@@ -14,7 +14,7 @@
 namespace coupler::node {
 namespace {
 
-constexpr int backlog = 128;
+constexpr int backlog = SOMAXCONN;
 
 std::string refusal(const std::string& address, std::uint16_t port, int error) {
   const std::string where = fmt::format("{}port {}", address.empty() ? "" : address + " ", port);
