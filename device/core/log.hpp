@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <string_view>
 
 namespace coupler::node {
 
-/// Takes one line for the node's log, without a newline.
-using Log = std::function<void(std::string_view)>;
+/// Where the node says what happens.
+class Log {
+ public:
+  /// One line, without a newline.
+  virtual void write(std::string_view line) = 0;
+
+ protected:
+  ~Log() = default;
+};
 
 }  // namespace coupler::node

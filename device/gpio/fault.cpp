@@ -10,9 +10,9 @@ namespace coupler::node {
 bool Fault::note(int error) {
   if (error != error_) {
     if (error == 0)
-      log_(what_ + " works again");
+      log_->write(what_ + " works again");
     else
-      log_(fmt::format(
+      log_->write(fmt::format(
           "{} failed: {}; requests that need it are answered with exception 04 until it works again", what_,
           std::strerror(error)));
     error_ = error;

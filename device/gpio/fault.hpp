@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "device/core/log.hpp"
 
@@ -11,14 +12,14 @@ namespace coupler::node {
 class Fault {
  public:
   /// `what` begins the sentence: "gpiochip0 line 5 (GPIO5)".
-  Fault(std::string what, Log log) : what_(std::move(what)), log_(std::move(log)) {}
+  Fault(std::string what, Log& log) : what_(std::move(what)), log_(&log) {}
 
   /// The outcome of a call: 0 or an errno. Returns whether it was good.
   bool note(int error);
 
  private:
   std::string what_;
-  Log log_;
+  Log* log_;
   int error_ = 0;
 };
 

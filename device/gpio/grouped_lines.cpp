@@ -22,8 +22,7 @@ bool each_in(Range range, const std::vector<std::uint16_t>& addresses, Use use) 
 
 }  // namespace
 
-GroupedLines::GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs,
-                           const Log& log) {
+GroupedLines::GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs, Log& log) {
   for (WiredOutputs& wired : outputs) {
     Fault fault(wired.group->name(), log);
     std::vector<int> next = wired.levels;

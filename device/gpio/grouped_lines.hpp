@@ -30,7 +30,7 @@ struct WiredInputs {
 /// none.
 class GroupedLines : public Lines {
  public:
-  GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs, const Log& log);
+  GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs, Log& log);
 
   bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint now) override;
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override;

@@ -13,7 +13,7 @@
 
 namespace coupler::node {
 
-tl::expected<Wiring, std::string> make_lines(const Map& map, bool simulated, const Log& log) {
+tl::expected<Wiring, std::string> make_lines(const Map& map, bool simulated, Log& log) {
   if (simulated) return Wiring{std::make_unique<SimulatedChip>(map, TimePoint::clock::now()), {}};
 
   const auto* wired =

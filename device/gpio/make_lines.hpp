@@ -20,7 +20,8 @@ struct Wiring {
 
 /// The hardware of the map: simulated, or its GPIO lines by libgpiod, with outputs at their initial levels. A
 /// map without lines needs neither. The error says chip, line and holder of each line that cannot be had, and
-/// the remedy; it may have several lines. `map` outlives the result.
-tl::expected<Wiring, std::string> make_lines(const Map& map, bool simulated, const Log& log);
+/// the remedy; it may have several lines. `map` and `log` outlive the
+/// result.
+tl::expected<Wiring, std::string> make_lines(const Map& map, bool simulated, Log& log);
 
 }  // namespace coupler::node

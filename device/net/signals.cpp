@@ -5,33 +5,32 @@
 #include <unistd.h>
 
 #include <cassert>
-#include <csignal>
 
 namespace coupler::node {
 namespace {
 
-sigset_t stopping() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
-  return set;
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
 }  // namespace
 
 Signals::Signals(Loop& loop) : loop_(loop) {
-  const sigset_t set = stopping();
-  ::sigprocmask(SIG_BLOCK, &set, nullptr);
+  sigemptyset(&stopping_);
+  sigaddset(&stopping_, SIGINT);
+  sigaddset(&stopping_, SIGTERM);
+  if (!is_ignored(SIGHUP)) sigaddset(&stopping_, SIGHUP);
+  ::sigprocmask(SIG_BLOCK, &stopping_, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
-  descriptor_ = Descriptor(::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC));
+  descriptor_ = Descriptor(::signalfd(-1, &stopping_, SFD_NONBLOCK | SFD_CLOEXEC));
   [[maybe_unused]] const bool watched = loop_.watch(descriptor_.get(), Interest::read, *this);
   assert(watched);
 }
 
 Signals::~Signals() {
   loop_.forget(descriptor_.get(), *this);
-  const sigset_t set = stopping();
-  ::sigprocmask(SIG_UNBLOCK, &set, nullptr);
+  ::sigprocmask(SIG_UNBLOCK, &stopping_, nullptr);
 }
 
 void Signals::ready(TimePoint) {

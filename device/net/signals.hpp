@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <csignal>
+
 #include "device/net/loop.hpp"
 
 namespace coupler::node {
 
-/// Turns SIGINT, SIGTERM and SIGHUP into a request to stop, which the loop sees in its own time; ignores
-/// SIGPIPE. To be made before any thread is started.
+/// Turns SIGINT, SIGTERM and SIGHUP into a request to stop, which the loop sees in its own time. A SIGHUP
+/// that is ignored at the start (nohup) stays ignored; SIGPIPE is. To be made before any thread is started.
 class Signals : public Watcher {
  public:
   explicit Signals(Loop& loop);
@@ -21,6 +23,7 @@ class Signals : public Watcher {
 
  private:
   Loop& loop_;
+  sigset_t stopping_{};
   Descriptor descriptor_;
   int stop_ = 0;
 };

@@ -46,9 +46,9 @@ bool concerns_the_client(int error) {
 
 }  // namespace
 
-TcpServer::TcpServer(Loop& loop, Listener listener, Server& server, Statistics& statistics, Log log,
+TcpServer::TcpServer(Loop& loop, Listener listener, Server& server, Statistics& statistics, Log& log,
                      std::size_t capacity)
-    : loop_(loop), listener_(std::move(listener)), statistics_(statistics), log_(std::move(log)) {
+    : loop_(loop), listener_(std::move(listener)), statistics_(statistics), log_(log) {
   for (std::size_t i = affordable(capacity); i > 0; --i) connections_.emplace_back(loop, server, statistics);
   [[maybe_unused]] const bool watched = loop_.watch(listener_.socket.get(), Interest::read, *this);
   assert(watched);
@@ -86,7 +86,8 @@ bool TcpServer::accept_one(TimePoint now) {
 /// The listener stays readable while it cannot accept; watching it would spin.
 void TcpServer::pause(int error) {
   if (!pause_logged_)
-    log_(fmt::format("cannot accept connections: {}; trying again until it works", std::strerror(error)));
+    log_.write(
+        fmt::format("cannot accept connections: {}; trying again until it works", std::strerror(error)));
   pause_logged_ = paused_ = true;
   loop_.change(listener_.socket.get(), Interest::nothing, *this);
 }

@@ -19,7 +19,7 @@ class TcpServer : public Watcher {
   static constexpr std::size_t max_connections = 256;
 
   /// `capacity` is lowered to what the limit of open files leaves.
-  TcpServer(Loop& loop, Listener listener, Server& server, Statistics& statistics, Log log,
+  TcpServer(Loop& loop, Listener listener, Server& server, Statistics& statistics, Log& log,
             std::size_t capacity = max_connections);
   TcpServer(const TcpServer&) = delete;
   TcpServer& operator=(const TcpServer&) = delete;
@@ -46,7 +46,7 @@ class TcpServer : public Watcher {
   Loop& loop_;
   Listener listener_;
   Statistics& statistics_;
-  Log log_;
+  Log& log_;
   std::deque<Connection> connections_;  ///< never grows after the start: addresses are stable
   bool paused_ = false;                 ///< out of descriptors or memory
   bool pause_logged_ = false;           ///< and nobody was let in since

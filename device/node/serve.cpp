@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <deque>
@@ -20,13 +22,16 @@ namespace {
 
 enum Exit : int { stopped = 0, map_is_wrong = 1, device_failed = 3 };
 
-void log(std::string_view line) { fmt::print(stderr, "coupler-node: {}\n", line); }
+class StderrLog : public Log {
+ public:
+  void write(std::string_view line) override { fmt::print(stderr, "coupler-node: {}\n", line); }
+};
 
 /// Logs each line of an error that may have several.
-int fail(Exit status, std::string_view errors) {
+int fail(Log& log, Exit status, std::string_view errors) {
   while (!errors.empty()) {
     const auto end = std::min(errors.find('\n'), errors.size());
-    log(fmt::format("error: {}", errors.substr(0, end)));
+    log.write(fmt::format("error: {}", errors.substr(0, end)));
     errors.remove_prefix(std::min(end + 1, errors.size()));
   }
   return status;
@@ -35,9 +40,9 @@ int fail(Exit status, std::string_view errors) {
 /// Takes edges from the kernel as they come; a line that is gone is not watched any more.
 class EdgeWatcher : public Watcher {
  public:
-  EdgeWatcher(Loop& loop, EventSource& source) : loop_(loop), source_(source) {
+  EdgeWatcher(Loop& loop, EventSource& source, Log& log) : loop_(loop), source_(source) {
     if (!loop_.watch(source_.descriptor(), Interest::read, *this))
-      log("an input's edges cannot be watched: no memory");
+      log.write(fmt::format("an input's edges are seen late, when it is read: {}", std::strerror(errno)));
   }
   EdgeWatcher(const EdgeWatcher&) = delete;
   EdgeWatcher& operator=(const EdgeWatcher&) = delete;
@@ -62,36 +67,37 @@ std::string greeting(const Map& map, const Options& options, const TcpServer& tc
                      fingerprint_text(map.fingerprint), tcp.name(), options.simulated ? ", simulated" : "");
 }
 
-/// Outputs first: the farewell must not delay them.
-void stop(Lines& lines, const Statistics& statistics, int signal) {
-  const bool safe = lines.drive_safe();
-  log(fmt::format(
+std::string farewell(int signal, bool safe, const Statistics& statistics) {
+  return fmt::format(
       "{}: {}; answered {} requests, {} of them with an exception", ::strsignal(signal),
       safe ? "outputs are in their safe state" : "not every output could be driven to its safe state",
-      statistics.requests, statistics.exceptions));
+      statistics.requests, statistics.exceptions);
 }
 
 }  // namespace
 
 int serve(const Map& map, const Options& options) {
-  if (const auto servable = check_servable(map); !servable) return fail(map_is_wrong, servable.error());
+  StderrLog log;
+  if (const auto servable = check_servable(map); !servable) return fail(log, map_is_wrong, servable.error());
 
   Loop loop;
-  if (!loop.is_open()) return fail(device_failed, std::strerror(errno));
+  if (!loop.is_open()) return fail(log, device_failed, std::strerror(errno));
   Signals signals(loop);
   // The network first: outputs are not touched by a program that then cannot serve them.
   auto listener = listen_on(address_for(options), options.port.value_or(map.connection.port));
-  if (!listener) return fail(device_failed, listener.error());
+  if (!listener) return fail(log, device_failed, listener.error());
   auto wiring = make_lines(map, options.simulated, log);
-  if (!wiring) return fail(device_failed, wiring.error());
+  if (!wiring) return fail(log, device_failed, wiring.error());
   std::deque<EdgeWatcher> watchers;
-  for (EventSource* source : wiring->events) watchers.emplace_back(loop, *source);
+  for (EventSource* source : wiring->events) watchers.emplace_back(loop, *source, log);
 
   Node node(map, *wiring->lines, TimePoint::clock::now());
   TcpServer tcp(loop, *std::move(listener), node.server(), node.statistics(), log);
-  log(greeting(map, options, tcp));
+  log.write(greeting(map, options, tcp));
   while (signals.stop() == 0) tcp.tick(loop.run_once(tcp.patience()));
-  stop(*wiring->lines, node.statistics(), signals.stop());
+
+  const bool safe = wiring->lines->drive_safe();
+  log.write(farewell(signals.stop(), safe, node.statistics()));
   return stopped;
 }
 

@@ -25,7 +25,7 @@ class Wirer {
     if (errors_.empty()) request_all();
   }
 
-  tl::expected<Wiring, std::string> finish(const Log& log) {
+  tl::expected<Wiring, std::string> finish(Log& log) {
     if (!errors_.empty()) return tl::unexpected(std::move(errors_));
     return Wiring{std::make_unique<GroupedLines>(std::move(outputs_), std::move(inputs_), log),
                   std::move(events_)};
@@ -99,6 +99,6 @@ class Wirer {
 
 }  // namespace
 
-tl::expected<Wiring, std::string> wire(const Map& map, const Log& log) { return Wirer(map).finish(log); }
+tl::expected<Wiring, std::string> wire(const Map& map, Log& log) { return Wirer(map).finish(log); }
 
 }  // namespace coupler::node::libgpiod1

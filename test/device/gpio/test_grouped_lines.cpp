@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "device/gpio/grouped_lines.hpp"
+#include "test/device/core/fake_log.hpp"
 
 namespace coupler::node {
 namespace {
@@ -65,14 +66,13 @@ class Grouped : public testing::Test {
         {std::make_unique<FakeOutputs>("chip1", second_), {1, 11}, {Safe::on, Safe::on}, second_.levels});
     std::vector<WiredInputs> inputs;
     inputs.push_back({std::make_unique<FakeInputs>(third_), {4, 6}});
-    return GroupedLines(std::move(outputs), std::move(inputs),
-                        [this](std::string_view line) { log_.emplace_back(line); });
+    return GroupedLines(std::move(outputs), std::move(inputs), log_);
   }
 
   Hardware first_{{0, 0, 1}};
   Hardware second_{{0, 0}};
   Hardware third_{{0, 1}};
-  std::vector<std::string> log_;
+  FakeLog log_;
   GroupedLines lines_ = make();
 };
 
@@ -124,12 +124,12 @@ TEST_F(Grouped, The_safe_state_holds_what_is_to_be_held_and_tries_every_chip) {
 TEST_F(Grouped, A_failure_is_logged_once_per_change_of_state) {
   second_.error = ENODEV;
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(lines_.drive(Range::of(1, 1), Levels{1}));
-  ASSERT_EQ(log_.size(), 1U);
-  EXPECT_THAT(log_[0], HasSubstr("chip1 failed: No such device"));
+  ASSERT_EQ(log_.lines.size(), 1U);
+  EXPECT_THAT(log_.lines[0], HasSubstr("chip1 failed: No such device"));
   second_.error = 0;
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(lines_.drive(Range::of(1, 1), Levels{1}));
-  ASSERT_EQ(log_.size(), 2U);
-  EXPECT_EQ(log_[1], "chip1 works again");
+  ASSERT_EQ(log_.lines.size(), 2U);
+  EXPECT_EQ(log_.lines[1], "chip1 works again");
 }
 
 }  // namespace

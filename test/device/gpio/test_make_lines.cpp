@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "device/gpio/make_lines.hpp"
+#include "test/device/core/fake_log.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::node {
@@ -11,23 +12,23 @@ namespace {
 using fakes::MapBuilder;
 using testing::HasSubstr;
 
-void no_log(std::string_view) {}
-
 TEST(MakeLines, A_map_without_lines_needs_no_hardware) {
+  FakeLog log;
   const auto map = MapBuilder().many(Table::coils, 0, 4).build();
-  EXPECT_TRUE(make_lines(map->map(), false, no_log).has_value());
+  EXPECT_TRUE(make_lines(map->map(), false, log).has_value());
 }
 
 TEST(MakeLines, A_chip_that_does_not_exist_is_named_with_its_point_and_the_simulation_does_without) {
+  FakeLog log;
   const auto map =
       MapBuilder()
           .add(Table::coils, "lamp", 0, codec::Type::BOOL, [](Point& p) { p.line.chip = "no-such-chip"; })
           .build();
-  const auto lines = make_lines(map->map(), false, no_log);
+  const auto lines = make_lines(map->map(), false, log);
   ASSERT_FALSE(lines.has_value());
   EXPECT_THAT(lines.error(), HasSubstr("point 'lamp'"));
   EXPECT_THAT(lines.error(), HasSubstr("--sim"));
-  EXPECT_TRUE(make_lines(map->map(), true, no_log).has_value());
+  EXPECT_TRUE(make_lines(map->map(), true, log).has_value());
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "device/core/server.hpp"
 #include "device/net/tcp_server.hpp"
+#include "test/device/core/fake_log.hpp"
 #include "test/device/core/node_under_test.hpp"
 
 namespace coupler::node {
@@ -107,8 +108,7 @@ struct TcpUnderTest {
                          .text(std::string(1000, 'x'))
                          .build()};
   Server server{1, node.handler, node.statistics};
-  std::vector<std::string> logged;
-  Log log = [this](std::string_view line) { logged.emplace_back(line); };
+  FakeLog log;
   Loop loop;
   TcpServer tcp;
 };

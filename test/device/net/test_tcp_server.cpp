@@ -94,8 +94,8 @@ TEST(Accepting, Without_descriptors_it_waits_says_so_once_and_goes_on_when_there
     node.tcp.tick(TimePoint::clock::now() + std::chrono::seconds(i));
   }
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &old), 0);
-  ASSERT_EQ(node.logged.size(), 1U);
-  EXPECT_THAT(node.logged[0], HasSubstr("cannot accept connections"));
+  ASSERT_EQ(node.log.lines.size(), 1U);
+  EXPECT_THAT(node.log.lines[0], HasSubstr("cannot accept connections"));
   EXPECT_EQ(node.tcp.size(), 1U);
 
   node.tcp.tick(TimePoint::clock::now() + std::chrono::seconds(10));

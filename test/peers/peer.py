@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the peer tests share: starting a node, and saying what was proved."""
+import contextlib
+import re
+import subprocess
+import sys
+import threading
+
+SKIPPED = 77
+
+
+def skip(reason):
+    print(f"skipped: {reason}")
+    sys.exit(SKIPPED)
+
+
+class Checks:
+    """Collects comparisons, so that one run tells everything."""
+
+    def __init__(self):
+        self.failed = 0
+        self.passed = 0
+
+    def equal(self, what, got, wanted):
+        if got == wanted:
+            self.passed += 1
+            return
+        self.failed += 1
+        print(f"FAILED: {what}: got {repr(got)[:500]}, wanted {repr(wanted)[:500]}")
+
+    def done(self, proved):
+        if self.failed:
+            print(f"FAILED: {self.failed} of {self.failed + self.passed} comparisons: {proved}")
+            sys.exit(1)
+        if not self.passed:
+            print(f"FAILED: nothing was compared: {proved}")
+            sys.exit(1)
+        print(f"ok: {proved} ({self.passed} comparisons)")
+
+
+@contextlib.contextmanager
+def running_node(command):
+    """Runs a node on a free loopback port; yields the port. It must end well on SIGTERM."""
+    node = subprocess.Popen(command + ["--listen", "127.0.0.1", "--port", "0"], stderr=subprocess.PIPE, text=True)
+    try:
+        said = []
+        port = None
+        for line in node.stderr:
+            said.append(line)
+            found = re.search(r"serving .* on 127\.0\.0\.1:(\d+)", line)
+            if found:
+                port = int(found.group(1))
+                break
+        if port is None:
+            print(f"FAILED: {' '.join(command)} did not start; it said:\n{''.join(said)}")
+            sys.exit(1)
+        reader = threading.Thread(target=lambda: said.extend(node.stderr), daemon=True)
+        reader.start()
+        yield port
+        node.terminate()
+        status = node.wait(timeout=20)
+        reader.join(timeout=20)
+        if status != 0:
+            print(f"FAILED: {' '.join(command)} ended with status {status}; it said:\n{''.join(said)}")
+            sys.exit(1)
+    finally:
+        if node.poll() is None:
+            node.kill()
+            node.wait()

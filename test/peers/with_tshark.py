@@ -1,0 +1,112 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""tshark captures a node that serves peers.yaml, and its Modbus dissector finds nothing malformed.
+
+    with_tshark.py NODE_COMMAND…
+"""
+import pathlib
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+import peer
+
+
+def words(function, *fields, rest=b""):
+    return struct.pack(f">B{len(fields)}H", function, *fields) + rest
+
+
+# Every function code of the node, good requests and such that are answered with an exception.
+REQUESTS = [
+    words(1, 0, 10), words(1, 20, 1), words(2, 0, 4), words(3, 0, 17), words(4, 0, 5), words(4, 0xFF00, 23),
+    words(5, 3, 0xFF00), words(5, 3, 0), words(6, 0, 0x1234),
+    words(15, 0, 10, rest=b"\x02\xcd\x01"), words(16, 0, 2, rest=b"\x04\x12\x34\x56\x78"),
+    b"\x14\x07\x06" + struct.pack(">HHH", 1, 0, 100),
+    b"\x14\x0e\x06" + struct.pack(">HHH", 1, 0, 10) + b"\x06" + struct.pack(">HHH", 1, 20, 30),
+    words(22, 0, 0xF2, 0x25), words(23, 0, 3, 1, 1, rest=b"\x02\x00\x07"),
+    words(1, 10, 1), words(2, 4, 1), words(3, 17, 1), words(4, 5, 1), words(5, 10, 0), words(6, 17, 0),
+    words(15, 9, 2, rest=b"\x01\x03"), words(16, 16, 2, rest=b"\x04\x00\x00\x00\x00"),
+    b"\x14\x07\x06" + struct.pack(">HHH", 9, 0, 1), words(22, 17, 0, 0), words(3, 0, 0), words(5, 0, 1),
+]
+
+
+def adu(transaction, pdu):
+    return struct.pack(">HHHB", transaction, 0, len(pdu) + 1, 1) + pdu
+
+
+def read_reply(stream):
+    header = stream.read(6)
+    return header + stream.read(struct.unpack(">H", header[4:])[0])
+
+
+def talk(port, first):
+    """Each request on its own, then all of them in one segment. Returns the transactions."""
+    transactions = list(range(first, first + 2 * len(REQUESTS)))
+    with socket.create_connection(("127.0.0.1", port), timeout=10) as client, client.makefile("rb") as stream:
+        adus = [adu(t, REQUESTS[i % len(REQUESTS)]) for i, t in enumerate(transactions)]
+        for request in adus[:len(REQUESTS)]:
+            client.sendall(request)
+            read_reply(stream)
+        client.sendall(b"".join(adus[len(REQUESTS):]))
+        for _ in REQUESTS:
+            read_reply(stream)
+    return transactions
+
+
+def capture(port, file, traffic):
+    """The traffic's result, captured in the file; skips if this user may not capture."""
+    tshark = subprocess.Popen(["tshark", "-q", "-i", "lo", "-f", f"tcp port {port}", "-w", str(file)],
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    try:
+        deadline = time.monotonic() + 30
+        # Its start is announced before it is true: poke until something is in the file.
+        while not file.exists() or file.stat().st_size < 1000:
+            if tshark.poll() is not None or time.monotonic() > deadline:
+                tshark.kill()
+                peer.skip(f"tshark cannot capture on lo: {tshark.stderr.read().strip().splitlines()[-1:]}")
+            talk(port, 1)
+            time.sleep(0.1)
+        result = traffic()
+        time.sleep(2)  # for what is still on its way through the capture's buffers
+        tshark.send_signal(signal.SIGINT)
+        tshark.wait(timeout=30)
+        return result
+    finally:
+        if tshark.poll() is None:
+            tshark.kill()
+
+
+def dissect(port, file, *options):
+    done = subprocess.run(["tshark", "-r", str(file), "-o", f"mbtcp.tcp.port:{port}", *options],
+                          capture_output=True, text=True, check=True)
+    return [line for line in done.stdout.splitlines() if line.strip()]
+
+
+def main():
+    if not shutil.which("tshark"):
+        peer.skip("tshark is missing; run scripts/install-packages test")
+    command = sys.argv[1:]
+    checks = peer.Checks()
+    with tempfile.TemporaryDirectory() as folder, peer.running_node(command) as port:
+        pathlib.Path(folder).chmod(0o755)
+        file = pathlib.Path(folder) / "node.pcapng"
+        transactions = capture(port, file, lambda: talk(port, 0x4000))
+        seen = {"request": [], "reply": []}
+        for line in dissect(port, file, "-Y", "modbus", "-T", "fields", "-e", "tcp.srcport", "-e", "mbtcp.trans_id"):
+            source, ids = line.split("\t")
+            kind = "reply" if int(source) == port else "request"
+            seen[kind] += [int(i, 0) for i in ids.split(",") if int(i, 0) >= 0x4000]
+        checks.equal("requests that were dissected", sorted(seen["request"]), transactions)
+        checks.equal("replies that were dissected", sorted(seen["reply"]), transactions)
+        checks.equal("malformed packets", dissect(port, file, "-Y", "_ws.malformed || _ws.expert.severity == error"), [])
+        checks.equal("packets that the dissector cannot place",
+                     dissect(port, file, "-Y", 'modbus && _ws.expert.message contains "classify"'), [])
+    checks.done(f"tshark dissects {2 * len(transactions)} packets of {pathlib.Path(command[0]).name}, none malformed")
+
+
+main()
