@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Clients that take more than their share, or leave without a word."""
+import contextlib
+import os
+import signal
+import socket
+import time
+
+import adu as modbus
+from attacks import TARGET, TARGET_REGISTERS, attack
+from attacks.framing import READ, is_answered
+from node import CONNECTIONS, LATE, PATIENCE
+
+MANY = 1000
+BURST = 10_000
+
+
+@contextlib.contextmanager
+def crowd(node, size):
+    """Connected clients, most of which the node will have closed."""
+    with contextlib.ExitStack() as stack:
+        yield [stack.enter_context(node.connect()) for _ in range(size)]
+
+
+@attack("a thousand clients connect and say nothing: a newcomer is served")
+def silent_crowd(node):
+    with crowd(node, MANY) as clients:
+        with node.connect() as newcomer:
+            is_answered(newcomer)
+        assert sum(not client.is_closed() for client in clients) <= CONNECTIONS
+
+
+@attack("a thousand clients ask once and stay: the longest idle make room")
+def idle_crowd(node):
+    with contextlib.ExitStack() as stack:
+        clients = [stack.enter_context(node.connect()) for _ in range(10)]
+        for _ in range(MANY):
+            clients.append(stack.enter_context(node.connect()))
+            is_answered(clients[-1])
+        assert all(client.is_closed() for client in clients[:10]), "the oldest are still connected"
+        is_answered(clients[-CONNECTIONS // 2])
+
+
+@attack("two thousand clients connect and close, in order or not")
+def storm(node):
+    for number in range(2 * MANY):
+        client = node.connect()
+        if number % 20:
+            client.reset()
+        else:
+            client.socket.close()  # leaves the port in TIME_WAIT: there are not many
+    with node.connect() as newcomer:
+        is_answered(newcomer)
+
+
+@attack("a client that has shut down its sending side gets its answers, then the end")
+def half_close(node):
+    with node.connect() as client:
+        client.send(modbus.adu(READ, transaction=1) + modbus.adu(READ, transaction=2))
+        client.shut_down_sending()
+        assert [client.receive_adu()[1] for _ in range(2)] == [1, 2]
+        client.expect_closed()
+    with node.connect() as client:
+        client.send(modbus.adu(READ)[:-1])
+        client.shut_down_sending()
+        client.expect_closed()
+
+
+@attack("a reset in mid-frame, at every byte, leaves nothing behind")
+def reset_in_mid_frame(node):
+    request = modbus.adu(READ)
+    for cut in range(len(request)):
+        for _ in range(20):
+            client = node.connect()
+            client.send(request[:cut])
+            client.reset()
+
+
+@attack("clients that reset while their answers are under way")
+def reset_before_the_answer(node):
+    burst = modbus.adu(modbus.read(3, TARGET, TARGET_REGISTERS)) * 50
+    for _ in range(200):
+        client = node.connect()
+        client.send(burst)
+        client.reset()
+
+
+@attack("ten thousand pipelined requests are all answered, in order")
+def burst(node):
+    with node.connect() as client:
+        answered = 0
+        for first in range(0, BURST, 500):
+            client.send(b"".join(modbus.adu(READ, transaction=n) for n in range(first, first + 500)))
+            for _ in range(500):
+                assert client.receive_adu()[:2] == answered.to_bytes(2, "big"), f"answer {answered} is another one's"
+                answered += 1
+
+
+@attack("ten thousand pipelined requests and nobody reads: the client is dropped in time")
+def never_reads(node):
+    before = node.descriptors()
+    request = modbus.adu(modbus.read(3, TARGET, TARGET_REGISTERS))
+    with node.connect(receive_buffer=4096) as client:
+        client.socket.setblocking(False)
+        data = request * BURST
+        with contextlib.suppress(BlockingIOError):
+            while data:
+                data = data[client.socket.send(data):]
+        node.expect_descriptors(before, PATIENCE + LATE)
+
+
+@attack("one byte every 300 ms: the frame has one deadline, and bytes do not extend it")
+def trickle(node):
+    with node.connect() as client:
+        request = modbus.adu(modbus.write_registers(TARGET, 50, b"\xBA" * 100))
+        end = time.monotonic() + PATIENCE + LATE
+        for byte in request:
+            client.send(bytes([byte]))
+            if client.is_closed():
+                return
+            assert time.monotonic() < end, "the frame may take longer than its deadline"
+            time.sleep(0.3)
+
+
+@attack("a header and then silence: the connection ends in time")
+def header_only(node):
+    with node.connect() as client, node.connect() as other:
+        client.send(modbus.adu(READ)[:7])
+        other.send(b"\x00")
+        client.expect_closed(PATIENCE + LATE)
+        other.expect_closed(LATE)
+
+
+@attack("a client stopped in mid-frame is dropped while it sleeps")
+def stopped_client(node):
+    before = node.descriptors()
+    child = os.fork()
+    if child == 0:
+        with socket.create_connection(("127.0.0.1", node.port)) as client:
+            client.sendall(modbus.adu(READ)[:9])
+            os.kill(os.getpid(), signal.SIGSTOP)
+        os._exit(0)
+    try:
+        os.waitpid(child, os.WUNTRACED)
+        node.expect_descriptors(before + 1)
+        node.expect_descriptors(before, PATIENCE + LATE)
+    finally:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
