@@ -1,28 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program of its own: it counts what the whole program takes from the heap.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "test/device/net/counting_heap.hpp"
 #include "test/device/net/tcp_under_test.hpp"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace coupler::node {
 namespace {
+
+using fakes::allocations;
 
 const std::vector<Pdu>& every_kind_of_request() {
   static const std::vector<Pdu> requests{
@@ -45,9 +30,9 @@ const std::vector<Pdu>& every_kind_of_request() {
 }
 
 TEST(Allocations, They_are_counted_here) {
-  const long before = allocations;
+  const long before = allocations();
   const Pdu something(100);
-  EXPECT_GT(allocations, before);
+  EXPECT_GT(allocations(), before);
 }
 
 TEST(Allocations, From_the_socket_to_the_reply_there_is_none) {
@@ -58,9 +43,9 @@ TEST(Allocations, From_the_socket_to_the_reply_there_is_none) {
     const Pdu bytes = adu(1, request);
     const std::uint32_t requests = node.node.statistics.requests;
     client.send(bytes);
-    const long before = allocations;
+    const long before = allocations();
     while (node.node.statistics.requests == requests) node.tcp.tick(node.loop.run_once(node.tcp.patience()));
-    EXPECT_EQ(allocations, before) << "function " << int{request[0]};
+    EXPECT_EQ(allocations(), before) << "function " << int{request[0]};
     client.received();
   }
 }
@@ -68,13 +53,13 @@ TEST(Allocations, From_the_socket_to_the_reply_there_is_none) {
 TEST(Allocations, Connecting_and_leaving_cost_none) {
   TcpUnderTest node;
   Client first(node.tcp.name());
-  const long before = allocations;
+  const long before = allocations();
   node.settle();
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(allocations(), before);
   first.vanish();
   node.settle();
   EXPECT_EQ(node.tcp.size(), 0U);
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(allocations(), before);
 }
 
 }  // namespace

@@ -85,6 +85,9 @@ TEST(Accepting, Without_descriptors_it_waits_says_so_once_and_goes_on_when_there
   TcpUnderTest node;
   Client first = node.connect();
   Client waiting(node.tcp.name());
+  // UBSan needs a descriptor the first time it sees a type called: let it see this one before there are none.
+  Log& log = node.log;
+  log.write("begins");
   rlimit old{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &old), 0);
   const rlimit none{3, old.rlim_max};
@@ -94,8 +97,8 @@ TEST(Accepting, Without_descriptors_it_waits_says_so_once_and_goes_on_when_there
     node.tcp.tick(TimePoint::clock::now() + std::chrono::seconds(i));
   }
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &old), 0);
-  ASSERT_EQ(node.log.lines.size(), 1U);
-  EXPECT_THAT(node.log.lines[0], HasSubstr("cannot accept connections"));
+  ASSERT_EQ(node.log.lines.size(), 2U);
+  EXPECT_THAT(node.log.lines[1], HasSubstr("cannot accept connections"));
   EXPECT_EQ(node.tcp.size(), 1U);
 
   node.tcp.tick(TimePoint::clock::now() + std::chrono::seconds(10));
