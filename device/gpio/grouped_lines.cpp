@@ -36,16 +36,14 @@ GroupedLines::GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredI
 
 bool GroupedLines::read(Range range, Span<std::uint16_t> levels, TimePoint now) {
   bool good = true;
-  for (auto& [wired, fault] : inputs_) {
-    if (!each_in(range, wired.addresses, [](auto, auto) {})) continue;
-    const auto got = Span<int>(scratch_).first(wired.addresses.size());
-    if (!fault.note(wired.group->read(got, now))) {
+  for (Input& input : inputs_) {
+    if (!each_in(range, input.wired.addresses, [](auto, auto) {})) continue;
+    const auto got = Span<int>(scratch_).first(input.wired.addresses.size());
+    if (input.fault.note(input.wired.group->read(got, now)))
+      each_in(range, input.wired.addresses,
+              [&](std::size_t line, std::size_t i) { levels[i] = got[line] != 0 ? 1 : 0; });
+    else
       good = false;
-      continue;
-    }
-    each_in(range, wired.addresses, [&, &at = got](std::size_t line, std::size_t i) {
-      levels[i] = static_cast<std::uint16_t>(at[line]);
-    });
   }
   return good;
 }
