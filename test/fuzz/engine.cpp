@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// The node's whole engine on a stream of bytes: frames, requests, replies. The input is what a client sends.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "device/core/server.hpp"
+#include "test/device/core/node_under_test.hpp"
+#include "test/fakes/map_builder.hpp"
+#include "test/fuzz/require.hpp"
+
+namespace coupler::fuzz {
+namespace {
+
+using modbus::Bytes;
+using modbus::Function;
+
+constexpr std::uint16_t broken_line = 7;
+
+/// Hardware of which one output and one input are broken.
+class PartlyBrokenLines : public node::Lines {
+ public:
+  bool read(modbus::Range inputs, Span<std::uint16_t> levels, node::TimePoint) override {
+    if (inputs.contains(broken_line)) return false;
+    if (inputs.contains(0)) levels[0] = 1;
+    return true;
+  }
+  bool drive(modbus::Range coils, Span<const std::uint16_t>) override { return !coils.contains(broken_line); }
+  bool drive_safe() override { return true; }
+};
+
+/// Points of every table, a hole, something that must not be written, and a text of more than one file.
+MapPtr make_map() {
+  return fakes::MapBuilder()
+      .many(Table::coils, 0, 20)
+      .many(Table::coils, 65530, 6)
+      .many(Table::discrete_inputs, 0, 20)
+      .many(Table::input_registers, 0, 10)
+      .many(Table::holding_registers, 0, 130)
+      .add(Table::holding_registers, "constant", 140, codec::Type::DWORD,
+           [](Point& point) { point.access = Access::read; })
+      .text(std::string(20'001, 'x'))
+      .build();
+}
+
+/// A reply ADU is what the specification allows for its request.
+void check_reply(const modbus::Frame& request, Bytes adu) {
+  require(adu.size() >= modbus::mbap_size + 2 && adu.size() <= modbus::max_adu_size,
+          "a reply has 9 … 260 bytes");
+  require(modbus::get_u16(&adu[0]) == request.transaction, "the transaction id is the request's");
+  require(modbus::get_u16(&adu[2]) == 0, "the protocol id is 0");
+  require(modbus::get_u16(&adu[4]) == adu.size() - 6, "the length counts what follows it");
+  require(adu[6] == request.unit, "the unit id is the request's");
+
+  const Bytes pdu = adu.from(modbus::mbap_size);
+  if (pdu[0] >= modbus::exception_bit) {
+    require((pdu[0] | modbus::exception_bit) == (request.pdu[0] | modbus::exception_bit),
+            "the function is the request's");
+    require(pdu.size() == 2 && pdu[1] >= 1 && pdu[1] <= 4, "an exception is 01, 02, 03 or 04");
+    return;
+  }
+  require(pdu[0] == request.pdu[0], "the function is the request's");
+  switch (static_cast<Function>(pdu[0])) {
+    case Function::read_coils:
+    case Function::read_discrete_inputs:
+      require(pdu[1] == (modbus::get_u16(&request.pdu[3]) + 7) / 8, "as many bits as were asked for");
+      [[fallthrough]];
+    case Function::read_file_record:
+      require(pdu.size() == std::size_t{2} + pdu[1], "the byte count is right");
+      break;
+    case Function::read_holding_registers:
+    case Function::read_input_registers:
+    case Function::read_write_multiple_registers:
+      require(pdu[1] == 2 * modbus::get_u16(&request.pdu[3]), "as many registers as were asked for");
+      require(pdu.size() == std::size_t{2} + pdu[1], "the byte count is right");
+      break;
+    case Function::write_multiple_coils:
+    case Function::write_multiple_registers:
+      require(std::equal(pdu.begin(), pdu.end(), request.pdu.begin(), request.pdu.begin() + 5),
+              "a write is acknowledged with its address and quantity");
+      break;
+    case Function::write_single_coil:
+    case Function::write_single_register:
+    case Function::mask_write_register:
+      require(std::equal(pdu.begin(), pdu.end(), request.pdu.begin(), request.pdu.end()),
+              "a write is acknowledged with the request");
+      break;
+  }
+}
+
+/// A node that lives for one stream.
+class Engine {
+ public:
+  explicit Engine(const Map& map)
+      : memory_(map),
+        handler_(map, memory_.image, lines_, statistics_),
+        server_(map.connection.unit, handler_, statistics_) {}
+
+  /// Receives the stream in pieces of at most `piece` bytes, as the network may cut it, until it is at an end
+  /// or no stream of frames any more.
+  void receive(Bytes stream, std::size_t piece) {
+    while (!stream.empty()) {
+      const auto room = framer_.room();
+      require(!room.empty(), "there is room for the rest of a frame");
+      const std::size_t size = std::min({room.size(), stream.size(), piece});
+      std::copy_n(stream.begin(), size, room.begin());
+      framer_.filled(size);
+      stream = stream.from(size);
+      for (;;) {
+        const auto outcome = framer_.next();
+        if (outcome == modbus::Framer::Outcome::bad) return;
+        if (outcome == modbus::Framer::Outcome::nothing) break;
+        answer(framer_.frame());
+      }
+    }
+  }
+
+  const std::vector<std::uint8_t>& sent() const { return sent_; }
+  const std::vector<std::uint16_t>& cells() const { return memory_.cells; }
+
+ private:
+  void answer(const modbus::Frame& request) {
+    require(!request.pdu.empty() && request.pdu.size() <= modbus::max_pdu_size, "a PDU has 1 … 253 bytes");
+    const std::vector<std::uint16_t> before = memory_.cells;
+    std::array<std::uint8_t, modbus::max_adu_size> adu{};
+    const std::size_t size = server_.answer(request, {}, adu);
+    if (size == 0) {
+      require(request.unit >= 2 && request.unit <= 254, "only other units get silence");
+    } else {
+      check_reply(request, Bytes(adu.data(), size));
+    }
+    if (size == 0 || adu[modbus::mbap_size] >= modbus::exception_bit)
+      require(memory_.cells == before, "what is not done leaves no trace");
+    sent_.insert(sent_.end(), adu.begin(), adu.begin() + size);
+  }
+
+  node::OwnedImage memory_;
+  PartlyBrokenLines lines_;
+  node::Statistics statistics_;
+  node::Handler handler_;
+  node::Server server_;
+  modbus::Framer framer_;
+  std::vector<std::uint8_t> sent_;
+};
+
+}  // namespace
+}  // namespace coupler::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace coupler;
+  static const MapPtr map = fuzz::make_map();
+  const modbus::Bytes stream(data, size);
+  fuzz::Engine at_once(map->map());
+  at_once.receive(stream, size);
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{11}}) {
+    fuzz::Engine in_pieces(map->map());
+    in_pieces.receive(stream, piece);
+    fuzz::require(in_pieces.sent() == at_once.sent() && in_pieces.cells() == at_once.cells(),
+                  "how the network cuts the stream makes no difference");
+  }
+  return 0;
+}

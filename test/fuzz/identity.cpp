@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a driver believes of a device that claims to be a node. The input is the device's answers: the
+// identity area, then replies to FC 20, each a byte with its size (255: a right reply around the bytes that
+// follow) and its PDU.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/map/identity.hpp"
+#include "common/modbus/file_record.hpp"
+#include "host/core/node_map.hpp"
+#include "test/fuzz/require.hpp"
+
+namespace coupler::fuzz {
+namespace {
+
+using driver::Result;
+using modbus::Bytes;
+
+/// A device that answers with the input, and is gone when that ends.
+class Impostor : public driver::Transport {
+ public:
+  explicit Impostor(Bytes answers) : answers_(answers) {}
+
+  Result<> read_registers(Table, modbus::Range range, std::uint16_t* registers) override {
+    const Bytes bytes = take(2 * range.count());
+    for (std::size_t i = 0; i < bytes.size() / 2; ++i) registers[i] = modbus::get_u16(&bytes[2 * i]);
+    return done();
+  }
+
+  Result<> read_file_record(std::uint16_t file, std::uint16_t record,
+                            Span<std::uint16_t> registers) override {
+    require(file > 0 && !registers.empty() && registers.size() <= modbus::max_file_registers &&
+                record + registers.size() <= modbus::records_per_file,
+            "the driver asks for records that a file can have");
+    const Bytes size = take(1);
+    if (size.empty()) return driver::fail(driver::NotConnected{});
+    const bool right = size[0] == 255;
+    const Bytes reply = right ? reply_around(take(2 * registers.size()), registers.size()) : take(size[0]);
+    const auto parsed = modbus::parse_file_reply(reply, registers);
+    require(parsed || !right, "a right reply is taken");
+    if (parsed) return done();
+    if (parsed.error().exception) return driver::fail(driver::ExceptionReply{*parsed.error().exception});
+    return driver::fail(driver::BadFrame{});
+  }
+
+  Result<> connect() override { return {}; }
+  void close() override {}
+  void interrupt() override {}
+  Result<> read_bits(Table, modbus::Range, std::uint8_t*) override { return unexpected(); }
+  Result<> write_coil(std::uint16_t, bool) override { return unexpected(); }
+  Result<> write_register(std::uint16_t, std::uint16_t) override { return unexpected(); }
+  Result<> write_coils(std::uint16_t, Span<const std::uint8_t>) override { return unexpected(); }
+  Result<> write_registers(std::uint16_t, Span<const std::uint16_t>) override { return unexpected(); }
+  Result<> mask_write(std::uint16_t, std::uint16_t, std::uint16_t) override { return unexpected(); }
+
+ private:
+  /// At most so many of the bytes that are left.
+  Bytes take(std::size_t size) {
+    const Bytes taken = answers_.first(std::min(size, answers_.size()));
+    answers_ = answers_.from(taken.size());
+    return taken;
+  }
+
+  Bytes reply_around(Bytes data, std::size_t registers) {
+    modbus::FileReply reply(pdu_);
+    const auto place = reply.add(static_cast<std::uint16_t>(registers));
+    std::fill(std::copy(data.begin(), data.end(), place.begin()), place.end(), std::uint8_t{0});
+    return Bytes(pdu_.data(), reply.size());
+  }
+
+  Result<> done() const {
+    if (answers_.empty()) return driver::fail(driver::NotConnected{});
+    return {};
+  }
+  static Result<> unexpected() {
+    require(false, "the driver only reads the area and the file");
+    return {};
+  }
+
+  Bytes answers_;
+  std::array<std::uint8_t, modbus::max_pdu_size> pdu_{};
+};
+
+void check_head(const identity::Head& head) {
+  std::array<std::uint16_t, identity::head_size> area{};
+  identity::write_head(head, area.data());
+  const auto again = identity::read_head(area);
+  require(again && again->fingerprint == head.fingerprint && again->map_size == head.map_size &&
+              again->map_crc == head.map_crc,
+          "what is read is what is written");
+}
+
+}  // namespace
+}  // namespace coupler::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace coupler;
+  fuzz::Impostor device(modbus::Bytes(data, size));
+  const auto head = driver::read_identity(device);
+  if (!head || !*head) return 0;
+  fuzz::check_head(**head);
+  const auto text = driver::fetch_map_text(device, (*head)->map_size);
+  fuzz::require(!text || text->size() == (*head)->map_size, "the text is as long as the device said");
+  return 0;
+}
