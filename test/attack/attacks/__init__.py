@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The attack list of a node. An attack is a function of the node; its name says what must hold, it raises AssertionError
-when it does not. What holds for every attack (the bystander, memory, descriptors) is run's business."""
+"""The attack list of a node. An attack is a function of the node; its name says what must hold, and it raises
+AssertionError when that does not. What holds for every attack (bystander, memory, descriptors) is run's business."""
 ATTACKS = []
 
 

@@ -91,7 +91,8 @@ def wrong_sizes(node):
 def unknown_functions(node):
     half_offered = (8, 43)  # some of their sub-functions may be
     unknown = [code for code in range(128) if code not in OFFERED and code not in half_offered]
-    are_refused(node, ILLEGAL_FUNCTION, [bytes([code]) + data for code in unknown for data in (b"", bytes(4), bytes(252))])
+    for data in (b"", bytes(4), bytes(252)):
+        are_refused(node, ILLEGAL_FUNCTION, [bytes([code]) + data for code in unknown])
     are_refused(node, ILLEGAL_FUNCTION, [modbus.pdu(8, 0x00FF, 0), bytes([43, 0x0F, 1, 0])])
 
 
