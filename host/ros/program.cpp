@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 
 #include <fmt/format.h>
 
@@ -38,6 +39,7 @@ std::string node_name(std::string_view map_name) {
 /// The name is overridden by `__name`. ROS takes SIGINT.
 void init_ros(int argc, char** argv, const std::string& name) {
   ros::init(argc, argv, name);
+  ros::start();  // here, or else the end of the first NodeHandle ends ROS
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
 }
 
@@ -63,6 +65,7 @@ int run(const Map& map, Verify verify) {
 }  // namespace
 
 int main_with(const Map* built_in, int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // ROS_INFO is to be seen in a pipe and in the journal too
   end_at_once_on_signals();
   const Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
   if (arguments.exit_code) {

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/ros/arguments.hpp"
+
+#include <gmock/gmock.h>
+
+namespace coupler::driver {
+namespace {
+
+using testing::HasSubstr;
+
+Arguments parse(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "coupler_driver");
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  return parse_arguments(pointers);
+}
+
+TEST(Arguments, Both_spellings_mean_the_same) {
+  EXPECT_EQ(parse({"_map:=a.yaml"}).settings.map, "a.yaml");
+  EXPECT_EQ(parse({"--map", "a.yaml"}).settings.map, "a.yaml");
+  EXPECT_EQ(parse({"--map=a.yaml"}).settings.map, "a.yaml");
+}
+
+TEST(Arguments, The_origins_name_of_the_map_is_understood) {
+  EXPECT_EQ(parse({"_mapping:=a.yaml"}).settings.map, "a.yaml");
+  EXPECT_EQ(parse({"--mapping", "a.yaml"}).settings.map, "a.yaml");
+}
+
+TEST(Arguments, Each_setting_is_read) {
+  const Settings s = parse({"_name:=arm", "_address:=::1", "_port:=1502", "_unit:=255", "_rate:=12.5",
+                            "_timeout:=0.5", "_verify:=warn"})
+                         .settings;
+  EXPECT_EQ(s.name, "arm");
+  EXPECT_EQ(s.address, "::1");
+  EXPECT_EQ(s.port, 1502);
+  EXPECT_EQ(s.unit, 255);
+  EXPECT_EQ(s.rate, 12.5);
+  EXPECT_EQ(s.timeout, std::chrono::milliseconds(500));
+  EXPECT_EQ(s.verify, Verify::warn);
+}
+
+TEST(Arguments, What_is_ROSs_own_is_passed_over) {
+  const Arguments result = parse({"__log:=/tmp/log", "arm/lamp:=lamp", "__name:=arm_io"});
+  EXPECT_FALSE(result.exit_code);
+  EXPECT_TRUE(result.names_the_node);
+  EXPECT_FALSE(parse({"_name:=arm"}).names_the_node);
+}
+
+TEST(Arguments, An_unknown_one_is_a_wrong_call) {
+  for (const char* argument : {"--speed=1", "_speed:=1", "map.yaml"}) {
+    const Arguments result = parse({argument});
+    EXPECT_EQ(result.exit_code, 2) << argument;
+    EXPECT_THAT(result.text, HasSubstr("not expected")) << argument;
+  }
+}
+
+TEST(Arguments, A_value_out_of_range_is_a_wrong_call) {
+  for (const char* argument :
+       {"_port:=0", "_port:=65536", "_unit:=256", "_unit:=-1", "_unit:=1.5", "_rate:=0", "_rate:=nan",
+        "_rate:=", "_timeout:=0", "_timeout:=3s", "_verify:=yes", "_map:="})
+    EXPECT_EQ(parse({argument}).exit_code, 2) << argument;
+}
+
+TEST(Arguments, Help_ends_with_0_and_has_an_example) {
+  const Arguments result = parse({"--help"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.text, HasSubstr("coupler_driver _map:=device.yaml"));
+}
+
+TEST(Settings, The_stronger_side_wins_where_it_says_something) {
+  Settings parameters;
+  parameters.port = 1;
+  parameters.rate = 5;
+  Settings arguments;
+  arguments.port = 2;
+  const Settings both = overlay(parameters, arguments);
+  EXPECT_EQ(both.port, 2);
+  EXPECT_EQ(both.rate, 5);
+}
+
+TEST(Settings, What_is_not_set_stays_as_the_map_has_it) {
+  Map map;
+  map.name = "device";
+  map.connection.port = 1502;
+  Settings settings;
+  settings.unit = 9;
+  apply(settings, map);
+  EXPECT_EQ(map.name, "device");
+  EXPECT_EQ(map.connection.port, 1502);
+  EXPECT_EQ(map.connection.unit, 9);
+}
+
+}  // namespace
+}  // namespace coupler::driver

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The two sides are proven equal at connect: the driver against coupler-node."""
+import re
+import time
+import unittest
+
+from std_msgs.msg import Bool, UInt16
+
+from support import process, testing
+from support.peer import free_port
+
+MAP = """
+name: press
+address: 127.0.0.1
+rate: 20
+mapping:
+  coils:
+    clamp: 4
+    lamp: {lamp}
+  discrete_inputs: {{closed: 9}}
+  holding_registers:
+    speed: {{address: 7, type: {speed}}}
+"""
+FINGERPRINT = re.compile(r"fingerprint ([0-9a-f]{16}) here, ([0-9a-f]{16}) in the device")
+
+
+def press(lamp=5, speed="UINT"):
+    return MAP.format(lamp=lamp, speed=speed)
+
+
+@unittest.skipUnless(process.has_node(), "coupler-node was not built")
+class Identity(testing.RosTest):
+    def start_node(self, text):
+        port = free_port()
+        node = process.Node(process.write_map(text), port)
+        self.addCleanup(node.kill)
+        return port
+
+    def assert_works(self, driver):
+        driver.wait_for("connected")
+        self.topic("/press/speed", UInt16).wait_for(lambda value: value == 0)
+        self.publisher("/press/speed/write", UInt16).publish(4711)
+        self.topic("/press/speed", UInt16).wait_for(lambda value: value == 4711)
+
+    def test_equal_maps_are_quiet(self):
+        port = self.start_node(press())
+        driver = self.driver(f"_map:={process.write_map(press())}", f"_port:={port}")
+        self.assert_works(driver)
+        self.assertNotIn("differs", driver.output)
+        self.assertNotIn("more points", driver.output)
+
+    def test_a_map_changed_on_one_side_is_refused_with_both_fingerprints_and_the_points_that_differ(self):
+        port = self.start_node(press())
+        driver = self.driver(f"_map:={process.write_map(press(lamp=6, speed='INT'))}", f"_port:={port}")
+        clamp = self.topic("/press/clamp", Bool)
+        driver.wait_for("Nothing is read or written")
+        driver.wait_for("the device's map is another one")
+        fingerprints = FINGERPRINT.search(driver.output)
+        self.assertTrue(fingerprints, driver.output)
+        self.assertNotEqual(*fingerprints.groups())
+        self.assertIn("~ lamp: address 6 -> 5", driver.output)
+        self.assertIn("~ speed: type INT -> UINT", driver.output)
+        self.assertNotRegex(driver.output, r"[~+-] (clamp|closed):")
+        self.publisher("/press/clamp/write", Bool).publish(True)
+        driver.wait_for("write to clamp dropped")
+        time.sleep(0.5)
+        self.assertEqual(clamp.values, [])
+
+    def test_with_warn_the_difference_is_reported_and_the_driver_goes_on(self):
+        port = self.start_node(press())
+        driver = self.driver(f"_map:={process.write_map(press(lamp=6))}", f"_port:={port}", "_verify:=warn")
+        self.assert_works(driver)
+        self.assertIn("~ lamp: address 6 -> 5", driver.output)
+
+    def test_with_off_the_driver_does_not_ask(self):
+        port = self.start_node(press())
+        driver = self.driver(f"_map:={process.write_map(press(lamp=6))}", f"_port:={port}", "_verify:=off")
+        self.assert_works(driver)
+        self.assertNotIn("fingerprint", driver.output)
+
+    def test_a_driver_that_knows_an_unchanged_subset_goes_on(self):
+        port = self.start_node(press())
+        subset = "name: press\naddress: 127.0.0.1\nmapping:\n  holding_registers: {speed: {address: 7, type: UINT}}\n"
+        driver = self.driver(f"_map:={process.write_map(subset)}", f"_port:={port}")
+        self.assert_works(driver)
+        self.assertIn("the device has more points", driver.output)
+
+    def test_a_driver_without_a_map_gets_the_nodes(self):
+        port = self.start_node(press() + "# " + "long enough for several requests " * 100 + "\n")
+        driver = self.driver("_address:=127.0.0.1", f"_port:={port}")
+        self.assert_works(driver)
+
+    def test_a_driver_without_a_map_waits_for_the_node(self):
+        port = free_port()
+        driver = self.driver("_address:=127.0.0.1", f"_port:={port}")
+        driver.wait_for("waiting for the map of 127.0.0.1")
+        node = process.Node(process.write_map(press()), port)
+        self.addCleanup(node.kill)
+        self.assert_works(driver)
+
+
+if __name__ == "__main__":
+    testing.main()

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the driver's settings come from, in the origin's spellings too, and what it says of wrong ones."""
+
+import rospy
+from std_msgs.msg import Int16
+
+from support import process, testing
+from support.peer import Peer, free_port
+
+MAP = """
+name: settings
+address: {address}
+port: {port}
+mapping:
+  holding_registers: {{level: {{address: 4, type: INT}}}}
+"""
+
+
+class Settings(testing.RosTest):
+    def setUp(self):
+        self.peer = Peer().start()
+        self.addCleanup(self.peer.stop)
+        self.peer.set("holding_registers", 4, [33])
+
+    def map(self, address="127.0.0.1", port=None):
+        return process.write_map(MAP.format(address=address, port=port or self.peer.port))
+
+    def assert_drives(self, *arguments, name="settings"):
+        with process.Driver(*arguments) as driver:
+            driver.wait_for("connected")
+            self.assertEqual(self.topic(f"/{name}/level", Int16).next(), 33)
+
+    def test_the_map_is_enough(self):
+        self.assert_drives(f"_map:={self.map()}")
+
+    def test_each_spelling_of_the_map_is_understood(self):
+        for arguments in ([f"_mapping:={self.map()}"], ["--map", self.map()], ["--mapping", self.map()],
+                          [f"--map={self.map()}"]):
+            with self.subTest(arguments):
+                self.assert_drives(*arguments)
+
+    def test_a_parameter_overrides_the_map_and_an_argument_the_parameter(self):
+        path = self.map(port=free_port())
+        rospy.set_param("/settings_driver/port", self.peer.port)
+        self.addCleanup(rospy.delete_param, "/settings_driver/port")
+        self.assert_drives(f"_map:={path}")
+        rospy.set_param("/settings_driver/port", free_port())
+        self.assert_drives(f"_map:={path}", "--port", self.peer.port)
+
+    def test_a_node_that_was_given_its_name_finds_its_map_in_its_parameters(self):
+        rospy.set_param("/arm_io", {"map": self.map(), "rate": 50})
+        self.addCleanup(rospy.delete_param, "/arm_io")
+        self.assert_drives("__name:=arm_io")
+
+    def test_the_name_is_the_topics_namespace_and_the_nodes_name(self):
+        with process.Driver(f"_map:={self.map()}", "_name:=other") as driver:
+            driver.wait_for("connected")
+            self.assertEqual(self.topic("/other/level", Int16).next(), 33)
+            import rosnode  # pylint: disable=import-outside-toplevel
+            self.assertIn("/other_driver", rosnode.get_node_names())
+
+    def test_topics_can_be_remapped_and_are_relative(self):
+        with process.Driver(f"_map:={self.map()}", "settings/level:=height", "__ns:=/cell") as driver:
+            driver.wait_for("connected")
+            self.assertEqual(self.topic("/cell/height", Int16).next(), 33)
+
+    def assert_ends(self, code, text, *arguments):
+        driver = process.Driver(*arguments)
+        self.assertEqual(driver.wait(), code, driver.output)
+        self.assertIn(text, driver.output)
+
+    def test_a_wrong_call_ends_with_2_and_says_why(self):
+        self.assert_ends(2, "no map; give one by _map:=MAP")
+        self.assert_ends(2, "--speed", "_speed:=5")
+        self.assert_ends(2, "--speed", "--speed", 5)
+        self.assert_ends(2, "rate: 'fast' is not a rate", f"_map:={self.map()}", "_rate:=fast")
+        self.assert_ends(2, "port: '70000' is not a whole number from 1 to 65535", "_port:=70000")
+        self.assert_ends(2, "verify: 'maybe' is not require, warn or off", "_verify:=maybe")
+
+    def test_a_wrong_map_ends_with_1_and_says_where(self):
+        path = process.write_map("name: broken\nmapping:\n  coils: {a: 70000}\n")
+        self.assert_ends(1, f"{path}:3:", f"_map:={path}", "_address:=localhost")
+        self.assert_ends(1, "/nowhere.yaml", "_map:=/nowhere.yaml")
+        path = process.write_map("name: homeless\nmapping:\n  coils: {a: 7}\n")
+        self.assert_ends(1, "the map has no address; add 'address: HOST' or give _address:=HOST", f"_map:={path}")
+
+    def test_help_needs_no_master_and_has_examples(self):
+        self.assert_ends(0, "coupler_driver _map:=device.yaml", "--help")
+
+    def test_an_address_that_serves_no_map_is_a_foreign_coupler(self):
+        self.assert_ends(1, "serves no map", "_address:=127.0.0.1", f"_port:={self.peer.port}")
+
+
+if __name__ == "__main__":
+    testing.main()

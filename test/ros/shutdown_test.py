@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""SIGINT ends the driver with 0, soon, whatever it is doing."""
+import os
+import socket
+import time
+import unittest
+
+from support import process, testing
+from support.peer import Peer, free_port
+
+MAP = """
+name: shutdown
+address: 127.0.0.1
+timeout: 60
+mapping:
+  coils: {lamp: 3}
+"""
+
+# A driver needs a tenth of a second; the bound is for machines under load and sanitizers.
+SOON = 10
+
+
+class Shutdown(unittest.TestCase):
+    def setUp(self):
+        self.map = process.write_map(MAP)
+
+    def assert_ends_soon(self, driver):
+        begin = time.monotonic()
+        self.assertEqual(driver.interrupt(), 0, driver.output)
+        self.assertLess(time.monotonic() - begin, SOON)
+
+    def test_while_polling(self):
+        with Peer() as peer, process.Driver(f"_map:={self.map}", f"_port:={peer.port}") as driver:
+            driver.wait_for("connected")
+            self.assert_ends_soon(driver)
+
+    def test_while_nobody_is_there(self):
+        with process.Driver(f"_map:={self.map}", f"_port:={free_port()}") as driver:
+            driver.wait_for("Connection refused")
+            self.assert_ends_soon(driver)
+
+    def test_while_a_device_that_accepts_does_not_answer(self):
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            with process.Driver(f"_map:={self.map}", f"_port:={silent.getsockname()[1]}") as driver:
+                connection, _ = silent.accept()
+                with connection:
+                    connection.recv(12)
+                    self.assert_ends_soon(driver)
+
+    def test_while_it_waits_for_a_nodes_map(self):
+        with process.Driver("_address:=127.0.0.1", f"_port:={free_port()}") as driver:
+            driver.wait_for("waiting for the map of 127.0.0.1")
+            self.assert_ends_soon(driver)
+
+    def test_while_there_is_no_master(self):
+        master = os.environ["ROS_MASTER_URI"]
+        os.environ["ROS_MASTER_URI"] = f"http://localhost:{free_port()}"
+        try:
+            with process.Driver(f"_map:={self.map}") as driver:
+                driver.wait_for("Failed to contact master")
+                self.assert_ends_soon(driver)
+        finally:
+            os.environ["ROS_MASTER_URI"] = master
+
+
+if __name__ == "__main__":
+    testing.main()

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The programs under test, as child processes that end with the test."""
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+
+BUILD = pathlib.Path(os.environ["COUPLER_BUILD_DIR"])
+
+
+class Process:
+    """A program of the build, and everything it prints."""
+
+    def __init__(self, name, *arguments):
+        self._lines = []
+        self._child = subprocess.Popen(
+            [str(BUILD / "bin" / name), *map(str, arguments)],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self):
+        for line in self._child.stdout:
+            self._lines.append(line)
+
+    @property
+    def output(self):
+        return "".join(self._lines)
+
+    @property
+    def running(self):
+        return self._child.poll() is None
+
+    def wait_for(self, text, seconds=30):
+        """Until the program has printed the text."""
+        end = time.monotonic() + seconds
+        while text not in self.output:
+            if time.monotonic() > end or not (self.running or self._reader.is_alive()):
+                raise AssertionError(f"'{text}' was not printed, but:\n{self.output}")
+            time.sleep(0.02)
+
+    def wait(self, seconds=30):
+        """The exit code, once the program ends by itself."""
+        code = self._child.wait(seconds)
+        self._reader.join(5)
+        return code
+
+    def interrupt(self, seconds=30):
+        """SIGINT; the exit code."""
+        if self.running:
+            self._child.send_signal(signal.SIGINT)
+        return self.wait(seconds)
+
+    def kill(self):
+        if self.running:
+            self._child.kill()
+        self.wait()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *_):
+        if kind is not None:
+            print(f"---- {self._child.args}\n{self.output}----")
+        try:
+            self.interrupt()
+        except subprocess.TimeoutExpired:
+            self.kill()
+            raise
+
+
+class Driver(Process):
+    def __init__(self, *arguments):
+        super().__init__("coupler_driver", *arguments)
+
+
+class Node(Process):
+    """coupler-node on the simulated chip."""
+
+    def __init__(self, map_path, port):
+        super().__init__("coupler-node", map_path, "--sim", "--listen", "127.0.0.1", "--port", port)
+
+
+def has_node():
+    return (BUILD / "bin" / "coupler-node").exists()
+
+
+def write_map(text, suffix=".yaml"):
+    """A map file for the time of the test's run; its path."""
+    folder = os.environ["ROS_HOME"]
+    with tempfile.NamedTemporaryFile("w", suffix=suffix, dir=folder, delete=False) as file:
+        file.write(text)
+    return file.name

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+import sys
+import unittest
+
+import rospy
+
+from support.process import Driver
+from support.topics import Topic, connected_publishers
+
+
+class RosTest(unittest.TestCase):
+    """What a test starts, listens to or publishes ends with it: a publisher that stayed would count a driver that is
+    gone as its subscriber."""
+
+    def topic(self, name, kind):
+        topic = Topic(name, kind)
+        self.addCleanup(topic.close)
+        return topic
+
+    def publisher(self, name, kind):
+        return self.publishers({name: kind})[0]
+
+    def publishers(self, kinds):
+        publishers = connected_publishers(kinds)
+        for publisher in publishers:
+            self.addCleanup(publisher.unregister)
+        return publishers
+
+    def driver(self, *arguments):
+        driver = Driver(*arguments)
+        self.addCleanup(driver.interrupt)
+        return driver
+
+
+def main():
+    """Runs the tests of the calling file as a ROS node. Exit code 77: all of them were skipped."""
+    rospy.init_node("test", anonymous=True, disable_signals=True)
+    result = unittest.main(exit=False, verbosity=2, warnings="ignore").result
+    if not result.wasSuccessful():
+        sys.exit(1)
+    if result.testsRun and len(result.skipped) == result.testsRun:
+        print(f"skipped: {result.skipped[0][1]}")
+        sys.exit(77)
