@@ -31,6 +31,32 @@ class PartlyBrokenLines : public node::Lines {
   bool drive_safe() override { return true; }
 };
 
+/// No two registers of it are the same: the number of each, and an odd byte at the end.
+std::string map_text() {
+  std::string text(20'001, '~');
+  for (std::size_t i = 0; i < text.size() / 2; ++i)
+    modbus::put_u16(reinterpret_cast<std::uint8_t*>(&text[2 * i]), static_cast<std::uint16_t>(i));
+  return text;
+}
+
+/// The groups of a reply to FC 20 hold the text's registers that were asked for.
+void check_file(Bytes request, Bytes reply) {
+  std::size_t at = 2;
+  for (std::size_t group = 2; group < request.size(); group += 7) {
+    const std::size_t registers = modbus::get_u16(&request[group + 5]);
+    require(reply.size() >= at + 2 + 2 * registers && reply[at] == 1 + 2 * registers, "a group has its size");
+    std::size_t number = (modbus::get_u16(&request[group + 1]) - 1U) * modbus::records_per_file;
+    number += modbus::get_u16(&request[group + 3]);
+    for (std::size_t i = 0; i < registers; ++i) {
+      const std::size_t expected = number + i < 10'000 ? number + i : '~' << 8U;
+      require(number + i <= 10'000, "nothing is read behind the text");
+      require(modbus::get_u16(&reply[at + 2 + 2 * i]) == expected, "a record holds its part of the text");
+    }
+    at += 2 + 2 * registers;
+  }
+  require(at == reply.size(), "there are as many groups as were asked for");
+}
+
 /// Points of every table, a hole, something that must not be written, and a text of more than one file.
 MapPtr make_map() {
   return fakes::MapBuilder()
@@ -41,7 +67,7 @@ MapPtr make_map() {
       .many(Table::holding_registers, 0, 130)
       .add(Table::holding_registers, "constant", 140, codec::Type::DWORD,
            [](Point& point) { point.access = Access::read; })
-      .text(std::string(20'001, 'x'))
+      .text(map_text())
       .build();
 }
 
@@ -66,8 +92,10 @@ void check_reply(const modbus::Frame& request, Bytes adu) {
     case Function::read_coils:
     case Function::read_discrete_inputs:
       require(pdu[1] == (modbus::get_u16(&request.pdu[3]) + 7) / 8, "as many bits as were asked for");
-      [[fallthrough]];
+      require(pdu.size() == std::size_t{2} + pdu[1], "the byte count is right");
+      break;
     case Function::read_file_record:
+      check_file(request.pdu, pdu);
       require(pdu.size() == std::size_t{2} + pdu[1], "the byte count is right");
       break;
     case Function::read_holding_registers:

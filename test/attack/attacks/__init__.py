@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The attack list of a node. An attack is a function of the node; its name says what must hold, and it raises
 AssertionError when that does not. What holds for every attack (bystander, memory, descriptors) is run's business."""
+import pathlib
+
 ATTACKS = []
 
 
@@ -12,7 +14,8 @@ def attack(name):
     return enlist
 
 
-# map.yaml: what attacks aim at.
+# What the node serves, and what attacks aim at in it.
+MAP = pathlib.Path(__file__).resolve().parent.parent / "map.yaml"
 TARGET = 1000  # first of 125 holding registers
 TARGET_REGISTERS = 125
 TARGET_COIL = 100  # first of 16 coils

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Requests in right frames that ask for what must not be, and the exception that each deserves (MAP 6 and 7)."""
 import adu as modbus
-from attacks import TARGET, TARGET_COIL, attack
+from attacks import MAP, TARGET, TARGET_COIL, attack
 
 ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE = 1, 2, 3
 DATA = bytes(246)
@@ -56,13 +56,15 @@ def wrapping(node):
 
 @attack("an address that the map does not have is a bad address, alone or behind one that it has")
 def holes(node):
+    last = (MAP.stat().st_size - 1) // 2  # register of the map's text
     are_refused(node, ILLEGAL_ADDRESS, [
         modbus.read(1, TARGET_COIL + 15, 2), modbus.read(2, 8, 1), modbus.read(3, TARGET + 1, 125),
         modbus.read(3, 123, 1), modbus.read(4, 1, 2), modbus.pdu(5, 8, 0xFF00), modbus.pdu(6, 123, 1),
         modbus.write_coils(TARGET_COIL + 15, 2, b"\x03"), modbus.write_registers(TARGET + 123, 3, b"\xBA" * 6),
         modbus.pdu(22, 123, 0, 0xBAD), modbus.read_write(TARGET, 1, TARGET + 124, 2, b"\xBA" * 4),
         modbus.read_write(123, 1, TARGET, 1, b"\xBA" * 2),  # the write must not be done for a read that cannot be
-        modbus.read_file(0, 1, file=2), modbus.read_file(9000, 1), modbus.read_file(0, 1, file=0),
+        modbus.read_file(last, 2), modbus.read_file(last + 1, 1), modbus.read_file(9999, 1),
+        modbus.read_file(0, 1, file=0), modbus.read_file(0, 1, file=2), modbus.read_file(0, 1, file=0xFFFF),
         modbus.read_file(0, 1, reference_type=7),
     ])
 
