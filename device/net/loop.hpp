@@ -44,7 +44,9 @@ class Loop {
 
  private:
   Descriptor epoll_;
-  std::array<epoll_event, 64> events_{};
+  /// Few at a time: who becomes ready meanwhile queues behind who was there before, and nobody waits two
+  /// rounds.
+  std::array<epoll_event, 8> events_{};
   int waiting_ = 0;  ///< events of this round
 };
 
