@@ -2,6 +2,7 @@
 // Loads one server with one case and prints what it took as a line of JSON.
 #include <fmt/format.h>
 #include <sys/epoll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +10,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "lock_step_client.hpp"
@@ -71,7 +73,9 @@ Result run(Clients& clients, const Load& load) {
       if (asked < load.requests) ask(client);
     }
   }
-  return {LockStepClient::Clock::now() - start, std::move(each)};
+  const auto end = LockStepClient::Clock::now();
+  ::close(epoll);
+  return {end - start, std::move(each)};
 }
 
 /// Nearest rank, in µs.
