@@ -38,7 +38,7 @@ class Bystander:
         try:
             self._pipe.send("report")
             return self._pipe.recv()
-        except (BrokenPipeError, EOFError):
+        except (OSError, EOFError):
             return Report(faults=["it could not connect again"])
 
     def stop(self):
@@ -58,7 +58,10 @@ def _work(port, map_text, pipe):
                 client.expect_answer(expected, request, transaction=number % 0x10000)
             except (AssertionError, OSError) as error:
                 report.faults.append(str(error))
-                client = Client(port)
+                try:
+                    client = Client(port)
+                except (AssertionError, OSError):
+                    return
             report.worst = max(report.worst, time.perf_counter() - started)
             report.requests += 1
             if pipe.poll():

@@ -25,9 +25,12 @@ class Node:
     def connect(self, **options):
         return Client(self.port, **options)
 
+    def has_ended(self):
+        return self._child.poll() is not None
+
     def check_alive(self):
         """Neither it nor a process that it started has ended or been replaced."""
-        assert self._child.poll() is None, f"the node has ended with {self._child.returncode}:\n{self.log()}"
+        assert not self.has_ended(), f"the node has ended with status {self._child.returncode}"
         assert self._tree() == self._processes, f"the node restarted a process:\n{self.log()}"
 
     def memory(self):
@@ -47,7 +50,7 @@ class Node:
 
     def stop(self, seconds=10):
         """SIGTERM; the exit status."""
-        if self._child.poll() is None:
+        if not self.has_ended():
             self._child.send_signal(signal.SIGTERM)
         try:
             return self._child.wait(seconds)
@@ -62,7 +65,7 @@ class Node:
 
     def _wait_for_port(self, seconds):
         end = time.monotonic() + seconds
-        while time.monotonic() < end and self._child.poll() is None:
+        while time.monotonic() < end and not self.has_ended():
             if found := re.search(r"serving .* on \S+:(\d+)", self.log()):
                 return int(found[1])
             time.sleep(0.01)
