@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+
 #include "host/modbus/descriptor.hpp"
 
 namespace coupler::driver {
@@ -10,12 +12,14 @@ class Event {
  public:
   Event();
   void set();
-  bool is_set() const;
+  /// Whoever sees it set sees what was done before.
+  bool is_set() const { return set_.load(std::memory_order_acquire); }
   /// Readable from set() on.
   int fd() const { return fd_.get(); }
 
  private:
   Descriptor fd_;
+  std::atomic<bool> set_{false};
 };
 
 }  // namespace coupler::driver

@@ -27,7 +27,7 @@ ModbusTransport::ModbusTransport(const Connection& connection)
   modbus_set_error_recovery(context_.get(), MODBUS_ERROR_RECOVERY_NONE);
 }
 
-ModbusTransport::~ModbusTransport() { close(); }
+ModbusTransport::~ModbusTransport() { ModbusTransport::close(); }
 
 Result<> ModbusTransport::connect() {
   close();

@@ -24,7 +24,7 @@ int connect_to(int fd, const addrinfo& address, const Deadline& deadline, const 
   if (errno != EINPROGRESS) return errno;
   std::array<pollfd, 2> wanted{{{fd, POLLOUT, 0}, {interrupt.fd(), POLLIN, 0}}};
   ::poll(wanted.data(), wanted.size(), deadline.left());
-  if (wanted[1].revents != 0) return ECANCELED;
+  if (interrupt.is_set()) return ECANCELED;
   if (wanted[0].revents == 0) return ETIMEDOUT;
   int error = 0;
   socklen_t size = sizeof error;

@@ -48,8 +48,8 @@ Result<Addresses> resolve(const std::string& host, std::uint16_t port, Deadline 
     }).detach();
     std::array<pollfd, 2> wanted{{{lookup->done.fd(), POLLIN, 0}, {interrupt.fd(), POLLIN, 0}}};
     ::poll(wanted.data(), wanted.size(), deadline.left());
-    if (wanted[1].revents != 0) return fail(NotConnected{"interrupted"});
-    if (wanted[0].revents == 0) return unknown_host(host, "no answer from the name server");
+    if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
+    if (!lookup->done.is_set()) return unknown_host(host, "no answer from the name server");
   }
   if (lookup->status != 0) return unknown_host(host, ::gai_strerror(lookup->status));
   return std::move(lookup->found);

@@ -4,12 +4,20 @@
 #include <ros/console.h>
 
 namespace coupler::driver {
+namespace {
+
+// One function each: a macro of ROS unfolds to a page.
+void info(const std::string& text) { ROS_INFO("%s", text.c_str()); }
+void warn(const std::string& text) { ROS_WARN("%s", text.c_str()); }
+void error(const std::string& text) { ROS_ERROR("%s", text.c_str()); }
+
+}  // namespace
 
 void log(Level level, const std::string& text) {
   switch (level) {
-    case Level::info: ROS_INFO("%s", text.c_str()); break;
-    case Level::warning: ROS_WARN("%s", text.c_str()); break;
-    case Level::error: ROS_ERROR("%s", text.c_str()); break;
+    case Level::info: return info(text);
+    case Level::warning: return warn(text);
+    case Level::error: return error(text);
   }
 }
 
