@@ -57,8 +57,8 @@ void write_head(const Head& head, std::uint16_t* area);
 /// coupler.
 std::optional<Head> read_head(const std::array<std::uint16_t, head_size>& area);
 
-/// Where a piece of the map's text is, for FC 20: two bytes a record, most significant first, records_per_file records
-/// a file, files from 1 upward; an odd last byte is followed by a zero.
+/// Where a piece of the map's text is, for FC 20: two bytes a record, most significant first,
+/// records_per_file records a file, files from 1 upward; an odd last byte is followed by a zero.
 using modbus::FileRecord;
 
 /// The record of the `first`-th register of the text (first = byte offset / 2), as many registers as one

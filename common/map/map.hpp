@@ -7,12 +7,13 @@
 
 #include "common/base/span.hpp"
 #include "common/map/point.hpp"
+#include "common/map/service.hpp"
 
 namespace coupler {
 
-/// Raised with every change to Map, Point or what they hold: a table that was generated for another one does not
-/// compile.
-constexpr int model_version = 1;
+/// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
+/// not compile.
+constexpr int model_version = 2;
 
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {
@@ -64,6 +65,7 @@ struct Map {
   std::uint64_t fingerprint = 0;
   std::string_view text;       ///< the file as it was read, UTF-8: what a node serves by FC 20
   std::uint32_t text_crc = 0;  ///< crc32(text)
+  Service service{};
 };
 
 /// The point of that name, or nullptr.

@@ -6,6 +6,7 @@
 
 #include "common/base/span.hpp"
 #include "common/codec/format.hpp"
+#include "common/map/edge.hpp"
 #include "common/map/line.hpp"
 #include "common/map/table.hpp"
 #include "common/modbus/range.hpp"
@@ -29,6 +30,8 @@ struct Point {
   Line line;
   std::string_view description;
   std::string_view units;
+  EdgeOf counter{};  ///< a register that counts an input's edges; a holding register can be preset
+  EdgeOf latched{};  ///< a coil, or a bit of a holding register: set by the edge, cleared by writing 0
 };
 
 /// The addresses it occupies in its table (partial values: the register they share).

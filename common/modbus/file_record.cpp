@@ -13,6 +13,7 @@ constexpr auto function = static_cast<std::uint8_t>(Function::read_file_record);
 constexpr std::uint8_t reference_type = 6;
 constexpr std::size_t group_size = 7;  ///< reference type, file, record, length
 constexpr std::size_t max_groups = 35;
+constexpr std::size_t max_reply_data = 0xF5;  ///< bytes of all groups in a reply
 
 FileRecord group_at(const std::uint8_t* at) { return {get_u16(at + 1), get_u16(at + 3), get_u16(at + 5)}; }
 
@@ -61,7 +62,7 @@ tl::expected<FileGroups, Exception> parse_file_request(Bytes pdu) {
       return tl::unexpected(Exception::illegal_data_address);
     reply += 2 + std::size_t{2} * group.registers;
   }
-  if (reply > max_pdu_size) return tl::unexpected(Exception::illegal_data_value);
+  if (reply > 2 + max_reply_data) return tl::unexpected(Exception::illegal_data_value);
   return FileGroups(groups);
 }
 

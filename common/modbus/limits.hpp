@@ -23,6 +23,6 @@ constexpr std::uint16_t max_read_write_registers = 121;  ///< MAP 6.17: those th
 /// FC 20: a file holds records (registers) 0 … 9999 (MAP 6.14); a reply has room for 124 registers of one
 /// group.
 constexpr std::uint32_t records_per_file = 10000;
-constexpr std::uint16_t max_file_registers = 124;
+constexpr std::uint16_t max_file_registers = 121;
 
 }  // namespace coupler::modbus

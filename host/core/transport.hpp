@@ -32,7 +32,7 @@ class Transport {
   virtual Result<> write_registers(std::uint16_t address, Span<const std::uint16_t> registers) = 0;  // FC 16
   /// FC 22: register = (register & and_mask) | (or_mask & ~and_mask), MAP 6.16.
   virtual Result<> mask_write(std::uint16_t address, std::uint16_t and_mask, std::uint16_t or_mask) = 0;
-  /// FC 20 with one group: fills `registers` (1 … 124) from a file.
+  /// FC 20 with one group: fills `registers` (1 … 121) from a file.
   virtual Result<> read_file_record(std::uint16_t file, std::uint16_t record,
                                     Span<std::uint16_t> registers) = 0;
 };

@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 1, "Compare the new fields of the model here, too");
+static_assert(model_version == 2, "Compare the new fields of the model here, too");
 
 inline void expect_same(const Line& a, const Line& b) {
   EXPECT_EQ(a.chip, b.chip);
@@ -30,6 +30,11 @@ inline void expect_same(const codec::Format& a, const codec::Format& b) {
   EXPECT_EQ(a.encoding, b.encoding);
 }
 
+inline void expect_same(const EdgeOf& a, const EdgeOf& b) {
+  EXPECT_EQ(a.input, b.input);
+  EXPECT_EQ(a.edge, b.edge);
+}
+
 inline void expect_same(const Point& a, const Point& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.table, b.table);
@@ -41,6 +46,8 @@ inline void expect_same(const Point& a, const Point& b) {
   expect_same(a.line, b.line);
   EXPECT_EQ(a.description, b.description);
   EXPECT_EQ(a.units, b.units);
+  expect_same(a.counter, b.counter);
+  expect_same(a.latched, b.latched);
 }
 
 inline void expect_same(const SimWire& a, const SimWire& b) {
@@ -76,6 +83,15 @@ inline void expect_same(const Limits& a, const Limits& b) {
   EXPECT_EQ(a.mask_write, b.mask_write);
 }
 
+inline void expect_same(const Service& a, const Service& b) {
+  EXPECT_EQ(a.listen, b.listen);
+  EXPECT_TRUE(std::equal(a.allow.begin(), a.allow.end(), b.allow.begin(), b.allow.end()));
+  EXPECT_EQ(a.watchdog.timeout, b.watchdog.timeout);
+  EXPECT_EQ(a.watchdog.fed_by, b.watchdog.fed_by);
+  EXPECT_EQ(a.watchdog.recovery, b.watchdog.recovery);
+  EXPECT_EQ(a.readback, b.readback);
+}
+
 /// Every field of the model, deep.
 inline void expect_same(const Map& a, const Map& b) {
   EXPECT_EQ(a.name, b.name);
@@ -92,6 +108,7 @@ inline void expect_same(const Map& a, const Map& b) {
   EXPECT_EQ(a.fingerprint, b.fingerprint);
   EXPECT_EQ(a.text, b.text);
   EXPECT_EQ(a.text_crc, b.text_crc);
+  expect_same(a.service, b.service);
 }
 
 }  // namespace coupler::testing

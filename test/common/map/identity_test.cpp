@@ -51,11 +51,11 @@ TEST(Identity, A_piece_of_the_map_stays_in_its_file_and_in_the_text) {
     EXPECT_EQ(piece.record, record) << first;
     EXPECT_EQ(piece.registers, registers) << first;
   };
-  expect(0, 1, 0, 124);
-  expect(9875, 1, 9875, 124);
+  expect(0, 1, 0, 121);
+  expect(9879, 1, 9879, 121);
   expect(9999, 1, 9999, 1);
-  expect(10000, 2, 0, 124);
-  expect(20000, 3, 0, 124);
+  expect(10000, 2, 0, 121);
+  expect(20000, 3, 0, 121);
   expect(24990, 3, 4990, 10);
 }
 

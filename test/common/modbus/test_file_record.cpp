@@ -54,8 +54,8 @@ TEST(FileRecord, The_specifications_example_is_parsed_and_answered) {
 
 TEST(FileRecord, A_client_asks_for_one_group) {
   std::array<std::uint8_t, file_request_size> out{};
-  EXPECT_EQ(build_file_request({1, 0x1234, 124}, out), 9U);
-  EXPECT_THAT(out, ElementsAreArray(request({{1, 0x1234, 124}})));
+  EXPECT_EQ(build_file_request({1, 0x1234, 121}, out), 9U);
+  EXPECT_THAT(out, ElementsAreArray(request({{1, 0x1234, 121}})));
 }
 
 TEST(FileRecord, A_client_takes_the_registers_out_of_the_reply) {
