@@ -10,6 +10,8 @@
 namespace coupler::node {
 namespace {
 
+using Outcome = modbus::Framer::Outcome;
+
 bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
 }  // namespace
@@ -43,12 +45,11 @@ void Connection::ready(TimePoint now) {
 
 /// False: the connection is to be closed.
 bool Connection::take_turn(TimePoint now) {
-  if (!send()) return false;
+  // First what an earlier turn left: replies, and requests behind them.
+  if (!send() || !answer(now)) return false;
   if (has_output()) return true;
   if (!ended_ && !receive()) return false;
-  const bool good = answer(now);
-  if (!send()) return false;
-  return good && (!ended_ || has_output());
+  return answer(now) && (!ended_ || has_output());
 }
 
 bool Connection::receive() {
@@ -60,18 +61,29 @@ bool Connection::receive() {
   return true;
 }
 
+/// Answers whole frames for as long as the client takes the replies.
 bool Connection::answer(TimePoint now) {
-  for (;;) {
-    switch (framer_.next()) {
-      case modbus::Framer::Outcome::nothing: return true;
-      case modbus::Framer::Outcome::bad: ++statistics_.bad_frames; return false;
-      case modbus::Framer::Outcome::frame: break;
-    }
-    assert(output_.size() - output_end_ >= modbus::max_adu_size);
+  while (!has_output()) {
+    const Outcome outcome = fill_output(now);
+    if (!send()) return false;
+    if (outcome == Outcome::nothing) return true;
+    if (outcome == Outcome::frame) continue;
+    ++statistics_.bad_frames;
+    return false;
+  }
+  return true;
+}
+
+/// Answers whole frames while there is room for the longest reply; tells what comes next.
+Outcome Connection::fill_output(TimePoint now) {
+  while (output_.size() - output_end_ >= modbus::max_adu_size) {
+    const Outcome outcome = framer_.next();
+    if (outcome != Outcome::frame) return outcome;
     output_end_ += server_.answer(framer_.frame(), now, Span<std::uint8_t>(output_).from(output_end_));
     has_asked_ = true;
     last_active_ = now;
   }
+  return Outcome::frame;
 }
 
 bool Connection::send() {

@@ -12,8 +12,8 @@ namespace coupler::node {
 
 /// One client. In a turn it receives once, at most as much as the longest frame, and answers what that
 /// completes; so clients that pipeline thousands of requests take turns with the others. While a reply waits
-/// for the client to read, nothing more is received from it: what it is owed is bounded. Its memory is used
-/// again for the next client.
+/// for the client to read, no further request of it is carried out or received: what it is owed is bounded.
+/// Its memory is used again for the next client.
 class Connection : public Watcher {
  public:
   /// For the rest of a frame once its beginning is there, and for a client to take a reply; absolute, so that
@@ -42,14 +42,14 @@ class Connection : public Watcher {
   TimePoint last_active() const { return last_active_; }
 
  private:
-  /// A request that is answered with a long reply has at least 12 bytes: what one turn receives is answered
-  /// in this.
-  static constexpr std::size_t output_size = (modbus::max_adu_size / 12 + 1) * modbus::max_adu_size;
+  /// Replies are sent together, a few long ones or many short ones.
+  static constexpr std::size_t output_size = 4 * modbus::max_adu_size;
   enum class Waiting { for_request, for_rest_of_frame, for_client_to_read };
 
   bool take_turn(TimePoint now);
   bool receive();
   bool answer(TimePoint now);
+  modbus::Framer::Outcome fill_output(TimePoint now);
   bool send();
   bool has_output() const { return output_begin_ != output_end_; }
   void set_deadline(TimePoint now, bool had_frame);

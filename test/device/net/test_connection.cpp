@@ -125,6 +125,29 @@ TEST_F(Connecting, A_silent_client_is_welcome_but_a_frame_must_end_in_time_howev
   EXPECT_EQ(node_.node.statistics.timeouts, 1U);
 }
 
+TEST_F(Connecting, A_client_that_reads_late_gets_every_reply_in_order) {
+  Client late = node_.connect();
+  constexpr std::uint16_t count = 9000;
+  Pdu questions, answers, all_off(252);
+  all_off[0] = 1;
+  all_off[1] = 250;
+  for (std::uint16_t i = 0; i < count; ++i) {
+    append(questions, adu(i, pdu(1, {0, 2000})));
+    append(answers, adu(i, all_off));
+  }
+  ASSERT_TRUE(late.send(questions));
+  node_.settle();
+  ASSERT_LT(node_.node.statistics.requests, count)
+      << "the client's buffers hold everything: a longer test is needed";
+  Pdu received;
+  while (received.size() < answers.size() && !late.is_closed()) {
+    append(received, late.received());
+    node_.loop.run_once(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(received, answers);
+  EXPECT_EQ(node_.node.statistics.requests, count);
+}
+
 TEST_F(Connecting, A_client_that_never_reads_is_owed_little_and_dropped_and_the_others_notice_nothing) {
   Client rude = node_.connect();
   Client polite = node_.connect();
