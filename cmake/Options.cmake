@@ -17,9 +17,10 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
 find_program(COUPLER_CCACHE ccache)
 if(COUPLER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # The sloppiness lets ccache serve files that use a precompiled header.
+  # The sloppiness lets ccache serve files that use a precompiled header; the other two let clones share the cache.
   set(CMAKE_CXX_COMPILER_LAUNCHER
       ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+      CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
       ${COUPLER_CCACHE})
 endif()
 
