@@ -4,11 +4,11 @@ import dataclasses
 import gc
 import itertools
 import multiprocessing
-import os
 import time
 
 import adu as modbus
 from client import Client
+from real_time import ask_for_real_time
 
 PAUSE = 0.0002  # seconds between an answer and the next request
 OUTPUTS, SCRATCH = 0, 0  # map.yaml: 8 coils wired to 8 inputs, 123 registers of memory
@@ -47,7 +47,7 @@ class Bystander:
 
 
 def _work(port, map_text, pipe):
-    _ask_for_real_time()
+    ask_for_real_time()
     gc.disable()
     client = Client(port)
     report = Report()
@@ -91,11 +91,3 @@ def _round(number, map_text):
         (modbus.read(4, 0, 2), modbus.values(4, SERIAL)),
         (modbus.read_file(piece, 100), bytes([20, 202, 201, 6]) + map_text[2 * piece:2 * piece + 200]),
     ]
-
-
-def _ask_for_real_time():
-    """Where it is allowed, other programs on the machine do not count as the node's delay."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
-    except PermissionError:
-        pass

@@ -9,6 +9,7 @@ import tempfile
 import time
 
 from client import Client
+from real_time import ask_for_real_time
 
 PATIENCE = 5.0  # seconds for the rest of a frame, and for a client to read: device/net/connection.hpp
 CONNECTIONS = 256  # as many at a time: device/net/tcp_server.hpp
@@ -18,7 +19,8 @@ LATE = 2.0  # seconds that a loaded machine may add
 class Node:
     def __init__(self, command, start_seconds=10):
         self._log = tempfile.TemporaryFile()
-        self._child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log)
+        self._child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log,
+                                       preexec_fn=ask_for_real_time)
         self.port = self._wait_for_port(start_seconds)
         self._processes = self._tree()
 
