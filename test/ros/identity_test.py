@@ -33,7 +33,7 @@ class Identity(testing.RosTest):
     def start_node(self, text):
         port = free_port()
         node = process.Node(process.write_map(text), port)
-        self.addCleanup(node.kill)
+        self.addCleanup(node.end)
         return port
 
     def assert_works(self, driver):
@@ -95,7 +95,7 @@ class Identity(testing.RosTest):
         driver = self.driver("_address:=127.0.0.1", f"_port:={port}")
         driver.wait_for("waiting for the map of 127.0.0.1")
         node = process.Node(process.write_map(press()), port)
-        self.addCleanup(node.kill)
+        self.addCleanup(node.end)
         self.assert_works(driver)
 
 

@@ -54,10 +54,17 @@ class Process:
             self._child.send_signal(signal.SIGINT)
         return self.wait(seconds)
 
-    def kill(self):
-        if self.running:
+    def end(self):
+        """SIGINT; any exit code but 0 is a failure: a sanitizer's report, too, ends with another one."""
+        was_running = self.running
+        try:
+            code = self.interrupt()
+        except subprocess.TimeoutExpired:
             self._child.kill()
-        self.wait()
+            self.wait()
+            raise
+        if was_running and code != 0:
+            raise AssertionError(f"{self._child.args} ended with {code}:\n{self.output}")
 
     def __enter__(self):
         return self
@@ -65,11 +72,7 @@ class Process:
     def __exit__(self, kind, *_):
         if kind is not None:
             print(f"---- {self._child.args}\n{self.output}----")
-        try:
-            self.interrupt()
-        except subprocess.TimeoutExpired:
-            self.kill()
-            raise
+        self.end()
 
 
 class Driver(Process):

@@ -28,7 +28,7 @@ class RosTest(unittest.TestCase):
 
     def driver(self, *arguments):
         driver = Driver(*arguments)
-        self.addCleanup(driver.interrupt)
+        self.addCleanup(driver.end)
         return driver
 
 
