@@ -59,6 +59,15 @@ std::string_view enumerator(Encoding encoding) {
   return {};
 }
 
+std::string_view enumerator(Edge edge) {
+  switch (edge) {
+    case Edge::rising: return "Edge::rising";
+    case Edge::falling: return "Edge::falling";
+    case Edge::both: return "Edge::both";
+  }
+  return {};
+}
+
 /// Fields after the last one that differs from its default are left out.
 std::string format(const Format& format) {
   const Format usual;
@@ -86,6 +95,16 @@ std::string line(const Line& line) {
                      line.active_low, enumerator(line.bias), enumerator(line.drive), line.debounce.count());
 }
 
+std::string edge(const EdgeOf& edge) {
+  return edge.present() ? fmt::format("{{{}, {}}}", literal(edge.input), enumerator(edge.edge)) : "{}";
+}
+
+/// Counter and latched, if it has one of them.
+std::string edges(const Point& point) {
+  if (!point.counter.present() && !point.latched.present()) return {};
+  return fmt::format(", {}, {}", edge(point.counter), edge(point.latched));
+}
+
 std::string place(const Point& point) {
   std::string out = fmt::format("{} {}", to_string(point.table), point.address);
   if (range(point).count() > 1) out += fmt::format("-{}", range(point).last());
@@ -102,15 +121,17 @@ std::string row(const Point& point) {
       "    // {}{}\n"
       "    {{{}, Table::{}, {}, {}, {},\n"
       "     {}, {}, {},\n"
-      "     {}, {}}},\n",
+      "     {}, {}{}}},\n",
       what, place(point), literal(point.name), to_string(point.table), point.address, format(point.format),
       enumerator(point.access), registers(point.initial), enumerator(point.safe), line(point.line),
-      literal(point.description), literal(point.units));
+      literal(point.description), literal(point.units), edges(point));
 }
 
 std::string row(const SimWire& wire) {
   return fmt::format("    {{{}, {}, {}, {}us}},\n", literal(wire.from), literal(wire.to), wire.invert,
                      wire.square.count());
 }
+
+std::string row(std::string_view address) { return fmt::format("    {},\n", literal(address)); }
 
 }  // namespace coupler::generate

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "common/map/map.hpp"
 
@@ -12,5 +13,8 @@ namespace coupler::generate {
 std::string row(const Point& point);
 
 std::string row(const SimWire& wire);
+
+/// One of the addresses that may connect.
+std::string row(std::string_view address);
 
 }  // namespace coupler::generate

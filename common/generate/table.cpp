@@ -35,6 +35,7 @@ constexpr auto source_form = R"(// {source} as constant data, fingerprint {finge
 #include "{name}_map.hpp"
 
 #include <chrono>
+#include <string_view>
 
 namespace coupler::maps::{name} {{
 namespace {{
@@ -42,11 +43,13 @@ namespace {{
 using ::coupler::Access;
 using ::coupler::Bias;
 using ::coupler::Drive;
+using ::coupler::Edge;
 using ::coupler::Map;
 using ::coupler::Point;
 using ::coupler::Safe;
 using ::coupler::SimWire;
 using ::coupler::Table;
+using ::coupler::Watchdog;
 using ::coupler::codec::Encoding;
 using ::coupler::codec::Half;
 using ::coupler::codec::Order;
@@ -57,7 +60,7 @@ using namespace ::std::chrono_literals;
 template <::std::uint16_t... Words>
 constexpr ::std::uint16_t registers[] = {{Words...}};
 
-{points}{sim}// The file itself, byte by byte: the node serves it.
+{points}{sim}{allow}// The file itself, byte by byte: the node serves it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 constexpr char text[] =
@@ -76,10 +79,18 @@ constexpr Map map{{
     fingerprint,
     {{text, sizeof text - 1}},
     0x{crc:08x},  // CRC-32 of the text
+    {{{listen}, {allow_name}, {watchdog}, {readback}}},  // listen, allow, watchdog, readback
 }};
 
 }}  // namespace coupler::maps::{name}
 )";
+
+std::string watchdog(const Watchdog& watchdog) {
+  if (!watchdog.present()) return "{}";
+  return fmt::format("{{{}ms, Watchdog::FedBy::{}, Watchdog::Recovery::{}}}", watchdog.timeout.count(),
+                     watchdog.fed_by == Watchdog::FedBy::any ? "any" : "write",
+                     watchdog.recovery == Watchdog::Recovery::automatic ? "automatic" : "manual");
+}
 
 /// "constexpr T name[] = { rows };", or nothing: C++ has no empty arrays.
 template <class T>
@@ -108,9 +119,14 @@ std::string table_source(const Map& map, const Stamp& stamp) {
       arg("version", stamp.version),
       arg("points",
           array("Point points",
-                "Name, table, address, format, access; initial registers, safe, line; description, units.",
+                "Name, table, address, format, access; initial registers, safe, line; description, units, "
+                "counter, latched.",
                 map.points)),
       arg("sim", array("SimWire sim", "From, to, invert, period of a square wave.", map.sim)),
+      arg("allow", array("::std::string_view allow", "Who may connect.", map.service.allow)),
+      arg("listen", literal(map.service.listen)),
+      arg("allow_name", map.service.allow.empty() ? "{}" : "allow"),
+      arg("watchdog", watchdog(map.service.watchdog)), arg("readback", map.service.readback),
       arg("text", literal_lines(map.text, "    ")), arg("map_name", literal(map.name)),
       arg("address", literal(at.address)), arg("port", at.port), arg("unit", at.unit),
       arg("timeout", at.timeout.count()), arg("rate", poll.rate),

@@ -14,6 +14,10 @@ Span<const std::uint16_t> OwnedMap::keep(std::vector<std::uint16_t> registers) {
   return registers_.emplace_back(std::move(registers));
 }
 
+Span<const std::string_view> OwnedMap::keep(std::vector<std::string_view> list) {
+  return lists_.emplace_back(std::move(list));
+}
+
 void OwnedMap::finish(Map head, std::vector<Point> points, std::vector<SimWire> sim) {
   points_ = std::move(points);
   sim_ = std::move(sim);

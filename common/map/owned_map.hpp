@@ -24,6 +24,8 @@ class OwnedMap {
   std::string_view keep(std::string text);
   /// Keeps a copy of the registers.
   Span<const std::uint16_t> keep(std::vector<std::uint16_t> registers);
+  /// Keeps the list; what its elements view must be kept, too.
+  Span<const std::string_view> keep(std::vector<std::string_view> list);
 
   /// Ends the building: sorts the points and fills in fingerprint and checksum. `head` brings all fields but
   /// those and `points` and `sim`; its views, and those of points and wires, must point into what was kept
@@ -33,6 +35,7 @@ class OwnedMap {
  private:
   std::deque<std::string> texts_;
   std::deque<std::vector<std::uint16_t>> registers_;
+  std::deque<std::vector<std::string_view>> lists_;
   std::vector<Point> points_;
   std::vector<SimWire> sim_;
   Map map_;

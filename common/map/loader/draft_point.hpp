@@ -14,6 +14,7 @@ struct DraftPoint {
   Position name_at;
   Position address_at;
   Position line_at;
+  Position edge_at;     ///< the input that `counter` or `latched` names
   bool placed = false;  ///< address and format are known, and the range ends by 65535
 };
 

@@ -78,10 +78,10 @@ constexpr std::array keys{
     later("on_shutdown", S::map, "safe", "what becomes of outputs when the driver ends"),
     later("unreadable", S::map, "[{table: coils, from: 8, to: 15}]", "addresses that the device refuses"),
     later("reserve", S::map, "[{table: coils, from: 8, to: 15}]", "addresses kept free"),
-    later("listen", S::map, "127.0.0.1", "interface of the node"),
-    later("allow", S::map, "[192.168.0.0/24]", "who may connect to the node"),
-    later("watchdog", S::map, "{timeout: 500ms}", "safe state when the master is silent"),
-    later("readback", S::map, "true", "compare a line's level after driving it"),
+    project("listen", S::map, K::text, "127.0.0.1", "interface of the node"),
+    project("allow", S::map, K::list, "[192.168.0.0/24, 10.0.0.7]", "who may connect to the node"),
+    project("watchdog", S::map, K::section, "{timeout: 500ms}", "safe state when the master is silent"),
+    project("readback", S::map, K::boolean, "true", "compare a line's level after driving it"),
     // The tables.
     origin("coils", S::mapping, K::section, "{valve: 0}", "bits that can be written"),
     origin("discrete_inputs", S::mapping, K::section, "{button: 0}", "bits that can be read"),
@@ -108,6 +108,12 @@ constexpr std::array keys{
     project("description", point, K::text, "the left door", "for people"),
     project("units", point, K::text, "mm", "for people"),
     project("initial", point, K::value, "0", "value when the node starts"),
+    one_of("read|write|read_write",
+           project("access", point, K::choice, "read", "what the master may do with it")),
+    project("counter", registers, K::section, "{of: pulse, edge: rising}",
+            "counts the edges of a discrete input"),
+    project("latched", S::coil | S::holding_register, K::section, "{of: pulse, edge: rising}",
+            "set by an edge of a discrete input, cleared by writing 0"),
     project("line", bits, K::section, "{chip: gpiochip0, offset: 17}",
             "the GPIO line; just its name will do"),
     one_of("off|on|hold",
@@ -122,7 +128,6 @@ constexpr std::array keys{
                    "how long a level must last to count")),
     later("count", point, "4", "an array of values"),
     later("scale", registers, "0.1", "published value = raw × gain + offset"),
-    later("access", point, "read", "what the master may do"),
     later("read_address", point, "512", "where an output reads back"),
     later("rate", point, "1", "polling rate of the point"),
     later("publish", point, "on_change", "when a value is published"),
@@ -134,9 +139,6 @@ constexpr std::array keys{
     later("verify_write", point, "true", "read back after a write"),
     later("write_queue", point, "every", "which waiting writes are sent"),
     later("deadman", point, "{timeout: 1s, value: 0}", "value when no message comes"),
-    later("counter", registers, "{of: pulse, edge: rising}", "counts the edges of an input"),
-    later("latched", S::coil | S::holding_register, "{of: pulse, edge: rising}",
-          "set by an edge, cleared by a write"),
     later("iio", registers, "{device: adc0, channel: 0}", "an analogue input"),
     later("pwm", registers, "{chip: pwmchip0, channel: 0, period: 1ms}", "an analogue output"),
     // `line:`
@@ -164,6 +166,15 @@ constexpr std::array keys{
     project("invert", S::wire, K::boolean, "true", "the input is on when the coil is off"),
     within(0.001, most_seconds,
            project("square", S::wire, K::duration, "1s", "a square wave instead of a coil: its period")),
+    // `counter:` and `latched:`
+    project("of", S::edge, K::text, "pulse", "the discrete input"),
+    one_of("rising|falling|both", project("edge", S::edge, K::choice, "rising", "which of its edges")),
+    // `watchdog:`
+    within(0.01, most_seconds,
+           project("timeout", S::watchdog, K::duration, "500ms", "the longest silence of a master")),
+    one_of("any|write", project("fed_by", S::watchdog, K::choice, "any", "which requests count")),
+    one_of("automatic|manual",
+           project("recovery", S::watchdog, K::choice, "automatic", "how outputs are freed again")),
 };
 
 }  // namespace

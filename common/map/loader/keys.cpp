@@ -15,6 +15,8 @@ std::string_view describe(Section section) {
     case Section::input_line: return "a discrete input's 'line'";
     case Section::limits: return "'limits'";
     case Section::wire: return "a wire of 'sim'";
+    case Section::watchdog: return "'watchdog'";
+    case Section::edge: return "'counter' and 'latched'";
     case Section::none: break;
   }
   return "nothing";

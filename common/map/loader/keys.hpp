@@ -26,6 +26,9 @@ enum class Section : std::uint16_t {
   input_line = 128,  ///< `line:` of a discrete input
   limits = 256,
   wire = 512,  ///< one element of `sim:`
+  watchdog = 1024,
+  edge = 2048,  ///< `counter:` and `latched:`
+  last = edge
 };
 constexpr Section operator|(Section a, Section b) {
   return static_cast<Section>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
@@ -50,6 +53,7 @@ enum class ValueKind : std::uint8_t {
   seconds,   ///< a duration; a bare number means seconds
   address,   ///< as Addressing says
   value,     ///< of the point's type
+  list,      ///< of texts
   section,   ///< a map with keys of its own, or a list of such maps
   other,     ///< not read yet
 };

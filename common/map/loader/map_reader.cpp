@@ -6,10 +6,12 @@
 
 #include <fmt/format.h>
 
+#include "common/map/loader/edge_reader.hpp"
 #include "common/map/loader/names.hpp"
 #include "common/map/loader/overlap.hpp"
 #include "common/map/loader/point_reader.hpp"
 #include "common/map/loader/rules.hpp"
+#include "common/map/loader/service_reader.hpp"
 #include "common/map/loader/settings_reader.hpp"
 #include "common/map/loader/sim_reader.hpp"
 
@@ -92,9 +94,11 @@ void read_map(const Entry& root, std::string_view text, Context& context) {
   head.connection = read_connection(top);
   head.polling = read_polling(top);
   head.limits = read_limits(top, context);
+  head.service = read_service(top, context);
   const DraftPoints drafts = read_points(top, root, context);
   check_points(drafts, head.limits, top.has("addressing"), context);
   std::vector<SimWire> sim = read_sim(top, drafts, context);
+  check_edges(drafts, sim, context);
   if (context.problems.has_errors()) return;
 
   std::vector<Point> points;

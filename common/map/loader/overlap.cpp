@@ -36,17 +36,27 @@ void report(const DraftPoint& draft, const DraftPoint& other, Context& context) 
     context.problems.error(draft.address_at, std::move(what), "give one of the two another address");
 }
 
-/// The claims on every address so far. Those of one address share no bits, so there are at most sixteen of
-/// them and the whole check stays linear in the number of registers.
+/// The claims on every address so far, those of writers once more: a reader may have been there before them.
+/// In either list those of one address share no bits, so there are at most sixteen of them and the whole
+/// check stays linear in the number of registers.
 class Claims {
  public:
   /// Takes what is free and returns who had the rest: one with whom sharing is an error, if there is any.
   const DraftPoint* take(const DraftPoint& draft) {
+    const DraftPoint* found = take(draft, everyone_);
+    const DraftPoint* writer = is_writable(draft.point) ? take(draft, writers_) : nullptr;
+    return writer != nullptr && tolerable(draft.point, found->point) ? writer : found;
+  }
+
+ private:
+  using ByAddress = std::unordered_map<std::uint32_t, std::vector<Claim>>;
+
+  static const DraftPoint* take(const DraftPoint& draft, ByAddress& taken_so_far) {
     const DraftPoint* found = nullptr;
     const std::uint16_t mask = codec::mask(draft.point.format);
     const modbus::Range taken = range(draft.point);
     for (std::uint32_t address = taken.start(); address < taken.end(); ++address) {
-      auto& claims = claims_[static_cast<std::uint32_t>(index(draft.point.table)) << 16U | address];
+      auto& claims = taken_so_far[static_cast<std::uint32_t>(index(draft.point.table)) << 16U | address];
       std::uint16_t free = mask;
       for (Claim& claim : claims) {
         if ((claim.mask & mask) == 0) continue;
@@ -58,8 +68,8 @@ class Claims {
     return found;
   }
 
- private:
-  std::unordered_map<std::uint32_t, std::vector<Claim>> claims_;
+  ByAddress everyone_;
+  ByAddress writers_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "common/map/loader/edge_reader.hpp"
 #include "common/map/loader/format_reader.hpp"
 #include "common/map/loader/initial_reader.hpp"
 #include "common/map/loader/line_reader.hpp"
@@ -42,6 +43,18 @@ void check_range(const DraftPoint& draft, Context& context) {
       fmt::format("the last address for it is {}", 65536 - count));
 }
 
+void read_access(const Reader& reader, Point& point, Context& context) {
+  const Entry* entry = reader.find("access");
+  if (entry == nullptr) return;
+  Access access = point.access;
+  reader.choice("access", {Access::read, Access::write, Access::read_write}, access);
+  if (access == Access::read || is_writable(point.table))
+    point.access = access;
+  else
+    context.problems.error(entry->at, fmt::format("{} can only be read", to_string(point.table)),
+                           "remove 'access'");
+}
+
 void read_options(const Entry& entry, const PointDefaults& defaults, DraftPoint& draft, Context& context) {
   Point& point = draft.point;
   const Reader reader(entry, section_of(point.table), context);
@@ -51,7 +64,9 @@ void read_options(const Entry& entry, const PointDefaults& defaults, DraftPoint&
   if (context.problems.errors() == errors) check_range(draft, context);
   draft.placed = context.problems.errors() == errors;
   if (draft.placed) read_initial(reader, point, context);
+  read_access(reader, point, context);
   if (holds_bits(point.table)) read_line(reader, draft, context);
+  read_edges(reader, draft, context);
   reader.text("description", point.description);
   reader.text("units", point.units);
 }

@@ -25,6 +25,13 @@ std::string folded(std::string_view word, Owner owner) {
   return lower(result);
 }
 
+/// A word that is good elsewhere may still be another one with a letter wrong.
+std::string slip(std::string_view word, const std::vector<std::string_view>& candidates) {
+  const std::string_view near = nearest(word, candidates);
+  const bool one_letter = !near.empty() && edit_distance(lower(word), near) == 1;
+  return one_letter ? fmt::format("; or did you mean '{}'?", near) : std::string();
+}
+
 std::string range_text(const Key& key, std::string_view unit) {
   const bool has_least = key.least != std::numeric_limits<double>::lowest();
   return has_least ? fmt::format(" from {} to {}{}", key.least, key.most, unit) : std::string();
@@ -56,12 +63,12 @@ void Reader::unknown(const Entry& entry) const {
   const Section elsewhere = sections_with(entry.key);
   if (elsewhere != Section::none) {
     std::string places;
-    for (unsigned bit = 1; bit <= static_cast<unsigned>(Section::wire); bit <<= 1U)
+    for (unsigned bit = 1; bit <= static_cast<unsigned>(Section::last); bit <<= 1U)
       if (overlap(elsewhere, static_cast<Section>(bit)))
         places += fmt::format("{}{}", places.empty() ? "" : ", ", describe(static_cast<Section>(bit)));
-    return context_.ignored(entry.key_at,
-                            fmt::format("'{}' does not apply to {}", entry.key, describe(section_)),
-                            fmt::format("remove it; it is a key of {}", places));
+    return context_.ignored(
+        entry.key_at, fmt::format("'{}' does not apply to {}", entry.key, describe(section_)),
+        fmt::format("remove it; it is a key of {}{}", places, slip(entry.key, key_names(section_))));
   }
   context_.ignored(entry.key_at, fmt::format("unknown key {} of {}", shown(entry.key), describe(section_)),
                    suggestion(entry.key, key_names(section_)));

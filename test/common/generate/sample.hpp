@@ -43,6 +43,13 @@ inline std::shared_ptr<const OwnedMap> sample() {
   flag.table = Table::holding_registers;
   flag.address = 9;
   flag.format = {codec::Type::BOOL, codec::Order::ABCD, codec::Half::high, 12};
+  flag.latched = {"button", Edge::both};
+  Point parts;
+  parts.name = "parts";
+  parts.table = Table::holding_registers;
+  parts.address = 10;
+  parts.format = {codec::Type::UDINT, codec::Order::ABCD};
+  parts.counter = {"button", Edge::falling};
 
   Map head;
   head.name = "cell";
@@ -50,7 +57,9 @@ inline std::shared_ptr<const OwnedMap> sample() {
   head.polling = {2.5, true, 65, false, 13};
   head.limits = {100, 1000, 90, 900, 2ms, 3ms, 4, true};
   head.text = "name: cell\nrest: \"ü?\?/\\\"";
-  owned->finish(head, {lamp, button, level, label, flag},
+  const auto allow = owned->keep(std::vector<std::string_view>{"10.0.0.7", "fd00::/8"});
+  head.service = {"::1", allow, {500ms, Watchdog::FedBy::write, Watchdog::Recovery::manual}, true};
+  owned->finish(head, {lamp, button, level, label, flag, parts},
                 {{"lamp", "button", true, 0us}, {"", "button", false, 1000000us}});
   return owned;
 }

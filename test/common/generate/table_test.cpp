@@ -60,6 +60,18 @@ TEST(Table, Connection_polling_and_limits_are_in_it) {
                     HasSubstr("{100, 1000, 90, 900, 2ms, 3ms, 4, true}")));
 }
 
+TEST(Table, Counters_and_latches_follow_the_units) {
+  EXPECT_THAT(source(), AllOf(HasSubstr("     \"\", \"\", {}, {\"button\", Edge::both}},\n"),
+                              HasSubstr("     \"\", \"\", {\"button\", Edge::falling}, {}},\n")));
+}
+
+TEST(Table, The_service_is_in_it) {
+  EXPECT_THAT(source(),
+              AllOf(HasSubstr("    \"10.0.0.7\",\n    \"fd00::/8\",\n"),
+                    HasSubstr("{\"::1\", allow, {500ms, Watchdog::FedBy::write, Watchdog::Recovery::manual}, "
+                              "true}")));
+}
+
 TEST(Table, The_text_is_one_literal_a_line) {
   EXPECT_THAT(source(), HasSubstr("    \"name: cell\\n\"\n    \"rest: \\\"\\303\\274?\\?/\\\\\\\"\";\n"));
 }
@@ -67,8 +79,9 @@ TEST(Table, The_text_is_one_literal_a_line) {
 TEST(Table, A_map_without_points_has_no_empty_arrays) {
   OwnedMap empty;
   empty.finish({}, {}, {});
-  EXPECT_THAT(table_source(empty.map(), stamp), AllOf(Not(HasSubstr("points[]")), Not(HasSubstr("sim[]")),
-                                                      HasSubstr("    {},\n    {},\n    fingerprint,\n")));
+  EXPECT_THAT(table_source(empty.map(), stamp),
+              AllOf(Not(HasSubstr("points[]")), Not(HasSubstr("sim[]")), Not(HasSubstr("allow[]")),
+                    HasSubstr("    {},\n    {},\n    fingerprint,\n")));
 }
 
 TEST(Table, The_header_carries_fingerprint_and_model_version) {

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/loader/service_reader.hpp"
+
+#include <fmt/format.h>
+
+#include "common/map/network.hpp"
+
+namespace coupler::loader {
+namespace {
+
+Watchdog read_watchdog(const Reader& top, Context& context) {
+  Watchdog watchdog;
+  const Entry* entry = top.find("watchdog");
+  if (entry == nullptr) return watchdog;
+  if (entry->kind != Entry::Kind::map) {
+    top.wrong("watchdog", "a map with 'timeout'");
+    return watchdog;
+  }
+  const Reader reader(*entry, Section::watchdog, context);
+  if (!reader.has("timeout"))
+    context.problems.error(entry->key_at, "'watchdog' has no 'timeout'",
+                           "add 'timeout: 500ms', the longest silence of a master");
+  reader.duration("timeout", watchdog.timeout);
+  reader.choice("fed_by", {Watchdog::FedBy::any, Watchdog::FedBy::write}, watchdog.fed_by);
+  reader.choice("recovery", {Watchdog::Recovery::automatic, Watchdog::Recovery::manual}, watchdog.recovery);
+  return watchdog;
+}
+
+Span<const std::string_view> read_allow(const Reader& top, Context& context) {
+  const Entry* entry = top.find("allow");
+  if (entry == nullptr) return {};
+  if (entry->kind != Entry::Kind::list) {
+    top.wrong("allow", "a list of IP addresses and ranges");
+    return {};
+  }
+  if (entry->children.empty())
+    context.problems.error(entry->at, "'allow' lists nobody",
+                           "write who may connect, or remove it to let everyone in");
+  std::vector<std::string_view> networks;
+  for (const Entry& child : entry->children) {
+    if (child.kind != Entry::Kind::scalar) {
+      context.problems.error(child.at, fmt::format("'allow' lists IP addresses, not {}", shown(child)),
+                             "write it as in 'allow: [192.168.0.0/24, 10.0.0.7]'");
+    } else if (const auto network = parse_network(child.text); !network) {
+      context.problems.error(child.at, fmt::format("{} {}", shown(child.text), network.error().what),
+                             network.error().remedy);
+    } else {
+      networks.push_back(context.map.keep(child.text));
+    }
+  }
+  return context.map.keep(std::move(networks));
+}
+
+}  // namespace
+
+Service read_service(const Reader& top, Context& context) {
+  Service service;
+  top.text("listen", service.listen);
+  if (service.listen.find_first_of(" \t\r\n") != std::string_view::npos)
+    top.wrong("listen", "an IP address or host name of the node");
+  service.allow = read_allow(top, context);
+  service.watchdog = read_watchdog(top, context);
+  top.boolean("readback", service.readback);
+  return service;
+}
+
+}  // namespace coupler::loader

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+namespace coupler {
+
+/// An IPv6 address, most significant byte first. IPv4 addresses are mapped into ::ffff:0:0/96 (RFC 4291,
+/// 2.5.5.2), as a socket that takes both shows them.
+using IpAddress = std::array<std::uint8_t, 16>;
+
+/// The addresses that share their first `prefix` bits.
+struct Network {
+  IpAddress address{};
+  unsigned prefix = 128;  ///< 0 … 128, of the mapped address
+
+  bool contains(const IpAddress& other) const;
+};
+
+struct NetworkError {
+  std::string what;  ///< "is …", to follow the text
+  std::string remedy;
+};
+
+/// An address, or a range in CIDR notation: "10.0.0.7", "192.168.0.0/24", "fe80::/10". The bits behind the
+/// prefix must be zero.
+tl::expected<Network, NetworkError> parse_network(std::string_view text);
+
+}  // namespace coupler

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/network.hpp"
+
+#include <gtest/gtest.h>
+
+namespace coupler {
+namespace {
+
+IpAddress address(std::string_view text) {
+  const auto network = parse_network(text);
+  EXPECT_TRUE(network.has_value()) << text;
+  return network ? network->address : IpAddress{};
+}
+
+bool contains(std::string_view range, std::string_view other) {
+  const auto network = parse_network(range);
+  EXPECT_TRUE(network.has_value()) << range;
+  return network && network->contains(address(other));
+}
+
+TEST(Network, An_address_contains_itself_alone) {
+  EXPECT_TRUE(contains("10.0.0.7", "10.0.0.7"));
+  EXPECT_FALSE(contains("10.0.0.7", "10.0.0.6"));
+  EXPECT_TRUE(contains("fd00::7", "fd00:0::0007"));
+  EXPECT_FALSE(contains("fd00::7", "fd00::8"));
+}
+
+TEST(Network, A_range_ends_at_its_prefix) {
+  EXPECT_TRUE(contains("192.168.4.0/22", "192.168.7.255"));
+  EXPECT_FALSE(contains("192.168.4.0/22", "192.168.8.0"));
+  EXPECT_TRUE(contains("fe80::/10", "febf::1"));
+  EXPECT_FALSE(contains("fe80::/10", "fec0::1"));
+}
+
+TEST(Network, Everything_of_one_family_is_not_the_other) {
+  EXPECT_TRUE(contains("0.0.0.0/0", "255.255.255.255"));
+  EXPECT_FALSE(contains("0.0.0.0/0", "::1"));
+  EXPECT_TRUE(contains("::/0", "fd00::7"));
+}
+
+TEST(Network, A_mapped_address_is_the_IPv4_address) {
+  EXPECT_EQ(address("::ffff:10.0.0.7"), address("10.0.0.7"));
+}
+
+TEST(Network, Bits_behind_the_prefix_are_refused_with_both_readings) {
+  const auto network = parse_network("192.168.0.10/24");
+  ASSERT_FALSE(network.has_value());
+  EXPECT_EQ(network.error().what, "is an address inside the range 192.168.0.0/24");
+  EXPECT_EQ(network.error().remedy,
+            "write 192.168.0.0/24 for the range, or 192.168.0.10 for the one address");
+  EXPECT_FALSE(parse_network("fd00::7/8").has_value());
+}
+
+TEST(Network, What_is_no_address_is_refused) {
+  for (const char* text : {"", "/", "10.0.0", "10.0.0.256", "10.0.0.7.1", "gripper", "fd00:::7", "10.0.0.7 ",
+                           "10.0.0.0/33", "10.0.0.0/", "10.0.0.0/-1", "10.0.0.0/8/8", "fd00::/129", "::/x"})
+    EXPECT_FALSE(parse_network(text).has_value()) << text;
+}
+
+}  // namespace
+}  // namespace coupler
