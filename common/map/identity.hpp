@@ -17,6 +17,10 @@ namespace coupler::identity {
 /// Input registers 0xFF00 … 0xFFFF and holding register 0xFF00 … 0xFFFF belong to the node.
 constexpr modbus::Range reserved = modbus::Range::of(0xFF00, 0x100);
 
+/// A node whose watchdog recovers manually maps this holding register: the code resets it, reading gives 0.
+constexpr modbus::Range watchdog_reset = modbus::Range::of(reserved.start(), 1);
+constexpr std::uint16_t watchdog_reset_code = 0xAA55;
+
 /// Places in the area, relative to reserved.start().
 enum : std::uint16_t {
   at_magic = 0,            ///< "OCPL", 2 registers
@@ -32,7 +36,8 @@ enum : std::uint16_t {
   at_exceptions = 17,
   at_connections = 19,  ///< accepted since start
   at_hardware_errors = 21,
-  size = 23,
+  at_watchdog_trips = 23,
+  size = 25,
 };
 
 constexpr std::uint32_t magic = 0x4F43504C;  // "OCPL"

@@ -24,6 +24,7 @@ struct Watchdog {
   Recovery recovery = Recovery::automatic;
 
   constexpr bool present() const { return timeout.count() > 0; }
+  constexpr bool needs_reset() const { return present() && recovery == Recovery::manual; }
 };
 
 /// How a node serves the map.

@@ -23,6 +23,18 @@ Table table_of(Function read) {
   }
 }
 
+bool is_write(Function function) {
+  switch (function) {
+    case Function::write_single_coil:
+    case Function::write_single_register:
+    case Function::write_multiple_coils:
+    case Function::write_multiple_registers:
+    case Function::mask_write_register:
+    case Function::read_write_multiple_registers: return true;
+    default: return false;
+  }
+}
+
 void commit(const modbus::WriteRegisters& write, Span<std::uint16_t> cells) {
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = modbus::get_u16(&write.values[2 * i]);
 }
@@ -30,17 +42,42 @@ void commit(const modbus::WriteRegisters& write, Span<std::uint16_t> cells) {
 }  // namespace
 
 Handler::Handler(const Map& map, Image& image, Lines& lines, Statistics& statistics)
-    : map_(map), image_(image), lines_(lines), statistics_(statistics) {
+    : map_(map), image_(image), lines_(lines), statistics_(statistics), watchdog_(map.service.watchdog) {
   write_identity(map, image);
+  show_outputs();
 }
 
-std::size_t Handler::handle(modbus::Bytes request, TimePoint now, Span<std::uint8_t> reply) {
+std::size_t Handler::handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply) {
+  tick(now);
   ++statistics_.requests;
   const Answer done = answer({request, now, reply});
+  watchdog_.request(peer, done && is_write(static_cast<Function>(request[0])), now);
   if (done) return *done;
   ++statistics_.exceptions;
-  if (done.error() == Exception::server_device_failure) ++statistics_.hardware_errors;
   return modbus::reply_exception(request[0], done.error(), reply);
+}
+
+void Handler::tick(TimePoint now) {
+  if (!watchdog_.is_due(now)) return;
+  if (watchdog_.state() == OutputWatchdog::State::armed) ++statistics_.watchdog_trips;
+  watchdog_.expire(lines_.drive_safe(), now);
+  show_outputs();
+}
+
+std::optional<std::chrono::milliseconds> Handler::patience(TimePoint now) const {
+  using std::chrono::milliseconds;
+  if (!watchdog_.deadline()) return std::nullopt;
+  return std::max(milliseconds(0), std::chrono::ceil<milliseconds>(*watchdog_.deadline() - now));
+}
+
+void Handler::show_outputs() {
+  for (const Point& point : map_.points)
+    if (point.table == Table::coils) lines_.driven(range(point), image_.find(Table::coils, range(point)));
+}
+
+Handler::Answer Handler::hardware_failed() {
+  ++statistics_.hardware_errors;
+  return tl::unexpected(Exception::server_device_failure);
 }
 
 Handler::Answer Handler::answer(const Call& call) {
@@ -53,10 +90,11 @@ Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
   const Table table = table_of(read.function);
   const auto cells = image_.find(table, read.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
-  if (table == Table::discrete_inputs && !lines_.read(read.range, cells, call.now))
-    return tl::unexpected(Exception::server_device_failure);
-  if (table == Table::input_registers && identity::reserved.overlaps(read.range))
+  if (table == Table::discrete_inputs && !lines_.read(read.range, cells, call.now)) return hardware_failed();
+  if (table == Table::input_registers && identity::reserved.overlaps(read.range)) {
     write_statistics(statistics_, call.now, image_);
+    write_watchdog(watchdog_, call.now, image_);
+  }
   return holds_bits(table) ? modbus::reply_bits(read.function, cells, call.reply)
                            : modbus::reply_registers(read.function, cells, call.reply);
 }
@@ -66,12 +104,24 @@ Handler::Answer Handler::carry_out(const modbus::WriteBits& write, const Call& c
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
   const auto bits = Span<std::uint16_t>(bits_).first(cells.size());
   for (std::size_t i = 0; i < bits.size(); ++i) bits[i] = write.packed[i / 8] >> i % 8 & 1;
-  if (!lines_.drive(write.range, bits)) return tl::unexpected(Exception::server_device_failure);
+  if (watchdog_.is_locked() && lines_.driven(write.range, bits))
+    return tl::unexpected(Exception::server_device_failure);
+  if (!lines_.drive(write.range, bits)) return hardware_failed();
   std::copy(bits.begin(), bits.end(), cells.begin());
+  if (watchdog_.is_present() && lines_.driven(write.range, cells)) watchdog_.arm(call.now);
+  return modbus::reply_written(call.request, call.reply);
+}
+
+Handler::Answer Handler::reset_watchdog(const modbus::WriteRegisters& write, const Call& call) {
+  if (modbus::get_u16(write.values.data()) != identity::watchdog_reset_code)
+    return tl::unexpected(Exception::illegal_data_value);
+  watchdog_.reset();
   return modbus::reply_written(call.request, call.reply);
 }
 
 Handler::Answer Handler::carry_out(const modbus::WriteRegisters& write, const Call& call) {
+  if (map_.service.watchdog.needs_reset() && write.range == identity::watchdog_reset)
+    return reset_watchdog(write, call);
   const auto cells = image_.find_writable(Table::holding_registers, write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
   commit(write, cells);

@@ -4,13 +4,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <tl/expected.hpp>
 
 #include "common/modbus/limits.hpp"
 #include "common/modbus/request.hpp"
 #include "device/core/image.hpp"
 #include "device/core/lines.hpp"
+#include "device/core/peer.hpp"
 #include "device/core/statistics.hpp"
+#include "device/core/watchdog.hpp"
 
 namespace coupler::node {
 
@@ -18,13 +21,19 @@ namespace coupler::node {
 /// driven, then the image is changed, then the reply is made. What fails leaves no trace. Allocates nothing.
 class Handler {
  public:
-  /// All of them outlive the handler.
+  /// All of them outlive the handler. The image shows outputs as the lines are driven.
   Handler(const Map& map, Image& image, Lines& lines, Statistics& statistics);
 
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
-  /// returns its size. Exceptions: those of parse_request(); 02 an address that is not mapped, or not
-  /// writable; 04 a line that cannot be read or driven.
-  std::size_t handle(modbus::Bytes request, TimePoint now, Span<std::uint8_t> reply);
+  /// returns its size; `peer` sent it. Exceptions: those of parse_request(); 02 an address that is not
+  /// mapped, or not writable; 03 a value that does not reset the watchdog; 04 a line that cannot be read or
+  /// driven, or an output that the watchdog keeps in its safe state.
+  std::size_t handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply);
+
+  /// Drives the outputs to their safe state if the watchdog is due. handle() does so too.
+  void tick(TimePoint now);
+  /// How long tick() need not be called; nullopt: not before the next request.
+  std::optional<std::chrono::milliseconds> patience(TimePoint now) const;
 
  private:
   using Answer = tl::expected<std::size_t, modbus::Exception>;
@@ -43,10 +52,15 @@ class Handler {
   Answer carry_out(const modbus::ReadWriteRegisters& both, const Call& call);
   Answer carry_out(const modbus::FileGroups& groups, const Call& call);
 
+  Answer reset_watchdog(const modbus::WriteRegisters& write, const Call& call);
+  Answer hardware_failed();
+  void show_outputs();
+
   const Map& map_;
   Image& image_;
   Lines& lines_;
   Statistics& statistics_;
+  OutputWatchdog watchdog_;
   std::array<std::uint16_t, modbus::max_write_bits> bits_{};  ///< those of a write, before it is committed
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/core/identity_area.hpp"
 
+#include <algorithm>
+
 #include "common/codec/number.hpp"
 #include "common/map/identity.hpp"
 
@@ -28,6 +30,14 @@ void write_statistics(const Statistics& statistics, TimePoint now, Image& image)
   put(identity::at_exceptions, statistics.exceptions);
   put(identity::at_connections, statistics.connections);
   put(identity::at_hardware_errors, statistics.hardware_errors);
+  put(identity::at_watchdog_trips, statistics.watchdog_trips);
+}
+
+void write_watchdog(const OutputWatchdog& watchdog, TimePoint now, Image& image) {
+  const auto area = area_of(image);
+  area[identity::at_watchdog_state] = static_cast<std::uint16_t>(watchdog.state());
+  area[identity::at_watchdog_left] =
+      static_cast<std::uint16_t>(std::min<std::int64_t>(watchdog.left(now).count(), 0xFFFF));
 }
 
 }  // namespace coupler::node

@@ -3,6 +3,7 @@
 
 #include "device/core/image.hpp"
 #include "device/core/statistics.hpp"
+#include "device/core/watchdog.hpp"
 
 namespace coupler::node {
 
@@ -10,7 +11,8 @@ namespace coupler::node {
 /// changes.
 void write_identity(const Map& map, Image& image);
 
-/// The same for the counters, which are brought up to date whenever a master reads there.
+/// The same for counters and watchdog, which are brought up to date whenever a master reads there.
 void write_statistics(const Statistics& statistics, TimePoint now, Image& image);
+void write_watchdog(const OutputWatchdog& watchdog, TimePoint now, Image& image);
 
 }  // namespace coupler::node

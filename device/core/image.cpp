@@ -30,8 +30,9 @@ void each_range(const Map& map, Table table, Which which, Use use) {
     end = std::max(end, next.end());
   }
   if (start != end) use(Range::of(start, end - start));
-  if (table == Table::input_registers && which == Which::mapped)
-    use(Range::of(identity::reserved.start(), identity::size));
+  if (which == Which::writable) return;
+  if (table == Table::input_registers) use(Range::of(identity::reserved.start(), identity::size));
+  if (table == Table::holding_registers && map.service.watchdog.needs_reset()) use(identity::watchdog_reset);
 }
 
 const Image::Area* covering(Span<Image::Area> areas, Range range) {

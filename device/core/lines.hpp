@@ -24,6 +24,10 @@ class Lines {
   /// back at the levels they had.
   [[nodiscard]] virtual bool drive(modbus::Range coils, Span<const std::uint16_t> levels) = 0;
 
+  /// Overwrites in `levels`, which has one element for each address of `coils`, those that have a line: the
+  /// level that it is driven to. Returns whether there is one.
+  virtual bool driven(modbus::Range coils, Span<std::uint16_t> levels) const = 0;
+
   /// Drives every output to its safe state (`hold` stays). Tries all of them; false if one cannot be driven.
   [[nodiscard]] virtual bool drive_safe() = 0;
 };

@@ -17,8 +17,8 @@ class Server {
       : unit_(unit), handler_(handler), statistics_(statistics) {}
 
   /// Writes the reply to `adu` (at least max_adu_size bytes) and returns its size; 0: another unit's request,
-  /// which gets no answer.
-  std::size_t answer(const modbus::Frame& frame, TimePoint now, Span<std::uint8_t> adu);
+  /// which gets no answer. `peer` sent the frame.
+  std::size_t answer(const modbus::Frame& frame, Peer& peer, TimePoint now, Span<std::uint8_t> adu);
 
  private:
   std::uint8_t unit_;

@@ -12,7 +12,8 @@ struct Statistics {
   TimePoint started{};
   std::uint32_t requests = 0;         ///< answered, exceptions included
   std::uint32_t exceptions = 0;       ///< of those
-  std::uint32_t hardware_errors = 0;  ///< exceptions 04
+  std::uint32_t hardware_errors = 0;  ///< requests that a line refused, exception 04
+  std::uint32_t watchdog_trips = 0;   ///< outputs went to their safe state since no master fed the watchdog
   std::uint32_t foreign_units = 0;    ///< requests for another unit id, not answered
   std::uint32_t connections = 0;      ///< accepted
   std::uint32_t evictions = 0;        ///< connections closed to make room for new ones

@@ -67,6 +67,15 @@ bool GroupedLines::drive(Range range, Span<const std::uint16_t> levels) {
   return true;
 }
 
+bool GroupedLines::driven(Range range, Span<std::uint16_t> levels) const {
+  bool any = false;
+  for (const Output& output : outputs_)
+    any |= each_in(range, output.wired.addresses, [&](std::size_t line, std::size_t i) {
+      levels[i] = static_cast<std::uint16_t>(output.wired.levels[line]);
+    });
+  return any;
+}
+
 void GroupedLines::restore() {
   for (Output& output : outputs_) {
     if (!output.driven) continue;

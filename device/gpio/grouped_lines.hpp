@@ -34,6 +34,7 @@ class GroupedLines : public Lines {
 
   bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint now) override;
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override;
+  bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override;
   bool drive_safe() override;
 
  private:

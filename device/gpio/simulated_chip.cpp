@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <type_traits>
 
 namespace coupler::node {
 namespace {
@@ -15,8 +16,8 @@ auto in_range(Lines& lines, Range range) {
   const auto below = [](const auto& line, std::uint32_t address) { return line.point->address < address; };
   const auto first = std::lower_bound(lines.begin(), lines.end(), std::uint32_t{range.start()}, below);
   const auto last = std::lower_bound(first, lines.end(), range.end(), below);
-  return Span<typename Lines::value_type>(lines).sub(static_cast<std::size_t>(first - lines.begin()),
-                                                     static_cast<std::size_t>(last - first));
+  return Span<std::remove_reference_t<decltype(*first)>>(lines).sub(
+      static_cast<std::size_t>(first - lines.begin()), static_cast<std::size_t>(last - first));
 }
 
 template <class Lines>
@@ -66,6 +67,12 @@ bool SimulatedChip::drive(Range coils, Span<const std::uint16_t> levels) {
   for (Output& output : in_range(outputs_, coils))
     output.level = levels[output.point->address - coils.start()] != 0;
   return true;
+}
+
+bool SimulatedChip::driven(Range coils, Span<std::uint16_t> levels) const {
+  const auto outputs = in_range(outputs_, coils);
+  for (const Output& output : outputs) levels[output.point->address - coils.start()] = output.level ? 1 : 0;
+  return !outputs.empty();
 }
 
 bool SimulatedChip::drive_safe() {

@@ -19,6 +19,7 @@ class SimulatedChip : public Lines {
 
   bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint now) override;
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override;
+  bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override;
   bool drive_safe() override;
 
   /// What a test does from outside. Names are those of points of the map.

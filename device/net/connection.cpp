@@ -21,6 +21,7 @@ void Connection::open(Descriptor socket, TimePoint now) {
   framer_.reset();
   output_begin_ = output_end_ = 0;
   ended_ = has_asked_ = false;
+  peer_ = {};
   last_active_ = now;
   waiting_ = Waiting::for_request;
   deadline_.reset();
@@ -79,7 +80,7 @@ Outcome Connection::fill_output(TimePoint now) {
   while (output_.size() - output_end_ >= modbus::max_adu_size) {
     const Outcome outcome = framer_.next();
     if (outcome != Outcome::frame) return outcome;
-    output_end_ += server_.answer(framer_.frame(), now, Span<std::uint8_t>(output_).from(output_end_));
+    output_end_ += server_.answer(framer_.frame(), peer_, now, Span<std::uint8_t>(output_).from(output_end_));
     has_asked_ = true;
     last_active_ = now;
   }

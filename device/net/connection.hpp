@@ -58,6 +58,7 @@ class Connection : public Watcher {
   Server& server_;
   Statistics& statistics_;
   Descriptor socket_;
+  Peer peer_;
   modbus::Framer framer_;
   std::array<std::uint8_t, output_size> output_;
   std::size_t output_begin_ = 0;

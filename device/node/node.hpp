@@ -14,6 +14,7 @@ class Node {
   /// Both outlive the node.
   Node(const Map& map, Lines& lines, TimePoint now);
 
+  Handler& handler() { return handler_; }
   Server& server() { return server_; }
   Statistics& statistics() { return statistics_; }
 

@@ -62,6 +62,14 @@ std::string address_for(const Options& options) {
   return "127.0.0.1";
 }
 
+using Patience = std::optional<std::chrono::milliseconds>;
+
+/// nullopt is for ever.
+Patience shorter(Patience a, Patience b) {
+  if (!a || !b) return a ? a : b;
+  return std::min(*a, *b);
+}
+
 std::string greeting(const Map& map, const Options& options, const TcpServer& tcp) {
   return fmt::format("serving {} ({} points, fingerprint {}) on {}{}", map.name, map.points.size(),
                      fingerprint_text(map.fingerprint), tcp.name(), options.simulated ? ", simulated" : "");
@@ -72,6 +80,20 @@ std::string farewell(int signal, bool safe, const Statistics& statistics) {
       "{}: {}; answered {} requests, {} of them with an exception", ::strsignal(signal),
       safe ? "outputs are in their safe state" : "not every output could be driven to its safe state",
       statistics.requests, statistics.exceptions);
+}
+
+/// Serves until a signal asks to stop.
+void run(Loop& loop, const Signals& signals, TcpServer& tcp, Node& node, Log& log) {
+  std::uint32_t trips = 0;
+  for (TimePoint now = TimePoint::clock::now(); signals.stop() == 0;) {
+    now = loop.run_once(shorter(tcp.patience(), node.handler().patience(now)));
+    tcp.tick(now);
+    node.handler().tick(now);
+    if (trips == node.statistics().watchdog_trips) continue;
+    trips = node.statistics().watchdog_trips;
+    log.write(
+        "the watchdog expired: no master that writes was heard in time; outputs go to their safe state");
+  }
 }
 
 }  // namespace
@@ -94,7 +116,7 @@ int serve(const Map& map, const Options& options) {
   Node node(map, *wiring->lines, TimePoint::clock::now());
   TcpServer tcp(loop, *std::move(listener), node.server(), node.statistics(), log);
   log.write(greeting(map, options, tcp));
-  while (signals.stop() == 0) tcp.tick(loop.run_once(tcp.patience()));
+  run(loop, signals, tcp, node, log);
 
   const bool safe = wiring->lines->drive_safe();
   log.write(farewell(signals.stop(), safe, node.statistics()));

@@ -61,6 +61,10 @@ class MapBuilder {
     head_.connection.unit = unit;
     return *this;
   }
+  MapBuilder& watchdog(Watchdog watchdog) {
+    head_.service.watchdog = watchdog;
+    return *this;
+  }
   /// Registers that a point's `initial` can view.
   Span<const std::uint16_t> keep(std::vector<std::uint16_t> registers) {
     return owned_->keep(std::move(registers));

@@ -28,6 +28,7 @@ class PartlyBrokenLines : public node::Lines {
     return true;
   }
   bool drive(modbus::Range coils, Span<const std::uint16_t>) override { return !coils.contains(broken_line); }
+  bool driven(modbus::Range, Span<std::uint16_t>) const override { return true; }
   bool drive_safe() override { return true; }
 };
 
@@ -153,7 +154,7 @@ class Engine {
     require(!request.pdu.empty() && request.pdu.size() <= modbus::max_pdu_size, "a PDU has 1 … 253 bytes");
     const std::vector<std::uint16_t> before = memory_.cells;
     std::array<std::uint8_t, modbus::max_adu_size> adu{};
-    const std::size_t size = server_.answer(request, {}, adu);
+    const std::size_t size = server_.answer(request, peer_, {}, adu);
     if (size == 0) {
       require(request.unit >= 2 && request.unit <= 254, "only other units get silence");
     } else {
@@ -167,6 +168,7 @@ class Engine {
   node::OwnedImage memory_;
   PartlyBrokenLines lines_;
   node::Statistics statistics_;
+  node::Peer peer_;
   node::Handler handler_;
   node::Server server_;
   modbus::Framer framer_;

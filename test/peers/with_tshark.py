@@ -23,7 +23,7 @@ def words(function, *fields, rest=b""):
 
 # Every function code of the node, good requests and such that are answered with an exception.
 REQUESTS = [
-    words(1, 0, 10), words(1, 20, 1), words(2, 0, 4), words(3, 0, 17), words(4, 0, 5), words(4, 0xFF00, 23),
+    words(1, 0, 10), words(1, 20, 1), words(2, 0, 4), words(3, 0, 17), words(4, 0, 5), words(4, 0xFF00, 25),
     words(5, 3, 0xFF00), words(5, 3, 0), words(6, 0, 0x1234),
     words(15, 0, 10, rest=b"\x02\xcd\x01"), words(16, 0, 2, rest=b"\x04\x12\x34\x56\x78"),
     b"\x14\x07\x06" + struct.pack(">HHH", 1, 0, 100),

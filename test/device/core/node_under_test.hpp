@@ -37,9 +37,10 @@ struct OwnedImage {
 struct NodeUnderTest {
   explicit NodeUnderTest(MapPtr of) : owner(std::move(of)) {}
 
-  Pdu ask(const Pdu& request) {
+  Pdu ask(const Pdu& request) { return ask(peer, request); }
+  Pdu ask(Peer& who, const Pdu& request) {
     std::array<std::uint8_t, modbus::max_pdu_size> reply{};
-    const std::size_t size = handler.handle(request, now, reply);
+    const std::size_t size = handler.handle(request, who, now, reply);
     return Pdu(reply.data(), reply.data() + size);
   }
 
@@ -48,6 +49,7 @@ struct NodeUnderTest {
   OwnedImage memory{map};
   Image& image = memory.image;
   FakeLines lines;
+  Peer peer;
   Statistics statistics;
   TimePoint now{};
   Handler handler{map, image, lines, statistics};

@@ -38,7 +38,7 @@ TEST_F(Handling, A_coil_reads_as_it_was_written) {
 
 TEST_F(Handling, Coils_are_driven_in_one_step_before_they_are_acknowledged) {
   EXPECT_THAT(node.ask(pdu(15, {2, 10}, {2, 0xCD, 0x01})), ElementsAreArray(pdu(15, {2, 10})));
-  EXPECT_THAT(node.lines.driven,
+  EXPECT_THAT(node.lines.writes(),
               ElementsAre(Pair(Range::of(2, 10), ElementsAre(1, 0, 1, 1, 0, 0, 1, 1, 1, 0))));
   EXPECT_THAT(node.ask(pdu(1, {2, 10})), ElementsAre(1, 2, 0xCD, 0x01));
 }
@@ -96,7 +96,7 @@ TEST_F(Handling, An_address_outside_the_map_is_02_and_nothing_of_the_request_is_
   EXPECT_THAT(node.ask(pdu(22, {10, 0, 1})), ElementsAre(0x96, 2));
   EXPECT_THAT(node.ask(pdu(23, {10, 1, 0, 1}, {2, 0, 1})), ElementsAre(0x97, 2));
   EXPECT_THAT(node.ask(pdu(23, {0, 1, 10, 1}, {2, 0, 1})), ElementsAre(0x97, 2));
-  EXPECT_THAT(node.lines.driven, IsEmpty());
+  EXPECT_THAT(node.lines.writes(), IsEmpty());
   EXPECT_THAT(node.ask(pdu(3, {0, 10})), ElementsAreArray(pdu(3, {0x1400, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {0})));
 }
 

@@ -14,7 +14,7 @@ const std::vector<Pdu>& every_kind_of_request() {
       pdu(1, {0, 2000}),
       pdu(2, {0, 2000}),
       pdu(3, {0, 125}),
-      pdu(4, {0xFF00, 23}),
+      pdu(4, {0xFF00, 25}),
       pdu(5, {0, 0xFF00}),
       pdu(6, {0, 1}),
       pdu(15, {0, 10}, {2, 0xFF, 3}),

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace coupler::node {
+
+/// What the node remembers of a connection: one for each, made anew when it is opened.
+struct Peer {
+  bool has_written = false;  ///< a write of it was carried out
+};
+
+}  // namespace coupler::node

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "common/map/service.hpp"
+#include "device/core/peer.hpp"
+#include "device/core/time.hpp"
+
+namespace coupler::node {
+
+/// Tells when the master has been silent for too long. A write to an output arms it; requests of connections
+/// that have written feed it, so a monitor cannot keep a dead master's outputs on.
+class OutputWatchdog {
+ public:
+  /// What the identity area shows at at_watchdog_state.
+  enum class State : std::uint16_t { absent, idle, armed, expired };
+
+  explicit OutputWatchdog(const Watchdog& settings)
+      : settings_(settings), state_(settings.present() ? State::idle : State::absent) {}
+
+  State state() const { return state_; }
+  bool is_present() const { return state_ != State::absent; }
+  /// Outputs cannot be written before reset(): it has expired, and recovery is manual.
+  bool is_locked() const {
+    return state_ == State::expired && settings_.recovery == Watchdog::Recovery::manual;
+  }
+
+  /// A master has written to an output that has a line.
+  void arm(TimePoint now);
+  /// A request of this client was answered; `wrote`: it was a write and carried out.
+  void request(Peer& peer, bool wrote, TimePoint now);
+  /// The operator has seen that it expired.
+  void reset();
+
+  /// Something is to be done: expire() is to be called and the outputs are to be driven to their safe state.
+  bool is_due(TimePoint now) const { return deadline_ && now >= *deadline_; }
+  /// The outputs were driven to their safe state. If that failed, it is due again after another timeout.
+  void expire(bool outputs_are_safe, TimePoint now);
+  /// When it is due; nullopt: never, unless somebody writes.
+  std::optional<TimePoint> deadline() const { return deadline_; }
+  /// Until the outputs go to their safe state, rounded up; 0 unless armed.
+  std::chrono::milliseconds left(TimePoint now) const;
+
+ private:
+  Watchdog settings_;
+  State state_;
+  std::optional<TimePoint> deadline_;
+};
+
+}  // namespace coupler::node
