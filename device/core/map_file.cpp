@@ -13,9 +13,9 @@ bool read_map_file(std::string_view text, modbus::FileRecord wanted, Span<std::u
   const std::size_t total = (text.size() + 1) / 2;
   if (first >= total || wanted.registers > total - first) return false;
 
-  const std::string_view piece = text.substr(2 * first, bytes.size());
-  std::memcpy(bytes.data(), piece.data(), piece.size());
-  std::fill(bytes.begin() + piece.size(), bytes.end(), std::uint8_t{0});
+  const std::size_t there = std::min(bytes.size(), text.size() - 2 * first);
+  std::memcpy(bytes.data(), text.data() + 2 * first, there);
+  std::fill(bytes.begin() + there, bytes.end(), std::uint8_t{0});
   return true;
 }
 

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// A node without an operating system: what a port has instead of device/net, device/gpio and device/node. It
+// takes one request from a static buffer and writes the reply to the debugger's console. Everything that it
+// uses is in static memory.
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+
+#include "device/core/server.hpp"
+#include "example_map.hpp"
+
+namespace coupler::node {
+namespace {
+
+/// A debugger's service (Arm semihosting), which QEMU offers too.
+void ask_debugger(int operation, const void* argument) {
+  register int r0 asm("r0") = operation;
+  register const void* r1 asm("r1") = argument;
+  asm volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
+}
+
+[[noreturn]] void stop(bool well) {
+  constexpr int exit = 0x18;
+  const auto reason =
+      well ? 0x20026U : 0x20023U;  // ADP_Stopped_ApplicationExit, ADP_Stopped_RunTimeErrorUnknown
+  ask_debugger(exit, reinterpret_cast<const void*>(reason));
+  for (;;) {
+  }
+}
+
+void print_hex(Span<const std::uint8_t> bytes) {
+  constexpr int write_text = 0x04;
+  static char text[2 * modbus::max_adu_size + 2];
+  char* end = text;
+  for (const std::uint8_t byte : bytes) {
+    *end++ = "0123456789abcdef"[byte >> 4];
+    *end++ = "0123456789abcdef"[byte & 15];
+  }
+  *end++ = '\n';
+  *end = '\0';
+  ask_debugger(write_text, text);
+}
+
+/// Port registers of a chip, as far as the example's three inputs and outputs need them.
+class Ports final : public Lines {
+ public:
+  bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint) override {
+    for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = in_ >> (inputs.start() + i) & 1;
+    return true;
+  }
+  bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override {
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      const std::uint32_t bit = 1U << (coils.start() + i);
+      out_ = levels[i] != 0 ? out_ | bit : out_ & ~bit;
+    }
+    return true;
+  }
+  bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override {
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      if (coils.start() + i < wired_outputs) levels[i] = out_ >> (coils.start() + i) & 1;
+    return coils.start() < wired_outputs;
+  }
+  bool drive_safe() override {
+    out_ = 0b010;
+    return true;
+  }
+
+ private:
+  static constexpr std::uint32_t wired_outputs = 3;
+  volatile std::uint32_t in_ = 0b101;
+  volatile std::uint32_t out_ = 0b010;  // the lamp is on at start, and in its safe state
+};
+
+constexpr const Map& map = maps::example::map;
+Image::Area areas[16];
+std::uint16_t cells[64];
+std::uint8_t reply[modbus::max_adu_size];
+
+/// The replies to a master's first requests, one after the other.
+void answer_all() {
+  constexpr std::uint8_t requests[][12] = {
+      {0, 1, 0, 0, 0, 6, 1, 2, 0, 0, 0, 3},        // the three inputs
+      {0, 2, 0, 0, 0, 6, 1, 5, 0, 0, 0xFF, 0},     // relay on
+      {0, 3, 0, 0, 0, 6, 1, 1, 0, 0, 0, 4},        // the coils
+      {0, 4, 0, 0, 0, 6, 1, 3, 0, 0, 0, 3},        // speed and ratio
+      {0, 5, 0, 0, 0, 6, 1, 4, 0xFF, 0, 0, 3},     // the identity area: "OCPL", layout 1
+      {0, 6, 0, 0, 0, 6, 1, 3, 0x12, 0x34, 0, 1},  // an address that is not mapped
+  };
+  Ports ports;
+  static Statistics statistics;
+  Image image(map, areas, cells);
+  static Handler handler(map, image, ports, statistics);
+  static Server server(map.connection.unit, handler, statistics);
+  static modbus::Framer framer;
+  Peer master;
+  for (const auto& request : requests) {
+    std::copy(std::begin(request), std::end(request), framer.room().begin());
+    framer.filled(sizeof request);
+    if (framer.next() != modbus::Framer::Outcome::frame) stop(false);
+    print_hex({reply, server.answer(framer.frame(), master, TimePoint{}, reply)});
+  }
+}
+
+}  // namespace
+}  // namespace coupler::node
+
+// What the linker wants of every port: the entry, where a failed assertion ends, and the deallocation that
+// the table of a virtual destructor names and nobody calls.
+extern "C" void start() {
+  using namespace coupler::node;
+  const auto size = Image::size_for(map);
+  if (size.areas > std::size(areas) || size.cells > std::size(cells)) stop(false);
+  answer_all();
+  stop(true);
+}
+extern "C" void __assert_func(const char*, int, const char*, const char*) { coupler::node::stop(false); }
+/// What the chip reads at reset: the stack, and where to begin.
+extern "C" const std::uint8_t stack_top[];
+[[gnu::section(".vectors"), gnu::used]] const void* const vectors[] = {stack_top,
+                                                                       reinterpret_cast<const void*>(start)};
+
+void operator delete(void*) noexcept { coupler::node::stop(false); }
+void operator delete(void*, std::size_t) noexcept { coupler::node::stop(false); }
