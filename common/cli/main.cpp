@@ -5,6 +5,7 @@
 #include <CLI/Formatter.hpp>
 #include <string>
 
+#include "common/base/version.hpp"
 #include "common/cli/commands.hpp"
 
 namespace {
@@ -25,6 +26,8 @@ void refuse_unknown_command(const CLI::App& program, int argc, char** argv) {
 }
 
 }  // namespace
+
+static_assert(coupler::version == COUPLER_VERSION, "common/base/version.hpp and CMakeLists.txt differ");
 
 int main(int argc, char** argv) {
   CLI::App program{"OpenCoupler: makes both sides of a Modbus/TCP coupler from one map.", "coupler"};

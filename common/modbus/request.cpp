@@ -76,6 +76,14 @@ Parsed parse_read_write(Bytes pdu) {
   return ReadWriteRegisters{*read, {*write, pdu.from(10)}};
 }
 
+/// Sub-function 0 takes any data of whole words.
+Parsed parse_diagnostics(Bytes pdu) {
+  if (pdu.size() < 3) return tl::unexpected(bad_value);
+  if (get_u16(&pdu[1]) != 0) return tl::unexpected(Exception::illegal_function);
+  if (pdu.size() < 5 || pdu.size() % 2 == 0) return tl::unexpected(bad_value);
+  return Echo{};
+}
+
 }  // namespace
 
 Parsed parse_request(Bytes pdu) {
@@ -88,11 +96,13 @@ Parsed parse_request(Bytes pdu) {
     case Function::read_input_registers: return parse_read(function, pdu, max_read_registers);
     case Function::write_single_coil: return parse_write_coil(pdu);
     case Function::write_single_register: return parse_write_register(pdu);
+    case Function::diagnostics: return parse_diagnostics(pdu);
     case Function::write_multiple_coils: return parse_write_coils(pdu);
     case Function::write_multiple_registers: return parse_write_registers(pdu);
     case Function::read_file_record: return parse_file_request(pdu);
     case Function::mask_write_register: return parse_mask_write(pdu);
     case Function::read_write_multiple_registers: return parse_read_write(pdu);
+    case Function::encapsulated_interface: return parse_device_identification(pdu);
   }
   return tl::unexpected(Exception::illegal_function);
 }

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "common/modbus/bytes.hpp"
+#include "common/modbus/device_identification.hpp"
 #include "common/modbus/exception.hpp"
 #include "common/modbus/file_record.hpp"
 #include "common/modbus/function.hpp"
@@ -46,12 +47,17 @@ struct ReadWriteRegisters {
   WriteRegisters write;
 };
 
-using Request = std::variant<FileGroups, Read, WriteBits, WriteRegisters, MaskWrite, ReadWriteRegisters>;
+/// FC 8/00: the request comes back as it is (MAP 6.8.1).
+struct Echo {};
+
+using Request = std::variant<Echo, FileGroups, Read, ReadDeviceIdentification, WriteBits, WriteRegisters,
+                             MaskWrite, ReadWriteRegisters>;
 
 /// Reads a request PDU of at least one byte and checks all that can be checked without knowing the device, in
-/// the order of MAP's state diagrams. Errors: 01 a function that is not spoken here, or a code of 128 and
-/// above; 03 a PDU longer or shorter than it must be, a quantity outside its limits, a byte count that does
-/// not match it, a coil value other than 0x0000 and 0xFF00; 02 a range that runs past address 65535.
+/// the order of MAP's state diagrams. Errors: 01 a function or one of its sub-functions that is not spoken
+/// here, or a code of 128 and above; 03 a PDU longer or shorter than it must be, a quantity outside its
+/// limits, a byte count that does not match it, a coil value other than 0x0000 and 0xFF00; 02 a range that
+/// runs past address 65535.
 tl::expected<Request, Exception> parse_request(Bytes pdu);
 
 }  // namespace coupler::modbus

@@ -113,8 +113,13 @@ void check_reply(const modbus::Frame& request, Bytes adu) {
     case Function::write_single_coil:
     case Function::write_single_register:
     case Function::mask_write_register:
+    case Function::diagnostics:
       require(std::equal(pdu.begin(), pdu.end(), request.pdu.begin(), request.pdu.end()),
-              "a write is acknowledged with the request");
+              "a write and query data are acknowledged with the request");
+      break;
+    case Function::encapsulated_interface:
+      require(pdu.size() >= 7 && pdu[1] == request.pdu[1] && pdu[2] == request.pdu[2],
+              "an identification is of the kind that was asked for");
       break;
   }
 }

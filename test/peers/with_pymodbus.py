@@ -12,7 +12,9 @@ import peer
 try:
     from pymodbus.client import ModbusTcpClient
     from pymodbus.constants import Endian
+    from pymodbus.diag_message import ReturnQueryDataRequest
     from pymodbus.file_message import FileRecord, ReadFileRecordRequest
+    from pymodbus.mei_message import ReadDeviceInformationRequest
     from pymodbus.payload import BinaryPayloadBuilder, BinaryPayloadDecoder
     from pymodbus.register_write_message import MaskWriteRegisterRequest
     from pymodbus.register_read_message import ReadWriteMultipleRegistersRequest
@@ -107,6 +109,29 @@ def the_node_says_what_it_is(client, checks, text):
     checks.equal("FC 20", got[:size], text)
 
 
+def the_node_identifies_itself(client, checks):
+    def objects(access, first=0):
+        reply = client.execute(ReadDeviceInformationRequest(access, first, unit=1))
+        checks.equal(f"FC 43/14 access {access} from {first}", reply.isError(), False)
+        return {number: value.decode() for number, value in reply.information.items()}
+
+    head = client.read_input_registers(IDENTITY, 13, 1).registers
+    fingerprint = "".join(f"{word:04x}" for word in head[3:7])
+    basic = objects(1)
+    checks.equal("FC 43/14 basic", list(basic), [0, 1, 2])
+    checks.equal("FC 43/14 vendor", basic[0], "OpenCoupler")
+    checks.equal("FC 43/14 product", basic[1], "peers")
+    regular = objects(2)
+    checks.equal("FC 43/14 regular", regular, {**basic, 4: "peers", 5: fingerprint})
+    checks.equal("FC 43/14 regular, from 2", objects(2, 2), {n: text for n, text in regular.items() if n >= 2})
+    for number, text in regular.items():
+        checks.equal(f"FC 43/14 object {number}", objects(4, number), {number: text})
+    absent = client.execute(ReadDeviceInformationRequest(4, 3, unit=1))
+    checks.equal("FC 43/14 absent object", getattr(absent, "exception_code", None), 2)
+    for word in (0, 0xA537, 0xFFFF):
+        checks.equal("FC 8/00", list(client.execute(ReturnQueryDataRequest(word, unit=1)).message), [word])
+
+
 def every_unit_id_of_its_own_is_answered(port, checks):
     for unit, answered in ((1, True), (0xFF, True), (2, False)):
         client = ModbusTcpClient("127.0.0.1", port=port, timeout=1, retries=0, retry_on_empty=False)
@@ -130,9 +155,10 @@ def main():
         registers_are_written_and_read(client, checks)
         what_is_not_mapped_is_refused(client, checks)
         the_node_says_what_it_is(client, checks, map_file.read_bytes())
+        the_node_identifies_itself(client, checks)
         client.close()
         every_unit_id_of_its_own_is_answered(port, checks)
-    checks.done(f"a pymodbus client reads and writes every table of {pathlib.Path(command[0]).name}, FC 1-6 15 16 20 22 23")
+    checks.done(f"a pymodbus client reads and writes every table of {pathlib.Path(command[0]).name}, FC 1-6 8 15 16 20 22 23 43")
 
 
 main()

@@ -52,6 +52,29 @@ TEST(Request, A_read_names_its_table_and_range) {
   }
 }
 
+TEST(Request, Query_data_is_any_number_of_words) {
+  for (const Pdu& words : {Pdu{0xA5, 0x37}, Pdu(2, 0), Pdu(250, 1)}) {
+    const auto request = parse_request(pdu(8, {0}, words));
+    ASSERT_TRUE(request.has_value());
+    EXPECT_TRUE(std::holds_alternative<Echo>(*request));
+  }
+  for (const Pdu& data : {Pdu{}, Pdu{1}, Pdu{1, 2, 3}}) EXPECT_EQ(refusal(pdu(8, {0}, data)), bad_value);
+  EXPECT_EQ(refusal({8}), bad_value);
+  EXPECT_EQ(refusal({8, 0}), bad_value);
+}
+
+TEST(Request, Other_diagnostics_are_no_function) {
+  for (int sub = 1; sub < 0x10000; sub += 0x101) EXPECT_EQ(refusal(pdu(8, {sub, 0})), bad_function) << sub;
+  EXPECT_EQ(refusal(pdu(8, {1})), bad_function);
+}
+
+TEST(Request, An_identification_is_read_by_43_14) {
+  const auto request = parse_request(Pdu{43, 14, 1, 0});
+  ASSERT_TRUE(request.has_value());
+  EXPECT_TRUE(std::holds_alternative<ReadDeviceIdentification>(*request));
+  EXPECT_EQ(refusal({43, 13, 0, 0}), bad_function);
+}
+
 TEST(Request, A_write_carries_its_values) {
   const auto coil = parse_request(pdu(5, {9, 0xFF00}));
   ASSERT_TRUE(coil.has_value());
@@ -95,14 +118,14 @@ TEST(Request, A_read_write_carries_both_ranges) {
 }
 
 TEST(Request, A_function_that_is_not_spoken_here_is_illegal_whatever_follows) {
-  for (const int function : {0, 7, 8, 17, 21, 24, 43, 90, 127, 128, 129, 131, 255}) {
+  for (const int function : {0, 7, 9, 17, 21, 24, 42, 90, 127, 128, 129, 131, 255}) {
     EXPECT_EQ(refusal(pdu(function, {})), bad_function) << function;
     EXPECT_EQ(refusal(pdu(function, {0, 1})), bad_function) << function;
   }
 }
 
 TEST(Request, A_bare_function_code_is_an_illegal_value) {
-  for (const int function : {1, 2, 3, 4, 5, 6, 15, 16, 20, 22, 23})
+  for (const int function : {1, 2, 3, 4, 5, 6, 8, 15, 16, 20, 22, 23, 43})
     EXPECT_EQ(refusal(pdu(function, {})), bad_value) << function;
 }
 

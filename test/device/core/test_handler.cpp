@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/map/fingerprint.hpp"
 #include "test/device/core/node_under_test.hpp"
 
 namespace coupler::node {
@@ -72,6 +73,17 @@ TEST_F(Handling, Registers_read_as_they_were_written) {
   EXPECT_THAT(node.ask(pdu(16, {2, 2}, {4, 0xAB, 0xCD, 0, 1})), ElementsAreArray(pdu(16, {2, 2})));
   EXPECT_THAT(node.ask(pdu(3, {0, 4})), ElementsAre(3, 8, 0, 0, 0x12, 0x34, 0xAB, 0xCD, 0, 1));
   EXPECT_THAT(node.ask(pdu(4, {0, 1})), ElementsAre(4, 2, 0, 0));
+}
+
+TEST_F(Handling, Query_data_comes_back) {
+  EXPECT_THAT(node.ask(pdu(8, {0, 0xA537, 1})), ElementsAreArray(pdu(8, {0, 0xA537, 1})));
+}
+
+TEST_F(Handling, The_identification_names_the_map_and_its_fingerprint) {
+  const Pdu name = node.ask({43, 14, 4, 1});
+  EXPECT_EQ(std::string(name.begin() + 9, name.end()), node.map.name);
+  const Pdu model = node.ask({43, 14, 4, 5});
+  EXPECT_EQ(std::string(model.begin() + 9, model.end()), fingerprint_text(node.map.fingerprint));
 }
 
 TEST_F(Handling, A_mask_write_changes_the_bits_it_names) {

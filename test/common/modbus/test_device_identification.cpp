@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/modbus/device_identification.hpp"
+#include "common/modbus/limits.hpp"
+
+namespace coupler::modbus {
+namespace {
+
+using testing::ElementsAre;
+using Access = ReadDeviceIdentification::Access;
+using Pdu = std::vector<std::uint8_t>;
+
+constexpr std::array<IdentificationObject, 4> objects{{{0, "AB"}, {1, "C"}, {2, "1.0"}, {4, "name"}}};
+
+Pdu reply_to(Access access, int object, Span<const IdentificationObject> of = objects) {
+  std::array<std::uint8_t, max_pdu_size> pdu{};
+  const auto size = reply_device_identification({access, static_cast<std::uint8_t>(object)}, of, pdu);
+  return size ? Pdu(pdu.data(), pdu.data() + *size) : Pdu{0xFF, static_cast<std::uint8_t>(size.error())};
+}
+
+TEST(DeviceIdentification, A_request_has_an_access_and_an_object) {
+  const auto wanted = parse_device_identification(Pdu{43, 14, 4, 2});
+  ASSERT_TRUE(wanted.has_value());
+  EXPECT_EQ(wanted->access, Access::individual);
+  EXPECT_EQ(wanted->object, 2);
+}
+
+TEST(DeviceIdentification, Other_interfaces_are_no_function_and_other_accesses_no_value) {
+  const auto refusal = [](const Pdu& pdu) { return parse_device_identification(pdu).error(); };
+  EXPECT_EQ(refusal({43, 13, 1, 0}), Exception::illegal_function);
+  EXPECT_EQ(refusal({43, 15}), Exception::illegal_function);
+  for (const Pdu& pdu : {Pdu{43}, Pdu{43, 14}, Pdu{43, 14, 1}, Pdu{43, 14, 1, 0, 0}, Pdu{43, 14, 0, 0},
+                         Pdu{43, 14, 5, 0}, Pdu{43, 14, 255, 0}})
+    EXPECT_EQ(refusal(pdu), Exception::illegal_data_value);
+}
+
+TEST(DeviceIdentification, The_basic_stream_is_the_first_three_objects) {
+  EXPECT_THAT(reply_to(Access::basic, 0),
+              ElementsAre(43, 14, 1, 0x82, 0, 0, 3, 0, 2, 'A', 'B', 1, 1, 'C', 2, 3, '1', '.', '0'));
+  EXPECT_THAT(reply_to(Access::basic, 2), ElementsAre(43, 14, 1, 0x82, 0, 0, 1, 2, 3, '1', '.', '0'));
+}
+
+TEST(DeviceIdentification, The_regular_stream_goes_on_and_the_extended_has_no_more) {
+  const Pdu regular = reply_to(Access::regular, 2);
+  EXPECT_THAT(regular, ElementsAre(43, 14, 2, 0x82, 0, 0, 2, 2, 3, '1', '.', '0', 4, 4, 'n', 'a', 'm', 'e'));
+  Pdu extended = reply_to(Access::extended, 2);
+  EXPECT_EQ(extended[2], 3);
+  extended[2] = 2;
+  EXPECT_EQ(extended, regular);
+}
+
+TEST(DeviceIdentification, A_stream_from_an_object_that_is_not_there_begins_at_the_first) {
+  EXPECT_EQ(reply_to(Access::regular, 3), reply_to(Access::regular, 0));
+  EXPECT_EQ(reply_to(Access::basic, 4), reply_to(Access::basic, 0));
+  EXPECT_EQ(reply_to(Access::regular, 0x80), reply_to(Access::regular, 0));
+}
+
+TEST(DeviceIdentification, One_object_can_be_read_alone) {
+  EXPECT_THAT(reply_to(Access::individual, 4),
+              ElementsAre(43, 14, 4, 0x82, 0, 0, 1, 4, 4, 'n', 'a', 'm', 'e'));
+  EXPECT_THAT(reply_to(Access::individual, 3), ElementsAre(0xFF, 2));
+}
+
+TEST(DeviceIdentification, A_stream_that_does_not_fit_says_where_it_goes_on) {
+  const std::string longest(300, 'x');
+  const std::array<IdentificationObject, 3> large{{{0, "AB"}, {1, longest}, {2, "1.0"}}};
+  EXPECT_THAT(reply_to(Access::basic, 0, large), ElementsAre(43, 14, 1, 0x82, 0xFF, 1, 1, 0, 2, 'A', 'B'));
+  const Pdu second = reply_to(Access::basic, 1, large);
+  EXPECT_EQ(second.size(), max_pdu_size);
+  EXPECT_THAT(Pdu(second.begin() + 4, second.begin() + 9), ElementsAre(0xFF, 2, 1, 1, 244));
+  EXPECT_THAT(reply_to(Access::basic, 2, large), ElementsAre(43, 14, 1, 0x82, 0, 0, 1, 2, 3, '1', '.', '0'));
+}
+
+}  // namespace
+}  // namespace coupler::modbus
