@@ -16,6 +16,7 @@ struct Statistics {
   std::uint32_t watchdog_trips = 0;   ///< outputs went to their safe state since no master fed the watchdog
   std::uint32_t foreign_units = 0;    ///< requests for another unit id, not answered
   std::uint32_t connections = 0;      ///< accepted
+  std::uint32_t refusals = 0;         ///< connections of clients that may not connect
   std::uint32_t evictions = 0;        ///< connections closed to make room for new ones
   std::uint32_t bad_frames = 0;       ///< connections closed for what they sent
   std::uint32_t timeouts = 0;         ///< connections closed for what they did not send or read in time

@@ -84,7 +84,7 @@ tl::expected<Listener, std::string> listen_on(const std::string& address, std::u
       auto socket = open(*info);
       if (socket) {
         std::string name = name_of(socket->get());
-        return Listener{*std::move(socket), std::move(name)};
+        return Listener{*std::move(socket), std::move(name), {}};
       }
       error = socket.error();
     }

@@ -6,6 +6,7 @@
 #include <tl/expected.hpp>
 
 #include "device/net/descriptor.hpp"
+#include "device/net/guest_list.hpp"
 
 namespace coupler::node {
 
@@ -13,10 +14,12 @@ namespace coupler::node {
 struct Listener {
   Descriptor socket;
   std::string name;  ///< "127.0.0.1:1502", "[::]:502"
+  GuestList guests{};
 };
 
-/// Listens on a TCP port (0: any free one, which `name` tells). `address` is an IP address or host name;
-/// empty: every interface, IPv6 and IPv4. The error says what is in the way and how to get around it.
+/// Listens on a TCP port (0: any free one, which `name` tells), open to everyone. `address` is an IP address
+/// or host name; empty: every interface, IPv6 and IPv4. The error says what is in the way and how to get
+/// around it.
 tl::expected<Listener, std::string> listen_on(const std::string& address, std::uint16_t port);
 
 }  // namespace coupler::node

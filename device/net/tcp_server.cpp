@@ -2,12 +2,14 @@
 #include "device/net/tcp_server.hpp"
 
 #include <fmt/format.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
@@ -44,6 +46,14 @@ bool concerns_the_client(int error) {
   return false;
 }
 
+std::string host_of(const sockaddr_storage& peer) {
+  std::array<char, NI_MAXHOST> host{};
+  if (::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), sizeof peer, host.data(), host.size(), nullptr,
+                    0, NI_NUMERICHOST) != 0)
+    return "a client";
+  return host.data();
+}
+
 }  // namespace
 
 TcpServer::TcpServer(Loop& loop, Listener listener, Server& server, Statistics& statistics, Log& log,
@@ -68,12 +78,19 @@ void TcpServer::ready(TimePoint now) {
 
 /// False: nobody waits, or nobody can be let in now.
 bool TcpServer::accept_one(TimePoint now) {
-  Descriptor socket(::accept4(listener_.socket.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  sockaddr_storage peer{};
+  socklen_t size = sizeof peer;
+  Descriptor socket(::accept4(listener_.socket.get(), reinterpret_cast<sockaddr*>(&peer), &size,
+                              SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!socket.is_open()) {
     const int error = errno;
     if (concerns_the_client(error)) return true;
     if (error != EAGAIN && error != EWOULDBLOCK) pause(error);
     return false;
+  }
+  if (!listener_.guests.admits(peer)) {
+    refuse(std::move(socket), peer);
+    return true;
   }
   configure(socket.get());
   ++statistics_.connections;
@@ -81,6 +98,16 @@ bool TcpServer::accept_one(TimePoint now) {
   pause_logged_ = false;
   free_connection().open(std::move(socket), now);
   return true;
+}
+
+/// Says so once: who knocks again and again must not fill the log.
+void TcpServer::refuse(Descriptor socket, const sockaddr_storage& peer) {
+  if (statistics_.refusals++ == 0)
+    log_.write(
+        fmt::format("{} may not connect, the map's 'allow' does not list it; from now on such are only "
+                    "counted",
+                    host_of(peer)));
+  socket.close();
 }
 
 /// The listener stays readable while it cannot accept; watching it would spin.

@@ -41,6 +41,7 @@ class TcpServer : public Watcher {
  private:
   Connection& free_connection();
   bool accept_one(TimePoint now);
+  void refuse(Descriptor socket, const sockaddr_storage& peer);
   void pause(int error);
 
   Loop& loop_;

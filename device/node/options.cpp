@@ -6,6 +6,12 @@
 
 namespace coupler::node {
 
+std::string address_for(const Map& map, const Options& options) {
+  if (!options.listen.empty()) return options.listen;
+  if (!map.service.listen.empty()) return std::string(map.service.listen);
+  return options.simulated ? "127.0.0.1" : "";
+}
+
 std::variant<Options, int> parse_options(int argc, char** argv, MapSource source) {
   const std::string program = std::filesystem::path(argc > 0 ? argv[0] : "coupler-node").filename();
   const std::string map = source == MapSource::argument ? " device.yaml" : "";
@@ -15,8 +21,9 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
              " --sim --port 1502");
   if (source == MapSource::argument)
     app.add_option("MAP", options.map, "The map file, YAML or JSON; - is standard input")->required();
-  app.add_option("--listen", options.listen,
-                 "IP address to listen on (default: every interface; with --sim 127.0.0.1)");
+  app.add_option(
+      "--listen", options.listen,
+      "IP address to listen on (default: the map's 'listen', or every interface; with --sim 127.0.0.1)");
   app.add_option("--port", options.port, "TCP port (default: the map's, usually 502; 0: any free one)");
   app.add_flag("--sim", options.simulated,
                "Simulate every coil and discrete input, wired as the map's sim: section says");

@@ -6,15 +6,21 @@
 #include <string>
 #include <variant>
 
+#include "common/map/map.hpp"
+
 namespace coupler::node {
 
 /// How a node is called.
 struct Options {
   std::string map;                    ///< a file; programs with a built-in map have none
-  std::string listen;                 ///< empty: every interface, loopback when simulated
+  std::string listen;                 ///< empty: as address_for() says
   std::optional<std::uint16_t> port;  ///< default: the map's
   bool simulated = false;
 };
+
+/// The address to listen on: the option's, the map's, loopback when simulated, otherwise (empty) every
+/// interface.
+std::string address_for(const Map& map, const Options& options);
 
 enum class MapSource { argument, built_in };
 

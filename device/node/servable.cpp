@@ -7,6 +7,18 @@
 
 namespace coupler::node {
 
+tl::expected<GuestList, std::string> guests_of(const Map& map) {
+  std::vector<Network> networks;
+  for (const std::string_view text : map.service.allow) {
+    const auto network = parse_network(text);
+    if (!network)
+      return tl::unexpected(
+          fmt::format("'allow': '{}' {}; {}", text, network.error().what, network.error().remedy));
+    networks.push_back(*network);
+  }
+  return GuestList(std::move(networks));
+}
+
 tl::expected<void, std::string> check_servable(const Map& map) {
   std::string errors;
   for (const Point& point : map.points) {

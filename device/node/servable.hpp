@@ -5,8 +5,12 @@
 #include <tl/expected.hpp>
 
 #include "common/map/map.hpp"
+#include "device/net/guest_list.hpp"
 
 namespace coupler::node {
+
+/// Who may connect, as the map says. The error names what is no address.
+tl::expected<GuestList, std::string> guests_of(const Map& map);
 
 /// Whether a node can serve this map, which is stricter than a map of somebody else's coupler. The error says
 /// which points are in the way, one a line, and what to do.

@@ -57,11 +57,6 @@ class EdgeWatcher : public Watcher {
   EventSource& source_;
 };
 
-std::string address_for(const Options& options) {
-  if (!options.listen.empty() || !options.simulated) return options.listen;
-  return "127.0.0.1";
-}
-
 using Patience = std::optional<std::chrono::milliseconds>;
 
 /// nullopt is for ever.
@@ -101,13 +96,16 @@ void run(Loop& loop, const Signals& signals, TcpServer& tcp, Node& node, Log& lo
 int serve(const Map& map, const Options& options) {
   StderrLog log;
   if (const auto servable = check_servable(map); !servable) return fail(log, map_is_wrong, servable.error());
+  auto guests = guests_of(map);
+  if (!guests) return fail(log, map_is_wrong, guests.error());
 
   Loop loop;
   if (!loop.is_open()) return fail(log, device_failed, std::strerror(errno));
   Signals signals(loop);
   // The network first: outputs are not touched by a program that then cannot serve them.
-  auto listener = listen_on(address_for(options), options.port.value_or(map.connection.port));
+  auto listener = listen_on(address_for(map, options), options.port.value_or(map.connection.port));
   if (!listener) return fail(log, device_failed, listener.error());
+  listener->guests = *std::move(guests);
   auto wiring = make_lines(map, options.simulated, log);
   if (!wiring) return fail(log, device_failed, wiring.error());
   std::deque<EdgeWatcher> watchers;

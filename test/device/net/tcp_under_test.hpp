@@ -69,12 +69,13 @@ class Client {
 
 /// A server on a free loopback port, run by the test step by step.
 struct TcpUnderTest {
-  explicit TcpUnderTest(std::size_t capacity = 8)
-      : tcp(loop, listen(), server, node.statistics, log, capacity) {}
+  explicit TcpUnderTest(std::size_t capacity = 8, GuestList guests = {})
+      : tcp(loop, listen(std::move(guests)), server, node.statistics, log, capacity) {}
 
-  static Listener listen() {
+  static Listener listen(GuestList guests) {
     auto listener = listen_on("127.0.0.1", 0);
     EXPECT_TRUE(listener.has_value());
+    listener->guests = std::move(guests);
     return *std::move(listener);
   }
 
@@ -97,7 +98,7 @@ struct TcpUnderTest {
 
   std::uint32_t progress() const {
     const Statistics& s = node.statistics;
-    return s.requests + s.connections + s.bad_frames + s.foreign_units +
+    return s.requests + s.connections + s.bad_frames + s.foreign_units + s.refusals +
            static_cast<std::uint32_t>(tcp.size());
   }
 

@@ -33,6 +33,18 @@ TEST(NodeOptions, They_are_read) {
   EXPECT_TRUE(options.simulated);
 }
 
+TEST(NodeOptions, The_address_is_the_options_then_the_maps_then_loopback_when_simulated) {
+  Map map;
+  Options options;
+  EXPECT_EQ(address_for(map, options), "");
+  options.simulated = true;
+  EXPECT_EQ(address_for(map, options), "127.0.0.1");
+  map.service.listen = "10.0.0.7";
+  EXPECT_EQ(address_for(map, options), "10.0.0.7");
+  options.listen = "::1";
+  EXPECT_EQ(address_for(map, options), "::1");
+}
+
 TEST(NodeOptions, Without_them_the_map_decides) {
   const auto parsed = parse({}, MapSource::built_in);
   ASSERT_TRUE(std::holds_alternative<Options>(parsed));
