@@ -5,19 +5,29 @@
 #   NAME_node    program: the node that serves it (links no YAML parser)
 #   NAME_driver  program: the ROS driver for it, where the ROS driver itself is built
 # Both programs link the same NAME_map, so they cannot disagree. Works in this tree and in a project that adds this
-# tree by add_subdirectory().
+# tree by add_subdirectory(). A cross build cannot run the `coupler` that it makes; it is given one that runs here.
+set(COUPLER_HOST_COUPLER "" CACHE FILEPATH "The program coupler of this machine, for cross builds")
+if(CMAKE_CROSSCOMPILING AND NOT COUPLER_HOST_COUPLER)
+  message(FATAL_ERROR "A cross build needs the generator of a native one: build the target coupler without the "
+                      "toolchain file and say -DCOUPLER_HOST_COUPLER=<that build>/bin/coupler")
+endif()
+
 function(coupler_add_map name map)
   get_filename_component(map ${map} ABSOLUTE BASE_DIR ${CMAKE_CURRENT_SOURCE_DIR})
   set(out ${CMAKE_CURRENT_BINARY_DIR}/${name}_generated)
   set(stamp ${out}/${name}.stamp)
+  set(generator coupler)
+  if(COUPLER_HOST_COUPLER)
+    set(generator ${COUPLER_HOST_COUPLER})
+  endif()
   set(files ${out}/${name}_driver.cpp ${out}/${name}_map.cpp ${out}/${name}_map.hpp ${out}/${name}_node.cpp)
 
   # The stamp is what gets newer; the files keep their time unless their content changes, so that a map that was only
   # touched compiles nothing. The program carries the templates: a change to them comes through it.
   add_custom_command(OUTPUT ${stamp} BYPRODUCTS ${files}
-    COMMAND coupler generate ${map} --out ${out} --name ${name} --quiet
+    COMMAND ${generator} generate ${map} --out ${out} --name ${name} --quiet
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
-    DEPENDS ${map} coupler
+    DEPENDS ${map} ${generator}
     COMMENT "Generating ${name} from its map" VERBATIM)
   add_custom_target(${name}_generate DEPENDS ${stamp})
   set_source_files_properties(${files} PROPERTIES GENERATED TRUE)
