@@ -63,8 +63,18 @@ Time Device::connect() {
 
 Result<> Device::prove_equal() {
   const Result<Identity> identity = check_identity(transport_, map_, load_);
-  if (!identity) return tl::make_unexpected(identity.error());
+  if (!identity) {
+    explain_silence(identity.error());
+    return tl::make_unexpected(identity.error());
+  }
   return judge(*identity);
+}
+
+void Device::explain_silence(const Error& error) {
+  if (!std::holds_alternative<Timeout>(error) || std::exchange(silence_told_, true)) return;
+  sink_.on_report(Level::warning,
+                  "connected, but the question for the device's identity is not answered; if this is a "
+                  "foreign coupler that ignores addresses it does not have, start with _verify:=off");
 }
 
 Result<> Device::judge(const Identity& identity) {
@@ -170,6 +180,7 @@ void Device::came_online() {
   if (std::exchange(online_, true)) return;
   backoff_.reset();
   last_trouble_.clear();
+  silence_told_ = false;
   sink_.on_online(true);
   if (dropped_writes_ > 0)
     sink_.on_report(Level::warning, fmt::format("connected; {} writes were dropped meanwhile",

@@ -40,6 +40,7 @@ class Device {
   Time connect();
   Result<> prove_equal();
   Result<> judge(const Identity& identity);
+  void explain_silence(const Error& error);
   void write(const Write& write);
   void drop_writes();
   void read();
@@ -63,6 +64,7 @@ class Device {
   bool online_ = false;     ///< connected, and the device has answered
   Time retry_at_ = Time::min();
   std::string last_trouble_;               ///< why the last attempt failed, so that it is told once
+  bool silence_told_ = false;              ///< that the identity was not answered, and the remedy
   std::uint64_t refused_fingerprint_ = 0;  ///< whose differences have been told
   std::uint64_t dropped_writes_ = 0;       ///< since the connection was lost
   std::array<std::uint8_t, modbus::max_read_bits> bits_{};

@@ -3,6 +3,7 @@
 # The whole chain on a chip of the kernel: line, coupler-node, coupler_driver, topic, and back.
 #   test/kernel/run --mem 1G test/kernel/driver.sh BUILD_DIR
 set -euo pipefail
+export PYTHONUNBUFFERED=1  # what rostopic prints is looked for in a file while it runs
 build=$(realpath "${1:?the build folder}")
 bin=$build/bin
 cd "$(dirname "$0")"

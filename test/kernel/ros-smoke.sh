@@ -4,6 +4,7 @@
 #   test/kernel/run --mem 1G test/kernel/ros-smoke.sh
 # Needs scripts/install-packages ros.
 set -euo pipefail
+export PYTHONUNBUFFERED=1  # what rostopic prints is looked for in a file while it runs
 # shellcheck source=checks.sh
 . "$(dirname "$0")/checks.sh"
 

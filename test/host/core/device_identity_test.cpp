@@ -32,6 +32,16 @@ TEST_F(DeviceIdentityTest, A_foreign_coupler_is_quiet) {
   EXPECT_EQ(sink->values["a"].size(), 2U);
 }
 
+TEST_F(DeviceIdentityTest, A_device_that_is_silent_about_its_identity_is_told_once_with_the_remedy) {
+  start(here());
+  for (int i = 0; i < 4; ++i) device.next_errors.push_back(Timeout{milliseconds(3000)});
+  run_for(milliseconds(1200));
+  EXPECT_EQ(sink->reported("_verify:=off"), 1);
+  EXPECT_TRUE(sink->online.empty());
+  run_for(seconds(6));
+  EXPECT_THAT(sink->online, ElementsAre(true));
+}
+
 TEST_F(DeviceIdentityTest, A_different_map_is_neither_read_nor_written) {
   serve(there());
   start(here());
