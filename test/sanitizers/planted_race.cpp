@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A data race on purpose, in a callback that roscpp calls: if ThreadSanitizer with our suppressions does not report it, the
-// suppressions hide real races. test/sanitizers/canary runs it.
+// A data race on purpose, in a callback that roscpp calls: if ThreadSanitizer with our suppressions does not
+// report it, the suppressions hide real races. test/sanitizers/canary runs it.
 #include <ros/ros.h>
 #include <std_msgs/Int32.h>
 
