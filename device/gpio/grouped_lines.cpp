@@ -20,13 +20,26 @@ bool each_in(Range range, const std::vector<std::uint16_t>& addresses, Use use) 
   return at != first;
 }
 
+std::size_t count_lines(const std::vector<WiredOutputs>& outputs) {
+  std::size_t count = 0;
+  for (const WiredOutputs& wired : outputs) count += wired.levels.size();
+  return count;
+}
+
+void copy(Span<const int> from, Span<int> to) { std::copy(from.begin(), from.end(), to.begin()); }
+
 }  // namespace
 
-GroupedLines::GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs, Log& log) {
+GroupedLines::GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs, Log& log)
+    : levels_(count_lines(outputs)) {
+  Span<int> free = levels_.all();
   for (WiredOutputs& wired : outputs) {
     Fault fault(wired.group->name(), log);
+    const std::size_t count = wired.levels.size();
+    copy(wired.levels, free.first(count));
     std::vector<int> next = wired.levels;
-    outputs_.push_back({std::move(wired), std::move(next), std::move(fault)});
+    outputs_.push_back({std::move(wired), free.first(count), std::move(next), std::move(fault)});
+    free = free.from(count);
   }
   for (WiredInputs& wired : inputs) {
     Fault fault(wired.group->name(), log);
@@ -49,21 +62,23 @@ bool GroupedLines::read(Range range, Span<std::uint16_t> levels, TimePoint now) 
 }
 
 bool GroupedLines::drive(Range range, Span<const std::uint16_t> levels) {
-  for (Output& output : outputs_) output.driven = false;
+  for (Output& output : outputs_) {
+    output.driven = false;
+    copy(output.levels, output.next);
+  }
   for (Output& output : outputs_) {
     const bool wanted = each_in(range, output.wired.addresses, [&](std::size_t line, std::size_t i) {
       output.next[line] = levels[i] != 0 ? 1 : 0;
     });
     if (!wanted) continue;
     if (!output.fault.note(output.wired.group->drive(output.next))) {
-      output.next = output.wired.levels;
       restore();
       return false;
     }
     output.driven = true;
   }
   for (Output& output : outputs_)
-    if (output.driven) output.wired.levels = output.next;
+    if (output.driven) copy(output.next, output.levels);
   return true;
 }
 
@@ -71,7 +86,7 @@ bool GroupedLines::driven(Range range, Span<std::uint16_t> levels) const {
   bool any = false;
   for (const Output& output : outputs_)
     any |= each_in(range, output.wired.addresses, [&](std::size_t line, std::size_t i) {
-      levels[i] = static_cast<std::uint16_t>(output.wired.levels[line]);
+      levels[i] = static_cast<std::uint16_t>(output.levels[line]);
     });
   return any;
 }
@@ -79,19 +94,19 @@ bool GroupedLines::driven(Range range, Span<std::uint16_t> levels) const {
 void GroupedLines::restore() {
   for (Output& output : outputs_) {
     if (!output.driven) continue;
-    output.next = output.wired.levels;
-    output.fault.note(output.wired.group->drive(output.next));
+    output.fault.note(output.wired.group->drive(output.levels));
   }
 }
 
 bool GroupedLines::drive_safe() {
   bool good = true;
   for (Output& output : outputs_) {
+    copy(output.levels, output.next);
     for (std::size_t line = 0; line < output.next.size(); ++line)
       if (output.wired.safe[line] != Safe::hold)
         output.next[line] = output.wired.safe[line] == Safe::on ? 1 : 0;
     if (output.fault.note(output.wired.group->drive(output.next)))
-      output.wired.levels = output.next;
+      copy(output.next, output.levels);
     else
       good = false;
   }

@@ -9,6 +9,7 @@
 #include "device/core/lines.hpp"
 #include "device/gpio/fault.hpp"
 #include "device/gpio/line_group.hpp"
+#include "device/gpio/shared_levels.hpp"
 
 namespace coupler::node {
 
@@ -27,7 +28,8 @@ struct WiredInputs {
 };
 
 /// Drives and reads any number of groups as one: a write that needs several of them is done by all or by
-/// none.
+/// none. Processes forked from this one use the same lines, and all of them know how outputs are driven as
+/// long as one at a time drives them.
 class GroupedLines : public Lines {
  public:
   GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs, Log& log);
@@ -40,6 +42,7 @@ class GroupedLines : public Lines {
  private:
   struct Output {
     WiredOutputs wired;
+    Span<int> levels;       ///< as driven, one for each line
     std::vector<int> next;  ///< what a write asks for
     Fault fault;
     bool driven = false;  ///< by the write in progress
@@ -51,6 +54,7 @@ class GroupedLines : public Lines {
 
   void restore();
 
+  SharedLevels levels_;
   std::vector<Output> outputs_;
   std::vector<Input> inputs_;
   std::array<int, max_group_size> scratch_{};

@@ -7,14 +7,15 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <deque>
 #include <string>
+#include <utility>
 
 #include "common/map/fingerprint.hpp"
 #include "device/gpio/make_lines.hpp"
+#include "device/keeper/keeper.hpp"
+#include "device/net/listener.hpp"
 #include "device/net/signals.hpp"
-#include "device/net/tcp_server.hpp"
-#include "device/node/node.hpp"
+#include "device/node/io_service.hpp"
 #include "device/node/servable.hpp"
 
 namespace coupler::node {
@@ -37,58 +38,16 @@ int fail(Log& log, Exit status, std::string_view errors) {
   return status;
 }
 
-/// Takes edges from the kernel as they come; a line that is gone is not watched any more.
-class EdgeWatcher : public Watcher {
- public:
-  EdgeWatcher(Loop& loop, EventSource& source, Log& log) : loop_(loop), source_(source) {
-    if (!loop_.watch(source_.descriptor(), Interest::read, *this))
-      log.write(fmt::format("an input's edges are seen late, when it is read: {}", std::strerror(errno)));
-  }
-  EdgeWatcher(const EdgeWatcher&) = delete;
-  EdgeWatcher& operator=(const EdgeWatcher&) = delete;
-  ~EdgeWatcher() { loop_.forget(source_.descriptor(), *this); }
-
-  void ready(TimePoint) override {
-    if (!source_.take_edges()) loop_.forget(source_.descriptor(), *this);
-  }
-
- private:
-  Loop& loop_;
-  EventSource& source_;
-};
-
-using Patience = std::optional<std::chrono::milliseconds>;
-
-/// nullopt is for ever.
-Patience shorter(Patience a, Patience b) {
-  if (!a || !b) return a ? a : b;
-  return std::min(*a, *b);
-}
-
-std::string greeting(const Map& map, const Options& options, const TcpServer& tcp) {
+std::string greeting(const Map& map, const Options& options, const Listener& listener) {
   return fmt::format("serving {} ({} points, fingerprint {}) on {}{}", map.name, map.points.size(),
-                     fingerprint_text(map.fingerprint), tcp.name(), options.simulated ? ", simulated" : "");
+                     fingerprint_text(map.fingerprint), listener.name,
+                     options.simulated ? ", simulated" : "");
 }
 
-std::string farewell(int signal, bool safe, const Statistics& statistics) {
-  return fmt::format(
-      "{}: {}; answered {} requests, {} of them with an exception", ::strsignal(signal),
-      safe ? "outputs are in their safe state" : "not every output could be driven to its safe state",
-      statistics.requests, statistics.exceptions);
-}
-
-/// Serves until a signal asks to stop.
-void run(Loop& loop, const Signals& signals, TcpServer& tcp, Node& node, Log& log) {
-  std::uint32_t trips = 0;
-  for (TimePoint now = TimePoint::clock::now(); signals.stop() == 0;) {
-    now = loop.run_once(shorter(tcp.patience(), node.handler().patience(now)));
-    tcp.tick(now);
-    node.handler().tick(now);
-    if (trips == node.statistics().watchdog_trips) continue;
-    trips = node.statistics().watchdog_trips;
-    log.write(
-        "the watchdog expired: no master that writes was heard in time; outputs go to their safe state");
-  }
+/// Simulated lines fall nowhere when nobody holds them.
+bool needs_keeper(const Map& map, const Options& options) {
+  const auto is_wired = [](const Point& point) { return point.line.present(); };
+  return !options.simulated && std::any_of(map.points.begin(), map.points.end(), is_wired);
 }
 
 }  // namespace
@@ -101,23 +60,27 @@ int serve(const Map& map, const Options& options) {
 
   Loop loop;
   if (!loop.is_open()) return fail(log, device_failed, std::strerror(errno));
-  Signals signals(loop);
+  const Signals signals(loop);
   // The network first: outputs are not touched by a program that then cannot serve them.
   auto listener = listen_on(address_for(map, options), options.port.value_or(map.connection.port));
   if (!listener) return fail(log, device_failed, listener.error());
   listener->guests = *std::move(guests);
   auto wiring = make_lines(map, options.simulated, log);
   if (!wiring) return fail(log, device_failed, wiring.error());
-  std::deque<EdgeWatcher> watchers;
-  for (EventSource* source : wiring->events) watchers.emplace_back(loop, *source, log);
+  log.write(greeting(map, options, *listener));
 
-  Node node(map, *wiring->lines, TimePoint::clock::now());
-  TcpServer tcp(loop, *std::move(listener), node.server(), node.statistics(), log);
-  log.write(greeting(map, options, tcp));
-  run(loop, signals, tcp, node, log);
-
-  const bool safe = wiring->lines->drive_safe();
-  log.write(farewell(signals.stop(), safe, node.statistics()));
+  if (!needs_keeper(map, options)) {
+    IoService(map, *wiring, *std::move(listener), loop, log).run(signals, nullptr);
+    return stopped;
+  }
+  const auto io_process = [&](Pulse& pulse) -> int {
+    Loop own_loop;
+    if (!own_loop.is_open()) return fail(log, device_failed, std::strerror(errno));
+    const Signals own_signals(own_loop);
+    IoService(map, *wiring, *std::move(listener), own_loop, log).run(own_signals, &pulse);
+    return stopped;
+  };
+  Keeper(loop, signals, *wiring->lines, log, nullptr).run(io_process);
   return stopped;
 }
 

@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Outputs are safe whatever happens to the process that drives them, read at the wires of a kernel chip. Each wire is
+# pulled away from the level that it has to have: only a line that is driven shows it.
+#   test/kernel/run test/kernel/keeper.sh BUILD_DIR
+set -euo pipefail
+bin=$(realpath "${1:?the build folder}")/bin
+cd "$(dirname "$0")"
+# shellcheck source=plant.sh
+. ./plant.sh
+
+# Coils 0 … 5 are off, on, hold; 3 … 5 the same, active-low. They are written to the opposite of their safe state, and
+# what is to be held to `on`.
+written=(1 0 1 1 0 1)
+safe=(0 1 1 0 1 1)
+
+wire_of() { if [ "$1" -ge 3 ]; then echo $((1 - $2)); else echo "$2"; fi; }
+io_process() { pgrep -P "$(pid node)"; }
+new_io_process() { local now; now=$(io_process) && [ "$now" != "$1" ] && [[ "$(cat "/proc/$now/stat")" != *" Z "* ]]; }
+wires_are() {
+  local line
+  for line in 0 1 2 3 4 5; do
+    level_is "$line" "$(wire_of "$line" "$(eval "echo \${$1[$line]}")")" || { echo "line $line is wrong"; return 1; }
+  done
+}
+pull_away_from() {
+  local line
+  for line in 0 1 2 3 4 5; do
+    if [ "$(wire_of "$line" "$(eval "echo \${$1[$line]}")")" = 1 ]; then
+      sim_pull plant "$line" down
+    else
+      sim_pull plant "$line" up
+    fi
+  done
+}
+coils_are() { [ "$(answered master -t 0 -r 0 -c 6 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*([01]).*/\1/p' | tr '\n' ' ')" = "$1 " ]; }
+write_outputs() { answered master -t 0 -r 0 127.0.0.1 -- "${written[@]}" >/dev/null; }
+
+# Reads the wires of held lines as fast as it can and tells each change. "armed" comes first.
+watch_wires() {
+  exec python3 -u -c '
+import sys
+files = [open(name, "rb", buffering=0) for name in sys.argv[1:]]
+def levels():
+    for file in files:
+        file.seek(0)
+    return [file.read(1) for file in files]
+before = levels()
+print("armed")
+while True:
+    now = levels()
+    if now != before:
+        print("changed", before, now)
+    before = now
+' "$(sim_wire plant 2)/value" "$(sim_wire plant 5)/value"
+}
+
+sim_define plant 8
+sim_plug plant
+plant_node keeper.yaml
+check "there is an I/O process" wait_until 5 io_process
+check "its name tells it from its keeper" grep -qx coupler-node-io "/proc/$(io_process)/comm"
+
+for signal in KILL STOP SEGV TERM; do
+  echo "# SIG$signal to the I/O process"
+  before=$(io_process)
+  check "the outputs are written" wait_until 15 write_outputs
+  check "and driven" wires_are written
+  pull_away_from safe
+  start wires watch_wires
+  check "the held lines are watched" wait_until 10 says wires armed
+  kill -s "$signal" "$before"
+  check "every output is in its safe state, against its pull" wait_until 5 wires_are safe
+  check "another I/O process is started" wait_until 10 new_io_process "$before"
+  check "outputs are as they were left" wires_are safe
+  check "it serves, and its image shows them" wait_until 10 coils_are "${safe[*]}"
+  check "inputs work" wait_until 5 input_is 0 0
+  stop wires KILL || true
+  refuse "no held line moved meanwhile" says wires changed
+done
+
+echo "# outputs that a write does not name keep their levels through all of this"
+check "one coil is written" set_coil 0 1
+pull_away_from safe
+sim_pull plant 0 down
+expect "its line is driven" 1 "$(sim_value plant 0)"
+check "the others are as before" level_is 2 1
+check "and the active-low one too" level_is 5 0
+
+echo "# a signal to the keeper"
+check "it ends well" stop node TERM
+refuse "no process is left" pgrep -f coupler-node-io
+says node 'outputs are in their safe state' && cat "$(log node)"
+
+echo "# the keeper is killed"
+plant_node keeper.yaml
+check "outputs are written" wait_until 5 write_outputs
+io=$(io_process)
+status=0; stop node KILL || status=$?
+expect "it dies" 137 "$status"
+check "its I/O process drives the safe state and ends" wait_until 5 ended "$io"
+check "and says so" says node 'Terminated: outputs are in their safe state'
