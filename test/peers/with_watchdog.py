@@ -1,0 +1,75 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""A master dies, a monitor goes on reading: the outputs of a node that serves watchdog.yaml go to their safe state.
+
+    with_watchdog.py NODE_COMMAND…
+"""
+import sys
+import time
+
+import peer
+
+try:
+    from pymodbus.client import ModbusTcpClient
+except ImportError as error:
+    peer.skip(f"python3-pymodbus is missing ({error}); run scripts/install-packages test")
+
+TIMEOUT = 0.5
+STATE, RESET = 0xFF0B, 0xFF00
+IDLE, ARMED, EXPIRED = 1, 2, 3
+DRIVEN, SAFE = [True, False, True], [False, True, True]
+
+
+def state(client):
+    return client.read_input_registers(STATE, 1, 1).registers[0]
+
+
+def levels(client):
+    return client.read_discrete_inputs(0, 3, 1).bits[:3]
+
+
+def a_master_that_speaks_keeps_its_outputs(master, checks):
+    checks.equal("nothing happened yet", state(master), IDLE)
+    checks.equal("the write", master.write_coils(0, DRIVEN, 1).isError(), False)
+    end = time.monotonic() + 3 * TIMEOUT
+    while time.monotonic() < end:
+        checks.equal("it is armed", state(master), ARMED)
+        checks.equal("outputs while the master reads", levels(master), DRIVEN)
+        time.sleep(TIMEOUT / 10)
+
+
+def a_monitor_does_not(monitor, checks):
+    end = time.monotonic() + 20
+    while state(monitor) != EXPIRED and time.monotonic() < end:
+        time.sleep(TIMEOUT / 10)
+    checks.equal("it expired although somebody reads", state(monitor), EXPIRED)
+    checks.equal("the wires are safe", levels(monitor), SAFE)
+    checks.equal("the image shows it", monitor.read_coils(0, 3, 1).bits[:3], SAFE)
+
+
+def outputs_stay_until_the_reset(client, checks):
+    checks.equal("a write to an output", client.write_coil(0, True, 1).exception_code, 4)
+    checks.equal("a write to a register", client.write_register(0, 7, 1).isError(), False)
+    checks.equal("a wrong code", client.write_register(RESET, 1, 1).exception_code, 3)
+    checks.equal("the wires are safe", levels(client), SAFE)
+    checks.equal("the code", client.write_register(RESET, 0xAA55, 1).isError(), False)
+    checks.equal("the register reads", client.read_holding_registers(RESET, 1, 1).registers, [0])
+    checks.equal("a write to an output", client.write_coil(0, True, 1).isError(), False)
+    checks.equal("the wires", levels(client), [True, True, True])
+    checks.equal("it is armed", state(client), ARMED)
+
+
+def main():
+    checks = peer.Checks()
+    with peer.running_node(sys.argv[1:]) as port:
+        master = ModbusTcpClient("127.0.0.1", port=port)
+        monitor = ModbusTcpClient("127.0.0.1", port=port)
+        a_master_that_speaks_keeps_its_outputs(master, checks)
+        master.close()
+        a_monitor_does_not(monitor, checks)
+        outputs_stay_until_the_reset(monitor, checks)
+        monitor.close()
+    checks.done("a dead master's outputs go to their safe state, and stay until the reset")
+
+
+main()
