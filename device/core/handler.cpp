@@ -89,7 +89,7 @@ Handler::Answer Handler::answer(const Call& call) {
 
 Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
   const Table table = table_of(read.function);
-  const auto cells = image_.find(table, read.range);
+  const auto cells = image_.find_readable(table, read.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
   if (table == Table::discrete_inputs && !lines_.read(read.range, cells, call.now)) return hardware_failed();
   if (table == Table::input_registers && identity::reserved.overlaps(read.range)) {
@@ -137,7 +137,7 @@ Handler::Answer Handler::carry_out(const modbus::MaskWrite& write, const Call& c
 }
 
 Handler::Answer Handler::carry_out(const modbus::ReadWriteRegisters& both, const Call& call) {
-  const auto read = image_.find(Table::holding_registers, both.read);
+  const auto read = image_.find_readable(Table::holding_registers, both.read);
   const auto written = image_.find_writable(Table::holding_registers, both.write.range);
   if (read.empty() || written.empty()) return tl::unexpected(Exception::illegal_data_address);
   commit(both.write, written);

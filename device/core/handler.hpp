@@ -26,8 +26,8 @@ class Handler {
 
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
   /// returns its size; `peer` sent it. Exceptions: those of parse_request(); 02 an address that is not
-  /// mapped, or not writable; 03 a value that does not reset the watchdog; 04 a line that cannot be read or
-  /// driven, or an output that the watchdog keeps in its safe state.
+  /// mapped, not readable or not writable; 03 a value that does not reset the watchdog; 04 a line that cannot
+  /// be read or driven, or an output that the watchdog keeps in its safe state.
   std::size_t handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply);
 
   /// Drives the outputs to their safe state if the watchdog is due. handle() does so too.

@@ -11,10 +11,16 @@ namespace {
 
 using modbus::Range;
 
-enum class Which { mapped, writable };
+enum class Which { mapped, readable, writable };
 
 bool belongs(const Point& point, Table table, Which which) {
-  return point.table == table && (which == Which::mapped || is_writable(point));
+  if (point.table != table) return false;
+  switch (which) {
+    case Which::mapped: return true;
+    case Which::readable: return is_readable(point);
+    case Which::writable: return is_writable(point);
+  }
+  return false;
 }
 
 /// Calls `use` with each maximal range without holes, in order; the map's points are sorted.
@@ -60,7 +66,9 @@ Image::Size Image::size_for(const Map& map) {
       ++size.areas;
       size.cells += range.count();
     });
-    if (is_writable(table)) each_range(map, table, Which::writable, [&](Range) { ++size.areas; });
+    if (!is_writable(table)) continue;
+    for (const Which which : {Which::readable, Which::writable})
+      each_range(map, table, which, [&](Range) { ++size.areas; });
   }
   return size;
 }
@@ -77,8 +85,10 @@ Image::Image(const Map& map, Span<Area> areas, Span<std::uint16_t> cells) : cell
     return areas.sub(first, used - first);
   };
   for (const Table table : tables) {
-    mapped_[index(table)] = list(table, Which::mapped);
-    if (is_writable(table)) writable_[index(table)] = list(table, Which::writable);
+    const std::size_t i = index(table);
+    mapped_[i] = list(table, Which::mapped);
+    readable_[i] = is_writable(table) ? list(table, Which::readable) : mapped_[i];
+    if (is_writable(table)) writable_[i] = list(table, Which::writable);
   }
   std::fill(cells_.begin(), cells_.end(), std::uint16_t{0});
   for (const Point& point : map.points) put_initial(point, find(point.table, range(point)));
@@ -88,6 +98,10 @@ Span<std::uint16_t> Image::find(Table table, Range range) const {
   const Area* area = covering(mapped_[index(table)], range);
   if (area == nullptr) return {};
   return cells_.sub(area->cell + (range.start() - area->start), range.count());
+}
+
+Span<std::uint16_t> Image::find_readable(Table table, Range range) const {
+  return covering(readable_[index(table)], range) == nullptr ? Span<std::uint16_t>() : find(table, range);
 }
 
 Span<std::uint16_t> Image::find_writable(Table table, Range range) const {

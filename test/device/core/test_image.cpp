@@ -102,6 +102,21 @@ TEST(Image, A_point_that_is_only_read_cannot_be_written) {
   EXPECT_TRUE(memory.image.find_writable(holding, Range::of(1, 3)).empty());
 }
 
+TEST(Image, A_point_that_is_only_written_cannot_be_read_unless_another_reads_there) {
+  const auto map = MapBuilder()
+                       .many(holding, 0, 1)
+                       .add(holding, "wish", 1, Type::WORD, [](Point& p) { p.access = Access::write; })
+                       .add(holding, "wanted", 2, Type::WORD, [](Point& p) { p.access = Access::write; })
+                       .add(holding, "actual", 2, Type::WORD, [](Point& p) { p.access = Access::read; })
+                       .build();
+  const OwnedImage memory(map->map());
+  EXPECT_EQ(memory.image.find_readable(holding, Range::of(0, 1)).size(), 1U);
+  EXPECT_TRUE(memory.image.find_readable(holding, Range::of(0, 2)).empty());
+  EXPECT_TRUE(memory.image.find_readable(holding, Range::of(1, 1)).empty());
+  EXPECT_EQ(memory.image.find_readable(holding, Range::of(2, 1)).size(), 1U);
+  EXPECT_EQ(memory.image.find_writable(holding, Range::of(0, 3)).size(), 3U);
+}
+
 TEST(Image, The_identity_area_is_always_there) {
   const auto map = MapBuilder().build();
   const OwnedImage memory(map->map());
