@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "device/net/signals.hpp"
 #include "device/node/io_service.hpp"
 #include "device/node/servable.hpp"
+#include "device/node/service_manager.hpp"
 
 namespace coupler::node {
 namespace {
@@ -67,10 +69,14 @@ int serve(const Map& map, const Options& options) {
   listener->guests = *std::move(guests);
   auto wiring = make_lines(map, options.simulated, log);
   if (!wiring) return fail(log, device_failed, wiring.error());
-  log.write(greeting(map, options, *listener));
+  const std::string news = greeting(map, options, *listener);
+  log.write(news);
+  ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"), news);
+  Pulse* const managed = manager.is_there() ? &manager : nullptr;
 
   if (!needs_keeper(map, options)) {
-    IoService(map, *wiring, *std::move(listener), loop, log).run(signals, nullptr);
+    IoService(map, *wiring, *std::move(listener), loop, log).run(signals, managed);
+    manager.stopping();
     return stopped;
   }
   const auto io_process = [&](Pulse& pulse) -> int {
@@ -80,7 +86,8 @@ int serve(const Map& map, const Options& options) {
     IoService(map, *wiring, *std::move(listener), own_loop, log).run(own_signals, &pulse);
     return stopped;
   };
-  Keeper(loop, signals, *wiring->lines, log, nullptr).run(io_process);
+  Keeper(loop, signals, *wiring->lines, log, managed).run(io_process);
+  manager.stopping();
   return stopped;
 }
 
