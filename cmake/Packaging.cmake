@@ -6,7 +6,7 @@ include(GNUInstallDirs)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-set(CPACK_PACKAGE_CONTACT "The OpenCoupler authors <opencoupler@localhost>")
+set(CPACK_PACKAGE_CONTACT "OpenCoupler maintainers <maintainers@opencoupler.org>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL node tools)
 set(CPACK_STRIP_FILES ON)
