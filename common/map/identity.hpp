@@ -37,7 +37,14 @@ enum : std::uint16_t {
   at_connections = 19,  ///< accepted since start
   at_hardware_errors = 21,
   at_watchdog_trips = 23,
-  size = 25,
+  // 25, 26: free
+  at_exceptions_of = 27,  ///< by code: 01, 02, 03, 04
+  at_refusals = 35,       ///< connections of clients that may not connect
+  at_evictions = 37,      ///< connections closed to make room
+  at_foreign_units = 39,  ///< requests for another unit id
+  at_bad_frames = 41,     ///< connections closed for what they sent
+  at_timeouts = 43,       ///< connections closed for what they did not send or read in time
+  size = 45,
 };
 
 constexpr std::uint32_t magic = 0x4F43504C;  // "OCPL"

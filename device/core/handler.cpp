@@ -55,6 +55,7 @@ std::size_t Handler::handle(modbus::Bytes request, Peer& peer, TimePoint now, Sp
   watchdog_.request(peer, done && is_write(static_cast<Function>(request[0])), now);
   if (done) return *done;
   ++statistics_.exceptions;
+  ++statistics_.exceptions_of[static_cast<std::size_t>(done.error()) - 1];
   return modbus::reply_exception(request[0], done.error(), reply);
 }
 

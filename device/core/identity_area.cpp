@@ -31,6 +31,13 @@ void write_statistics(const Statistics& statistics, TimePoint now, Image& image)
   put(identity::at_connections, statistics.connections);
   put(identity::at_hardware_errors, statistics.hardware_errors);
   put(identity::at_watchdog_trips, statistics.watchdog_trips);
+  for (std::size_t i = 0; i < statistics.exceptions_of.size(); ++i)
+    put(identity::at_exceptions_of + 2 * i, statistics.exceptions_of[i]);
+  put(identity::at_refusals, statistics.refusals);
+  put(identity::at_evictions, statistics.evictions);
+  put(identity::at_foreign_units, statistics.foreign_units);
+  put(identity::at_bad_frames, statistics.bad_frames);
+  put(identity::at_timeouts, statistics.timeouts);
 }
 
 void write_watchdog(const OutputWatchdog& watchdog, TimePoint now, Image& image) {

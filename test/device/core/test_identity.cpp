@@ -52,6 +52,31 @@ TEST(Identity, The_counters_are_up_to_date_when_they_are_read) {
   EXPECT_EQ(counter(identity::at_hardware_errors), 0U);
 }
 
+TEST(Identity, Exceptions_are_counted_by_their_code) {
+  NodeUnderTest node(MapBuilder().many(Table::coils, 0, 1).build());
+  node.ask(pdu(99, {}));                                 // 01
+  for (int i = 0; i < 2; ++i) node.ask(pdu(3, {0, 1}));  // 02
+  for (int i = 0; i < 3; ++i) node.ask(pdu(3, {0, 0}));  // 03
+  node.lines.broken = true;
+  for (int i = 0; i < 4; ++i) node.ask(pdu(5, {0, 0}));  // 04
+  const auto area = registers(node.ask(pdu(4, {0xFF00, identity::size})));
+  for (std::uint32_t code = 1; code <= 4; ++code) {
+    const auto* counter = &area.at(identity::at_exceptions_of + 2 * (code - 1));
+    EXPECT_EQ(codec::decode<std::uint32_t>(counter, codec::Order::ABCD), code);
+  }
+}
+
+TEST(Identity, What_happens_to_connections_is_counted) {
+  NodeUnderTest node(MapBuilder().build());
+  node.statistics.refusals = 1;
+  node.statistics.evictions = 2;
+  node.statistics.foreign_units = 3;
+  node.statistics.bad_frames = 4;
+  node.statistics.timeouts = 0x50000;
+  const auto area = registers(node.ask(pdu(4, {0xFF00 + identity::at_refusals, 10})));
+  EXPECT_THAT(area, ElementsAre(0, 1, 0, 2, 0, 3, 0, 4, 5, 0));
+}
+
 TEST(MapFile, The_text_is_read_two_bytes_a_register_and_padded_with_a_zero) {
   NodeUnderTest node(MapBuilder().text("abcde").build());
   EXPECT_THAT(node.ask({0x14, 7, 6, 0, 1, 0, 0, 0, 3}),
