@@ -19,17 +19,27 @@ void ask_debugger(int operation, const void* argument) {
   asm volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
 }
 
-[[noreturn]] void stop(bool well) {
+void print(const char* text) {
+  constexpr int write_text = 0x04;
+  ask_debugger(write_text, text);
+}
+
+[[noreturn]] void stop(std::uintptr_t reason) {
   constexpr int exit = 0x18;
-  const auto reason =
-      well ? 0x20026U : 0x20023U;  // ADP_Stopped_ApplicationExit, ADP_Stopped_RunTimeErrorUnknown
   ask_debugger(exit, reinterpret_cast<const void*>(reason));
   for (;;) {
   }
 }
 
+[[noreturn]] void stop_well() { stop(0x20026); }  // ADP_Stopped_ApplicationExit
+
+[[noreturn]] void fail(const char* why) {
+  print(why);
+  print("\n");
+  stop(0x20023);  // ADP_Stopped_RunTimeErrorUnknown
+}
+
 void print_hex(Span<const std::uint8_t> bytes) {
-  constexpr int write_text = 0x04;
   static char text[2 * modbus::max_adu_size + 2];
   char* end = text;
   for (const std::uint8_t byte : bytes) {
@@ -38,7 +48,7 @@ void print_hex(Span<const std::uint8_t> bytes) {
   }
   *end++ = '\n';
   *end = '\0';
-  ask_debugger(write_text, text);
+  print(text);
 }
 
 /// Port registers of a chip, as far as the example's three inputs and outputs need them.
@@ -72,8 +82,8 @@ class Ports final : public Lines {
 };
 
 constexpr const Map& map = maps::example::map;
-Image::Area areas[16];
-std::uint16_t cells[64];
+Image::Area areas[32];
+std::uint16_t cells[128];
 std::uint8_t reply[modbus::max_adu_size];
 
 /// The replies to a master's first requests, one after the other.
@@ -96,7 +106,7 @@ void answer_all() {
   for (const auto& request : requests) {
     std::copy(std::begin(request), std::end(request), framer.room().begin());
     framer.filled(sizeof request);
-    if (framer.next() != modbus::Framer::Outcome::frame) stop(false);
+    if (framer.next() != modbus::Framer::Outcome::frame) fail("the framer finds no frame");
     print_hex({reply, server.answer(framer.frame(), master, TimePoint{}, reply)});
   }
 }
@@ -109,15 +119,15 @@ void answer_all() {
 extern "C" void start() {
   using namespace coupler::node;
   const auto size = Image::size_for(map);
-  if (size.areas > std::size(areas) || size.cells > std::size(cells)) stop(false);
+  if (size.areas > std::size(areas) || size.cells > std::size(cells)) fail("the map needs a larger image");
   answer_all();
-  stop(true);
+  stop_well();
 }
-extern "C" void __assert_func(const char*, int, const char*, const char*) { coupler::node::stop(false); }
+extern "C" void __assert_func(const char*, int, const char*, const char* what) { coupler::node::fail(what); }
 /// What the chip reads at reset: the stack, and where to begin.
 extern "C" const std::uint8_t stack_top[];
 [[gnu::section(".vectors"), gnu::used]] const void* const vectors[] = {stack_top,
                                                                        reinterpret_cast<const void*>(start)};
 
-void operator delete(void*) noexcept { coupler::node::stop(false); }
-void operator delete(void*, std::size_t) noexcept { coupler::node::stop(false); }
+void operator delete(void*) noexcept { coupler::node::fail("something was deallocated"); }
+void operator delete(void*, std::size_t) noexcept { coupler::node::fail("something was deallocated"); }
