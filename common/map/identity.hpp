@@ -37,7 +37,7 @@ enum : std::uint16_t {
   at_connections = 19,  ///< accepted since start
   at_hardware_errors = 21,
   at_watchdog_trips = 23,
-  // 25, 26: free
+  at_events_lost = 25,    ///< edges of counted inputs, at least
   at_exceptions_of = 27,  ///< by code: 01, 02, 03, 04
   at_refusals = 35,       ///< connections of clients that may not connect
   at_evictions = 37,      ///< connections closed to make room

@@ -36,20 +36,22 @@ bool is_write(Function function) {
   }
 }
 
-void commit(const modbus::WriteRegisters& write, Span<std::uint16_t> cells) {
-  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = modbus::get_u16(&write.values[2 * i]);
-}
-
 }  // namespace
 
 Handler::Handler(const Map& map, Image& image, Lines& lines, Statistics& statistics)
-    : map_(map), image_(image), lines_(lines), statistics_(statistics), watchdog_(map.service.watchdog) {
+    : map_(map),
+      image_(image),
+      lines_(lines),
+      statistics_(statistics),
+      watchdog_(map.service.watchdog),
+      edge_points_(map, image, statistics) {
   write_identity(map, image);
   show_outputs();
 }
 
 std::size_t Handler::handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply) {
   tick(now);
+  lines_.take_edges(now, edge_points_);
   ++statistics_.requests;
   const Answer done = answer({request, now, reply});
   watchdog_.request(peer, done && is_write(static_cast<Function>(request[0])), now);
@@ -104,14 +106,27 @@ Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
 Handler::Answer Handler::carry_out(const modbus::WriteBits& write, const Call& call) {
   const auto cells = image_.find_writable(Table::coils, write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
-  const auto bits = Span<std::uint16_t>(bits_).first(cells.size());
+  const auto bits = Span<std::uint16_t>(next_).first(cells.size());
   for (std::size_t i = 0; i < bits.size(); ++i) bits[i] = write.packed[i / 8] >> i % 8 & 1;
+  edge_points_.keep_latches(Table::coils, write.range, cells, bits);
   if (watchdog_.is_locked() && lines_.driven(write.range, bits))
     return tl::unexpected(Exception::server_device_failure);
   if (!lines_.drive(write.range, bits)) return hardware_failed();
   std::copy(bits.begin(), bits.end(), cells.begin());
   if (watchdog_.is_present() && lines_.driven(write.range, cells)) watchdog_.arm(call.now);
   return modbus::reply_written(call.request, call.reply);
+}
+
+Span<std::uint16_t> Handler::writable_registers(modbus::Range range) const {
+  return edge_points_.holds_whole_counters(range) ? image_.find_writable(Table::holding_registers, range)
+                                                  : Span<std::uint16_t>();
+}
+
+void Handler::commit(const modbus::WriteRegisters& write, Span<std::uint16_t> cells) {
+  const auto next = Span<std::uint16_t>(next_).first(cells.size());
+  for (std::size_t i = 0; i < next.size(); ++i) next[i] = modbus::get_u16(&write.values[2 * i]);
+  edge_points_.keep_latches(Table::holding_registers, write.range, cells, next);
+  std::copy(next.begin(), next.end(), cells.begin());
 }
 
 Handler::Answer Handler::reset_watchdog(const modbus::WriteRegisters& write, const Call& call) {
@@ -124,22 +139,25 @@ Handler::Answer Handler::reset_watchdog(const modbus::WriteRegisters& write, con
 Handler::Answer Handler::carry_out(const modbus::WriteRegisters& write, const Call& call) {
   if (map_.service.watchdog.needs_reset() && write.range == identity::watchdog_reset)
     return reset_watchdog(write, call);
-  const auto cells = image_.find_writable(Table::holding_registers, write.range);
+  const auto cells = writable_registers(write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
   commit(write, cells);
   return modbus::reply_written(call.request, call.reply);
 }
 
 Handler::Answer Handler::carry_out(const modbus::MaskWrite& write, const Call& call) {
-  const auto cells = image_.find_writable(Table::holding_registers, write.range);
+  const auto cells = writable_registers(write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
-  cells[0] = static_cast<std::uint16_t>((cells[0] & write.and_mask) | (write.or_mask & ~write.and_mask));
+  next_[0] = static_cast<std::uint16_t>((cells[0] & write.and_mask) | (write.or_mask & ~write.and_mask));
+  const auto next = Span<std::uint16_t>(next_).first(1);
+  edge_points_.keep_latches(Table::holding_registers, write.range, cells, next);
+  cells[0] = next[0];
   return modbus::reply_written(call.request, call.reply);
 }
 
 Handler::Answer Handler::carry_out(const modbus::ReadWriteRegisters& both, const Call& call) {
   const auto read = image_.find_readable(Table::holding_registers, both.read);
-  const auto written = image_.find_writable(Table::holding_registers, both.write.range);
+  const auto written = writable_registers(both.write.range);
   if (read.empty() || written.empty()) return tl::unexpected(Exception::illegal_data_address);
   commit(both.write, written);
   return modbus::reply_registers(Function::read_write_multiple_registers, read, call.reply);

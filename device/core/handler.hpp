@@ -9,6 +9,7 @@
 
 #include "common/modbus/limits.hpp"
 #include "common/modbus/request.hpp"
+#include "device/core/edge_points.hpp"
 #include "device/core/image.hpp"
 #include "device/core/lines.hpp"
 #include "device/core/peer.hpp"
@@ -56,6 +57,9 @@ class Handler {
 
   Answer reset_watchdog(const modbus::WriteRegisters& write, const Call& call);
   Answer hardware_failed();
+  /// Empty if one is not mapped, not writable, or holds a counter's value in part.
+  Span<std::uint16_t> writable_registers(modbus::Range range) const;
+  void commit(const modbus::WriteRegisters& write, Span<std::uint16_t> cells);
   void show_outputs();
 
   const Map& map_;
@@ -63,7 +67,8 @@ class Handler {
   Lines& lines_;
   Statistics& statistics_;
   OutputWatchdog watchdog_;
-  std::array<std::uint16_t, modbus::max_write_bits> bits_{};  ///< those of a write, before it is committed
+  EdgePoints edge_points_;
+  std::array<std::uint16_t, modbus::max_write_bits> next_{};  ///< what a write stores, before it is committed
 };
 
 }  // namespace coupler::node

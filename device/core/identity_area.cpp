@@ -31,6 +31,7 @@ void write_statistics(const Statistics& statistics, TimePoint now, Image& image)
   put(identity::at_connections, statistics.connections);
   put(identity::at_hardware_errors, statistics.hardware_errors);
   put(identity::at_watchdog_trips, statistics.watchdog_trips);
+  put(identity::at_events_lost, statistics.events_lost);
   for (std::size_t i = 0; i < statistics.exceptions_of.size(); ++i)
     put(identity::at_exceptions_of + 2 * i, statistics.exceptions_of[i]);
   put(identity::at_refusals, statistics.refusals);

@@ -5,6 +5,7 @@
 
 #include "common/base/span.hpp"
 #include "common/modbus/range.hpp"
+#include "device/core/edges.hpp"
 #include "device/core/time.hpp"
 
 namespace coupler::node {
@@ -19,6 +20,10 @@ class Lines {
   /// Overwrites in `levels`, which has one element for each address of `inputs`, those that have a line.
   /// False if a line cannot be read.
   [[nodiscard]] virtual bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint now) = 0;
+
+  /// Tells the edges of the inputs that counters and latched points name, since the last call. Hardware that
+  /// sees no edges tells none.
+  virtual void take_edges(TimePoint, EdgeSink&) {}
 
   /// Drives those coils of the range that have a line. False if one cannot be driven: then the others are
   /// back at the levels they had.

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <utility>
 
+#include "device/core/edges.hpp"
 #include "device/core/time.hpp"
 
 namespace coupler::node {
@@ -27,18 +29,27 @@ class Debounce {
     return settled_;
   }
 
+  /// The changes of that level since the last call.
+  Edges take_edges(TimePoint now) {
+    settle(now);
+    return std::exchange(edges_, {});
+  }
+
   /// The level that the last edge brought.
   bool latest() const { return latest_; }
 
  private:
   void settle(TimePoint now) {
-    if (now - since_ >= period_) settled_ = latest_;
+    if (now - since_ < period_ || settled_ == latest_) return;
+    settled_ = latest_;
+    ++(settled_ ? edges_.rising : edges_.falling);
   }
 
   std::chrono::microseconds period_;
   bool settled_;
   bool latest_;
   TimePoint since_{};
+  Edges edges_;
 };
 
 }  // namespace coupler::node

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
+#include "device/core/edges.hpp"
+#include "device/core/time.hpp"
+
 namespace coupler::node {
 
 /// A file descriptor on which the kernel reports edges. Whoever runs the event loop watches it.
@@ -11,6 +16,8 @@ class EventSource {
   /// Takes the waiting edges without blocking. False: the line is gone (its chip was unplugged); the
   /// descriptor stays readable for ever, so do not watch it any more.
   [[nodiscard]] virtual bool take_edges() = 0;
+  /// The edges of the group's i-th line that were taken and not told yet.
+  virtual Edges edges(std::size_t line, TimePoint now) = 0;
 };
 
 }  // namespace coupler::node

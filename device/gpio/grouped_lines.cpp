@@ -43,7 +43,8 @@ GroupedLines::GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredI
   }
   for (WiredInputs& wired : inputs) {
     Fault fault(wired.group->name(), log);
-    inputs_.push_back({std::move(wired), std::move(fault)});
+    LostEdges lost(wired.group->name(), log);
+    inputs_.push_back({std::move(wired), std::move(fault), std::move(lost)});
   }
 }
 
@@ -59,6 +60,21 @@ bool GroupedLines::read(Range range, Span<std::uint16_t> levels, TimePoint now) 
       good = false;
   }
   return good;
+}
+
+void GroupedLines::take_edges(TimePoint now, EdgeSink& sink) {
+  for (Input& input : inputs_) {
+    EventSource* source = input.wired.counted;
+    if (source == nullptr) continue;
+    // What was taken counts, even if the chip is unplugged since: that is read()'s to say.
+    (void)source->take_edges();
+    for (std::size_t line = 0; line < input.wired.addresses.size(); ++line) {
+      const Edges edges = source->edges(line, now);
+      if (!edges.any()) continue;
+      input.lost.note(edges.lost, now);
+      sink.add(input.wired.addresses[line], edges);
+    }
+  }
 }
 
 bool GroupedLines::drive(Range range, Span<const std::uint16_t> levels) {

@@ -7,8 +7,10 @@
 
 #include "common/map/line.hpp"
 #include "device/core/lines.hpp"
+#include "device/gpio/event_source.hpp"
 #include "device/gpio/fault.hpp"
 #include "device/gpio/line_group.hpp"
+#include "device/gpio/lost_edges.hpp"
 #include "device/gpio/shared_levels.hpp"
 
 namespace coupler::node {
@@ -25,6 +27,7 @@ struct WiredOutputs {
 struct WiredInputs {
   std::unique_ptr<InputGroup> group;
   std::vector<std::uint16_t> addresses;  ///< ascending
+  EventSource* counted = nullptr;        ///< the group, if edges of its lines are counted
 };
 
 /// Drives and reads any number of groups as one: a write that needs several of them is done by all or by
@@ -35,6 +38,7 @@ class GroupedLines : public Lines {
   GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs, Log& log);
 
   bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint now) override;
+  void take_edges(TimePoint now, EdgeSink& sink) override;
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override;
   bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override;
   bool drive_safe() override;
@@ -50,6 +54,7 @@ class GroupedLines : public Lines {
   struct Input {
     WiredInputs wired;
     Fault fault;
+    LostEdges lost;
   };
 
   void restore();

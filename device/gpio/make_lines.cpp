@@ -8,7 +8,7 @@
 #include "device/gpio/grouped_lines.hpp"
 #include "device/gpio/simulated_chip.hpp"
 #ifdef COUPLER_WITH_GPIOD
-#include "device/gpio/libgpiod1/wire.hpp"
+#include "device/gpio/wire.hpp"
 #endif
 
 namespace coupler::node {
@@ -22,11 +22,11 @@ tl::expected<Wiring, std::string> make_lines(const Map& map, bool simulated, Log
     return Wiring{
         std::make_unique<GroupedLines>(std::vector<WiredOutputs>(), std::vector<WiredInputs>(), log), {}};
 #ifdef COUPLER_WITH_GPIOD
-  return libgpiod1::wire(map, log);
+  return wire(map, log);
 #else
   return tl::unexpected(
       fmt::format("point '{}' has a GPIO line, but this program was built without libgpiod; "
-                  "install libgpiod-dev (1.6) and build again, or run with --sim",
+                  "install libgpiod-dev and build again, or run with --sim",
                   wired->name));
 #endif
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <type_traits>
+#include <utility>
 
 namespace coupler::node {
 namespace {
@@ -31,11 +32,12 @@ bool starts_on(const Point& point) { return !point.initial.empty() && point.init
 
 }  // namespace
 
-SimulatedChip::SimulatedChip(const Map& map, TimePoint now) : start_(now) {
+SimulatedChip::SimulatedChip(const Map& map, TimePoint now) : start_(now), told_(now) {
   for (const Point& point : map.points) {
-    if (point.table == Table::coils) outputs_.push_back({&point, starts_on(point)});
+    if (point.table == Table::coils && !point.latched.present())
+      outputs_.push_back({&point, starts_on(point)});
     if (point.table == Table::discrete_inputs)
-      inputs_.push_back({&point, starts_on(point), nullptr, nullptr});
+      inputs_.push_back({&point, starts_on(point), nullptr, nullptr, {}});
   }
   for (const SimWire& wire : map.sim) {
     Input* to = named(inputs_, wire.to);
@@ -55,6 +57,29 @@ std::uint16_t SimulatedChip::level_of(const Input& input, TimePoint now) const {
   return level != input.wire->invert ? 1 : 0;
 }
 
+Edges SimulatedChip::edges_of_square(const SimWire& wire, TimePoint now) const {
+  // It is on from the start: the first falling edge is after half a period, the first rising one after one.
+  const std::chrono::nanoseconds period = wire.square;
+  const std::chrono::nanoseconds off = wire.square - wire.square / 2;
+  const auto since_told = [&](std::chrono::nanoseconds lead) {
+    return static_cast<std::uint32_t>((std::max(now, told_) - start_ + lead) / period -
+                                      (told_ - start_ + lead) / period);
+  };
+  Edges edges{since_told(std::chrono::nanoseconds(0)), since_told(off), 0};
+  if (wire.invert) std::swap(edges.rising, edges.falling);
+  return edges;
+}
+
+void SimulatedChip::take_edges(TimePoint now, EdgeSink& sink) {
+  if (!plugged_) return;
+  for (Input& input : inputs_) {
+    Edges edges = std::exchange(input.edges, {});
+    if (input.wire != nullptr && input.wire->square.count() > 0) edges = edges_of_square(*input.wire, now);
+    if (edges.any()) sink.add(input.point->address, edges);
+  }
+  told_ = std::max(told_, now);
+}
+
 bool SimulatedChip::read(Range inputs, Span<std::uint16_t> levels, TimePoint now) {
   if (!plugged_) return false;
   for (const Input& input : in_range(inputs_, inputs))
@@ -65,7 +90,7 @@ bool SimulatedChip::read(Range inputs, Span<std::uint16_t> levels, TimePoint now
 bool SimulatedChip::drive(Range coils, Span<const std::uint16_t> levels) {
   if (!plugged_) return false;
   for (Output& output : in_range(outputs_, coils))
-    output.level = levels[output.point->address - coils.start()] != 0;
+    set(output, levels[output.point->address - coils.start()] != 0);
   return true;
 }
 
@@ -78,13 +103,21 @@ bool SimulatedChip::driven(Range coils, Span<std::uint16_t> levels) const {
 bool SimulatedChip::drive_safe() {
   if (!plugged_) return false;
   for (Output& output : outputs_)
-    if (output.point->safe != Safe::hold) output.level = output.point->safe == Safe::on;
+    if (output.point->safe != Safe::hold) set(output, output.point->safe == Safe::on);
   return true;
+}
+
+void SimulatedChip::set(Output& output, bool level) {
+  if (output.level == level) return;
+  output.level = level;
+  for (Input& input : inputs_)
+    if (input.from == &output) ++(level != input.wire->invert ? input.edges.rising : input.edges.falling);
 }
 
 void SimulatedChip::pull(std::string_view input, bool level) {
   Input* line = named(inputs_, input);
   assert(line != nullptr && line->wire == nullptr);
+  if (line->level != level) ++(level ? line->edges.rising : line->edges.falling);
   line->level = level;
 }
 

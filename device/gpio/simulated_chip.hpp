@@ -10,13 +10,15 @@
 
 namespace coupler::node {
 
-/// Hardware without hardware (`--sim`): every coil and discrete input of the map has a line here, wired as
-/// the map's `sim:` says. An input with no wire keeps the level that it was given.
+/// Hardware without hardware (`--sim`): every coil and discrete input of the map has a line here (but latched
+/// coils, which have none), wired as the map's `sim:` says. An input with no wire keeps the level that it was
+/// given. Nothing bounces, so nothing is debounced. No edge is missed: those of square waves are computed.
 class SimulatedChip : public Lines {
  public:
   /// Outputs and unwired inputs are at their initial levels; square waves begin now, with their `on` half.
   SimulatedChip(const Map& map, TimePoint now);
 
+  void take_edges(TimePoint now, EdgeSink& sink) override;
   bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint now) override;
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override;
   bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override;
@@ -37,13 +39,17 @@ class SimulatedChip : public Lines {
     bool level;
     const SimWire* wire;  ///< null: none
     const Output* from;   ///< null: no wire, or a square wave
+    Edges edges;          ///< not told yet
   };
 
   std::uint16_t level_of(const Input& input, TimePoint now) const;
+  Edges edges_of_square(const SimWire& wire, TimePoint now) const;
+  void set(Output& output, bool level);
 
   std::vector<Output> outputs_;  ///< ascending addresses
   std::vector<Input> inputs_;    ///< ascending addresses
   TimePoint start_;
+  TimePoint told_;  ///< edges until then
   bool plugged_ = true;
 };
 

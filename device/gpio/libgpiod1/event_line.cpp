@@ -19,11 +19,20 @@ TimePoint time_of(const gpiod_line_event& event) {
 
 }  // namespace
 
-EventLine::EventLine(std::unique_ptr<Request> request, std::chrono::microseconds debounce)
+EventLine::EventLine(std::unique_ptr<Request> request, Edge watched, std::chrono::microseconds debounce)
     : request_(std::move(request)),
       descriptor_(gpiod_line_event_get_fd(request_->first())),
-      debounce_(debounce, gpiod_line_get_value(request_->first()) == 1) {
+      tally_(watched, gpiod_line_get_value(request_->first()) == 1) {
+  if (debounce.count() > 0) debounce_.emplace(debounce, gpiod_line_get_value(request_->first()) == 1);
   ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
+}
+
+void EventLine::add(const gpiod_line_event& event) {
+  const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
+  if (debounce_)
+    debounce_->edge(rising, time_of(event));
+  else
+    tally_.edge(rising);
 }
 
 bool EventLine::take_edges() {
@@ -31,22 +40,38 @@ bool EventLine::take_edges() {
   for (;;) {
     const int count = gpiod_line_event_read_fd_multiple(descriptor_, events.data(), kernel_queue);
     if (count < 0) return errno == EAGAIN || errno == EINTR;
-    for (int i = 0; i < count; ++i) {
-      const gpiod_line_event& event = events[static_cast<std::size_t>(i)];
-      debounce_.edge(event.event_type == GPIOD_LINE_EVENT_RISING_EDGE, time_of(event));
-    }
+    for (int i = 0; i < count; ++i) add(events[static_cast<std::size_t>(i)]);
     if (count < static_cast<int>(kernel_queue)) return true;
+    tally_.lose(1);
   }
+}
+
+int EventLine::debounce_level(TimePoint now) {
+  const int level = gpiod_line_get_value(request_->first());
+  if (level < 0) return errno;
+  if ((level == 1) != debounce_->latest()) debounce_->edge(level == 1, now);
+  return 0;
+}
+
+Edges EventLine::edges(std::size_t, TimePoint now) {
+  Edges edges = tally_.take();
+  if (!debounce_) return edges;
+  const std::uint32_t lost = edges.lost;
+  if (lost != 0 && debounce_level(now) != 0) return edges;
+  edges = debounce_->take_edges(now);
+  edges.lost = lost;
+  return edges;
 }
 
 int EventLine::read(Span<int> levels, TimePoint now) {
   if (!take_edges()) return errno;
-  const int level = gpiod_line_get_value(request_->first());
-  if (level < 0) return errno;
-  // The kernel's queue may have been full: the line's level is what counts.
-  if ((level == 1) != debounce_.latest()) debounce_.edge(level == 1, now);
-  levels[0] = debounce_.level(now) ? 1 : 0;
-  return 0;
+  if (debounce_) {
+    const int error = debounce_level(now);
+    levels[0] = debounce_->level(now) ? 1 : 0;
+    return error;
+  }
+  levels[0] = gpiod_line_get_value(request_->first());
+  return levels[0] < 0 ? errno : 0;
 }
 
 }  // namespace coupler::node::libgpiod1

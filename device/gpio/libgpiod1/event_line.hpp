@@ -3,30 +3,40 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "device/gpio/debounce.hpp"
+#include "device/gpio/edge_tally.hpp"
 #include "device/gpio/event_source.hpp"
 #include "device/gpio/libgpiod1/request.hpp"
 #include "device/gpio/line_group.hpp"
 
 namespace coupler::node::libgpiod1 {
 
-/// An input that is debounced here: libgpiod 1 has no debounce, but it has edges and their times. Each such
-/// line has a descriptor of its own.
+/// An input that is watched for edges: because they are counted, or to debounce it here, since libgpiod 1
+/// has no debounce. Each such line has a descriptor of its own. Its events have no sequence number, and the
+/// kernel drops those that come while its queue of 16 is full: a queue that was found full counts as one
+/// edge lost, at least.
 class EventLine : public InputGroup, public EventSource {
  public:
-  /// `request` holds one line, requested for edges.
-  EventLine(std::unique_ptr<Request> request, std::chrono::microseconds debounce);
+  /// `request` holds one line, requested for `watched` edges; both, if there is a debounce period.
+  EventLine(std::unique_ptr<Request> request, Edge watched, std::chrono::microseconds debounce);
 
   const std::string& name() const override { return request_->name(); }
   int read(Span<int> levels, TimePoint now) override;
   int descriptor() const override { return descriptor_; }
   bool take_edges() override;
+  Edges edges(std::size_t line, TimePoint now) override;
 
  private:
+  void add(const gpiod_line_event& event);
+  /// The line's own level is what counts where the queue may have been full. Returns 0 or an errno.
+  int debounce_level(TimePoint now);
+
   std::unique_ptr<Request> request_;
   int descriptor_;
-  Debounce debounce_;
+  EdgeTally tally_;
+  std::optional<Debounce> debounce_;
 };
 
 }  // namespace coupler::node::libgpiod1

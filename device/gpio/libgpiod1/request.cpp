@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/gpio/libgpiod1/request.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cerrno>
-#include <cstring>
+#include <utility>
 
 #include "device/gpio/line_group.hpp"
 
@@ -14,49 +12,11 @@ namespace {
 
 constexpr const char* consumer = "coupler-node";
 
-std::string name_of(const std::vector<Wanted>& lines) {
-  constexpr std::size_t enough = 8;
-  std::string text = to_string(lines.front().found);
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    if (i == enough) return text + fmt::format(" and {} more", lines.size() - i);
-    text += ", " + to_string(lines[i].found);
-  }
-  return text;
-}
-
-int kernel_type(Use use) {
-  switch (use) {
-    case Use::input: return GPIOD_LINE_REQUEST_DIRECTION_INPUT;
-    case Use::output: return GPIOD_LINE_REQUEST_DIRECTION_OUTPUT;
-    case Use::edges: return GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES;
-  }
-  return 0;
-}
-
-/// The kernel refuses a request as a whole; whose fault it was is found line by line.
-std::string busy_lines(const std::vector<Wanted>& lines) {
-  std::string text;
-  for (const Wanted& wanted : lines) {
-    gpiod_line* line = wanted.found.line;
-    if (gpiod_line_update(line) != 0 || !gpiod_line_is_used(line)) continue;
-    const char* holder = gpiod_line_consumer(line);
-    text += fmt::format("{}point '{}': {} is busy: held by {}; release it there or choose another line",
-                        text.empty() ? "" : "\n", wanted.point->name, to_string(wanted.found),
-                        holder == nullptr ? "the kernel" : fmt::format("'{}'", holder));
-  }
-  return text;
-}
-
-std::string refusal(const std::vector<Wanted>& lines, int error) {
-  if (error == EBUSY)
-    if (std::string busy = busy_lines(lines); !busy.empty()) return busy;
-  const char* remedy = "";
-  if (error == EACCES || error == EPERM)
-    remedy = "; run as a user who may write to the chip's device in /dev";
-  if (error == EINVAL || error == ENOTSUP || error == ENXIO || error == EIO)
-    remedy = "; check that the chip can do what the map asks (direction, bias, drive, edges for debounce)";
-  return fmt::format("point '{}': {} cannot be requested: {}{}", lines.front().point->name, name_of(lines),
-                     std::strerror(error), remedy);
+std::optional<std::string> holder_of(gpiod_chip* chip, unsigned offset) {
+  gpiod_line* line = gpiod_chip_get_line(chip, offset);
+  if (line == nullptr || gpiod_line_update(line) != 0 || !gpiod_line_is_used(line)) return std::nullopt;
+  const char* holder = gpiod_line_consumer(line);
+  return holder == nullptr ? "" : holder;
 }
 
 }  // namespace
@@ -77,24 +37,34 @@ int flags_of(const Line& line) {
   return flags;
 }
 
-int initial_level(const Point& point) { return !point.initial.empty() && point.initial[0] != 0 ? 1 : 0; }
-
-Request::Request(const std::vector<Wanted>& lines) : chip_(lines.front().found.chip), name_(name_of(lines)) {
+Request::Request(ChipHandle chip, const std::vector<Wanted>& lines)
+    : chip_(std::move(chip)), name_(names_of(lines)) {
   gpiod_line_bulk_init(&bulk_);
-  for (const Wanted& wanted : lines) gpiod_line_bulk_add(&bulk_, wanted.found.line);
+  for (const Wanted& wanted : lines)
+    if (gpiod_line* line = gpiod_chip_get_line(chip_.get(), wanted.line.offset))
+      gpiod_line_bulk_add(&bulk_, line);
 }
 
 Request::~Request() {
-  if (gpiod_line_is_requested(first())) gpiod_line_release_bulk(&bulk_);
+  if (gpiod_line_bulk_num_lines(&bulk_) > 0 && gpiod_line_is_requested(first()))
+    gpiod_line_release_bulk(&bulk_);
 }
 
-tl::expected<std::unique_ptr<Request>, std::string> Request::make(const std::vector<Wanted>& lines, Use use) {
-  std::unique_ptr<Request> request(new Request(lines));
+tl::expected<std::unique_ptr<Request>, std::string> Request::make(const std::vector<Wanted>& lines,
+                                                                  int type) {
+  const auto refused = [&](gpiod_chip* chip) {
+    return tl::unexpected(refusal(lines, errno, [chip](unsigned offset) { return holder_of(chip, offset); }));
+  };
+  ChipHandle chip(gpiod_chip_open(lines.front().line.chip->path.c_str()), gpiod_chip_close);
+  if (!chip) return refused(nullptr);
+  gpiod_chip* opened = chip.get();
+  std::unique_ptr<Request> request(new Request(std::move(chip), lines));
+  if (gpiod_line_bulk_num_lines(request->bulk()) != lines.size()) return refused(opened);
+
   std::array<int, max_group_size> levels{};
   for (std::size_t i = 0; i < lines.size(); ++i) levels[i] = initial_level(*lines[i].point);
-  const gpiod_line_request_config config{consumer, kernel_type(use), flags_of(lines.front().point->line)};
-  if (gpiod_line_request_bulk(request->bulk(), &config, levels.data()) != 0)
-    return tl::unexpected(refusal(lines, errno));
+  const gpiod_line_request_config config{consumer, type, flags_of(lines.front().point->line)};
+  if (gpiod_line_request_bulk(request->bulk(), &config, levels.data()) != 0) return refused(opened);
   return request;
 }
 

@@ -45,10 +45,16 @@ class FakeLines : public Lines {
     return true;
   }
 
+  void take_edges(TimePoint, EdgeSink& sink) override {
+    for (const auto& [input, happened] : edges) sink.add(input, happened);
+    edges.clear();
+  }
+
   void set_input(std::uint16_t address, std::uint16_t level) { inputs_[address] = level; }
   /// What drive() was called with.
   const auto& writes() const { return driven_; }
 
+  std::vector<std::pair<std::uint16_t, Edges>> edges;  ///< not told yet
   bool broken = false;
   bool remembers = true;
   int safe_calls = 0;

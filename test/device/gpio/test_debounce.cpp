@@ -54,5 +54,16 @@ TEST_F(Debouncing, Two_edges_to_the_same_level_hide_a_third_and_begin_the_period
   EXPECT_TRUE(input_.level(at(9)));
 }
 
+TEST_F(Debouncing, Only_levels_that_settle_are_counted_as_edges) {
+  for (const int ms : {0, 1, 2}) input_.edge(ms % 2 == 0, at(ms));
+  input_.edge(false, at(20));
+  input_.edge(true, at(21));
+  input_.edge(false, at(22));
+  const Edges edges = input_.take_edges(at(40));
+  EXPECT_EQ(edges.rising, 1U);
+  EXPECT_EQ(edges.falling, 1U);
+  EXPECT_FALSE(input_.take_edges(at(60)).any()) << "each is told once";
+}
+
 }  // namespace
 }  // namespace coupler::node

@@ -132,5 +132,52 @@ TEST_F(Grouped, A_failure_is_logged_once_per_change_of_state) {
   EXPECT_EQ(log_.lines[1], "chip1 works again");
 }
 
+/// A group whose second line loses edges when the test says so.
+class FakeEvents : public FakeInputs, public EventSource {
+ public:
+  using FakeInputs::FakeInputs;
+  int descriptor() const override { return -1; }
+  bool take_edges() override { return true; }
+  Edges edges(std::size_t line, TimePoint) override {
+    return line == 1 ? std::exchange(waiting, {}) : Edges{};
+  }
+  Edges waiting;
+};
+
+struct Told : EdgeSink {
+  void add(std::uint16_t input, const Edges& edges) override { all.emplace_back(input, edges.rising); }
+  std::vector<std::pair<std::uint16_t, std::uint32_t>> all;
+};
+
+TEST(CountedLines, Edges_are_told_by_address_and_losses_logged_once_per_burst) {
+  FakeLog log;
+  Hardware hardware{{0, 0}};
+  auto group = std::make_unique<FakeEvents>(hardware);
+  FakeEvents& events = *group;
+  std::vector<WiredInputs> inputs;
+  inputs.push_back({std::move(group), {4, 6}, &events});
+  GroupedLines lines({}, std::move(inputs), log);
+  Told told;
+  TimePoint now{std::chrono::hours(1)};
+
+  events.waiting = {3, 2, 0};
+  lines.take_edges(now, told);
+  lines.take_edges(now, told);
+  EXPECT_THAT(told.all, ElementsAre(std::pair(6, 3)));
+  EXPECT_THAT(log.lines, IsEmpty());
+
+  for (int i = 0; i < 5; ++i) {
+    now += std::chrono::milliseconds(500);
+    events.waiting = {0, 0, 1};
+    lines.take_edges(now, told);
+  }
+  ASSERT_EQ(log.lines.size(), 1U);
+  EXPECT_THAT(log.lines[0], HasSubstr("chip2 line 0"));
+  now += std::chrono::seconds(2);
+  events.waiting = {0, 0, 1};
+  lines.take_edges(now, told);
+  EXPECT_EQ(log.lines.size(), 2U);
+}
+
 }  // namespace
 }  // namespace coupler::node

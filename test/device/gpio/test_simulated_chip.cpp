@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include <vector>
 
 #include "device/gpio/simulated_chip.hpp"
@@ -80,6 +82,51 @@ TEST(SimulatedChip, Outputs_begin_with_their_initial_level_and_end_in_their_safe
   EXPECT_FALSE(chip.level("lit"));
   EXPECT_TRUE(chip.level("safe_on"));
   EXPECT_TRUE(chip.level("held"));
+}
+
+/// Adds up what it is told.
+class Total : public EdgeSink {
+ public:
+  void add(std::uint16_t input, const Edges& edges) override {
+    all[input].rising += edges.rising;
+    all[input].falling += edges.falling;
+  }
+  std::map<std::uint16_t, Edges> all;
+};
+
+TEST(SimulatedChip, The_edges_of_a_square_wave_are_computed_however_rarely_they_are_asked_for) {
+  using namespace std::chrono_literals;
+  const auto map = MapBuilder().add(inputs, "clock", 7, Type::BOOL).square("clock", 1ms).build();
+  const TimePoint start{1h};
+  SimulatedChip chip(map->map(), start);
+  Total total;
+  chip.take_edges(start + 499us, total);
+  EXPECT_EQ(total.all.count(7), 0U) << "it is on from the start";
+  chip.take_edges(start + 500us, total);
+  EXPECT_EQ(total.all[7].falling, 1U);
+  EXPECT_EQ(total.all[7].rising, 0U);
+  chip.take_edges(start + 1h + 1ms, total);
+  EXPECT_EQ(total.all[7].rising, 3600001U);
+  EXPECT_EQ(total.all[7].falling, 3600001U);
+}
+
+TEST(SimulatedChip, Every_write_to_an_output_is_an_edge_of_the_inputs_wired_to_it) {
+  const auto map = MapBuilder()
+                       .add(coils, "out", 0, Type::BOOL)
+                       .add(inputs, "same", 0, Type::BOOL)
+                       .add(inputs, "opposite", 1, Type::BOOL)
+                       .wire("out", "same")
+                       .wire("out", "opposite", true)
+                       .build();
+  SimulatedChip chip(map->map(), {});
+  for (const auto& levels : {Levels{1}, Levels{1}, Levels{0}, Levels{1}})
+    EXPECT_TRUE(chip.drive(Range::of(0, 1), levels));
+  Total total;
+  chip.take_edges({}, total);
+  EXPECT_EQ(total.all[0].rising, 2U);
+  EXPECT_EQ(total.all[0].falling, 1U);
+  EXPECT_EQ(total.all[1].rising, 1U);
+  EXPECT_EQ(total.all[1].falling, 2U);
 }
 
 TEST(SimulatedChip, Unplugged_it_refuses_everything_and_changes_nothing) {

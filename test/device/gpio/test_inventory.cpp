@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "device/gpio/inventory.hpp"
+
+namespace coupler::node {
+namespace {
+
+using testing::HasSubstr;
+
+Line named(std::string_view name) {
+  Line line;
+  line.name = name;
+  return line;
+}
+
+Line at(std::string_view chip, std::uint32_t offset) {
+  Line line;
+  line.chip = chip;
+  line.offset = offset;
+  return line;
+}
+
+class Finding : public testing::Test {
+ protected:
+  Inventory inventory_{{Chip{"/dev/gpiochip0", "gpiochip0", "board", {"A", "", "TWICE"}},
+                        Chip{"/dev/gpiochip1", "gpiochip1", "expander", {"TWICE", "B"}}}};
+};
+
+TEST_F(Finding, A_line_is_found_by_name_or_by_chip_name_or_label_and_offset) {
+  for (const Line& line : {named("B"), at("gpiochip1", 1), at("expander", 1)}) {
+    const auto found = inventory_.find(line);
+    ASSERT_TRUE(found.has_value()) << found.error();
+    EXPECT_EQ(to_string(*found), "gpiochip1 line 1 (B)");
+  }
+}
+
+TEST_F(Finding, A_name_that_two_lines_have_is_refused_with_both) {
+  const auto found = inventory_.find(named("TWICE"));
+  ASSERT_FALSE(found.has_value());
+  EXPECT_THAT(found.error(), HasSubstr("gpiochip0 line 2 (TWICE) and to gpiochip1 line 0 (TWICE)"));
+}
+
+TEST_F(Finding, What_is_not_there_is_answered_with_what_is) {
+  EXPECT_THAT(inventory_.find(named("C")).error(), HasSubstr("named on gpiochip0: 'A', 'TWICE'"));
+  EXPECT_THAT(inventory_.find(at("gpiochip7", 0)).error(), HasSubstr("gpiochip1 'expander' (2 lines)"));
+  EXPECT_THAT(inventory_.find(at("board", 3)).error(),
+              HasSubstr("gpiochip0 has no line 3; it has lines 0 … 2"));
+}
+
+}  // namespace
+}  // namespace coupler::node

@@ -1,0 +1,114 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# A pulse is not lost: counters and latched points of coupler-node on a chip of the kernel, at the shortest pulses of
+# which a bare gpiomon misses none in the same run.
+#   test/kernel/run [--timeout SECONDS] test/kernel/edges.sh BUILD_DIR [PULSES]      default 1000; 10000 take 4 minutes
+set -euo pipefail
+bin=$(realpath "${1:?the build folder}")/bin
+pulses=${2:-1000}
+cd "$(dirname "$0")"
+# shellcheck source=plant.sh
+. ./plant.sh
+plant_chip
+chip=$(sim_chip plant)
+readonly button=2 wave=3 bouncy=4 control=5
+mkfifo /tmp/never
+
+# A builtin: a process for every pause would take longer than the pulse.
+pause() { read -rt "$1" <>/tmp/never || true; }
+
+# Sends pulses to LINES at once: COUNT times up and down, WIDTH seconds each.
+pulse() {
+  local count=$1 width=$2 wires=() wire line
+  shift 2
+  for line in "$@"; do wires+=("$(sim_wire plant "$line")/pull"); done
+  while ((count-- > 0)); do
+    for wire in "${wires[@]}"; do echo pull-up >"$wire"; done
+    pause "$width"
+    for wire in "${wires[@]}"; do echo pull-down >"$wire"; done
+    pause "$width"
+  done
+}
+
+# gpiomon of libgpiod 1 takes the chip as an argument, that of libgpiod 2 as an option.
+watch_control() {
+  local version
+  version=$(gpiomon --version | grep -oE 'v?[0-9]+\.' | head -n 1)
+  if [ "${version#v}" = 1. ]; then start "$1" stdbuf -oL gpiomon "$chip" "$control"
+  else start "$1" stdbuf -oL gpiomon -c "$chip" "$control"; fi
+  pause 0.5
+}
+rising_seen() { grep -ciE 'rising' "$(log "$1")" || true; }
+saw() { [ "$(rising_seen "$1")" -ge "$2" ]; }
+
+pair() { answered master -t "$1" -r "$2" -c 2 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*([0-9]+).*/\1/p'; }
+# Counters stand in the map's order, CDAB; statistics with the most significant register first.
+counter() { local words; mapfile -t words < <(pair "$1" "$2"); echo $((words[1] * 65536 + words[0])); }
+lost() { local words; mapfile -t words < <(pair 3 65305); echo $((words[0] * 65536 + words[1])); }
+
+width=
+for try in 0.001 0.002 0.005 0.01; do
+  watch_control "try-$try"
+  pulse 200 "$try" "$control"
+  wait_until 1 saw "try-$try" 200 >/dev/null || true
+  echo "# bare gpiomon, both edges, pulses of $try s: $(rising_seen "try-$try") of 200"
+  stop "try-$try" INT || true
+  if [ "$(rising_seen "try-$try")" -eq 200 ]; then width=$try; break; fi
+done
+check "gpiomon sees all pulses of some width" test -n "$width"
+
+plant_node edges.yaml
+echo "# $pulses pulses of $width s"
+watch_control beside
+pulse "$pulses" "$width" "$button" "$control"
+wait_until 1 saw beside "$pulses" >/dev/null || true
+echo "# bare gpiomon beside it saw $(rising_seen beside)"
+stop beside INT || true
+expect "the counter of rising edges has them all" "$pulses" "$(counter 3 0)"
+expect "the counter of falling edges too" "$pulses" "$(counter 4 0)"
+expect "nothing was lost" 0 "$(lost)"
+refuse "the log does not speak of it" says node lost
+
+echo "# latch and preset"
+expect "the latch is set" 1 "$(coil 0)"
+missed=0
+for _ in 1 2 3 4 5 6 7 8 9 10; do
+  set_coil 0 0
+  [ "$(coil 0)" = 0 ] || missed=$((missed + 1))
+  pulse 1 "$width" "$button"
+  [ "$(coil 0)" = 1 ] || missed=$((missed + 1))
+done
+expect "ten times cleared and set by one pulse each" 0 "$missed"
+check "writing 1 is allowed" set_coil 0 1
+check "a counter is preset as a whole" answered master -t 4:int -r 0 127.0.0.1 -- 4000000
+pulse 5 "$width" "$button"
+expect "and counts on from there" 4000005 "$(counter 4 0)"
+refuse "half of it cannot be written" answered master -t 4 -r 0 127.0.0.1 -- 7
+
+echo "# debounce"
+for _ in 1 2 3; do
+  pulse 5 0.01 "$bouncy"
+  sim_pull plant "$bouncy" up
+  pause 0.4
+  pulse 5 0.01 "$bouncy"
+  pause 0.4
+done
+expect "three presses that bounce are three" 3 "$(counter 3 4)"
+
+echo "# a reader that is stopped"
+before=$(counter 3 2)
+io=$(pgrep -P "$(pid node)")
+kill -STOP "$(pid node)" # the keeper, which would end an I/O process that is silent for so long
+kill -STOP "$io"
+pulse 700 "$width" "$wave"
+kill -CONT "$io"
+counted=$(($(counter 3 2) - before))
+lost=$(lost)
+echo "# of 1400 edges $counted were counted, $lost reported as lost"
+check "what the kernel could not keep is missing" test "$counted" -lt 1400
+check "is reported as lost" test "$lost" -gt 0
+check "and told in the log, once" says node 'gpiochip.* lost'
+refuse "not twice" says node 'gpiochip.* lost' 2
+kill -CONT "$(pid node)"
+check "it ends well on SIGTERM" stop node TERM
+cat "$(log node)"
