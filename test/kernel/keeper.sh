@@ -89,8 +89,9 @@ check "and the active-low one too" level_is 5 0
 
 echo "# a signal to the keeper"
 check "it ends well" stop node TERM
-refuse "no process is left" pgrep -f coupler-node-io
-says node 'outputs are in their safe state' && cat "$(log node)"
+check "and says so" says node 'Terminated: outputs are in their safe state' 2
+refuse "no process is left" pgrep 'coupler-node'
+cat "$(log node)"
 
 echo "# the keeper is killed"
 plant_node keeper.yaml
