@@ -2,6 +2,7 @@
 #include "device/gpio/grouped_lines.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <utility>
 
 namespace coupler::node {
@@ -77,6 +78,15 @@ void GroupedLines::take_edges(TimePoint now, EdgeSink& sink) {
   }
 }
 
+/// To output.next. Returns 0 or an errno: EIO if a line does not have the level that it was driven to.
+int GroupedLines::drive(Output& output, Span<int> scratch) {
+  const int error = output.wired.group->drive(output.next);
+  if (error != 0 || !output.wired.readback) return error;
+  const auto got = scratch.first(output.next.size());
+  if (const int unread = output.wired.group->read(got); unread != 0) return unread;
+  return std::equal(got.begin(), got.end(), output.next.begin()) ? 0 : EIO;
+}
+
 bool GroupedLines::drive(Range range, Span<const std::uint16_t> levels) {
   for (Output& output : outputs_) {
     output.driven = false;
@@ -87,7 +97,9 @@ bool GroupedLines::drive(Range range, Span<const std::uint16_t> levels) {
       output.next[line] = levels[i] != 0 ? 1 : 0;
     });
     if (!wanted) continue;
-    if (!output.fault.note(output.wired.group->drive(output.next))) {
+    if (!output.fault.note(drive(output, scratch_))) {
+      // Its other lines have moved; what becomes of them was said with the fault.
+      if (output.wired.readback) (void)output.wired.group->drive(output.levels);
       restore();
       return false;
     }
@@ -121,7 +133,7 @@ bool GroupedLines::drive_safe() {
     for (std::size_t line = 0; line < output.next.size(); ++line)
       if (output.wired.safe[line] != Safe::hold)
         output.next[line] = output.wired.safe[line] == Safe::on ? 1 : 0;
-    if (output.fault.note(output.wired.group->drive(output.next)))
+    if (output.fault.note(drive(output, scratch_)))
       copy(output.next, output.levels);
     else
       good = false;

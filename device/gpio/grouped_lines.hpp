@@ -21,6 +21,7 @@ struct WiredOutputs {
   std::vector<std::uint16_t> addresses;  ///< ascending
   std::vector<Safe> safe;
   std::vector<int> levels;  ///< at which the group was requested
+  bool readback = false;    ///< its levels are compared after each call that drives it
 };
 
 /// An input group and the discrete inputs that it reads.
@@ -57,6 +58,7 @@ class GroupedLines : public Lines {
     LostEdges lost;
   };
 
+  static int drive(Output& output, Span<int> scratch);
   void restore();
 
   SharedLevels levels_;

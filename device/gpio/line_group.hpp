@@ -19,6 +19,8 @@ class OutputGroup {
   virtual const std::string& name() const = 0;
   /// All lines of the group at once. Returns 0 or an errno; then none of them counts as driven.
   [[nodiscard]] virtual int drive(Span<const int> levels) = 0;
+  /// The levels that the lines have, as far as the chip can tell. Returns 0 or an errno.
+  [[nodiscard]] virtual int read(Span<int> levels) = 0;
 };
 
 class InputGroup {

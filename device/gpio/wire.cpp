@@ -80,6 +80,7 @@ class Wirer {
       outputs.levels.push_back(initial_level(*line.point));
     }
     outputs.group = *std::move(made);
+    outputs.readback = map_.service.readback;
     outputs_.push_back(std::move(outputs));
   }
 

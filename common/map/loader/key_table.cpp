@@ -81,7 +81,7 @@ constexpr std::array keys{
     project("listen", S::map, K::text, "127.0.0.1", "interface of the node"),
     project("allow", S::map, K::list, "[192.168.0.0/24, 10.0.0.7]", "who may connect to the node"),
     project("watchdog", S::map, K::section, "{timeout: 500ms}", "safe state when the master is silent"),
-    later("readback", S::map, "true", "compare a line's level after driving it"),
+    project("readback", S::map, K::boolean, "true", "compare a line's level after driving it"),
     // The tables.
     origin("coils", S::mapping, K::section, "{valve: 0}", "bits that can be written"),
     origin("discrete_inputs", S::mapping, K::section, "{button: 0}", "bits that can be read"),

@@ -60,6 +60,7 @@ Service read_service(const Reader& top, Context& context) {
     top.wrong("listen", "an IP address or host name of the node");
   service.allow = read_allow(top, context);
   service.watchdog = read_watchdog(top, context);
+  top.boolean("readback", service.readback);
   return service;
 }
 

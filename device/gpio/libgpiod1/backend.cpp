@@ -20,6 +20,9 @@ class ValueOutputs : public OutputGroup {
   int drive(Span<const int> levels) override {
     return gpiod_line_set_value_bulk(request_->bulk(), levels.data()) == 0 ? 0 : errno;
   }
+  int read(Span<int> levels) override {
+    return gpiod_line_get_value_bulk(request_->bulk(), levels.data()) == 0 ? 0 : errno;
+  }
 
  private:
   std::unique_ptr<Request> request_;

@@ -24,6 +24,11 @@ class Outputs : public OutputGroup {
       values_[i] = levels[i] != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
     return gpiod_line_request_set_values(request_.get(), values_.data()) == 0 ? 0 : errno;
   }
+  int read(Span<int> levels) override {
+    if (gpiod_line_request_get_values(request_.get(), values_.data()) != 0) return errno;
+    for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = values_[i] == GPIOD_LINE_VALUE_ACTIVE ? 1 : 0;
+    return 0;
+  }
 
  private:
   RequestHandle request_;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cerrno>
+#include <optional>
 #include <utility>
 
 #include "device/gpio/grouped_lines.hpp"
@@ -22,6 +23,7 @@ struct Hardware {
   std::vector<int> levels;
   int error = 0;
   int calls = 0;
+  std::optional<std::size_t> stuck = std::nullopt;  ///< this line stays where it is
 };
 
 class FakeOutputs : public OutputGroup {
@@ -30,7 +32,13 @@ class FakeOutputs : public OutputGroup {
   const std::string& name() const override { return name_; }
   int drive(Span<const int> levels) override {
     ++hardware_.calls;
-    if (hardware_.error == 0) hardware_.levels.assign(levels.begin(), levels.end());
+    if (hardware_.error != 0) return hardware_.error;
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      if (i != hardware_.stuck) hardware_.levels[i] = levels[i];
+    return 0;
+  }
+  int read(Span<int> levels) override {
+    std::copy(hardware_.levels.begin(), hardware_.levels.end(), levels.begin());
     return hardware_.error;
   }
 
@@ -75,6 +83,46 @@ class Grouped : public testing::Test {
   FakeLog log_;
   GroupedLines lines_ = make();
 };
+
+/// Coils 0 and 1 on one chip, 2 and 3 on another, compared after each write.
+class ReadBack : public testing::Test {
+ protected:
+  GroupedLines make() {
+    std::vector<WiredOutputs> outputs;
+    outputs.push_back(
+        {std::make_unique<FakeOutputs>("chip0", first_), {0, 1}, {Safe::off, Safe::on}, {0, 0}, true});
+    outputs.push_back(
+        {std::make_unique<FakeOutputs>("chip1", second_), {2, 3}, {Safe::off, Safe::on}, {0, 0}, true});
+    return GroupedLines(std::move(outputs), {}, log_);
+  }
+
+  Hardware first_{{0, 0}};
+  Hardware second_{{0, 0}};
+  FakeLog log_;
+  GroupedLines lines_ = make();
+};
+
+TEST_F(ReadBack, A_line_that_does_not_follow_fails_the_write_and_the_others_go_back) {
+  second_.stuck = 1;
+  EXPECT_FALSE(lines_.drive(Range::of(0, 4), Levels{1, 1, 1, 1}));
+  EXPECT_THAT(first_.levels, ElementsAre(0, 0));
+  EXPECT_THAT(second_.levels, ElementsAre(0, 0));
+  EXPECT_FALSE(lines_.drive(Range::of(3, 1), Levels{1}));
+  EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("chip1"))) << "said once";
+  EXPECT_TRUE(lines_.drive(Range::of(0, 3), Levels{1, 1, 1})) << "the stuck line is where it should be";
+}
+
+TEST_F(ReadBack, Lines_that_follow_are_driven_once) {
+  EXPECT_TRUE(lines_.drive(Range::of(0, 2), Levels{1, 1}));
+  EXPECT_EQ(first_.calls, 1);
+  EXPECT_THAT(first_.levels, ElementsAre(1, 1));
+}
+
+TEST_F(ReadBack, A_safe_state_that_is_not_reached_is_no_success) {
+  first_.stuck = 1;
+  EXPECT_FALSE(lines_.drive_safe());
+  EXPECT_THAT(second_.levels, ElementsAre(0, 1));
+}
 
 TEST_F(Grouped, A_write_drives_each_chip_it_needs_once_and_leaves_the_other_lines_as_they_are) {
   EXPECT_TRUE(lines_.drive(Range::of(0, 3), Levels{1, 1, 1}));

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "device/gpio/grouped_lines.hpp"
@@ -22,6 +23,10 @@ class RememberingOutputs : public OutputGroup {
   const std::string& name() const override { return name_; }
   int drive(Span<const int> levels) override {
     levels_.assign(levels.begin(), levels.end());
+    return 0;
+  }
+  int read(Span<int> levels) override {
+    std::copy(levels_.begin(), levels_.end(), levels.begin());
     return 0;
   }
 

@@ -16,6 +16,7 @@ TEST(Service, A_map_that_says_nothing_is_open_to_all_and_has_no_watchdog) {
   EXPECT_EQ(service.listen, "");
   EXPECT_TRUE(service.allow.empty());
   EXPECT_FALSE(service.watchdog.present());
+  EXPECT_FALSE(service.readback);
 }
 
 TEST(Service, The_watchdog_is_fed_by_anything_and_recovers_by_default) {
@@ -30,7 +31,8 @@ TEST(Service, All_of_it_is_read) {
   const MapPtr owned = with(
       "listen: 192.168.1.17\n"
       "allow: [192.168.1.0/24, 10.0.0.7, 'fd00::/8']\n"
-      "watchdog: {timeout: 1s, fed_by: write, recovery: manual}");
+      "watchdog: {timeout: 1s, fed_by: write, recovery: manual}\n"
+      "readback: true");
   const Service& service = owned->map().service;
   EXPECT_EQ(service.listen, "192.168.1.17");
   ASSERT_EQ(service.allow.size(), 3U);
@@ -40,6 +42,7 @@ TEST(Service, All_of_it_is_read) {
   EXPECT_EQ(service.watchdog.timeout, 1s);
   EXPECT_EQ(service.watchdog.fed_by, Watchdog::FedBy::write);
   EXPECT_EQ(service.watchdog.recovery, Watchdog::Recovery::manual);
+  EXPECT_TRUE(service.readback);
 }
 
 }  // namespace
