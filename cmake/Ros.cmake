@@ -19,6 +19,9 @@ if(COUPLER_WITH_ROS)
   add_message_files(DIRECTORY host/ros/msg FILES BoolArray.msg)
   generate_messages(DEPENDENCIES std_msgs)
   catkin_package(CATKIN_DEPENDS roscpp std_msgs message_runtime)
+  # Where rosmsg looks for it; our msg folder is not at the top.
+  configure_file(host/ros/msg/BoolArray.msg
+                 ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME}/msg/BoolArray.msg COPYONLY)
   # catkin wants shared libraries and devel/lib; the rooms are small static libraries.
   set(BUILD_SHARED_LIBS OFF)
 else()

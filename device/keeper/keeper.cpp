@@ -39,18 +39,24 @@ bool Keeper::run(const IoProcess::Work& work) {
 }
 
 std::string Keeper::watch_over(IoProcess& process) {
-  // What has arrived is heard before anything is missed: this process may have been stopped too.
-  TimePoint now = loop_.run_once(glance);
-  while (signals_.stop() == 0 && !is_over(process, now)) now = loop_.run_once(glance);
-  if (signals_.stop() == 0) return how_it_ended(process, !process.has_ended());
+  // Silence is counted in glances, not by the clock: this process may have been stopped itself, and what the
+  // other said meanwhile still waits to be heard.
+  TimePoint heard = process.last_beat();
+  for (auto silence = glance * 0; silence < patience; heard = process.last_beat()) {
+    loop_.run_once(glance);
+    if (signals_.stop() != 0) return end_in_peace(process);
+    if (process.has_ended()) return how_it_ended(process, false);
+    silence = process.last_beat() == heard ? silence + glance : glance * 0;
+  }
+  return how_it_ended(process, true);
+}
+
+std::string Keeper::end_in_peace(IoProcess& process) {
   process.terminate();
+  TimePoint now = TimePoint::clock::now();
   for (const TimePoint until = now + patience; now < until && !process.has_ended();)
     now = loop_.run_once(glance);
   return how_it_ended(process, false);
-}
-
-bool Keeper::is_over(const IoProcess& process, TimePoint now) const {
-  return process.has_ended() || now - process.last_beat() >= patience;
 }
 
 void Keeper::rest(std::chrono::milliseconds pause) {

@@ -27,7 +27,7 @@ class Keeper {
  private:
   /// Until it ends, misses its beat, or a signal asks to stop. Tells how it ended.
   std::string watch_over(IoProcess& process);
-  bool is_over(const IoProcess& process, TimePoint now) const;
+  std::string end_in_peace(IoProcess& process);
   void rest(std::chrono::milliseconds pause);
 
   Loop& loop_;

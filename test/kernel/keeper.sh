@@ -87,6 +87,14 @@ expect "its line is driven" 1 "$(sim_value plant 0)"
 check "the others are as before" level_is 2 1
 check "and the active-low one too" level_is 5 0
 
+echo "# a keeper that was stopped itself does not take its child's silence for death"
+before=$(io_process)
+kill -s STOP "$(pid node)"
+sleep 2
+kill -s CONT "$(pid node)"
+sleep 1
+expect "the I/O process is the same" "$before" "$(io_process)"
+
 echo "# a signal to the keeper"
 check "it ends well" stop node TERM
 check "and says so" says node 'Terminated: outputs are in their safe state' 2

@@ -47,7 +47,7 @@ struct Counting : testing::Test {
   void happen(Edges edges, std::uint16_t input = 4) { node.lines.edges.emplace_back(input, edges); }
   std::uint16_t read(Table table, int address) {
     const Pdu reply = node.ask(pdu(table == coils ? 1 : table == holding ? 3 : 4, {address, 1}));
-    return holds_bits(table) ? reply.at(2) : static_cast<std::uint16_t>(reply.at(2) << 8 | reply.at(3));
+    return static_cast<std::uint16_t>(holds_bits(table) ? reply.at(2) : reply.at(2) << 8 | reply.at(3));
   }
   Pdu write(std::uint16_t address, std::vector<int> registers) {
     Pdu rest{static_cast<std::uint8_t>(2 * registers.size())};
