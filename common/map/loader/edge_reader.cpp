@@ -65,7 +65,7 @@ void check_latched(const Reader& reader, const Point& point, Context& context) {
            "remove 'line', and name in 'of' the input that has the line");
   else if (!is_writable(point))
     refuse("a latched point is cleared by a write, this one has 'access: read'", "remove 'access'");
-  else if (reader.has("counter"))
+  else if (!holds_bits(point.table) && reader.has("counter"))
     refuse("a point is a 'counter' or 'latched', not both", "remove one of the two");
 }
 
