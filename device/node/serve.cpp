@@ -41,8 +41,8 @@ int fail(Log& log, Exit status, std::string_view errors) {
 }
 
 std::string greeting(const Map& map, const Options& options, const Listener& listener) {
-  return fmt::format("serving {} ({} points, fingerprint {}) on {}{}", map.name, map.points.size(),
-                     fingerprint_text(map.fingerprint), listener.name,
+  return fmt::format("serving {} ({} point{}, fingerprint {}) on {}{}", map.name, map.points.size(),
+                     map.points.size() == 1 ? "" : "s", fingerprint_text(map.fingerprint), listener.name,
                      options.simulated ? ", simulated" : "");
 }
 
