@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/map/diff.hpp"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <sstream>
@@ -64,9 +65,9 @@ std::vector<Difference> diff(const Map& older, const Map& newer) {
 }
 
 bool is_subset(const Map& known, const Map& device) {
-  for (const Difference& difference : diff(known, device))
-    if (difference.kind != Difference::Kind::added) return false;
-  return true;
+  const auto differences = diff(known, device);
+  return std::none_of(differences.begin(), differences.end(),
+                      [](const Difference& difference) { return is_breaking(difference.kind); });
 }
 
 std::string to_string(const Difference& difference) {

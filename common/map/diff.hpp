@@ -16,6 +16,10 @@ struct Difference {
   std::string what;  ///< "address 5 -> 7, type INT -> UINT"; for missing and added the point's place and type
 };
 
+/// A driver that knows the old map cannot go on with the new one: every difference but an added point. The
+/// one place of this rule: the check at connect and everything that judges two maps ask here.
+constexpr bool is_breaking(Difference::Kind kind) { return kind != Difference::Kind::added; }
+
 /// The differences that both sides of a connection must agree on (the fields of canonical_line()), in the
 /// order of the old map, then what was added. Points are matched by name.
 std::vector<Difference> diff(const Map& older, const Map& newer);

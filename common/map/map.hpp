@@ -8,6 +8,7 @@
 #include "common/base/span.hpp"
 #include "common/map/point.hpp"
 #include "common/map/service.hpp"
+#include "common/modbus/limits.hpp"
 
 namespace coupler {
 
@@ -18,7 +19,7 @@ constexpr int model_version = 2;
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {
   std::string_view address;  ///< host name or IP address; empty: not in the map
-  std::uint16_t port = 502;
+  std::uint16_t port = modbus::default_port;
   std::uint8_t unit = 1;
   std::chrono::milliseconds timeout{3000};
 };

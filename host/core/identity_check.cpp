@@ -15,7 +15,7 @@ Identity unreadable(std::uint64_t fingerprint, const std::string& why) {
 Identity compare(const Map& known, const Map& device, std::uint64_t fingerprint) {
   Identity identity{Verdict::superset, fingerprint, {}};
   for (const Difference& difference : diff(known, device)) {
-    if (difference.kind != Difference::Kind::added) identity.verdict = Verdict::different;
+    if (is_breaking(difference.kind)) identity.verdict = Verdict::different;
     identity.differences.push_back(to_string(difference));
   }
   return identity;
