@@ -32,9 +32,7 @@ pulse() {
 
 # gpiomon of libgpiod 1 takes the chip as an argument, that of libgpiod 2 as an option.
 watch_control() {
-  local version
-  version=$(gpiomon --version | grep -oE 'v?[0-9]+\.' | head -n 1)
-  if [ "${version#v}" = 1. ]; then start "$1" stdbuf -oL gpiomon "$chip" "$control"
+  if [[ $(gpiomon --version) == *v1.* ]]; then start "$1" stdbuf -oL gpiomon "$chip" "$control"
   else start "$1" stdbuf -oL gpiomon -c "$chip" "$control"; fi
   pause 0.5
 }

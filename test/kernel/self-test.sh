@@ -19,7 +19,7 @@ else
   drive() { exec gpioset --chip "$1" "$2"; }
   rising=rising falling=falling
 fi
-sees() { "${@:2}" | grep -q -- "$1"; }
+sees() { "${@:2}" | grep -- "$1" >/dev/null; }
 wire_is() { [ "$(sim_value "$1" "$2")" = "$3" ]; }
 
 sim_create plain 8
