@@ -14,7 +14,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 2;
+constexpr int model_version = 3;
 
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {
@@ -46,6 +46,22 @@ struct Limits {
   bool mask_write = false;  ///< the device has FC 22
 };
 
+/// Addresses that the device refuses: never read, not even to join the points around them.
+struct Unreadable {
+  Table table = Table::coils;
+  modbus::Range range;
+};
+
+/// What the host does when the link comes and goes.
+enum class OnReconnect : std::uint8_t {
+  drop,    ///< writes that found no link are lost
+  restore  ///< the last value of every output that was written is written again
+};
+enum class OnShutdown : std::uint8_t {
+  hold,  ///< outputs stay as they are
+  safe   ///< outputs go to their safe values: Point::safe, Point::safe_value
+};
+
 /// One wire of the simulated chip: `from` an output `to` an input, or a square wave `to` an input.
 struct SimWire {
   std::string_view from;  ///< a coil; empty: a square wave
@@ -67,6 +83,9 @@ struct Map {
   std::string_view text;       ///< the file as it was read, UTF-8: what a node serves by FC 20
   std::uint32_t text_crc = 0;  ///< crc32(text)
   Service service{};
+  OnReconnect on_reconnect = OnReconnect::drop;
+  OnShutdown on_shutdown = OnShutdown::hold;
+  Span<const Unreadable> unreadable{};
 };
 
 /// The point of that name, or nullptr.

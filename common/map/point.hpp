@@ -2,11 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "common/base/span.hpp"
 #include "common/codec/format.hpp"
+#include "common/codec/scale.hpp"
+#include "common/map/channel.hpp"
 #include "common/map/edge.hpp"
+#include "common/map/host_options.hpp"
 #include "common/map/line.hpp"
 #include "common/map/table.hpp"
 #include "common/modbus/range.hpp"
@@ -23,21 +27,37 @@ struct Point {
   std::uint16_t address = 0;  ///< on the wire
   codec::Format format;
   Access access = Access::read;
-  /// The value at start: codec::registers(format) registers as they stand on the wire, the bits of other
-  /// points zero (for bit tables one element, 0 or 1). Empty: all zero.
+  /// The value at start: range(point).count() registers as they stand on the wire, the bits of other points
+  /// zero (for bit tables as many elements, 0 or 1). Empty: all zero.
   Span<const std::uint16_t> initial;
-  Safe safe = Safe::off;  ///< coils with a line
+  Safe safe = Safe::off;  ///< outputs with hardware: a coil with a line, a register with `iio` or `pwm`
   Line line;
   std::string_view description;
   std::string_view units;
-  EdgeOf counter{};  ///< a register that counts an input's edges; a holding register can be preset
-  EdgeOf latched{};  ///< a coil, or a bit of a holding register: set by the edge, cleared by writing 0
+  EdgeOf counter{};         ///< a register that counts an input's edges; a holding register can be preset
+  EdgeOf latched{};         ///< a coil, or a bit of a holding register: set by the edge, cleared by writing 0
+  std::uint16_t count = 1;  ///< values in the point, one behind the other; more than one: an array
+  codec::Scale scale{};     ///< registers: what the host publishes is a Float64
+  Iio iio{};
+  Pwm pwm{};
+  Span<const std::uint16_t> safe_value{};  ///< with Safe::on: what `iio` or `pwm` goes to, as `initial`
+  /// Holding registers and coils: where the output reads back, if not at its own address.
+  std::optional<std::uint16_t> read_address{};
+  HostOptions host{};
 };
 
 /// The addresses it occupies in its table (partial values: the register they share).
 constexpr modbus::Range range(const Point& point) {
-  return modbus::Range::of(point.address, codec::registers(point.format));
+  return modbus::Range::of(point.address,
+                           static_cast<std::uint32_t>(point.count) * codec::registers(point.format));
 }
+
+/// Where the host reads it.
+constexpr modbus::Range read_range(const Point& point) {
+  return modbus::Range::of(point.read_address.value_or(point.address), range(point).count());
+}
+
+constexpr bool is_analogue(const Point& point) { return point.iio.present() || point.pwm.present(); }
 
 constexpr bool is_readable(const Point& point) { return point.access != Access::write; }
 constexpr bool is_writable(const Point& point) { return point.access != Access::read; }

@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 2, "Compare the new fields of the model here, too");
+static_assert(model_version == 3, "Compare the new fields of the model here, too");
 
 inline void expect_same(const Line& a, const Line& b) {
   EXPECT_EQ(a.chip, b.chip);
