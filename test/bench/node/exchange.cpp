@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exchange.hpp"
 
-#include <initializer_list>
-
 namespace coupler::bench {
-namespace {
 
-constexpr std::uint8_t any_unit = 255;
-
-Adu adu(std::initializer_list<std::uint8_t> pdu, const Adu& data = {}) {
+Adu adu(std::initializer_list<std::uint8_t> pdu, const Adu& data) {
+  constexpr std::uint8_t any_unit = 255;
   const auto length = static_cast<std::uint8_t>(1 + pdu.size() + data.size());
   Adu bytes{0, 0, 0, 0, 0, length, any_unit};
   bytes.insert(bytes.end(), pdu);
   bytes.insert(bytes.end(), data.begin(), data.end());
   return bytes;
 }
+
+namespace {
 
 Case read_registers() {
   Adu values;

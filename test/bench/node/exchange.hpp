@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,9 @@ namespace coupler::bench {
 
 /// Bytes of an ADU.
 using Adu = std::vector<std::uint8_t>;
+
+/// The ADU around a PDU and the data that follows it, to or from unit 255.
+Adu adu(std::initializer_list<std::uint8_t> pdu, const Adu& data = {});
 
 /// A request and the only right reply to it. Their transaction id is 0.
 struct Exchange {

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Inside the kernel that test/bench/kernel/run starts: a chip, both servers, then the comparison.
+set -euo pipefail
+build=$(realpath "$1")
+bin=$build/bin
+# shellcheck source=../../kernel/plant.sh
+. "$(dirname "$0")/../../kernel/plant.sh"
+sim_create plant 6
+plant_node "$(dirname "$0")/map.yaml"
+start floor "$build/test/bin/coupler_bench_line_floor" 1503 "/dev/$(sim_chip plant)" 2 3
+check "the floor serves" wait_until 5 says floor serving
+check "every level was right" "$build/test/bin/coupler_bench_lines" "/dev/$(sim_chip plant)" "$(dirname "$(sim_wire plant 0)")" "$2"
