@@ -40,31 +40,56 @@ std::uint16_t mask_of(const Point& point) {
   return holds_bits(point.table) ? std::uint16_t{1} : codec::mask(point.format);
 }
 
-}  // namespace
-
-void EdgePoints::add(std::uint16_t address, const Edges& edges) {
-  statistics_.events_lost += edges.lost;
-  each_point(map_, Table::discrete_inputs, address, address + 1U, [&](const Point& input) {
-    for (const Point& point : map_.points) {
-      if (point.counter.input == input.name) count(point, of_kind(point.counter.edge, edges));
-      if (point.latched.input == input.name && of_kind(point.latched.edge, edges) != 0) latch(point);
-    }
-  });
-}
-
-void EdgePoints::count(const Point& point, std::uint32_t edges) {
-  std::uint16_t* registers = image_.find(point.table, range(point)).data();
-  const codec::Order order = point.format.order;
-  switch (codec::registers(point.format)) {
-    case 1: return raise<std::uint16_t>(registers, order, edges);
-    case 2: return raise<std::uint32_t>(registers, order, edges);
-    default: return raise<std::uint64_t>(registers, order, edges);
+void count(const EdgePoints::Link& link, std::uint32_t edges) {
+  const codec::Order order = link.point->format.order;
+  switch (codec::registers(link.point->format)) {
+    case 1: return raise<std::uint16_t>(link.cells, order, edges);
+    case 2: return raise<std::uint32_t>(link.cells, order, edges);
+    default: return raise<std::uint64_t>(link.cells, order, edges);
   }
 }
 
-void EdgePoints::latch(const Point& point) {
-  std::uint16_t& cell = image_.find(point.table, range(point))[0];
-  cell = static_cast<std::uint16_t>(cell | mask_of(point));
+/// Calls `use` with each point, the edges that it wants, and whether it latches them.
+template <class Use>
+void each_wish(const Map& map, Use use) {
+  for (const Point& point : map.points) {
+    if (point.counter.present()) use(point, point.counter, false);
+    if (point.latched.present()) use(point, point.latched, true);
+  }
+}
+
+}  // namespace
+
+std::size_t EdgePoints::links_for(const Map& map) {
+  std::size_t count = 0;
+  each_wish(map, [&](const Point&, const EdgeOf&, bool) { ++count; });
+  return count;
+}
+
+EdgePoints::EdgePoints(const Map& map, Image& image, Statistics& statistics, Span<Link> links)
+    : map_(map), statistics_(statistics) {
+  std::size_t used = 0;
+  each_wish(map, [&](const Point& point, const EdgeOf& wish, bool latches) {
+    const Point* input = find(map, wish.input);
+    if (input == nullptr) return;
+    links[used++] = {input->address, wish.edge, latches, &point,
+                     image.find(point.table, range(point)).data()};
+  });
+  links_ = links.first(used);
+  std::sort(links_.begin(), links_.end(), [](const Link& a, const Link& b) { return a.input < b.input; });
+}
+
+void EdgePoints::add(std::uint16_t input, const Edges& edges) {
+  statistics_.events_lost += edges.lost;
+  const auto* link = std::lower_bound(links_.begin(), links_.end(), input,
+                                      [](const Link& l, std::uint16_t wanted) { return l.input < wanted; });
+  for (; link != links_.end() && link->input == input; ++link) {
+    const std::uint32_t happened = of_kind(link->edge, edges);
+    if (!link->latches)
+      count(*link, happened);
+    else if (happened != 0)
+      *link->cells = static_cast<std::uint16_t>(*link->cells | mask_of(*link->point));
+  }
 }
 
 bool EdgePoints::holds_whole_counters(Range written) const {

@@ -11,9 +11,19 @@ namespace coupler::node {
 /// these points.
 class EdgePoints final : public EdgeSink {
  public:
-  /// All of them outlive it.
-  EdgePoints(const Map& map, Image& image, Statistics& statistics)
-      : map_(map), image_(image), statistics_(statistics) {}
+  /// One point that an edge of one input concerns.
+  struct Link {
+    std::uint16_t input = 0;
+    Edge edge = Edge::rising;
+    bool latches = false;  ///< otherwise it counts
+    const Point* point = nullptr;
+    std::uint16_t* cells = nullptr;  ///< the point's, in the image
+  };
+  /// How many a map has.
+  static std::size_t links_for(const Map& map);
+
+  /// All of them outlive it; `links` has links_for() elements.
+  EdgePoints(const Map& map, Image& image, Statistics& statistics, Span<Link> links);
 
   /// Counters of the input go up, in their own width and order, and wrap; its latches are set.
   void add(std::uint16_t input, const Edges& edges) override;
@@ -27,12 +37,9 @@ class EdgePoints final : public EdgeSink {
                     Span<std::uint16_t> next) const;
 
  private:
-  void count(const Point& point, std::uint32_t edges);
-  void latch(const Point& point);
-
   const Map& map_;
-  Image& image_;
   Statistics& statistics_;
+  Span<Link> links_;  ///< ascending inputs
 };
 
 }  // namespace coupler::node

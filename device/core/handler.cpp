@@ -38,13 +38,14 @@ bool is_write(Function function) {
 
 }  // namespace
 
-Handler::Handler(const Map& map, Image& image, Lines& lines, Statistics& statistics)
+Handler::Handler(const Map& map, Image& image, Lines& lines, Statistics& statistics, OutputWatchdog& watchdog,
+                 Span<EdgePoints::Link> links)
     : map_(map),
       image_(image),
       lines_(lines),
       statistics_(statistics),
-      watchdog_(map.service.watchdog),
-      edge_points_(map, image, statistics) {
+      watchdog_(watchdog),
+      edge_points_(map, image, statistics, links) {
   write_identity(map, image);
   show_outputs();
 }

@@ -22,8 +22,10 @@ namespace coupler::node {
 /// driven, then the image is changed, then the reply is made. What fails leaves no trace. Allocates nothing.
 class Handler {
  public:
-  /// All of them outlive the handler. The image shows outputs as the lines are driven.
-  Handler(const Map& map, Image& image, Lines& lines, Statistics& statistics);
+  /// All of them outlive the handler. The image shows outputs as the lines are driven. `links` has
+  /// EdgePoints::links_for() elements.
+  Handler(const Map& map, Image& image, Lines& lines, Statistics& statistics, OutputWatchdog& watchdog,
+          Span<EdgePoints::Link> links);
 
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
   /// returns its size; `peer` sent it. Exceptions: those of parse_request(); 02 an address that is not
@@ -66,7 +68,7 @@ class Handler {
   Image& image_;
   Lines& lines_;
   Statistics& statistics_;
-  OutputWatchdog watchdog_;
+  OutputWatchdog& watchdog_;
   EdgePoints edge_points_;
   std::array<std::uint16_t, modbus::max_write_bits> next_{};  ///< what a write stores, before it is committed
 };

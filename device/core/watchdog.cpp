@@ -29,6 +29,18 @@ void OutputWatchdog::expire(bool outputs_are_safe, TimePoint now) {
   if (!outputs_are_safe) deadline_ = now + settings_.timeout;
 }
 
+void OutputWatchdog::disarm() {
+  if (state_ != State::armed) return;
+  state_ = State::idle;
+  deadline_.reset();
+}
+
+void OutputWatchdog::go_on_from(const OutputWatchdog& before, TimePoint now) {
+  if (!is_present() || !before.is_present()) return;
+  state_ = before.state_;
+  if (before.deadline_) deadline_ = now + settings_.timeout;
+}
+
 std::chrono::milliseconds OutputWatchdog::left(TimePoint now) const {
   using std::chrono::milliseconds;
   if (state_ != State::armed) return milliseconds(0);

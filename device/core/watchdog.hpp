@@ -39,6 +39,10 @@ class OutputWatchdog {
   bool is_due(TimePoint now) const { return deadline_ && now >= *deadline_; }
   /// The outputs were driven to their safe state. If that failed, it is due again after another timeout.
   void expire(bool outputs_are_safe, TimePoint now);
+  /// They went there for another reason: there is nothing to wait for. What expired stays so.
+  void disarm();
+  /// Goes on where that of another map was; a wait begins anew.
+  void go_on_from(const OutputWatchdog& before, TimePoint now);
   /// When it is due; nullopt: never, unless somebody writes.
   std::optional<TimePoint> deadline() const { return deadline_; }
   /// Until the outputs go to their safe state, rounded up; 0 unless armed.

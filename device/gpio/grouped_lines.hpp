@@ -11,7 +11,7 @@
 #include "device/gpio/fault.hpp"
 #include "device/gpio/line_group.hpp"
 #include "device/gpio/lost_edges.hpp"
-#include "device/gpio/shared_levels.hpp"
+#include "device/keeper/shared_array.hpp"
 
 namespace coupler::node {
 
@@ -61,7 +61,7 @@ class GroupedLines : public Lines {
   static int drive(Output& output, Span<int> scratch);
   void restore();
 
-  SharedLevels levels_;
+  SharedArray<int> levels_;
   std::vector<Output> outputs_;
   std::vector<Input> inputs_;
   std::array<int, max_group_size> scratch_{};

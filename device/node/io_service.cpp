@@ -28,13 +28,15 @@ std::string farewell(int signal, bool safe, const Statistics& statistics) {
 
 }  // namespace
 
-IoService::IoService(const Map& map, Wiring& wiring, Listener listener, Loop& loop, Log& log)
+IoService::IoService(const Map& map, Wiring& wiring, Memory& memory, Listener listener, Loop& loop, Log& log)
     : lines_(*wiring.lines),
       loop_(loop),
       log_(log),
-      node_(map, lines_, TimePoint::clock::now()),
-      tcp_(loop, std::move(listener), node_.server(), node_.statistics(), log),
-      now_(TimePoint::clock::now()) {
+      statistics_(memory.statistics()),
+      node_(map, lines_, memory),
+      tcp_(loop, std::move(listener), node_.server(), memory.statistics(), log),
+      now_(TimePoint::clock::now()),
+      trips_(statistics_.watchdog_trips) {
   for (EventSource* source : wiring.events) watchers_.emplace_back(loop, *source, log);
 }
 
@@ -46,7 +48,7 @@ void IoService::run(const Signals& signals, Pulse* pulse) {
     }
     turn(pulse != nullptr ? Patience(Pulse::period) : std::nullopt);
   }
-  log_.write(farewell(signals.stop(), lines_.drive_safe(), node_.statistics()));
+  log_.write(farewell(signals.stop(), lines_.drive_safe(), statistics_));
 }
 
 void IoService::turn(Patience at_most) {
@@ -57,8 +59,8 @@ void IoService::turn(Patience at_most) {
 }
 
 void IoService::log_trips() {
-  if (trips_ == node_.statistics().watchdog_trips) return;
-  trips_ = node_.statistics().watchdog_trips;
+  if (trips_ == statistics_.watchdog_trips) return;
+  trips_ = statistics_.watchdog_trips;
   log_.write("the watchdog expired: no master that writes was heard in time; outputs go to their safe state");
 }
 

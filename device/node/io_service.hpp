@@ -17,7 +17,7 @@ namespace coupler::node {
 class IoService {
  public:
   /// All of them outlive it.
-  IoService(const Map& map, Wiring& wiring, Listener listener, Loop& loop, Log& log);
+  IoService(const Map& map, Wiring& wiring, Memory& memory, Listener listener, Loop& loop, Log& log);
 
   /// Serves until a signal asks to stop, then drives the outputs to their safe state. `pulse` (may be null)
   /// is told that the loop turns.
@@ -31,10 +31,11 @@ class IoService {
   Loop& loop_;
   Log& log_;
   std::deque<EdgeWatcher> watchers_;
+  const Statistics& statistics_;
   Node node_;
   TcpServer tcp_;
   TimePoint now_;
-  std::uint32_t trips_ = 0;  ///< of the watchdog, in the log
+  std::uint32_t trips_;  ///< of the watchdog, in the log
 };
 
 }  // namespace coupler::node

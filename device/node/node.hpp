@@ -1,30 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "device/core/server.hpp"
+#include "device/node/memory.hpp"
 
 namespace coupler::node {
 
-/// The core of a node with the memory it needs, all of it taken here.
+/// The core of a node on the memory that it is given.
 class Node {
  public:
-  /// Both outlive the node.
-  Node(const Map& map, Lines& lines, TimePoint now);
+  /// All of them outlive the node; the memory is of this map.
+  Node(const Map& map, Lines& lines, Memory& memory)
+      : handler_(map, memory.image(), lines, memory.statistics(), memory.watchdog(), memory.links()),
+        server_(map.connection.unit, handler_, memory.statistics()) {}
 
   Handler& handler() { return handler_; }
   Server& server() { return server_; }
-  Statistics& statistics() { return statistics_; }
 
  private:
-  explicit Node(const Map& map, Lines& lines, TimePoint now, Image::Size size);
-
-  std::vector<Image::Area> areas_;
-  std::vector<std::uint16_t> cells_;
-  Image image_;
-  Statistics statistics_;
   Handler handler_;
   Server server_;
 };

@@ -69,13 +69,14 @@ int serve(const Map& map, const Options& options) {
   listener->guests = *std::move(guests);
   auto wiring = make_lines(map, options.simulated, log);
   if (!wiring) return fail(log, device_failed, wiring.error());
+  Memory memory(map, TimePoint::clock::now());
   const std::string news = greeting(map, options, *listener);
   log.write(news);
   ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"), news);
   Pulse* const managed = manager.is_there() ? &manager : nullptr;
 
   if (!needs_keeper(map, options)) {
-    IoService(map, *wiring, *std::move(listener), loop, log).run(signals, managed);
+    IoService(map, *wiring, memory, *std::move(listener), loop, log).run(signals, managed);
     manager.stopping();
     return stopped;
   }
@@ -83,7 +84,9 @@ int serve(const Map& map, const Options& options) {
     Loop own_loop;
     if (!own_loop.is_open()) return fail(log, device_failed, std::strerror(errno));
     const Signals own_signals(own_loop);
-    IoService(map, *wiring, *std::move(listener), own_loop, log).run(own_signals, &pulse);
+    // Outputs are in their safe state, however the process before this one ended.
+    memory.watchdog().disarm();
+    IoService(map, *wiring, memory, *std::move(listener), own_loop, log).run(own_signals, &pulse);
     return stopped;
   };
   Keeper(loop, signals, *wiring->lines, log, managed).run(io_process);

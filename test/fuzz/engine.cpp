@@ -129,7 +129,9 @@ class Engine {
  public:
   explicit Engine(const Map& map)
       : memory_(map),
-        handler_(map, memory_.image, lines_, statistics_),
+        watchdog_(map.service.watchdog),
+        links_(node::EdgePoints::links_for(map)),
+        handler_(map, memory_.image, lines_, statistics_, watchdog_, links_),
         server_(map.connection.unit, handler_, statistics_) {}
 
   /// Receives the stream in pieces of at most `piece` bytes, as the network may cut it, until it is at an end
@@ -174,6 +176,8 @@ class Engine {
   PartlyBrokenLines lines_;
   node::Statistics statistics_;
   node::Peer peer_;
+  node::OutputWatchdog watchdog_;
+  std::vector<node::EdgePoints::Link> links_;
   node::Handler handler_;
   node::Server server_;
   modbus::Framer framer_;

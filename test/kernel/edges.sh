@@ -93,6 +93,16 @@ for _ in 1 2 3; do
 done
 expect "three presses that bounce are three" 3 "$(counter 3 4)"
 
+echo "# the I/O process is killed"
+before=$(counter 3 0)
+kill -KILL "$(pgrep -P "$(pid node)")"
+pulse 5 "$width" "$button"
+check "another one serves" wait_until 10 counter 3 0
+pulse 5 "$width" "$button"
+expect "its counters go on, with what happened meanwhile" $((before + 10)) "$(counter 3 0)"
+expect "the one that can be preset too" $((4000005 + 10)) "$(counter 4 0)"
+expect "nothing was lost by that" 0 "$(lost)"
+
 echo "# a reader that is stopped"
 before=$(counter 3 2)
 io=$(pgrep -P "$(pid node)")

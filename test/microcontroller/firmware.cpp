@@ -84,6 +84,7 @@ class Ports final : public Lines {
 constexpr const Map& map = maps::example::map;
 Image::Area areas[32];
 std::uint16_t cells[128];
+EdgePoints::Link links[8];
 std::uint8_t reply[modbus::max_adu_size];
 
 /// The replies to a master's first requests, one after the other.
@@ -99,7 +100,8 @@ void answer_all() {
   Ports ports;
   static Statistics statistics;
   Image image(map, areas, cells);
-  static Handler handler(map, image, ports, statistics);
+  static OutputWatchdog watchdog(map.service.watchdog);
+  static Handler handler(map, image, ports, statistics, watchdog, links);
   static Server server(map.connection.unit, handler, statistics);
   static modbus::Framer framer;
   Peer master;
@@ -120,6 +122,7 @@ extern "C" void start() {
   using namespace coupler::node;
   const auto size = Image::size_for(map);
   if (size.areas > std::size(areas) || size.cells > std::size(cells)) fail("the map needs a larger image");
+  if (EdgePoints::links_for(map) > std::size(links)) fail("the map needs more links");
   answer_all();
   stop_well();
 }

@@ -22,17 +22,17 @@ TimePoint time_of(const gpiod_line_event& event) {
 EventLine::EventLine(std::unique_ptr<Request> request, Edge watched, std::chrono::microseconds debounce)
     : request_(std::move(request)),
       descriptor_(gpiod_line_event_get_fd(request_->first())),
-      tally_(watched, gpiod_line_get_value(request_->first()) == 1) {
-  if (debounce.count() > 0) debounce_.emplace(debounce, gpiod_line_get_value(request_->first()) == 1);
+      seen_(1, {EdgeTally(watched, gpiod_line_get_value(request_->first()) == 1), std::nullopt}) {
+  if (debounce.count() > 0) this->debounce().emplace(debounce, gpiod_line_get_value(request_->first()) == 1);
   ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
 }
 
 void EventLine::add(const gpiod_line_event& event) {
   const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
-  if (debounce_)
-    debounce_->edge(rising, time_of(event));
+  if (debounce())
+    debounce()->edge(rising, time_of(event));
   else
-    tally_.edge(rising);
+    tally().edge(rising);
 }
 
 bool EventLine::take_edges() {
@@ -42,32 +42,32 @@ bool EventLine::take_edges() {
     if (count < 0) return errno == EAGAIN || errno == EINTR;
     for (int i = 0; i < count; ++i) add(events[static_cast<std::size_t>(i)]);
     if (count < static_cast<int>(kernel_queue)) return true;
-    tally_.lose(1);
+    tally().lose(1);
   }
 }
 
 int EventLine::debounce_level(TimePoint now) {
   const int level = gpiod_line_get_value(request_->first());
   if (level < 0) return errno;
-  if ((level == 1) != debounce_->latest()) debounce_->edge(level == 1, now);
+  if ((level == 1) != debounce()->latest()) debounce()->edge(level == 1, now);
   return 0;
 }
 
 Edges EventLine::edges(std::size_t, TimePoint now) {
-  Edges edges = tally_.take();
-  if (!debounce_) return edges;
+  Edges edges = tally().take();
+  if (!debounce()) return edges;
   const std::uint32_t lost = edges.lost;
   if (lost != 0 && debounce_level(now) != 0) return edges;
-  edges = debounce_->take_edges(now);
+  edges = debounce()->take_edges(now);
   edges.lost = lost;
   return edges;
 }
 
 int EventLine::read(Span<int> levels, TimePoint now) {
   if (!take_edges()) return errno;
-  if (debounce_) {
+  if (debounce()) {
     const int error = debounce_level(now);
-    levels[0] = debounce_->level(now) ? 1 : 0;
+    levels[0] = debounce()->level(now) ? 1 : 0;
     return error;
   }
   levels[0] = gpiod_line_get_value(request_->first());

@@ -10,6 +10,7 @@
 #include "device/gpio/event_source.hpp"
 #include "device/gpio/libgpiod1/request.hpp"
 #include "device/gpio/line_group.hpp"
+#include "device/keeper/shared_array.hpp"
 
 namespace coupler::node::libgpiod1 {
 
@@ -33,10 +34,17 @@ class EventLine : public InputGroup, public EventSource {
   /// The line's own level is what counts where the queue may have been full. Returns 0 or an errno.
   int debounce_level(TimePoint now);
 
+  /// What was seen of the line. Shared, so that a process that is started anew takes no edge for a lost one.
+  struct Seen {
+    EdgeTally tally;
+    std::optional<Debounce> debounce;
+  };
+  EdgeTally& tally() { return seen_[0].tally; }
+  std::optional<Debounce>& debounce() { return seen_[0].debounce; }
+
   std::unique_ptr<Request> request_;
   int descriptor_;
-  EdgeTally tally_;
-  std::optional<Debounce> debounce_;
+  SharedArray<Seen> seen_;
 };
 
 }  // namespace coupler::node::libgpiod1

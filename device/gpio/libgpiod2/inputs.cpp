@@ -18,18 +18,19 @@ constexpr std::size_t events_at_once = 64;
 Inputs::Inputs(RequestHandle request, const std::vector<Wanted>& lines)
     : request_(std::move(request)),
       events_(gpiod_edge_event_buffer_new(events_at_once)),
+      lines_(lines.size(), {0, EdgeTally(Edge::both, false)}),
       name_(names_of(lines)) {
-  for (const Wanted& wanted : lines) {
-    const bool level =
-        gpiod_line_request_get_value(request_.get(), wanted.line.offset) == GPIOD_LINE_VALUE_ACTIVE;
-    lines_.push_back({wanted.line.offset, EdgeTally(wanted.counted.value_or(Edge::both), level)});
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const unsigned offset = lines[i].line.offset;
+    const bool level = gpiod_line_request_get_value(request_.get(), offset) == GPIOD_LINE_VALUE_ACTIVE;
+    lines_[i] = {offset, EdgeTally(lines[i].counted.value_or(Edge::both), level)};
   }
   ::fcntl(descriptor(), F_SETFL, ::fcntl(descriptor(), F_GETFL) | O_NONBLOCK);
 }
 
 int Inputs::read(Span<int> levels, TimePoint) {
   if (gpiod_line_request_get_values(request_.get(), values_.data()) != 0) return errno;
-  for (std::size_t i = 0; i < lines_.size(); ++i) levels[i] = values_[i] == GPIOD_LINE_VALUE_ACTIVE ? 1 : 0;
+  for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = values_[i] == GPIOD_LINE_VALUE_ACTIVE ? 1 : 0;
   return 0;
 }
 
@@ -37,9 +38,10 @@ int Inputs::descriptor() const { return gpiod_line_request_get_fd(request_.get()
 
 void Inputs::add(gpiod_edge_event* event) {
   const unsigned offset = gpiod_edge_event_get_line_offset(event);
-  const auto line =
-      std::find_if(lines_.begin(), lines_.end(), [&](const Counted& l) { return l.offset == offset; });
-  assert(line != lines_.end());
+  const Span<Counted> lines = lines_.all();
+  auto* const line =
+      std::find_if(lines.begin(), lines.end(), [&](const Counted& l) { return l.offset == offset; });
+  assert(line != lines.end());
   const auto sequence = static_cast<std::uint32_t>(gpiod_edge_event_get_line_seqno(event));
   if (const std::uint32_t gap = sequence - line->sequence - 1; gap != 0) line->tally.lose(gap);
   line->sequence = sequence;

@@ -10,6 +10,7 @@
 #include "device/gpio/event_source.hpp"
 #include "device/gpio/libgpiod2/request.hpp"
 #include "device/gpio/line_group.hpp"
+#include "device/keeper/shared_array.hpp"
 
 namespace coupler::node::libgpiod2 {
 
@@ -28,7 +29,7 @@ class Inputs : public InputGroup, public EventSource {
 
  private:
   struct Counted {
-    unsigned offset;
+    unsigned offset = 0;
     EdgeTally tally;
     std::uint32_t sequence = 0;  ///< of the line's last event; the kernel begins with 1
   };
@@ -38,7 +39,7 @@ class Inputs : public InputGroup, public EventSource {
   RequestHandle request_;
   Owned<gpiod_edge_event_buffer, gpiod_edge_event_buffer_free> events_;
   std::array<gpiod_line_value, max_group_size> values_{};
-  std::vector<Counted> lines_;
+  SharedArray<Counted> lines_;  ///< shared: a process that is started anew sees no gap in their sequence
   std::string name_;
 };
 

@@ -52,7 +52,9 @@ struct NodeUnderTest {
   Peer peer;
   Statistics statistics;
   TimePoint now{};
-  Handler handler{map, image, lines, statistics};
+  OutputWatchdog watchdog{map.service.watchdog};
+  std::vector<EdgePoints::Link> links{EdgePoints::links_for(map)};
+  Handler handler{map, image, lines, statistics, watchdog, links};
 };
 
 }  // namespace coupler::node

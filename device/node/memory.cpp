@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/node/memory.hpp"
+
+#include <map>
+#include <tuple>
+
+namespace coupler::node {
+namespace {
+
+Statistics started_at(TimePoint now) {
+  Statistics statistics;
+  statistics.started = now;
+  return statistics;
+}
+
+/// Whether a value of one means the same in the other.
+bool same_value(const Point& a, const Point& b) {
+  const auto layout = [](const Point& p) {
+    const codec::Format& f = p.format;
+    return std::tuple(p.table, p.count, f.type, f.order, f.bit, f.half, f.length, f.encoding, p.scale.gain,
+                      p.scale.offset);
+  };
+  return layout(a) == layout(b);
+}
+
+/// A point that shares its register leaves the others' bits alone.
+void copy(const Point& point, Span<const std::uint16_t> from, Span<std::uint16_t> to) {
+  const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
+  for (std::size_t i = 0; i < to.size(); ++i)
+    to[i] = static_cast<std::uint16_t>((to[i] & ~mask) | (from[i] & mask));
+}
+
+}  // namespace
+
+Memory::Memory(const Map& map, TimePoint now) : Memory(map, now, Image::size_for(map)) {}
+
+Memory::Memory(const Map& map, TimePoint now, Image::Size size)
+    : map_(map),
+      areas_(size.areas),
+      cells_(size.cells),
+      image_(map, areas_, cells_.all()),
+      lasting_(1, {started_at(now), OutputWatchdog(map.service.watchdog)}),
+      links_(EdgePoints::links_for(map)) {}
+
+void Memory::carry_over(const Memory& before, TimePoint now) {
+  statistics() = before.lasting_[0].statistics;
+  watchdog().go_on_from(before.lasting_[0].watchdog, now);
+  std::map<std::string_view, const Point*> known;
+  for (const Point& point : before.map_.points) known.emplace(point.name, &point);
+  for (const Point& point : map_.points) {
+    const auto old = known.find(point.name);
+    if (old == known.end() || !same_value(*old->second, point)) continue;
+    copy(point, before.image_.find(point.table, range(*old->second)), image_.find(point.table, range(point)));
+  }
+}
+
+}  // namespace coupler::node

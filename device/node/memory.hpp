@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "device/core/edge_points.hpp"
+#include "device/core/image.hpp"
+#include "device/core/statistics.hpp"
+#include "device/core/watchdog.hpp"
+#include "device/keeper/shared_array.hpp"
+
+namespace coupler::node {
+
+/// What a node knows, for as long as its map stays the same: values, statistics, watchdog. It is shared with
+/// forked processes, so an I/O process that is started anew goes on where the one before ended.
+class Memory {
+ public:
+  /// Initial values. The map outlives it.
+  Memory(const Map& map, TimePoint now);
+
+  /// Takes over from the memory of another map what both have: statistics, the watchdog's state, and the
+  /// value of every point that has the same name, table, type and layout in both.
+  void carry_over(const Memory& before, TimePoint now);
+
+  Image& image() { return image_; }
+  Statistics& statistics() { return lasting_[0].statistics; }
+  OutputWatchdog& watchdog() { return lasting_[0].watchdog; }
+  Span<EdgePoints::Link> links() { return links_; }
+
+ private:
+  struct Lasting {
+    Statistics statistics;
+    OutputWatchdog watchdog;
+  };
+  Memory(const Map& map, TimePoint now, Image::Size size);
+
+  const Map& map_;
+  std::vector<Image::Area> areas_;
+  SharedArray<std::uint16_t> cells_;
+  Image image_;
+  SharedArray<Lasting> lasting_;
+  std::vector<EdgePoints::Link> links_;
+};
+
+}  // namespace coupler::node
