@@ -2,25 +2,14 @@
 #include "device/core/edge_points.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 #include "common/codec/number.hpp"
+#include "device/core/each_point.hpp"
 
 namespace coupler::node {
 namespace {
 
 using modbus::Range;
-
-constexpr std::uint16_t widest_counter = 4;  ///< registers
-
-/// Calls `use` with each point that begins in the range; the map's points are sorted.
-template <class Use>
-void each_point(const Map& map, Table table, std::uint32_t start, std::uint32_t end, Use use) {
-  const auto key = [](const Point& p) { return std::tuple(index(p.table), std::uint32_t{p.address}); };
-  auto point = std::lower_bound(map.points.begin(), map.points.end(), std::tuple(index(table), start),
-                                [&](const Point& p, const auto& wanted) { return key(p) < wanted; });
-  for (; point != map.points.end() && key(*point) < std::tuple(index(table), end); ++point) use(*point);
-}
 
 std::uint32_t of_kind(Edge edge, const Edges& edges) {
   switch (edge) {
@@ -90,15 +79,6 @@ void EdgePoints::add(std::uint16_t input, const Edges& edges) {
     else if (happened != 0)
       *link->cells = static_cast<std::uint16_t>(*link->cells | mask_of(*link->point));
   }
-}
-
-bool EdgePoints::holds_whole_counters(Range written) const {
-  bool whole = true;
-  const std::uint32_t first = std::max<std::uint32_t>(written.start(), widest_counter) - widest_counter;
-  each_point(map_, Table::holding_registers, first, written.end(), [&](const Point& point) {
-    if (point.counter.present() && written.overlaps(range(point))) whole &= written.contains(range(point));
-  });
-  return whole;
 }
 
 void EdgePoints::keep_latches(Table table, Range written, Span<const std::uint16_t> now,

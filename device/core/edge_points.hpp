@@ -28,9 +28,6 @@ class EdgePoints final : public EdgeSink {
   /// Counters of the input go up, in their own width and order, and wrap; its latches are set.
   void add(std::uint16_t input, const Edges& edges) override;
 
-  /// Whether these holding registers hold no counter's value in part.
-  bool holds_whole_counters(modbus::Range written) const;
-
   /// A write clears a latch with 0; a 1 leaves it as it is. `now` are the cells of the range, `next` what a
   /// master wants to write there: it becomes what is to be stored.
   void keep_latches(Table table, modbus::Range written, Span<const std::uint16_t> now,

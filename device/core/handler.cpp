@@ -5,6 +5,7 @@
 
 #include "common/map/identity.hpp"
 #include "common/modbus/reply.hpp"
+#include "device/core/each_point.hpp"
 #include "device/core/identification.hpp"
 #include "device/core/identity_area.hpp"
 #include "device/core/map_file.hpp"
@@ -38,11 +39,11 @@ bool is_write(Function function) {
 
 }  // namespace
 
-Handler::Handler(const Map& map, Image& image, Lines& lines, Statistics& statistics, OutputWatchdog& watchdog,
-                 Span<EdgePoints::Link> links)
+Handler::Handler(const Map& map, Image& image, Hardware hardware, Statistics& statistics,
+                 OutputWatchdog& watchdog, Span<EdgePoints::Link> links)
     : map_(map),
       image_(image),
-      lines_(lines),
+      hardware_(hardware),
       statistics_(statistics),
       watchdog_(watchdog),
       edge_points_(map, image, statistics, links) {
@@ -52,7 +53,7 @@ Handler::Handler(const Map& map, Image& image, Lines& lines, Statistics& statist
 
 std::size_t Handler::handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply) {
   tick(now);
-  lines_.take_edges(now, edge_points_);
+  hardware_.take_edges(now, edge_points_);
   ++statistics_.requests;
   const Answer done = answer({request, now, reply});
   watchdog_.request(peer, done && is_write(static_cast<Function>(request[0])), now);
@@ -65,7 +66,7 @@ std::size_t Handler::handle(modbus::Bytes request, Peer& peer, TimePoint now, Sp
 void Handler::tick(TimePoint now) {
   if (!watchdog_.is_due(now)) return;
   if (watchdog_.state() == OutputWatchdog::State::armed) ++statistics_.watchdog_trips;
-  watchdog_.expire(lines_.drive_safe(), now);
+  watchdog_.expire(hardware_.drive_safe(), now);
   show_outputs();
 }
 
@@ -77,7 +78,8 @@ std::optional<std::chrono::milliseconds> Handler::patience(TimePoint now) const 
 
 void Handler::show_outputs() {
   for (const Point& point : map_.points)
-    if (point.table == Table::coils) lines_.driven(range(point), image_.find(Table::coils, range(point)));
+    if (point.table == Table::coils)
+      hardware_.driven(point.table, range(point), image_.find(point.table, range(point)));
 }
 
 Handler::Answer Handler::hardware_failed() {
@@ -95,7 +97,7 @@ Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
   const Table table = table_of(read.function);
   const auto cells = image_.find_readable(table, read.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
-  if (table == Table::discrete_inputs && !lines_.read(read.range, cells, call.now)) return hardware_failed();
+  if (!hardware_.read(table, read.range, cells, call.now)) return hardware_failed();
   if (table == Table::input_registers && identity::reserved.overlaps(read.range)) {
     write_statistics(statistics_, call.now, image_);
     write_watchdog(watchdog_, call.now, image_);
@@ -104,30 +106,40 @@ Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
                            : modbus::reply_registers(read.function, cells, call.reply);
 }
 
+tl::expected<void, Exception> Handler::store(Table table, modbus::Range range, Span<std::uint16_t> cells,
+                                             TimePoint now) {
+  const auto next = Span<std::uint16_t>(next_).first(cells.size());
+  edge_points_.keep_latches(table, range, cells, next);
+  if (watchdog_.is_locked() && hardware_.driven(table, range, next))
+    return tl::unexpected(Exception::server_device_failure);
+  if (const auto driven = hardware_.drive(table, range, next); !driven) {
+    if (driven.error() == Exception::server_device_failure) ++statistics_.hardware_errors;
+    return driven;
+  }
+  std::copy(next.begin(), next.end(), cells.begin());
+  if (watchdog_.is_present() && hardware_.driven(table, range, cells)) watchdog_.arm(now);
+  return {};
+}
+
 Handler::Answer Handler::carry_out(const modbus::WriteBits& write, const Call& call) {
   const auto cells = image_.find_writable(Table::coils, write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
-  const auto bits = Span<std::uint16_t>(next_).first(cells.size());
-  for (std::size_t i = 0; i < bits.size(); ++i) bits[i] = write.packed[i / 8] >> i % 8 & 1;
-  edge_points_.keep_latches(Table::coils, write.range, cells, bits);
-  if (watchdog_.is_locked() && lines_.driven(write.range, bits))
-    return tl::unexpected(Exception::server_device_failure);
-  if (!lines_.drive(write.range, bits)) return hardware_failed();
-  std::copy(bits.begin(), bits.end(), cells.begin());
-  if (watchdog_.is_present() && lines_.driven(write.range, cells)) watchdog_.arm(call.now);
+  for (std::size_t i = 0; i < cells.size(); ++i) next_[i] = write.packed[i / 8] >> i % 8 & 1;
+  if (const auto stored = store(Table::coils, write.range, cells, call.now); !stored)
+    return tl::unexpected(stored.error());
   return modbus::reply_written(call.request, call.reply);
 }
 
 Span<std::uint16_t> Handler::writable_registers(modbus::Range range) const {
-  return edge_points_.holds_whole_counters(range) ? image_.find_writable(Table::holding_registers, range)
-                                                  : Span<std::uint16_t>();
+  bool whole = true;
+  each_number(map_, Table::holding_registers, range, [&](const Point& point) {
+    if (point.counter.present() || is_analogue(point)) whole &= range.contains(coupler::range(point));
+  });
+  return whole ? image_.find_writable(Table::holding_registers, range) : Span<std::uint16_t>();
 }
 
-void Handler::commit(const modbus::WriteRegisters& write, Span<std::uint16_t> cells) {
-  const auto next = Span<std::uint16_t>(next_).first(cells.size());
-  for (std::size_t i = 0; i < next.size(); ++i) next[i] = modbus::get_u16(&write.values[2 * i]);
-  edge_points_.keep_latches(Table::holding_registers, write.range, cells, next);
-  std::copy(next.begin(), next.end(), cells.begin());
+void Handler::put_next(const modbus::WriteRegisters& write) {
+  for (std::size_t i = 0; i < write.range.count(); ++i) next_[i] = modbus::get_u16(&write.values[2 * i]);
 }
 
 Handler::Answer Handler::reset_watchdog(const modbus::WriteRegisters& write, const Call& call) {
@@ -142,7 +154,9 @@ Handler::Answer Handler::carry_out(const modbus::WriteRegisters& write, const Ca
     return reset_watchdog(write, call);
   const auto cells = writable_registers(write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
-  commit(write, cells);
+  put_next(write);
+  if (const auto stored = store(Table::holding_registers, write.range, cells, call.now); !stored)
+    return tl::unexpected(stored.error());
   return modbus::reply_written(call.request, call.reply);
 }
 
@@ -150,9 +164,8 @@ Handler::Answer Handler::carry_out(const modbus::MaskWrite& write, const Call& c
   const auto cells = writable_registers(write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
   next_[0] = static_cast<std::uint16_t>((cells[0] & write.and_mask) | (write.or_mask & ~write.and_mask));
-  const auto next = Span<std::uint16_t>(next_).first(1);
-  edge_points_.keep_latches(Table::holding_registers, write.range, cells, next);
-  cells[0] = next[0];
+  if (const auto stored = store(Table::holding_registers, write.range, cells, call.now); !stored)
+    return tl::unexpected(stored.error());
   return modbus::reply_written(call.request, call.reply);
 }
 
@@ -160,7 +173,9 @@ Handler::Answer Handler::carry_out(const modbus::ReadWriteRegisters& both, const
   const auto read = image_.find_readable(Table::holding_registers, both.read);
   const auto written = writable_registers(both.write.range);
   if (read.empty() || written.empty()) return tl::unexpected(Exception::illegal_data_address);
-  commit(both.write, written);
+  put_next(both.write);
+  if (const auto stored = store(Table::holding_registers, both.write.range, written, call.now); !stored)
+    return tl::unexpected(stored.error());
   return modbus::reply_registers(Function::read_write_multiple_registers, read, call.reply);
 }
 

@@ -10,8 +10,8 @@
 #include "common/modbus/limits.hpp"
 #include "common/modbus/request.hpp"
 #include "device/core/edge_points.hpp"
+#include "device/core/hardware.hpp"
 #include "device/core/image.hpp"
-#include "device/core/lines.hpp"
 #include "device/core/peer.hpp"
 #include "device/core/statistics.hpp"
 #include "device/core/watchdog.hpp"
@@ -24,13 +24,14 @@ class Handler {
  public:
   /// All of them outlive the handler. The image shows outputs as the lines are driven. `links` has
   /// EdgePoints::links_for() elements.
-  Handler(const Map& map, Image& image, Lines& lines, Statistics& statistics, OutputWatchdog& watchdog,
+  Handler(const Map& map, Image& image, Hardware hardware, Statistics& statistics, OutputWatchdog& watchdog,
           Span<EdgePoints::Link> links);
 
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
   /// returns its size; `peer` sent it. Exceptions: those of parse_request(); 02 an address that is not
-  /// mapped, not readable or not writable; 03 a value that does not reset the watchdog; 04 a line that cannot
-  /// be read or driven, or an output that the watchdog keeps in its safe state.
+  /// mapped, not readable or not writable; 03 a value that does not reset the watchdog, or that an output
+  /// cannot take; 04 hardware that cannot be read or driven, or an output that the watchdog keeps in its safe
+  /// state.
   std::size_t handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply);
 
   /// Drives the outputs to their safe state if the watchdog is due. handle() does so too.
@@ -59,14 +60,18 @@ class Handler {
 
   Answer reset_watchdog(const modbus::WriteRegisters& write, const Call& call);
   Answer hardware_failed();
-  /// Empty if one is not mapped, not writable, or holds a counter's value in part.
+  /// Empty if one is not mapped, not writable, or holds in part a value that is only written as a whole: a
+  /// counter's, or that of an analogue output.
   Span<std::uint16_t> writable_registers(modbus::Range range) const;
-  void commit(const modbus::WriteRegisters& write, Span<std::uint16_t> cells);
+  void put_next(const modbus::WriteRegisters& write);
+  /// Drives the outputs of the range, then stores in its cells: what next_ says.
+  tl::expected<void, modbus::Exception> store(Table table, modbus::Range range, Span<std::uint16_t> cells,
+                                              TimePoint now);
   void show_outputs();
 
   const Map& map_;
   Image& image_;
-  Lines& lines_;
+  Hardware hardware_;
   Statistics& statistics_;
   OutputWatchdog& watchdog_;
   EdgePoints edge_points_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "device/core/handler.hpp"
+#include "test/device/core/fake_channels.hpp"
 #include "test/device/core/fake_lines.hpp"
 #include "test/fakes/map_builder.hpp"
 
@@ -49,12 +50,14 @@ struct NodeUnderTest {
   OwnedImage memory{map};
   Image& image = memory.image;
   FakeLines lines;
+  FakeChannels channels;
+  AnaloguePoints analogue{map, image, channels};
   Peer peer;
   Statistics statistics;
   TimePoint now{};
   OutputWatchdog watchdog{map.service.watchdog};
   std::vector<EdgePoints::Link> links{EdgePoints::links_for(map)};
-  Handler handler{map, image, lines, statistics, watchdog, links};
+  Handler handler{map, image, Hardware(lines, &analogue), statistics, watchdog, links};
 };
 
 }  // namespace coupler::node
