@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# The package's life on a running system: installed, refused without a map, started, attacked by signals, stopped, purged.
+#   test/kernel/run --systemd --root DEBIAN test/systemd/service.sh PACKAGE
+set -euo pipefail
+package=$(realpath "${1:?the .deb}")
+cd "$(dirname "$0")"
+# shellcheck source=../kernel/plant.sh
+. ../kernel/plant.sh
+readonly unit=coupler-node.service
+
+master() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 502 "$@"; }
+# Prints what a command says only if it fails.
+quietly() { local output; output=$("$@" 2>&1) || { echo "$output"; return 1; }; }
+property() { systemctl show --value -p "$1" "$unit"; }
+is() { [ "$(property "$1")" = "$2" ]; }
+in_journal() { journalctl -u "$unit" -o cat --no-pager | grep -E -- "$1"; }
+keeper() { property MainPID; }
+io_process() { pgrep -P "$(keeper)"; }
+of_process() { sed -nE "s/^$2:[[:space:]]*(.*)/\1/p" "/proc/$1/status"; }
+serves() { answered master -t 1 -r 0 -c 1 127.0.0.1 >/dev/null; }
+is_another() { [ "$(property MainPID)" != "$1" ] && is ActiveState active && serves; }
+mode_of_chip() { stat -c '%U:%G %a' "/dev/$(sim_chip plant)"; }
+mode_is() { [ "$(mode_of_chip)" = "$1" ]; }
+
+expect "systemd is process 1" systemd "$(cat /proc/1/comm)"
+expect "and the system is up" running "$(systemctl is-system-running --wait)"
+plant_chip
+expect "a chip is root's" "root:root 600" "$(mode_of_chip)"
+
+echo "# installed"
+check "dpkg installs the package" quietly dpkg -i "$package"
+check "the chip that was there is given to group gpio" wait_until 5 mode_is "root:gpio 660"
+sim_unplug plant
+sim_plug plant
+check "and so is one that comes later" wait_until 5 mode_is "root:gpio 660"
+expect "the service is not enabled" disabled "$(systemctl is-enabled "$unit" || true)"
+systemctl start "$unit"
+expect "without a map it does not start" "inactive no" "$(property ActiveState) $(property ConditionResult)"
+
+echo "# a map that is wrong"
+echo 'name: [' >/etc/coupler/node.yaml
+refuse "it does not start" quietly systemctl start "$unit"
+expect "and is not tried again" "failed 0" "$(property ActiveState) $(property NRestarts)"
+check "the journal says where the map is wrong" in_journal 'node\.yaml:[0-9]+:[0-9]+: error: '
+
+echo "# started"
+cp node.yaml /etc/coupler/node.yaml
+check "it starts, and systemd is told when it serves" quietly systemctl enable --now "$unit"
+expect "the service is active" "active running" "$(property ActiveState) $(property SubState)"
+check "it says what it serves" [ "$(property StatusText | grep -c 'serving plant .* on .*:502')" -eq 1 ]
+for process in "$(keeper)" "$(io_process)"; do
+  name=$(cat "/proc/$process/comm")
+  expect "$name is the user coupler" coupler "$(stat -c %U "/proc/$process")"
+  check "$name is in group gpio" grep -qw "$(getent group gpio | cut -d: -f3)" <<<"$(of_process "$process" Groups)"
+  expect "$name may bind port 502 and nothing else that root may" 0000000000000400 "$(of_process "$process" CapEff)"
+  expect "$name can gain nothing" "0000000000000400 1" "$(of_process "$process" CapBnd) $(of_process "$process" NoNewPrivs)"
+  expect "$name has a filter of system calls" 2 "$(of_process "$process" Seccomp)"
+done
+check "it answers on port 502" wait_until 5 serves
+sim_pull plant 2 up
+check "an input of the chip is read" wait_until 5 input_is 0 1
+sim_pull plant 0 up
+sim_pull plant 1 down
+check "an output is written" set_coil 0 0
+check "and another" set_coil 1 1
+expect "the chip has them" "0 1" "$(sim_value plant 0) $(sim_value plant 1)"
+
+echo "# the sandbox, from inside"
+install sandbox.sh /usr/local/bin/probe-sandbox # this tree may be in /tmp, which the service does not see
+mknod -m 666 /dev/kernel-log c 1 11
+sed -E '/^(Condition|Watchdog|Restart|StartLimit)/d; s/^Type=.*/Type=oneshot/; s#^ExecStart=.*#ExecStart=/usr/local/bin/probe-sandbox '"/dev/$(sim_chip plant)"'#' \
+  "/usr/lib/systemd/system/$unit" >/run/systemd/system/sandbox.service
+systemctl daemon-reload
+check "it keeps what it promises" systemctl start sandbox.service
+journalctl -u sandbox.service -o cat --no-pager | grep -E '^(not )?ok' || true
+
+echo "# the I/O process dies"
+before=$(keeper)
+kill -KILL "$(io_process)"
+check "the keeper starts another" wait_until 10 serves
+expect "systemd has nothing to do" "$before 0" "$(keeper) $(property NRestarts)"
+expect "outputs are safe" "1 0" "$(sim_value plant 0) $(sim_value plant 1)"
+
+echo "# the keeper dies"
+check "an output is written" set_coil 0 0
+kill -KILL "$before"
+check "systemd starts both again" wait_until 10 is_another "$before"
+expect "once" 1 "$(property NRestarts)"
+
+echo "# the keeper is stopped: nobody watches the I/O process any more"
+before=$(keeper)
+kill -STOP "$before"
+check "the I/O process serves meanwhile" serves
+check "systemd starts both again after its watchdog's 30 s" wait_until 60 is_another "$before"
+check "and says why" in_journal 'Watchdog timeout'
+
+echo "# stopped"
+check "an output is written" set_coil 0 0
+sim_pull plant 0 down
+started=$(microseconds)
+check "systemctl stop succeeds" systemctl stop "$unit"
+check "at once" [ $(($(microseconds) - started)) -lt 5000000 ]
+expect "with success" "inactive success 0" "$(property ActiveState) $(property Result) $(property ExecMainStatus)"
+check "it says that outputs are in their safe state" in_journal 'Terminated: outputs are in their safe state'
+refuse "no process is left" pgrep coupler-node
+echo "# the journal of the service:"
+journalctl -u "$unit" -o short-monotonic --no-pager | sed 's/^/#   /'
+
+echo "# purged"
+systemctl start "$unit"
+check "dpkg purges the package while it runs" quietly dpkg --purge coupler-node
+refuse "no process is left" pgrep coupler-node
+refuse "systemd does not know the unit" quietly systemctl cat "$unit"
+refuse "nothing of it is enabled" test -e "/etc/systemd/system/multi-user.target.wants/$unit"
+check "the map that somebody wrote stays" test -e /etc/coupler/node.yaml
+expect "the system is as well as before" running "$(systemctl reset-failed; systemctl is-system-running)"
