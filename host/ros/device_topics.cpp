@@ -3,6 +3,8 @@
 
 #include <std_msgs/Bool.h>
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "common/map/loader/load.hpp"
@@ -42,19 +44,22 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verif
           subscribe(handle, topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
 }
 
-void DeviceTopics::on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time /*at*/) {
+void DeviceTopics::on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) {
+  std::copy(bits.begin(), bits.end(), bits_.begin());
+  on_registers(span, {bits_.data(), bits.size()}, at);
+}
+
+void DeviceTopics::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) {
   for (const std::uint32_t index : span.points) {
-    const std::uint16_t bit = bits[map_.points[index].address - std::size_t{span.range.start()}];
-    publishers_[index]->publish(&bit);
+    const std::size_t begin = read_range(map_.points[index]).start() - std::size_t{span.range.start()};
+    publishers_[index]->publish(&registers[begin], at);
   }
 }
 
-void DeviceTopics::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time /*at*/) {
-  for (const std::uint32_t index : span.points)
-    publishers_[index]->publish(&registers[map_.points[index].address - std::size_t{span.range.start()}]);
-}
-
 void DeviceTopics::on_online(bool online) {
+  if (online)  // what was published before is history
+    for (const auto& publisher : publishers_)
+      if (publisher) publisher->renew();
   std_msgs::Bool message;
   message.data = online;
   online_.publish(message);

@@ -3,6 +3,7 @@
 
 #include <ros/node_handle.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -32,6 +33,7 @@ class DeviceTopics : public Sink {
 
   Map map_;
   std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
+  std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of one span, as publishers take them
   ros::Publisher online_;
   ModbusTransport transport_;
   DeviceThread thread_;

@@ -13,6 +13,12 @@ class InPlaceQueue : public ros::CallbackQueueInterface {
     callback->call();
   }
   void removeByID(std::uint64_t /*owner*/) override {}  // nothing is ever kept
+
+  /// It keeps nothing, so that one is enough for all.
+  static InPlaceQueue* instance() {
+    static InPlaceQueue queue;
+    return &queue;
+  }
 };
 
 }  // namespace coupler::driver

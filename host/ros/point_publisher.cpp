@@ -1,26 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/point_publisher.hpp"
 
+#include "host/core/publish_policy.hpp"
+#include "host/ros/in_place_queue.hpp"
 #include "host/ros/message.hpp"
 
 namespace coupler::driver {
 namespace {
 
-constexpr std::uint32_t queue_size = 10;
-
 template <class Kind>
 class TypedPublisher : public PointPublisher {
  public:
-  TypedPublisher(ros::NodeHandle& handle, const std::string& topic, const codec::Format& format)
-      : format_(format), publisher_(handle.advertise<typename Kind::Message>(topic, queue_size)) {}
+  TypedPublisher(ros::NodeHandle& handle, const std::string& topic, const Point& point)
+      : point_(point), policy_(point) {
+    const auto somebody_came = [this](const ros::SingleSubscriberPublisher&) { policy_.renew(); };
+    auto options = ros::AdvertiseOptions::create<typename Kind::Message>(
+        topic, point.host.queue_size, somebody_came, {}, ros::VoidPtr(), InPlaceQueue::instance());
+    options.latch = point.host.latch;
+    publisher_ = handle.advertise(options);
+  }
 
-  void publish(const std::uint16_t* registers) override {
-    Kind::decode(registers, format_, message_);
+  void publish(const std::uint16_t* registers, Time at) override {
+    if (!policy_.calls_news(registers, at)) return;
+    Kind::decode(registers, point_, message_);
     publisher_.publish(message_);
   }
 
+  void renew() override { policy_.renew(); }
+
  private:
-  codec::Format format_;
+  const Point& point_;
+  PublishPolicy policy_;
   typename Kind::Message message_;
   ros::Publisher publisher_;
 };
@@ -30,7 +40,7 @@ class TypedPublisher : public PointPublisher {
 std::unique_ptr<PointPublisher> advertise(ros::NodeHandle& handle, const std::string& topic,
                                           const Point& point) {
   return with_message(point, [&](auto kind) -> std::unique_ptr<PointPublisher> {
-    return std::make_unique<TypedPublisher<decltype(kind)>>(handle, topic, point.format);
+    return std::make_unique<TypedPublisher<decltype(kind)>>(handle, topic, point);
   });
 }
 

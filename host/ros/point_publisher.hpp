@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/map/point.hpp"
+#include "host/core/clock.hpp"
 
 namespace coupler::driver {
 
@@ -14,8 +15,11 @@ namespace coupler::driver {
 class PointPublisher {
  public:
   virtual ~PointPublisher() = default;
-  /// The point's registers as they came; a bit table's bit as one register, 0 or 1.
-  virtual void publish(const std::uint16_t* registers) = 0;
+  /// The point's registers as they came `at`; bit tables: each bit as one register, 0 or 1. Publishes them
+  /// where the point's policy calls them news.
+  virtual void publish(const std::uint16_t* registers, Time at) = 0;
+  /// The next value is news whatever it is.
+  virtual void renew() = 0;
 };
 
 /// Advertises `topic` with the message type of the point, which must outlive it.

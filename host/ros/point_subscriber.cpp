@@ -7,12 +7,7 @@
 namespace coupler::driver {
 namespace {
 
-constexpr std::uint32_t queue_size = 100;
-
-InPlaceQueue& in_place_queue() {
-  static InPlaceQueue queue;
-  return queue;
-}
+constexpr std::uint32_t writes_per_value = 10;  ///< as long as one value may wait, so many writes may
 
 }  // namespace
 
@@ -21,18 +16,19 @@ ros::Subscriber subscribe(ros::NodeHandle& handle, const std::string& topic, con
   return with_message(map.points[index], [&](auto kind) {
     using Kind = decltype(kind);
     using Message = typename Kind::Message;
-    const auto receive = [&handler, topic, index, format = map.points[index].format](
-                             const boost::shared_ptr<const Message>& message) {
+    const auto receive = [&handler, topic, index,
+                          &point = map.points[index]](const boost::shared_ptr<const Message>& message) {
       Write write;
       write.point = index;
-      const std::string wrong = Kind::encode(*message, format, write.registers.data());
+      const std::string wrong = Kind::encode(*message, point, write.registers.data());
       if (wrong.empty())
         handler.accept(write);
       else
         handler.refuse(topic + ": " + wrong);
     };
     auto options =
-        ros::SubscribeOptions::create<Message>(topic, queue_size, receive, ros::VoidPtr(), &in_place_queue());
+        ros::SubscribeOptions::create<Message>(topic, writes_per_value * map.points[index].host.queue_size,
+                                               receive, ros::VoidPtr(), InPlaceQueue::instance());
     options.allow_concurrent_callbacks = true;  // never told to try again, which an in-place queue could not
     options.transport_hints = ros::TransportHints().tcpNoDelay();
     return handle.subscribe(options);

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/ros/message.hpp"
+
+#include <gmock/gmock.h>
+
+#include <type_traits>
+#include <vector>
+
+namespace coupler::driver {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Point point_of(codec::Type type, std::uint16_t count, Table table = Table::holding_registers) {
+  Point point;
+  point.name = "row";
+  point.table = table;
+  point.format.type = type;
+  point.count = count;
+  return point;
+}
+
+template <class Message>
+bool is_carried_by(const Point& point) {
+  return with_message(point,
+                      [](auto kind) { return std::is_same_v<typename decltype(kind)::Message, Message>; });
+}
+
+TEST(Message, Arrays_have_the_array_message_of_their_type) {
+  EXPECT_TRUE(is_carried_by<std_msgs::Int16>(point_of(codec::Type::INT, 1)));
+  EXPECT_TRUE(is_carried_by<std_msgs::Int16MultiArray>(point_of(codec::Type::INT, 2)));
+  EXPECT_TRUE(is_carried_by<std_msgs::UInt64MultiArray>(point_of(codec::Type::ULINT, 2)));
+  EXPECT_TRUE(is_carried_by<std_msgs::Float32MultiArray>(point_of(codec::Type::REAL, 2)));
+  EXPECT_TRUE(is_carried_by<coupler_driver::BoolArray>(point_of(codec::Type::WORD, 2)));
+  EXPECT_TRUE(is_carried_by<coupler_driver::BoolArray>(point_of(codec::Type::BOOL, 2, Table::coils)));
+}
+
+TEST(Message, An_array_has_one_dimension_with_the_points_name) {
+  const Point point = point_of(codec::Type::INT, 3);
+  const std::vector<std::uint16_t> registers{1, 2, 0xFFFF};
+  std_msgs::Int16MultiArray message;
+  ArrayMessage<std::int16_t, std_msgs::Int16MultiArray>::decode(registers.data(), point, message);
+  EXPECT_THAT(message.data, ElementsAre(1, 2, -1));
+  ASSERT_EQ(message.layout.dim.size(), 1U);
+  EXPECT_EQ(message.layout.dim[0].label, "row");
+  EXPECT_EQ(message.layout.dim[0].size, 3U);
+  EXPECT_EQ(message.layout.dim[0].stride, 3U);
+}
+
+TEST(Message, Elements_that_are_wider_than_a_register_stand_one_behind_the_other) {
+  const Point point = point_of(codec::Type::UDINT, 2);
+  using Kind = ArrayMessage<std::uint32_t, std_msgs::UInt32MultiArray>;
+  Kind::Message message;
+  message.data = {0x00010002, 0x00030004};
+  std::vector<std::uint16_t> registers(4);
+  EXPECT_EQ(Kind::encode(message, point, registers.data()), "");
+  EXPECT_THAT(registers, ElementsAre(1, 2, 3, 4));
+  Kind::Message back;
+  Kind::decode(registers.data(), point, back);
+  EXPECT_EQ(back.data, message.data);
+}
+
+TEST(Message, The_bits_of_several_words_follow_each_other) {
+  const Point point = point_of(codec::Type::WORD, 2);
+  using Kind = BitsMessage<std::uint16_t>;
+  const std::vector<std::uint16_t> registers{0x0001, 0x8000};
+  Kind::Message message;
+  Kind::decode(registers.data(), point, message);
+  ASSERT_EQ(message.data.size(), 32U);
+  for (std::size_t i = 0; i < 32; ++i) EXPECT_EQ(message.data[i] != 0, i == 0 || i == 31) << i;
+  std::vector<std::uint16_t> back(2);
+  EXPECT_EQ(Kind::encode(message, point, back.data()), "");
+  EXPECT_EQ(back, registers);
+}
+
+TEST(Message, Several_coils_are_one_element_each) {
+  const Point point = point_of(codec::Type::BOOL, 3, Table::coils);
+  const std::vector<std::uint16_t> registers{1, 0, 1};
+  BoolsMessage::Message message;
+  BoolsMessage::decode(registers.data(), point, message);
+  EXPECT_THAT(message.data, ElementsAre(1, 0, 1));
+  std::vector<std::uint16_t> back(3, 7);
+  EXPECT_EQ(BoolsMessage::encode(message, point, back.data()), "");
+  EXPECT_EQ(back, registers);
+}
+
+TEST(Message, A_wrong_number_of_elements_is_refused_with_the_right_one) {
+  std::vector<std::uint16_t> registers(8);
+  std_msgs::Int16MultiArray numbers;
+  numbers.data = {1, 2};
+  const std::string wrong = ArrayMessage<std::int16_t, std_msgs::Int16MultiArray>::encode(
+      numbers, point_of(codec::Type::INT, 3), registers.data());
+  EXPECT_EQ(wrong, "2 elements; send 3");
+  coupler_driver::BoolArray bits;
+  bits.data.resize(16);
+  EXPECT_THAT(BitsMessage<std::uint16_t>::encode(bits, point_of(codec::Type::WORD, 2), registers.data()),
+              HasSubstr("send 32"));
+}
+
+}  // namespace
+}  // namespace coupler::driver
