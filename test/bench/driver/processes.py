@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The programs of a measurement: a ROS master of its own, and children that end with it."""
+import contextlib
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Child:
+    def __init__(self, *command, environment=None):
+        self._log = tempfile.NamedTemporaryFile()
+        self._child = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=self._log,
+                                       stderr=subprocess.STDOUT, env=environment)
+        self.pid = self._child.pid
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._child.send_signal(signal.SIGINT)
+        try:
+            self._child.wait(20)
+        except subprocess.TimeoutExpired:
+            self._child.kill()
+            self._child.wait()
+
+    @property
+    def text(self):
+        return pathlib.Path(self._log.name).read_text(errors="replace")
+
+    def wait_for(self, pattern, seconds=30):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and self._child.poll() is None:
+            if found := re.search(pattern, self.text):
+                return found
+            time.sleep(0.02)
+        raise SystemExit(f"'{pattern}' did not appear:\n{self.text}")
+
+    def cpu_seconds(self):
+        fields = pathlib.Path(f"/proc/{self.pid}/stat").read_text().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def listening_ports(self):
+        """TCP ports that the process accepts connections on."""
+        inodes = set()
+        for link in pathlib.Path(f"/proc/{self.pid}/fd").iterdir():
+            with contextlib.suppress(OSError):
+                if found := re.match(r"socket:\[(\d+)\]", os.readlink(link)):
+                    inodes.add(found[1])
+        ports = set()
+        for table in ("tcp", "tcp6"):
+            for line in pathlib.Path(f"/proc/{self.pid}/net/{table}").read_text().splitlines()[1:]:
+                fields = line.split()
+                if fields[3] == "0A" and fields[9] in inodes:
+                    ports.add(int(fields[1].rsplit(":", 1)[1], 16))
+        return ports
+
+
+@contextlib.contextmanager
+def ros_master():
+    """The environment that makes a program a node of it."""
+    with tempfile.TemporaryDirectory() as home:
+        port = free_port()
+        environment = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}", ROS_HOSTNAME="localhost",
+                           ROS_HOME=home, PATH="/usr/bin:" + os.environ["PATH"])
+        with Child("roscore", "-p", port, environment=environment) as master:
+            master.wait_for("started core service", 60)
+            yield environment
