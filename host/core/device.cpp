@@ -8,13 +8,6 @@
 #include "common/map/fingerprint.hpp"
 
 namespace coupler::driver {
-namespace {
-
-Duration period_of(double rate) {
-  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.0 / rate));
-}
-
-}  // namespace
 
 Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transport, Clock& clock,
                WriteQueue& writes, Sink& sink)
@@ -25,7 +18,7 @@ Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transpo
       clock_(clock),
       writes_(writes),
       sink_(sink),
-      cycle_(map, make_read_plan(map), period_of(map.polling.rate)) {}
+      cycle_(map) {}
 
 Time Device::step() {
   if (!connected_) {
@@ -35,8 +28,9 @@ Time Device::step() {
   }
   if (const auto next = writes_.take()) {
     write(*next);
-  } else if (cycle_.due() <= clock_.now()) {
+  } else if (cycle_.select(clock_.now()) != nullptr) {
     read();
+    for (const Refusal& refusal : cycle_.take_refusals()) sink_.on_report(Level::warning, to_string(refusal));
   }
   return connected_ ? cycle_.due() : retry_at_;
 }
@@ -157,11 +151,11 @@ void Device::rejected_read(modbus::Exception code) {
     // Devices answer a range that they do not have, or that is too long for them, with either of these.
     case modbus::Exception::illegal_data_address:
     case modbus::Exception::illegal_data_value:
-      if (cycle_.rejected(clock_.now()))
+      for (const std::uint32_t point : cycle_.rejected(clock_.now()))
         sink_.on_report(Level::warning,
                         fmt::format("{} is not in the device: {}; it is not asked for again while "
                                     "this connection lasts",
-                                    name, why));
+                                    map_.points[point].name, why));
       return;
     case modbus::Exception::illegal_function:
       cycle_.give_up(clock_.now());

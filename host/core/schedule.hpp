@@ -7,6 +7,11 @@
 
 namespace coupler::driver {
 
+/// `rate` in Hz, above 0.
+inline Duration period_of(double rate) {
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.0 / rate));
+}
+
 /// Deadlines `period` apart, counted from the start and not from the last cycle: no drift. Deadlines that
 /// pass while a cycle runs are counted and left out, never made up for.
 class Schedule {

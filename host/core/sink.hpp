@@ -4,10 +4,12 @@
 #include <string>
 
 #include "common/base/span.hpp"
+#include "common/plan/read_span.hpp"
 #include "host/core/clock.hpp"
-#include "host/core/read_plan.hpp"
 
 namespace coupler::driver {
+
+using plan::ReadSpan;
 
 enum class Level { info, warning, error };
 

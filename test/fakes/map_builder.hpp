@@ -65,6 +65,8 @@ class MapBuilder {
     head_.service.watchdog = watchdog;
     return *this;
   }
+  /// What no function here sets.
+  Map& head() { return head_; }
   /// Registers that a point's `initial` can view.
   Span<const std::uint16_t> keep(std::vector<std::uint16_t> registers) {
     return owned_->keep(std::move(registers));

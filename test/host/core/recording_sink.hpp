@@ -22,12 +22,12 @@ class RecordingSink : public Sink {
   void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time) override {
     for (const auto i : span.points)
       values[std::string(map_.points[i].name)].push_back(
-          bits[map_.points[i].address - std::size_t{span.range.start()}]);
+          bits[read_range(map_.points[i]).start() - std::size_t{span.range.start()}]);
   }
   void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time) override {
     for (const auto i : span.points)
       values[std::string(map_.points[i].name)].push_back(
-          registers[map_.points[i].address - std::size_t{span.range.start()}]);
+          registers[read_range(map_.points[i]).start() - std::size_t{span.range.start()}]);
   }
   void on_online(bool now) override { online.push_back(now); }
   void on_report(Level, const std::string& text) override { reports.push_back(text); }

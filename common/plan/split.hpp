@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/map/map.hpp"
+#include "common/plan/read_span.hpp"
+
+namespace coupler::plan {
+
+/// What to try in place of a request that the device rejects.
+struct Split {
+  std::vector<ReadSpan> pieces;         ///< two, or none if the request holds one point only
+  std::optional<modbus::Range> hole{};  ///< the addresses between the pieces, which neither asks for
+};
+
+/// Parts the points of `span` where addresses lie between them that no point of it needs, at the place
+/// nearest to the middle; in the middle if there is none.
+Split split(const ReadSpan& span, const Map& map);
+
+}  // namespace coupler::plan
