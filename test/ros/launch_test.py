@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The launch files, by roslaunch and rostest as a user calls them."""
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import unittest
+
+from std_msgs.msg import Int16
+
+from support import process, testing
+from support.peer import Peer, free_port
+
+HERE = pathlib.Path(__file__).resolve().parent
+MAP = """
+name: {name}
+address: 192.0.2.1
+mapping:
+  holding_registers: {{level: {{address: 4, type: INT}}}}
+"""
+
+
+@unittest.skipUnless(shutil.which("roslaunch") and shutil.which("rostest"),
+                     "no roslaunch or rostest (scripts/install-packages ros test)")
+class Launch(testing.RosTest):
+    def launch(self, *arguments):
+        log = tempfile.NamedTemporaryFile("w+")
+        self.addCleanup(log.close)
+        child = subprocess.Popen(["roslaunch", *arguments], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+
+        def end():
+            child.send_signal(signal.SIGINT)
+            child.wait(60)
+            log.seek(0)
+            text = log.read()
+            self.assertNotIn("escalating", text, "a program did not end on SIGINT")
+
+        self.addCleanup(end)
+
+    def peer(self, level):
+        peer = Peer().start()
+        self.addCleanup(peer.stop)
+        peer.set("holding_registers", 4, [level])
+        return peer
+
+    def test_device_launch_takes_the_map_and_what_differs_from_it(self):
+        peer = self.peer(33)
+        self.launch("coupler_driver", "device.launch", f"map:={process.write_map(MAP.format(name='launched'))}",
+                    "name:=press", "address:=127.0.0.1", f"port:={peer.port}", "rate:=50", "node:=press_io")
+        self.assertEqual(self.topic("/press/level", Int16).next(), 33)
+
+    def test_devices_launch_takes_a_list(self):
+        maps = []
+        for name, level in (("press", 11), ("belt", 22)):
+            text = MAP.format(name=name).replace("192.0.2.1", "127.0.0.1") + f"port: {self.peer(level).port}\n"
+            maps.append(process.write_map(text))
+        self.launch("coupler_driver", "devices.launch", f"maps:=[{', '.join(maps)}]")
+        self.assertEqual(self.topic("/press/level", Int16).next(), 11)
+        self.assertEqual(self.topic("/belt/level", Int16).next(), 22)
+
+    @unittest.skipUnless(process.has_node(), "coupler-node was not built")
+    def test_the_simulated_cell_passes_its_rostest(self):
+        with tempfile.NamedTemporaryFile("w+") as log:
+            code = subprocess.run(["rostest", "--reuse-master", "--text", str(HERE / "simulated.test"),
+                                   f"port:={free_port()}"], stdout=log, stderr=log, timeout=120, check=False).returncode
+            log.seek(0)
+            self.assertEqual(code, 0, log.read())
+
+
+if __name__ == "__main__":
+    testing.main()
