@@ -81,9 +81,7 @@ Source from_node(const Settings& settings) {
   return MapSource{*owner, map};
 }
 
-}  // namespace
-
-Source find_map(const Map* built_in, const Settings& settings) {
+Source find_one(const Map* built_in, const Settings& settings) {
   if (built_in != nullptr) {
     if (settings.map) {
       print("this driver has its map built in and takes no other; use coupler_driver for that");
@@ -97,6 +95,39 @@ Source find_map(const Map* built_in, const Settings& settings) {
       "no map; give one by _map:=MAP, or _address:=HOST of a node that serves its map (--help shows "
       "examples)");
   return tl::make_unexpected(wrong_call);
+}
+
+/// What is wrong with settings that name several maps, or an empty text.
+std::string_view why_not_several(const Map* built_in, const Settings& settings) {
+  if (built_in != nullptr) return "this driver has its map built in and takes no other";
+  if (settings.map) return "both map and maps are given; give one of them";
+  if (settings.name || settings.address || settings.port || settings.unit)
+    return "name, address, port and unit are those of one device; with several maps give them in the maps, "
+           "or "
+           "as parameters ~NAME/address and so on, NAME being the map's name";
+  return {};
+}
+
+}  // namespace
+
+tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const Settings& settings) {
+  std::vector<MapSource> sources;
+  if (settings.maps.empty()) {
+    auto source = find_one(built_in, settings);
+    if (!source) return tl::make_unexpected(source.error());
+    sources.push_back(std::move(*source));
+    return sources;
+  }
+  if (const auto wrong = why_not_several(built_in, settings); !wrong.empty()) {
+    print(wrong);
+    return tl::make_unexpected(wrong_call);
+  }
+  for (const std::string& path : settings.maps) {
+    auto source = from_file(path);
+    if (!source) return tl::make_unexpected(source.error());
+    sources.push_back(std::move(*source));
+  }
+  return sources;
 }
 
 }  // namespace coupler::driver

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "common/map/owned_map.hpp"
 #include "host/ros/settings.hpp"
@@ -14,8 +14,9 @@ struct MapSource {
   Map map;
 };
 
-/// The built-in map, the map of the file that the settings name, or, where they name an address only, the map
-/// that the node there serves: it is waited for. Prints why there is none; the error is the exit code.
-tl::expected<MapSource, int> find_map(const Map* built_in, const Settings& settings);
+/// The built-in map, the maps of the files that the settings name (at least one), or, where they name an
+/// address only, the map that the node there serves: it is waited for. Prints why there is none; the error is
+/// the exit code.
+tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const Settings& settings);
 
 }  // namespace coupler::driver

@@ -7,6 +7,10 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <deque>
+#include <memory>
+#include <set>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -43,20 +47,61 @@ void init_ros(int argc, char** argv, const std::string& name) {
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
 }
 
-tl::expected<Settings, int> with_parameters(const Settings& arguments) {
-  const auto parameters = read_parameters(ros::NodeHandle("~"));
-  if (parameters) return overlay(*parameters, arguments);
+tl::expected<Settings, int> parameters_of(const ros::NodeHandle& handle) {
+  auto parameters = read_parameters(handle);
+  if (parameters) return std::move(*parameters);
   print(parameters.error());
   return tl::make_unexpected(wrong_input);
 }
 
-int run(const Map& map, Verify verify) {
-  if (map.connection.address.empty()) {
-    print("the map has no address; add 'address: HOST' or give _address:=HOST");
+/// A device as it is to be driven. The map refers to the settings' texts.
+struct Configured {
+  Settings settings;
+  MapSource source;
+};
+using Devices = std::deque<Configured>;  // each stays where it is
+
+/// Precedence: map < parameter ~key < parameter ~NAME/key, where there are several devices < argument.
+tl::expected<Devices, int> configure(std::vector<MapSource> sources, const Settings& arguments) {
+  const auto common = parameters_of(ros::NodeHandle("~"));
+  if (!common) return tl::make_unexpected(common.error());
+  Devices devices;
+  for (MapSource& source : sources) {
+    Settings settings = *common;
+    if (sources.size() > 1) {
+      const auto own = parameters_of(ros::NodeHandle("~" + std::string(source.map.name)));
+      if (!own) return tl::make_unexpected(own.error());
+      settings = overlay(settings, *own);
+    }
+    Configured& device = devices.emplace_back(Configured{overlay(settings, arguments), std::move(source)});
+    apply(device.settings, device.source.map);
+  }
+  return devices;
+}
+
+/// What hinders them, or an empty text.
+std::string why_not(const Devices& devices) {
+  std::set<std::string_view> names;
+  for (const auto& [settings, source] : devices) {
+    if (source.map.connection.address.empty())
+      return fmt::format("the map has no address; add 'address: HOST' or give _address:=HOST{}",
+                         devices.size() > 1 ? fmt::format(" (map of {})", source.map.name) : "");
+    if (!names.insert(source.map.name).second)
+      return fmt::format("two maps have the name {}; give one of them another name", source.map.name);
+  }
+  return {};
+}
+
+int run(const Devices& devices) {
+  if (const std::string wrong = why_not(devices); !wrong.empty()) {
+    print(wrong);
     return wrong_input;
   }
   ros::NodeHandle handle;
-  DeviceTopics device(handle, map, verify);
+  std::vector<std::unique_ptr<DeviceTopics>> topics;
+  for (const auto& [settings, source] : devices)
+    topics.push_back(
+        std::make_unique<DeviceTopics>(handle, source.map, settings.verify.value_or(Verify::require)));
   ros::waitForShutdown();
   ros::shutdown();
   return 0;
@@ -77,20 +122,16 @@ int main_with(const Map* built_in, int argc, char** argv) {
   // gives the name, and the parameters are those of that name.
   if (arguments.names_the_node) {
     init_ros(argc, argv, "coupler_driver");
-    const auto all = with_parameters(arguments.settings);
-    if (!all) return all.error();
-    settings = *all;
+    const auto parameters = parameters_of(ros::NodeHandle("~"));
+    if (!parameters) return parameters.error();
+    settings = overlay(*parameters, arguments.settings);
   }
-  auto source = find_map(built_in, settings);
-  if (!source) return source.error();
-  if (!arguments.names_the_node) {
-    init_ros(argc, argv, node_name(arguments.settings.name.value_or(std::string(source->map.name))));
-    const auto all = with_parameters(arguments.settings);
-    if (!all) return all.error();
-    settings = *all;
-  }
-  apply(settings, source->map);
-  return run(source->map, settings.verify.value_or(Verify::require));
+  auto sources = find_maps(built_in, settings);
+  if (!sources) return sources.error();
+  if (!arguments.names_the_node)
+    init_ros(argc, argv, node_name(arguments.settings.name.value_or(std::string(sources->front().map.name))));
+  const auto devices = configure(std::move(*sources), arguments.settings);
+  return devices ? run(*devices) : devices.error();
 }
 
 }  // namespace coupler::driver

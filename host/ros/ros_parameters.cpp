@@ -6,28 +6,44 @@
 namespace coupler::driver {
 namespace {
 
+std::optional<std::string> as_text(XmlRpc::XmlRpcValue& value);
+
+/// The elements, separated by commas.
+std::optional<std::string> as_list(XmlRpc::XmlRpcValue& value) {
+  std::string list;
+  for (int i = 0; i < value.size(); ++i) {
+    const auto text = as_text(value[i]);
+    if (!text) return std::nullopt;
+    list += (i > 0 ? "," : "") + *text;
+  }
+  return list;
+}
+
 std::optional<std::string> as_text(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean: return static_cast<bool>(value) ? "true" : "false";
     case XmlRpc::XmlRpcValue::TypeInt: return fmt::to_string(static_cast<int>(value));
     case XmlRpc::XmlRpcValue::TypeDouble: return fmt::to_string(static_cast<double>(value));
     case XmlRpc::XmlRpcValue::TypeString: return static_cast<std::string>(value);
+    case XmlRpc::XmlRpcValue::TypeArray: return as_list(value);
     default: return std::nullopt;
   }
 }
 
 }  // namespace
 
-tl::expected<Settings, std::string> read_parameters(const ros::NodeHandle& private_handle) {
+tl::expected<Settings, std::string> read_parameters(const ros::NodeHandle& handle) {
   Settings settings;
   for (const SettingKey& key : setting_keys) {
     for (const std::string_view name : {key.alias, key.key}) {  // the key wins over its alias
       XmlRpc::XmlRpcValue value;
-      if (name.empty() || !private_handle.getParam(std::string(name), value)) continue;
+      if (name.empty() || !handle.getParam(std::string(name), value)) continue;
       const auto text = as_text(value);
-      if (!text) return tl::make_unexpected(fmt::format("parameter ~{}: a single value is needed", name));
+      if (!text)
+        return tl::make_unexpected(
+            fmt::format("parameter {}: a value or a list is needed", handle.resolveName(std::string(name))));
       if (const auto done = set(settings, key.key, *text); !done)
-        return tl::make_unexpected("parameter ~" + done.error());
+        return tl::make_unexpected(fmt::format("parameter {}/{}", handle.getNamespace(), done.error()));
     }
   }
   return settings;

@@ -7,8 +7,8 @@
 
 namespace coupler::driver {
 
-/// The settings among the node's private parameters, of whichever type they were given. The error names the
+/// The settings among the parameters of a namespace, of whichever type they were given. The error names the
 /// parameter.
-tl::expected<Settings, std::string> read_parameters(const ros::NodeHandle& private_handle);
+tl::expected<Settings, std::string> read_parameters(const ros::NodeHandle& handle);
 
 }  // namespace coupler::driver

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/settings.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -69,6 +70,26 @@ Outcome set_text(std::optional<std::string>& field, std::string_view key, const 
   return {};
 }
 
+std::string_view without(std::string_view text, std::string_view front, std::string_view back) {
+  const std::size_t from = text.find_first_not_of(front);
+  if (from == std::string_view::npos) return {};
+  return text.substr(from, text.find_last_not_of(back) - from + 1);
+}
+
+/// "a.yaml,b.yaml", also as YAML has it: [a.yaml, "b.yaml"].
+Outcome set_list(std::vector<std::string>& field, std::string_view key, const std::string& text) {
+  std::string_view rest = without(text, " [", " ]");
+  field.clear();
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    const std::string_view item = without(rest.substr(0, comma), " '\"", " '\"");
+    if (!item.empty()) field.emplace_back(item);
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  if (field.empty()) return wrong(key, text, "a list of paths, as in [a.yaml,b.yaml]");
+  return {};
+}
+
 template <class T>
 void prefer(std::optional<T>& field, const std::optional<T>& strong) {
   if (strong) field = strong;
@@ -76,8 +97,10 @@ void prefer(std::optional<T>& field, const std::optional<T>& strong) {
 
 }  // namespace
 
-const std::array<SettingKey, 8> setting_keys{{
+const std::array<SettingKey, 9> setting_keys{{
     {"map", "mapping", "the device's map, a YAML or JSON file"},
+    {"maps", "",
+     "several devices in one process: their maps, as in _maps:=[a.yaml,b.yaml] or --maps a.yaml,b.yaml"},
     {"name", "", "namespace of the topics, instead of the map's"},
     {"address", "", "host name or IP address; alone, without a map: a node that serves its own"},
     {"port", "", "TCP port, 502 if the map says nothing"},
@@ -90,6 +113,7 @@ const std::array<SettingKey, 8> setting_keys{{
 
 Outcome set(Settings& settings, std::string_view key, const std::string& text) {
   if (key == "map") return set_text(settings.map, key, text);
+  if (key == "maps") return set_list(settings.maps, key, text);
   if (key == "name") return set_text(settings.name, key, text);
   if (key == "address") return set_text(settings.address, key, text);
   if (key == "port") return set_whole(settings.port, key, text, 1);
@@ -101,7 +125,10 @@ Outcome set(Settings& settings, std::string_view key, const std::string& text) {
 }
 
 Settings overlay(Settings weak, const Settings& strong) {
-  prefer(weak.map, strong.map);
+  if (strong.map || !strong.maps.empty()) {
+    weak.map = strong.map;
+    weak.maps = strong.maps;
+  }
   prefer(weak.name, strong.name);
   prefer(weak.address, strong.address);
   prefer(weak.port, strong.port);

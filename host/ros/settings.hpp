@@ -5,15 +5,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/map/map.hpp"
 #include "host/core/identity_check.hpp"
 
 namespace coupler::driver {
 
-/// What may be said about a device outside its map. Precedence: map < ROS parameter < argument.
+/// What may be said about a device, or about all of them, outside its map. Precedence: map < ROS parameter <
+/// argument.
 struct Settings {
   std::optional<std::string> map;  ///< path
+  std::vector<std::string> maps;   ///< paths, for several devices; empty: not given
   std::optional<std::string> name;
   std::optional<std::string> address;
   std::optional<std::uint16_t> port;
@@ -29,12 +32,12 @@ struct SettingKey {
   std::string_view alias;  ///< the origin's name for it, or empty
   std::string_view help;
 };
-extern const std::array<SettingKey, 8> setting_keys;
+extern const std::array<SettingKey, 9> setting_keys;
 
 /// Sets what the text says. The error says what the value should have been.
 tl::expected<void, std::string> set(Settings& settings, std::string_view key, const std::string& text);
 
-/// `strong` where it says something, `weak` elsewhere.
+/// `strong` where it says something, `weak` elsewhere. `map` and `maps` are one thing to say.
 Settings overlay(Settings weak, const Settings& strong);
 
 /// Overrides the map's fields. The map then refers to the settings' texts.

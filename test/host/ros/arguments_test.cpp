@@ -26,6 +26,14 @@ TEST(Arguments, The_origins_name_of_the_map_is_understood) {
   EXPECT_EQ(parse({"--mapping", "a.yaml"}).settings.map, "a.yaml");
 }
 
+TEST(Arguments, Several_maps_are_a_list_in_each_spelling) {
+  const std::vector<std::string> both{"a.yaml", "b.yaml"};
+  EXPECT_EQ(parse({"_maps:=[a.yaml,b.yaml]"}).settings.maps, both);
+  EXPECT_EQ(parse({"_maps:=[ 'a.yaml', \"b.yaml\" ]"}).settings.maps, both);
+  EXPECT_EQ(parse({"--maps", "a.yaml,b.yaml"}).settings.maps, both);
+  EXPECT_EQ(parse({"_maps:=[]"}).exit_code, 2);
+}
+
 TEST(Arguments, Each_setting_is_read) {
   const Settings s = parse({"_name:=arm", "_address:=::1", "_port:=1502", "_unit:=255", "_rate:=12.5",
                             "_timeout:=0.5", "_verify:=warn"})
@@ -76,6 +84,16 @@ TEST(Settings, The_stronger_side_wins_where_it_says_something) {
   const Settings both = overlay(parameters, arguments);
   EXPECT_EQ(both.port, 2);
   EXPECT_EQ(both.rate, 5);
+}
+
+TEST(Settings, A_map_and_several_maps_are_one_thing_to_say) {
+  Settings parameters;
+  parameters.maps = {"a.yaml", "b.yaml"};
+  Settings arguments;
+  arguments.map = "c.yaml";
+  EXPECT_EQ(overlay(parameters, {}).maps.size(), 2U);
+  EXPECT_TRUE(overlay(parameters, arguments).maps.empty());
+  EXPECT_FALSE(overlay(arguments, parameters).map);
 }
 
 TEST(Settings, What_is_not_set_stays_as_the_map_has_it) {

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Several devices in one process: each with its topics, and none waits for another."""
+import socket
+import time
+
+import rospy
+from std_msgs.msg import Bool, Int16
+
+from support import process, testing
+from support.peer import Peer, free_port
+
+MAP = """
+name: {name}
+address: 127.0.0.1
+port: {port}
+rate: 20
+timeout: 20
+mapping:
+  holding_registers: {{level: {{address: 4, type: INT}}}}
+"""
+
+
+def write_map(name, port):
+    return process.write_map(MAP.format(name=name, port=port))
+
+
+class SeveralDevices(testing.RosTest):
+    def peer(self, level):
+        peer = Peer().start()
+        self.addCleanup(peer.stop)
+        peer.set("holding_registers", 4, [level])
+        return peer
+
+    def test_each_spelling_of_the_list_drives_them_all(self):
+        press, belt = self.peer(11), self.peer(22)
+        maps = [write_map("press", press.port), write_map("belt", belt.port)]
+        rospy.set_param("/cell_io", {"maps": maps})
+        self.addCleanup(rospy.delete_param, "/cell_io")
+        for arguments in ([f"_maps:=[{maps[0]},{maps[1]}]"], ["--maps", ",".join(maps)], ["__name:=cell_io"]):
+            with self.subTest(arguments), process.Driver(*arguments) as driver:
+                driver.wait_for("press: connected")
+                driver.wait_for("belt: connected")
+                self.assertEqual(self.topic("/press/level", Int16).next(), 11)
+                self.assertEqual(self.topic("/belt/level", Int16).next(), 22)
+
+    def test_a_dead_device_slows_no_other(self):
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            maps = [write_map("dead", silent.getsockname()[1]), write_map("away", free_port()),
+                    write_map("belt", self.peer(22).port)]
+            self.driver(f"_maps:=[{','.join(maps)}]").wait_for("belt: connected")
+            level = self.topic("/belt/level", Int16)
+            level.next()
+            begin = len(level.values)
+            time.sleep(2)
+            self.assertGreater(len(level.values) - begin, 20, "of 40 in two seconds")
+            self.assertFalse(self.topic("/dead/online", Bool).next())
+            self.assertFalse(self.topic("/away/online", Bool).next())
+
+    def test_what_differs_from_a_map_is_a_parameter_below_its_name(self):
+        belt = self.peer(22)
+        rospy.set_param("/press_driver", {"belt": {"port": belt.port}})
+        self.addCleanup(rospy.delete_param, "/press_driver")
+        maps = [write_map("press", self.peer(11).port), write_map("belt", free_port())]
+        self.driver(f"_maps:=[{','.join(maps)}]")
+        self.assertEqual(self.topic("/belt/level", Int16).next(), 22)
+        self.assertEqual(self.topic("/press/level", Int16).next(), 11)
+
+    def assert_ends(self, code, text, *arguments):
+        driver = process.Driver(*arguments)
+        self.assertEqual(driver.wait(), code, driver.output)
+        self.assertIn(text, driver.output)
+
+    def test_what_cannot_be_is_refused_with_a_remedy(self):
+        path = write_map("press", 502)
+        self.assert_ends(1, "two maps have the name press", f"_maps:=[{path},{write_map('press', 503)}]")
+        self.assert_ends(2, "both map and maps are given", f"_maps:=[{path}]", f"_map:={path}")
+        self.assert_ends(2, "give them in the maps, or as parameters ~NAME/address", f"_maps:=[{path}]", "_port:=503")
+        self.assert_ends(1, "/nowhere.yaml", f"_maps:=[{path},/nowhere.yaml]")
+
+
+if __name__ == "__main__":
+    testing.main()
