@@ -26,6 +26,7 @@ mode_is() { [ "$(mode_of_chip)" = "$1" ]; }
 expect "systemd is process 1" systemd "$(cat /proc/1/comm)"
 expect "and the system is up" running "$(systemctl is-system-running --wait)"
 plant_chip
+mkdir /sys/kernel/config/iio/devices/dummy/adc
 expect "a chip is root's" "root:root 600" "$(mode_of_chip)"
 
 echo "# installed"
