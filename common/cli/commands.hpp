@@ -13,5 +13,6 @@ namespace coupler::cli {
 
 void add_check(CLI::App& program, Exit& exit);
 void add_generate(CLI::App& program, Exit& exit);
+void add_plan(CLI::App& program, Exit& exit);
 
 }  // namespace coupler::cli

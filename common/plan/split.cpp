@@ -19,33 +19,38 @@ ReadSpan piece(const ReadSpan& span, std::size_t from, std::size_t to, const Map
   return result;
 }
 
-/// The places, as counts of points before them, where a hole is.
-std::vector<std::size_t> holes(const ReadSpan& span, const Map& map) {
-  std::vector<std::size_t> result;
+/// Calls `at_hole` with the count of points before each hole, and the hole.
+template <class AtHole>
+void for_each_hole(const ReadSpan& span, const Map& map, AtHole&& at_hole) {
   std::uint32_t end = span.range.start();
   for (std::size_t i = 0; i < span.points.size(); ++i) {
     const Range range = read_range(map.points[span.points[i]]);
-    if (range.start() > end) result.push_back(i);
+    if (range.start() > end) at_hole(i, Range::of(end, range.start() - end));
     end = std::max(end, range.end());
   }
-  return result;
 }
 
 }  // namespace
 
+std::vector<Range> holes(const ReadSpan& span, const Map& map) {
+  std::vector<Range> result;
+  for_each_hole(span, map, [&](std::size_t /*before*/, Range hole) { result.push_back(hole); });
+  return result;
+}
+
 Split split(const ReadSpan& span, const Map& map) {
   const std::size_t count = span.points.size();
   if (count < 2) return {};
-  std::size_t at = count / 2;
-  const auto distance = [middle = at](std::size_t i) { return i > middle ? i - middle : middle - i; };
-  const std::vector<std::size_t> candidates = holes(span, map);
-  const auto best = std::min_element(candidates.begin(), candidates.end(),
-                                     [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
-  if (best != candidates.end()) at = *best;
-  Split result{{piece(span, 0, at, map), piece(span, at, count, map)}};
-  const std::uint32_t end = result.pieces.front().range.end();
-  const std::uint32_t start = result.pieces.back().range.start();
-  if (start > end) result.hole = Range::of(end, start - end);
+  const std::size_t middle = count / 2;
+  const auto distance = [middle](std::size_t i) { return i > middle ? i - middle : middle - i; };
+  Split result;
+  std::size_t at = middle;
+  for_each_hole(span, map, [&](std::size_t before, Range hole) {
+    if (result.hole && distance(before) >= distance(at)) return;
+    at = before;
+    result.hole = hole;
+  });
+  result.pieces = {piece(span, 0, at, map), piece(span, at, count, map)};
   return result;
 }
 

@@ -9,6 +9,9 @@
 
 namespace coupler::plan {
 
+/// The addresses inside a request that no point of it needs.
+std::vector<modbus::Range> holes(const ReadSpan& span, const Map& map);
+
 /// What to try in place of a request that the device rejects.
 struct Split {
   std::vector<ReadSpan> pieces;         ///< two, or none if the request holds one point only

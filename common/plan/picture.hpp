@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/plan/planner.hpp"
+
+namespace coupler::plan {
+
+/// The address spaces as an SVG image that needs nothing else: points, the requests that read them, the holes
+/// that are read with them, what is unreadable. It can stand alone as a file or inside an HTML page. Tables
+/// without points are left out, as are stretches of addresses that nothing happens in. Small maps show names;
+/// in every one a tooltip tells of a point or a request.
+std::string picture(const Map& map, const std::vector<GroupPlan>& plan);
+
+}  // namespace coupler::plan

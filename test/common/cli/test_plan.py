@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`coupler plan` as a script sees it. COUPLER is the program, SOURCE_DIR the repository."""
+import json
+import os
+import pathlib
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from test_cli import BAD, Cli
+
+SPREAD = """\
+name: cell
+rate: 100
+mapping:
+  coils: {lamp: 0, horn: 5}
+  holding_registers:
+    level: {address: 0, type: REAL}
+    speed: {address: 9, type: INT}
+"""
+
+
+class Plan(Cli):
+    def plan(self, *arguments, text=SPREAD):
+        return self.coupler("plan", self.file("cell.yaml", text), *arguments)
+
+    def json(self, *arguments, **keywords):
+        return json.loads(self.plan("--json", *arguments, **keywords).stdout)
+
+    def test_shows_every_request_and_why_it_ends(self):
+        done = self.plan()
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("cell.yaml: cell, 4 points in 4 requests, round trip 1 ms\n", done.stdout)
+        self.assertRegex(done.stdout, r"coils +0 to 0 +00001-00001 +1 +4 unmapped addresses before horn")
+        self.assertRegex(done.stdout, r"holding_registers +9 to 9 +40010-40010 +1 +nothing more to read")
+
+    def test_tells_which_keys_make_the_requests_fewer(self):
+        self.assertRegex(self.plan().stdout,
+                         r"read where quicker +2 requests .*discrete_read_continuous: true.*registers_read_separation_gap: 8")
+
+    def test_is_told_the_round_trip(self):
+        self.assertIn("4 requests, 3 registers and 2 bits, 92 bytes; 2.001 ms of 10 ms (20 %)", self.plan("--rtt", "0.5").stdout)
+
+    def test_warns_when_the_reads_do_not_fit_into_their_time(self):
+        done = self.plan("--rtt", "5")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("cell.yaml: warning: the reads need 200 % of the time", done.stderr)
+
+    def test_in_json_has_every_request(self):
+        plan = self.json()
+        self.assertEqual((plan["name"], plan["fits"], plan["not_read"]), ("cell", True, []))
+        group, = plan["groups"]
+        self.assertEqual((group["rate_hz"], group["requests"], group["registers"], group["bits"]), (100, 4, 3, 2))
+        first = group["spans"][0]
+        self.assertEqual({key: first[key] for key in ("table", "from", "to", "modicon", "points", "holes")},
+                         {"table": "coils", "from": 0, "to": 0, "modicon": "00001", "points": ["lamp"], "holes": []})
+        self.assertEqual({key: first["end"][key] for key in ("reason", "next", "between", "key")},
+                         {"reason": "unmapped", "next": "horn", "between": 4, "key": "discrete_read_continuous"})
+        self.assertEqual([s["name"] for s in plan["strategies"]], ["never", "map", "pays"])
+        self.assertEqual([s["requests"] for s in plan["strategies"]], [4, 4, 2])
+
+    def test_names_the_holes_that_it_reads(self):
+        plan = self.json(text="registers_read_continuous: true\n" + SPREAD)
+        self.assertEqual(plan["groups"][0]["spans"][2]["holes"], [{"from": 2, "to": 8}])
+
+    def test_draws_a_picture_that_is_well_formed(self):
+        self.assertEqual(self.plan("--svg", "cell.svg").returncode, 0)
+        root = ElementTree.parse(self.folder / "cell.svg").getroot()
+        self.assertEqual(root.tag, "{http://www.w3.org/2000/svg}svg")
+        titles = [title.text for title in root.iter("{http://www.w3.org/2000/svg}title")]
+        self.assertIn("level: REAL, 0 to 1, 100 Hz", titles)
+
+    def test_of_a_picture_that_cannot_be_written_says_so(self):
+        done = self.plan("--svg", "no/such/folder.svg")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("cannot write no/such/folder.svg; ", done.stderr)
+
+    def test_of_a_bad_map_says_what_is_wrong(self):
+        done = self.plan(text=BAD)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("cell.yaml:6:", done.stderr)
+
+    def test_wants_a_round_trip_above_0(self):
+        self.assertEqual(self.plan("--rtt", "0").returncode, 2)
+        self.assertEqual(self.plan("--rtt", "soon").returncode, 2)
+
+    def test_of_every_map_of_the_project_is_made(self):
+        maps = sorted(pathlib.Path(os.environ["SOURCE_DIR"], "config").rglob("*.yaml"))
+        self.assertGreater(len(maps), 1)
+        for path in maps:
+            with self.subTest(path.name):
+                done = self.coupler("plan", str(path), "--json")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertTrue(json.loads(done.stdout)["groups"])
+
+
+if __name__ == "__main__":
+    unittest.main()
