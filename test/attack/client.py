@@ -15,8 +15,11 @@ CONNECT = 0.9
 class Client:
     """A TCP connection to the node. Every `expect` raises AssertionError when something else happens."""
 
-    def __init__(self, port, receive_buffer=None):
+    def __init__(self, port, receive_buffer=None, source=None):
+        """`source`: another address of this machine to come from."""
         self.socket = socket.socket()
+        if source is not None:
+            self.socket.bind((source, 0))
         if receive_buffer is not None:  # counts only before the connection is made
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
         self.socket.settimeout(CONNECT)

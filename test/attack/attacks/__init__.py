@@ -1,23 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """The attack list of a node. An attack is a function of the node; its name says what must hold, and it raises
-AssertionError when that does not. What holds for every attack (bystander, memory, descriptors) is run's business."""
-import pathlib
+AssertionError when that does not. What holds for every attack (bystander, memory, descriptors) is referee.py's business."""
+import dataclasses
+import typing
 
 ATTACKS = []
 
 
-def attack(name):
+@dataclasses.dataclass
+class Attack:
+    name: str
+    run: typing.Callable
+    guarded: bool  # only of a node with a watchdog and a list of allowed clients
+    alone: bool  # nobody else may be connected
+
+
+def attack(name, guarded=False, alone=False):
     """Puts a function on the list."""
     def enlist(function):
-        ATTACKS.append((name, function))
+        ATTACKS.append(Attack(name, function, guarded, alone))
         return function
     return enlist
 
 
-# What the node serves, and what attacks aim at in it.
-MAP = pathlib.Path(__file__).resolve().parent.parent / "map.yaml"
+# What attacks aim at in map.yaml.
 TARGET = 1000  # first of 125 holding registers
 TARGET_REGISTERS = 125
 TARGET_COIL = 100  # first of 16 coils
 
-from attacks import framing, requests, connections  # noqa: E402,F401 in the order in which they run
+from attacks import framing, requests, connections, guards  # noqa: E402,F401 in the order in which they run

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests in right frames that ask for what must not be, and the exception that each deserves (MAP 6 and 7)."""
+"""Requests in right frames that ask for what must not be, and the exception that each deserves (MODBUS Application Protocol, 6 and 7)."""
 import adu as modbus
-from attacks import MAP, TARGET, TARGET_COIL, attack
+from attacks import TARGET, TARGET_COIL, attack
 
 ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE = 1, 2, 3
 DATA = bytes(246)
@@ -56,7 +56,7 @@ def wrapping(node):
 
 @attack("an address that the map does not have is a bad address, alone or behind one that it has")
 def holes(node):
-    last = (MAP.stat().st_size - 1) // 2  # register of the map's text
+    last = (len(node.map_text) - 1) // 2  # register of the map's text
     are_refused(node, ILLEGAL_ADDRESS, [
         modbus.read(1, TARGET_COIL + 15, 2), modbus.read(2, 8, 1), modbus.read(3, TARGET + 1, 125),
         modbus.read(3, 123, 1), modbus.read(4, 1, 2), modbus.pdu(5, 8, 0xFF00), modbus.pdu(6, 123, 1),
