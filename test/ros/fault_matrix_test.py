@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What users of Modbus drivers ask for most, row by row (the list and its sources: docs/driver.md, What goes wrong):
+each against a device on a raw socket that misbehaves in that way."""
+import struct
+import time
+
+from std_msgs.msg import Bool, Int16, Int32, UInt16
+
+from support import process, testing
+from support.device import (BUSY, FAILURE, ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Device, Raw, Refuse,
+                            frame)
+from support.topics import wait_until
+
+TIMEOUT = 0.5
+SOON = 10  # seconds; what is waited for takes one or two, the rest is for machines under load
+
+MAP = """
+name: plant
+address: 127.0.0.1
+rate: 20
+timeout: 0.5
+"""
+
+
+class FaultMatrix(testing.RosTest):
+    def setUp(self):
+        self.device = Device().start()
+        self.addCleanup(self.device.stop)
+
+    def start(self, mapping, *arguments, head=""):
+        path = process.write_map(MAP + head + "mapping:\n" + mapping)
+        driver = self.driver(f"_map:={path}", f"_port:={self.device.port}", *arguments)
+        self.online = self.topic("/plant/online", Bool)
+        return driver
+
+    def expect_online(self, wanted):
+        self.online.wait_for(lambda _: self.online.values[-1] == wanted, SOON)
+
+    LEVEL = "  holding_registers: {level: {address: 4, type: INT}}\n"
+
+    def level_follows(self, topic, value):
+        self.device.tables["holding_registers"][4] = value
+        topic.wait_for(lambda seen: seen == value, SOON)
+
+    # 1. It never reconnects
+    def test_01_it_comes_back_after_every_way_to_go(self):
+        self.start(self.LEVEL)
+        level = self.topic("/plant/level", Int16)
+        self.level_follows(level, 1)
+        ways = {"reset": self.device.drop, "killed": self.device.stop,
+                "frozen": lambda: setattr(self.device, "answer", lambda request: None),
+                "gibberish": lambda: setattr(self.device, "answer", lambda request: Raw(b"HTTP/1.0 400 no\r\n\r\n"))}
+        for value, (name, go) in enumerate(ways.items(), start=2):
+            with self.subTest(name):
+                self.online.values.clear()
+                go()
+                self.online.wait_for(lambda now: not now, SOON)
+                self.device.answer = self.device.serve
+                if name == "killed":
+                    self.device.start()
+                self.expect_online(True)
+                self.level_follows(level, value)
+
+    # 2. A late reply is taken for the next
+    def test_02_a_late_reply_is_never_taken_for_the_next(self):
+        late = {"every": 7, "n": 0}
+
+        def answer(request):
+            late["n"] += 1
+            if late["n"] % late["every"] == 0:
+                time.sleep(TIMEOUT + 0.3)  # when the driver has given up; the value is a lie by then
+                return b"\x02" + struct.pack(">h", -1)
+            return self.device.serve(request)
+
+        self.device.answer = answer
+        self.device.tables["holding_registers"][4] = 7
+        self.start(self.LEVEL)
+        level = self.topic("/plant/level", Int16)
+        wait_until(lambda: late["n"] > 25, "several late replies", 60)
+        self.assertEqual(set(level.values), {7}, "a late reply was published")
+
+    def test_02_a_reply_with_an_old_transaction_id_is_never_taken_for_the_answer(self):
+        def answer(request):
+            stale = frame(request, b"\x03\x02\xFF\xFF", transaction=request.transaction - 1)
+            return Raw(stale + frame(request, bytes([request.function]) + self.device.serve(request)))
+
+        self.device.tables["holding_registers"][4] = 7
+        self.start(self.LEVEL)
+        level = self.topic("/plant/level", Int16)
+        level.wait_for(lambda value: value == 7, SOON)
+        self.device.answer = answer
+        time.sleep(2)
+        self.device.answer = self.device.serve
+        self.level_follows(level, 8)
+        self.assertEqual(set(level.values), {7, 8}, "an old reply was published")
+
+    # 3. A batched read hits an illegal address and everything fails
+    def test_03_a_refused_address_costs_its_own_point_only_and_is_remembered(self):
+        def answer(request):
+            if request.address <= 9 < request.address + request.count:
+                raise Refuse(ILLEGAL_ADDRESS)
+            return self.device.serve(request)
+
+        self.device.answer = answer
+        points = "".join(f"    p{i}: {{address: {i}, type: INT}}\n" for i in range(20))
+        for i in range(20):
+            self.device.tables["input_registers"][i] = 100 + i
+        driver = self.start("  input_registers:\n" + points)
+        driver.wait_for("p9")
+        for i in (0, 8, 10, 19):
+            self.assertEqual(self.topic(f"/plant/p{i}", Int16).next(), 100 + i)
+        asked = len(self.device.requests)
+        time.sleep(1)
+        late = self.device.requests[asked:]
+        self.assertTrue(late)
+        self.assertFalse([r for r in late if r.address <= 9 < r.address + r.count], "the hole was asked for again")
+        self.assertLessEqual(len({(r.address, r.count) for r in late}), 6, "of 19 points")
+
+    # 4. The device takes fewer than 125 registers
+    def test_04_a_limit_is_kept_where_the_map_says_it(self):
+        points = "".join(f"    p{i}: {{address: {i}, type: INT}}\n" for i in range(100))
+        self.start("  input_registers:\n" + points, head="limits: {read_registers: 30}\n")
+        self.topic("/plant/p99", Int16).next()
+        self.assertLessEqual(max(request.count for request in self.device.requests), 30)
+
+    def test_04_a_limit_that_the_map_does_not_say_is_found(self):
+        def answer(request):
+            if request.count > 30:
+                raise Refuse(ILLEGAL_VALUE)
+            return self.device.serve(request)
+
+        self.device.answer = answer
+        points = "".join(f"    p{i}: {{address: {i}, type: INT}}\n" for i in range(100))
+        self.start("  input_registers:\n" + points)
+        for i in (0, 50, 99):
+            self.topic(f"/plant/p{i}", Int16).next()
+
+    # 5. Too many small reads, and holes that must not be read
+    def test_05_points_are_read_together_and_holes_only_where_the_map_allows_it(self):
+        points = "".join(f"    p{i}: {{address: {2 * i}, type: INT}}\n" for i in range(50))
+        for allowed, requests in ((True, 1), (False, 50)):
+            with self.subTest(holes=allowed):
+                self.device.requests.clear()
+                driver = self.start("  input_registers:\n" + points,
+                                    head=f"registers_read_continuous: {str(allowed).lower()}\n")
+                self.topic("/plant/p49", Int16).next()
+                self.assertEqual(len({(r.address, r.count) for r in self.device.requests}), requests)
+                driver.end()
+
+    # 6. Stale looks fresh
+    def test_06_nothing_old_is_published_while_the_device_is_silent(self):
+        self.start(self.LEVEL)
+        level = self.topic("/plant/level", Int16)
+        self.level_follows(level, 5)
+        self.device.answer = lambda request: None
+        began = time.monotonic()
+        self.expect_online(False)
+        self.assertLess(time.monotonic() - began, SOON)
+        level.values.clear()
+        time.sleep(1.5)
+        self.assertEqual(level.values, [])
+
+    # 7. Writes starve behind polls
+    def test_07_a_write_waits_for_one_transaction_not_for_a_cycle(self):
+        def answer(request):
+            if request.function <= 4:
+                time.sleep(0.2)
+            return self.device.serve(request)
+
+        self.device.answer = answer
+        points = "".join(f"    p{i}: {{address: {100 * i}, type: INT}}\n" for i in range(30))
+        self.start("  input_registers:\n" + points + "  coils: {lamp: 3}\n")
+        lamp = self.publisher("/plant/lamp/write", Bool)
+        self.expect_online(True)
+        wait_until(lambda: len(self.device.requests) > 3, "polling")
+        before = len(self.device.requests)
+        lamp.publish(True)
+        wait_until(lambda: self.device.seen(5, 15), "the write")
+        reads = self.device.requests[before:self.device.requests.index(self.device.seen(5, 15)[0])]
+        self.assertLessEqual(len(reads), 2, "a cycle has 31 requests")
+
+    # 8. After a write the old value flickers back
+    def test_08_what_was_read_before_a_write_does_not_come_after_it(self):
+        def answer(request):
+            reply = self.device.serve(request)
+            if request.function == 3:
+                time.sleep(0.05)  # the reply tells how it was at the beginning
+            return reply
+
+        self.device.answer = answer
+        self.start(self.LEVEL, "_rate:=100")
+        level = self.topic("/plant/level", Int16)
+        write = self.publisher("/plant/level/write", Int16)
+        level.next()
+        for value in range(1, 40):
+            write.publish(value)
+            time.sleep(0.03)
+        level.wait_for(lambda value: value == 39, SOON)
+        time.sleep(0.3)
+        self.assertEqual(level.values, sorted(level.values), "an older value came after a newer one")
+
+    # 10. Pauses after connecting and between requests
+    def test_10_the_device_has_the_pauses_that_the_map_says(self):
+        points = "".join(f"    p{i}: {{address: {100 * i}, type: INT}}\n" for i in range(5))
+        self.start("  input_registers:\n" + points, "_verify:=off",
+                   head="limits: {request_gap: 30ms, connect_delay: 300ms}\n")
+        wait_until(lambda: len(self.device.requests) > 10, "two cycles")
+        times = [request.at for request in self.device.requests]
+        self.assertGreaterEqual(min(b - a for a, b in zip(times, times[1:])), 0.028)
+
+    # 11. Only one connection is allowed
+    def test_11_a_device_with_one_connection_gets_it_back_each_time(self):
+        self.device.stop()
+        self.device = Device(port=self.device.port, connections=1).start()
+        self.addCleanup(self.device.stop)
+        self.start(self.LEVEL)
+        level = self.topic("/plant/level", Int16)
+        for value in range(1, 4):
+            self.level_follows(level, value)
+            self.device.drop()
+        self.level_follows(level, 9)
+
+    # 12. Word order
+    def test_12_each_point_may_have_its_own_order(self):
+        self.device.tables["input_registers"][:2] = [0x1234, 0x5678]
+        orders = {"ABCD": 0x12345678, "CDAB": 0x56781234, "BADC": 0x34127856, "DCBA": 0x78563412}
+        points = "".join(f"    {order.lower()}: {{address: 0, type: DINT, order: {order}}}\n" for order in orders)
+        self.start("  input_registers:\n" + points)
+        for order, value in orders.items():
+            self.assertEqual(self.topic(f"/plant/{order.lower()}", Int32).next(), value)
+
+    # 13. Address base
+    def test_13_the_manuals_numbers_and_the_wires_mean_what_the_map_says(self):
+        self.device.tables["holding_registers"][:2] = [11, 22]
+        for head, number in (("", 1), ("addressing: modicon\n", 40002), ("addressing: modicon\n", 2)):
+            with self.subTest(head, number=number):
+                driver = self.start(f"  holding_registers: {{level: {{address: {number}, type: INT}}}}\n", head=head)
+                self.assertEqual(self.topic("/plant/level", Int16).next(), 22)
+                driver.end()
+
+    # 15. Bits in registers
+    def test_15_a_bit_of_a_register_is_read_and_written_and_its_neighbours_stay(self):
+        self.device.tables["holding_registers"][7] = 0xA5A5
+        self.start("  holding_registers: {fault: {address: 7, type: BOOL, bit: 5}, "
+                   "ready: {address: 7, type: BOOL, bit: 6}, word: {address: 7, type: UINT, access: read}}\n")
+        self.assertTrue(self.topic("/plant/fault", Bool).next())
+        self.assertFalse(self.topic("/plant/ready", Bool).next())
+        self.publisher("/plant/ready/write", Bool).publish(True)
+        self.topic("/plant/word", UInt16).wait_for(lambda value: value == 0xA5E5, SOON)
+
+    # Every exception code
+    def test_every_exception_code_is_said_and_the_link_stays(self):
+        code = {"now": 0}
+
+        def answer(request):
+            if code["now"] and request.function == 5:
+                raise Refuse(code["now"])
+            return self.device.serve(request)
+
+        self.device.answer = answer
+        driver = self.start(self.LEVEL + "  coils: {lamp: 3}\n")
+        level = self.topic("/plant/level", Int16)
+        lamp = self.publisher("/plant/lamp/write", Bool)
+        self.level_follows(level, 1)
+        for number in (ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE, FAILURE, 5, BUSY, 8, 0x0A, 0x0B):
+            with self.subTest(code=number):
+                code["now"] = number
+                lamp.publish(True)
+                driver.wait_for(f"exception {number:02X}")
+                code["now"] = 0
+                self.level_follows(level, 100 + number)
+        self.assertEqual(self.device.accepted, 1, "an exception is no reason to close the connection")
+
+
+if __name__ == "__main__":
+    testing.main()
