@@ -44,6 +44,9 @@ class Framer {
   /// Part of a frame is there and waits for the rest.
   bool is_partial() const { return begin_ != end_; }
 
+  /// What was filled in and is not part of a frame that next() has found.
+  Bytes rest() const { return Bytes(buffer_.data() + begin_, end_ - begin_); }
+
   void reset() { begin_ = end_ = 0; }
 
  private:

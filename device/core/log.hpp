@@ -5,11 +5,15 @@
 
 namespace coupler::node {
 
-/// Where the node says what happens.
+/// Where the node says what happens. Each call is one line, without a newline.
 class Log {
  public:
-  /// One line, without a newline.
+  /// What somebody may want to know.
   virtual void write(std::string_view line) = 0;
+  /// What somebody should look at: something fails, or was lost.
+  virtual void warn(std::string_view line) { write(line); }
+  /// What keeps the node, or a new map, from being served.
+  virtual void fail(std::string_view line) { write(line); }
 
  protected:
   ~Log() = default;

@@ -14,15 +14,15 @@
 
 namespace coupler::node::backend {
 
-/// nullopt with errno set if it cannot be opened.
-std::optional<Chip> read_chip(const std::string& path);
+/// The chips of this machine.
+Inventory chips();
 
 /// Whether the kernel would take `line` into the same request as these (of which there is at least one).
 /// Inputs and outputs are never mixed.
 bool fits(const std::vector<Wanted>& group, const Wanted& line);
 
-/// One to max_group_size lines that fit together. Outputs begin at their points' initial levels, with no
-/// other level in between. The error names chip, line and holder.
+/// One to max_group_size lines that fit together. Outputs begin at their wanted levels, with no other
+/// level in between. The error names chip, line and holder.
 tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<Wanted>& lines);
 
 struct Inputs {

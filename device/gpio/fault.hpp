@@ -11,16 +11,17 @@ namespace coupler::node {
 /// Whether some hardware works, said in the log once per change.
 class Fault {
  public:
-  /// `what` begins the sentence: "gpiochip0 line 5 (GPIO5)".
-  Fault(std::string what, Log& log) : what_(std::move(what)), log_(&log) {}
+  /// `what` begins the sentence: "gpiochip0 line 5 (GPIO5)". `error` is the last outcome, which processes
+  /// that use the same hardware share.
+  Fault(std::string what, int& error, Log& log) : what_(std::move(what)), error_(&error), log_(&log) {}
 
   /// The outcome of a call: 0 or an errno. Returns whether it was good.
   bool note(int error);
 
  private:
   std::string what_;
+  int* error_;
   Log* log_;
-  int error_ = 0;
 };
 
 }  // namespace coupler::node

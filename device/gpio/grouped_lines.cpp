@@ -5,26 +5,26 @@
 #include <cerrno>
 #include <utility>
 
+#include "device/gpio/absent.hpp"
+
 namespace coupler::node {
 namespace {
 
 using modbus::Range;
+using Addresses = std::vector<std::optional<std::uint16_t>>;
 
 /// Calls `use(line, i)` for each line of the group whose address is the range's i-th. Returns whether there
 /// was one.
 template <class Use>
-bool each_in(Range range, const std::vector<std::uint16_t>& addresses, Use use) {
-  auto at = std::lower_bound(addresses.begin(), addresses.end(), range.start());
-  const auto first = at;
-  for (; at != addresses.end() && range.contains(*at); ++at)
-    use(static_cast<std::size_t>(at - addresses.begin()), static_cast<std::size_t>(*at - range.start()));
-  return at != first;
-}
-
-std::size_t count_lines(const std::vector<WiredOutputs>& outputs) {
-  std::size_t count = 0;
-  for (const WiredOutputs& wired : outputs) count += wired.levels.size();
-  return count;
+bool each_in(Range range, const Addresses& addresses, Use use) {
+  bool any = false;
+  for (std::size_t line = 0; line < addresses.size(); ++line) {
+    const auto& address = addresses[line];
+    if (!address || !range.contains(*address)) continue;
+    use(line, static_cast<std::size_t>(*address - range.start()));
+    any = true;
+  }
+  return any;
 }
 
 void copy(Span<const int> from, Span<int> to) { std::copy(from.begin(), from.end(), to.begin()); }
@@ -32,21 +32,33 @@ void copy(Span<const int> from, Span<int> to) { std::copy(from.begin(), from.end
 }  // namespace
 
 GroupedLines::GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs, Log& log)
-    : levels_(count_lines(outputs)) {
-  Span<int> free = levels_.all();
-  for (WiredOutputs& wired : outputs) {
-    Fault fault(wired.group->name(), log);
-    const std::size_t count = wired.levels.size();
-    copy(wired.levels, free.first(count));
-    std::vector<int> next = wired.levels;
-    outputs_.push_back({std::move(wired), free.first(count), std::move(next), std::move(fault)});
-    free = free.from(count);
-  }
-  for (WiredInputs& wired : inputs) {
-    Fault fault(wired.group->name(), log);
-    LostEdges lost(wired.group->name(), log);
-    inputs_.push_back({std::move(wired), std::move(fault), std::move(lost)});
-  }
+    : log_(log) {
+  for (WiredOutputs& wired : outputs) add(std::move(wired));
+  for (WiredInputs& wired : inputs) add(std::move(wired));
+}
+
+void GroupedLines::add(WiredOutputs wired) { outputs_.push_back(output(std::move(wired))); }
+void GroupedLines::add(WiredInputs wired) { inputs_.push_back(input(std::move(wired))); }
+
+void GroupedLines::release() {
+  outputs_.clear();
+  inputs_.clear();
+}
+
+GroupedLines::Output GroupedLines::output(WiredOutputs wired) {
+  const std::size_t lines = wired.levels.size();
+  auto shared = std::make_unique<SharedArray<int>>(lines + 1);
+  copy(wired.levels, shared->all().first(lines));
+  std::vector<int> next = wired.levels;
+  Fault fault(wired.group->name(), (*shared)[lines], log_);
+  return {std::move(wired), std::move(shared), std::move(next), std::move(fault)};
+}
+
+GroupedLines::Input GroupedLines::input(WiredInputs wired) {
+  auto shared = std::make_unique<SharedArray<int>>(1);
+  Fault fault(wired.group->name(), (*shared)[0], log_);
+  LostEdges lost(wired.group->name(), log_);
+  return {std::move(wired), std::move(shared), std::move(fault), std::move(lost)};
 }
 
 bool GroupedLines::read(Range range, Span<std::uint16_t> levels, TimePoint now) {
@@ -65,15 +77,16 @@ bool GroupedLines::read(Range range, Span<std::uint16_t> levels, TimePoint now) 
 
 void GroupedLines::take_edges(TimePoint now, EdgeSink& sink) {
   for (Input& input : inputs_) {
-    EventSource* source = input.wired.counted;
-    if (source == nullptr) continue;
+    EventSource* source = input.wired.events;
+    if (!input.wired.counted) continue;
     // What was taken counts, even if the chip is unplugged since: that is read()'s to say.
     (void)source->take_edges();
     for (std::size_t line = 0; line < input.wired.addresses.size(); ++line) {
       const Edges edges = source->edges(line, now);
-      if (!edges.any()) continue;
+      const auto address = input.wired.addresses[line];
+      if (!edges.any() || !address) continue;
       input.lost.note(edges.lost, now);
-      sink.add(input.wired.addresses[line], edges);
+      sink.add(*address, edges);
     }
   }
 }
@@ -90,7 +103,7 @@ int GroupedLines::drive(Output& output, Span<int> scratch) {
 bool GroupedLines::drive(Range range, Span<const std::uint16_t> levels) {
   for (Output& output : outputs_) {
     output.driven = false;
-    copy(output.levels, output.next);
+    copy(output.levels(), output.next);
   }
   for (Output& output : outputs_) {
     const bool wanted = each_in(range, output.wired.addresses, [&](std::size_t line, std::size_t i) {
@@ -99,14 +112,14 @@ bool GroupedLines::drive(Range range, Span<const std::uint16_t> levels) {
     if (!wanted) continue;
     if (!output.fault.note(drive(output, scratch_))) {
       // Its other lines have moved; what becomes of them was said with the fault.
-      if (output.wired.readback) (void)output.wired.group->drive(output.levels);
+      if (output.wired.readback) (void)output.wired.group->drive(output.levels());
       restore();
       return false;
     }
     output.driven = true;
   }
   for (Output& output : outputs_)
-    if (output.driven) copy(output.next, output.levels);
+    if (output.driven) copy(output.next, output.levels());
   return true;
 }
 
@@ -114,7 +127,7 @@ bool GroupedLines::driven(Range range, Span<std::uint16_t> levels) const {
   bool any = false;
   for (const Output& output : outputs_)
     any |= each_in(range, output.wired.addresses, [&](std::size_t line, std::size_t i) {
-      levels[i] = static_cast<std::uint16_t>(output.levels[line]);
+      levels[i] = static_cast<std::uint16_t>(output.levels()[line]);
     });
   return any;
 }
@@ -122,23 +135,82 @@ bool GroupedLines::driven(Range range, Span<std::uint16_t> levels) const {
 void GroupedLines::restore() {
   for (Output& output : outputs_) {
     if (!output.driven) continue;
-    output.fault.note(output.wired.group->drive(output.levels));
+    output.fault.note(output.wired.group->drive(output.levels()));
   }
 }
 
 bool GroupedLines::drive_safe() {
   bool good = true;
   for (Output& output : outputs_) {
-    copy(output.levels, output.next);
     for (std::size_t line = 0; line < output.next.size(); ++line)
-      if (output.wired.safe[line] != Safe::hold)
-        output.next[line] = output.wired.safe[line] == Safe::on ? 1 : 0;
+      output.next[line] = safe_level(output.wired.safe[line], output.levels()[line]);
     if (output.fault.note(drive(output, scratch_)))
-      copy(output.next, output.levels);
+      copy(output.next, output.levels());
     else
       good = false;
   }
   return good;
+}
+
+std::vector<EventSource*> GroupedLines::events() const {
+  std::vector<EventSource*> all;
+  for (const Input& input : inputs_)
+    if (input.wired.events != nullptr) all.push_back(input.wired.events);
+  return all;
+}
+
+void GroupedLines::lose_outputs(std::size_t group) {
+  Output& lost = outputs_[group];
+  lost.fault.note(ENODEV);
+  lost.wired.group = std::make_shared<AbsentOutputs>(lost.wired.group->name());
+}
+
+void GroupedLines::lose_inputs(std::size_t group) {
+  Input& lost = inputs_[group];
+  lost.fault.note(ENODEV);
+  lost.wired.group = std::make_shared<AbsentInputs>(lost.wired.group->name());
+  lost.wired.events = nullptr;
+  lost.wired.counted = false;
+}
+
+void GroupedLines::renew_outputs(std::size_t group, WiredOutputs again) {
+  Output renewed = output(std::move(again));
+  (*renewed.shared)[renewed.next.size()] = ENODEV;
+  renewed.fault.note(0);
+  outputs_[group] = std::move(renewed);
+}
+
+void GroupedLines::renew_inputs(std::size_t group, WiredInputs again) {
+  Input renewed = input(std::move(again));
+  (*renewed.shared)[0] = ENODEV;
+  renewed.fault.note(0);
+  inputs_[group] = std::move(renewed);
+}
+
+/// Lines of `old` that have no coil in `successor` (null: there is none) go to their safe state.
+void GroupedLines::abandon(Output& old, const Output* successor) {
+  bool any = false;
+  for (std::size_t line = 0; line < old.next.size(); ++line) {
+    const bool goes_on = successor != nullptr && successor->wired.addresses[line];
+    old.next[line] = old.levels()[line];
+    if (goes_on || !old.wired.addresses[line]) continue;
+    old.next[line] = safe_level(old.wired.safe[line], old.next[line]);
+    any = true;
+  }
+  if (any && old.fault.note(old.wired.group->drive(old.next))) copy(old.next, old.levels());
+}
+
+void GroupedLines::succeed(GroupedLines& before) {
+  for (Output& old : before.outputs_) {
+    const auto heir = std::find_if(outputs_.begin(), outputs_.end(),
+                                   [&](const Output& o) { return o.wired.group == old.wired.group; });
+    abandon(old, heir == outputs_.end() ? nullptr : &*heir);
+    if (heir == outputs_.end()) continue;
+    copy(old.shared->all(), heir->shared->all());
+  }
+  for (const Input& old : before.inputs_)
+    for (Input& input : inputs_)
+      if (input.wired.group == old.wired.group) copy(old.shared->all(), input.shared->all());
 }
 
 }  // namespace coupler::node

@@ -12,21 +12,25 @@ namespace coupler::node {
 
 constexpr std::size_t max_group_size = 64;  ///< what one request to the kernel holds
 
-class OutputGroup {
+class LineGroup {
  public:
-  virtual ~OutputGroup() = default;
+  virtual ~LineGroup() = default;
   /// For the log: "gpiochip0 lines 5 (GPIO5), 6 (GPIO6)".
   virtual const std::string& name() const = 0;
+  /// False: its chip was unplugged. Asks the kernel, not the chip.
+  virtual bool is_plugged() { return true; }
+};
+
+class OutputGroup : public LineGroup {
+ public:
   /// All lines of the group at once. Returns 0 or an errno; then none of them counts as driven.
   [[nodiscard]] virtual int drive(Span<const int> levels) = 0;
   /// The levels that the lines have, as far as the chip can tell. Returns 0 or an errno.
   [[nodiscard]] virtual int read(Span<int> levels) = 0;
 };
 
-class InputGroup {
+class InputGroup : public LineGroup {
  public:
-  virtual ~InputGroup() = default;
-  virtual const std::string& name() const = 0;
   /// All lines of the group at once. Returns 0 or an errno.
   [[nodiscard]] virtual int read(Span<int> levels, TimePoint now) = 0;
 };

@@ -8,7 +8,7 @@ namespace coupler::node {
 void LostEdges::note(std::uint32_t count, TimePoint now) {
   if (count == 0) return;
   if (now >= quiet_from_)
-    log_->write(
+    log_->warn(
         fmt::format("{}: edges came faster than they could be taken, at least {} lost; counters and latched "
                     "points may have missed them (the statistics go on counting)",
                     what_, count));

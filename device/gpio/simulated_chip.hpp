@@ -24,6 +24,9 @@ class SimulatedChip : public Lines {
   bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override;
   bool drive_safe() override;
 
+  /// Goes on where that of another map was: levels of outputs and unwired inputs of the same name, and time.
+  void succeed(const SimulatedChip& before);
+
   /// What a test does from outside. Names are those of points of the map.
   void pull(std::string_view input, bool level);  ///< an unwired input
   bool level(std::string_view output) const;

@@ -17,11 +17,12 @@ struct Wanted {
   const Point* point = nullptr;
   FoundLine line;
   std::optional<Edge> counted;  ///< the edges that counters and latched points want of it
+  int level = 0;                ///< that an output begins with
 };
 
 inline bool is_output(const Wanted& wanted) { return wanted.point->table == Table::coils; }
 
-/// The level that an output begins with.
+/// The level that the map gives an output at the start.
 int initial_level(const Point& point);
 
 /// "gpiochip0 line 5 (GPIO5), gpiochip0 line 6 (GPIO6) and 3 more".

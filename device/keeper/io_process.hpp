@@ -7,8 +7,10 @@
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
+#include <utility>
+#include <vector>
 
-#include "device/keeper/pulse.hpp"
+#include "device/keeper/superior.hpp"
 #include "device/net/loop.hpp"
 
 namespace coupler::node {
@@ -17,8 +19,8 @@ namespace coupler::node {
 /// When this process dies, it gets SIGTERM.
 class IoProcess : public Watcher {
  public:
-  /// What it does; the pulse tells this process that its loop turns.
-  using Work = std::function<int(Pulse&)>;
+  /// What it does; this process is its superior.
+  using Work = std::function<int(Superior&)>;
 
   /// Starts it; `loop` is this process's. `heard` (may be null) is told of each of its beats. The error is an
   /// errno.
@@ -32,21 +34,30 @@ class IoProcess : public Watcher {
   TimePoint last_beat() const { return last_beat_; }
 
   void terminate();
-  /// Kills it unless it has ended, and waits until it is gone: it drives no line any more. Tells how it
-  /// ended: "exited with status 1", "was killed by signal 9 (Killed)".
-  std::string end();
+  /// Asks it to give its clients away and end.
+  void make_room();
+  /// Those that it gave away so far.
+  std::vector<OpenConnection> take_clients() { return std::move(clients_); }
+
+  struct End {
+    bool in_order;    ///< of its own accord, with status 0
+    std::string how;  ///< "exited with status 1", "was killed by signal 9 (Killed)"
+  };
+  /// Kills it unless it has ended, and waits until it is gone: it drives no line any more.
+  End end();
 
   void ready(TimePoint now) override;
 
  private:
-  IoProcess(Loop& loop, pid_t pid, Descriptor beats, Pulse* heard);
+  IoProcess(Loop& loop, pid_t pid, Descriptor channel, Pulse* heard);
 
   Loop& loop_;
   pid_t pid_;
-  Descriptor beats_;  ///< a byte each; at its end when the process is
+  Descriptor channel_;  ///< at its end when the process is
   Pulse* heard_;
   TimePoint last_beat_;
   bool ended_ = false;
+  std::vector<OpenConnection> clients_;
 };
 
 }  // namespace coupler::node

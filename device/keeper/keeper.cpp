@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <utility>
 
 #include "device/keeper/backoff.hpp"
 
@@ -11,52 +12,72 @@ namespace coupler::node {
 namespace {
 
 constexpr std::chrono::milliseconds glance{100};
-
-std::string how_it_ended(IoProcess& process, bool was_silent) {
-  const std::string how = process.end();
-  return was_silent ? fmt::format("was silent for {} s and {}", Keeper::patience.count(), how) : how;
-}
+constexpr std::chrono::seconds look_period{1};
 
 }  // namespace
 
-bool Keeper::run(const IoProcess::Work& work) {
+bool Keeper::run() {
   Backoff backoff;
-  for (;;) {
+  for (std::vector<OpenConnection> clients;;) {
     const TimePoint started = TimePoint::clock::now();
+    const auto work = [&](Superior& superior) { return charge_.serve(superior, std::move(clients)); };
     auto process = IoProcess::start(loop_, work, heard_);
-    const std::string how = process ? watch_over(**process)
-                                    : fmt::format("cannot be started: {}", std::strerror(process.error()));
-    const bool safe = lines_.drive_safe();
+    clients.clear();
+    const IoProcess::End end =
+        process ? watch_over(**process)
+                : IoProcess::End{false, fmt::format("cannot be started: {}", std::strerror(process.error()))};
+    const bool makes_room = to_change_ && end.in_order && signals_.stop() == 0;
+    const bool safe = makes_room || charge_.make_safe();
     if (signals_.stop() != 0) return safe;
+    if (makes_room) clients = (*process)->take_clients();
+    if (std::exchange(to_change_, false)) charge_.change(clients);
+    if (makes_room) continue;
     const auto pause = backoff.after(TimePoint::clock::now() - started);
-    log_.write(fmt::format(
-        "the I/O process {}; {}; starting it again in {} ms", how,
+    log_.warn(fmt::format(
+        "the I/O process {}; {}; starting it again in {} ms", end.how,
         safe ? "outputs are in their safe state" : "not every output could be driven to its safe state",
         pause.count()));
     rest(pause);
-    if (signals_.stop() != 0) return lines_.drive_safe();
+    if (signals_.stop() != 0) return charge_.make_safe();
   }
 }
 
-std::string Keeper::watch_over(IoProcess& process) {
+IoProcess::End Keeper::watch_over(IoProcess& process) {
   // Silence is counted in glances, not by the clock: this process may have been stopped itself, and what the
   // other said meanwhile still waits to be heard.
   TimePoint heard = process.last_beat();
   for (auto silence = glance * 0; silence < patience; heard = process.last_beat()) {
-    loop_.run_once(glance);
-    if (signals_.stop() != 0) return end_in_peace(process);
-    if (process.has_ended()) return how_it_ended(process, false);
+    const TimePoint now = loop_.run_once(glance);
+    if (signals_.stop() != 0) {
+      process.terminate();
+      return wait_for(process);
+    }
+    if (process.has_ended()) return process.end();
+    if (is_to_change(now)) {
+      process.make_room();
+      return wait_for(process);
+    }
     silence = process.last_beat() == heard ? silence + glance : glance * 0;
   }
-  return how_it_ended(process, true);
+  IoProcess::End end = process.end();
+  end.how = fmt::format("was silent for {} s and {}", patience.count(), end.how);
+  return end;
 }
 
-std::string Keeper::end_in_peace(IoProcess& process) {
-  process.terminate();
+IoProcess::End Keeper::wait_for(IoProcess& process) {
   TimePoint now = TimePoint::clock::now();
   for (const TimePoint until = now + patience; now < until && !process.has_ended();)
     now = loop_.run_once(glance);
-  return how_it_ended(process, false);
+  return process.end();
+}
+
+bool Keeper::is_to_change(TimePoint now) {
+  if (signals_.take_reload()) to_change_ = charge_.reload();
+  if (!to_change_ && now >= next_look_) {
+    next_look_ = now + look_period;
+    to_change_ = charge_.look_after(now);
+  }
+  return to_change_;
 }
 
 void Keeper::rest(std::chrono::milliseconds pause) {

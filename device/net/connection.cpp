@@ -3,6 +3,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <utility>
@@ -26,6 +27,33 @@ void Connection::open(Descriptor socket, TimePoint now) {
   waiting_ = Waiting::for_request;
   deadline_.reset();
   if (loop_.watch(socket.get(), Interest::read, *this)) socket_ = std::move(socket);
+}
+
+void Connection::open(OpenConnection from, TimePoint now) {
+  assert(from.unread.size() <= modbus::max_adu_size && from.unsent.size() <= output_size);
+  open(std::move(from.socket), now);
+  if (!is_open()) return;
+  peer_.has_written = from.has_written;
+  has_asked_ = true;
+  std::copy(from.unread.begin(), from.unread.end(), framer_.room().begin());
+  framer_.filled(from.unread.size());
+  std::copy(from.unsent.begin(), from.unsent.end(), output_.begin());
+  output_end_ = from.unsent.size();
+  // Whole frames may be waiting, of which the socket does not tell any more.
+  if (has_output()) loop_.change(socket_.get(), Interest::write, *this);
+  ready(now);
+}
+
+OpenConnection Connection::release() {
+  OpenConnection open;
+  loop_.forget(socket_.get(), *this);
+  open.socket = std::move(socket_);
+  open.has_written = peer_.has_written;
+  const modbus::Bytes rest = framer_.rest();
+  open.unread.assign(rest.begin(), rest.end());
+  open.unsent.assign(&output_[output_begin_], &output_[output_begin_] + (output_end_ - output_begin_));
+  deadline_.reset();
+  return open;
 }
 
 void Connection::close() {

@@ -7,6 +7,7 @@
 #include "common/modbus/frame.hpp"
 #include "device/core/server.hpp"
 #include "device/net/loop.hpp"
+#include "device/net/open_connection.hpp"
 
 namespace coupler::node {
 
@@ -28,6 +29,10 @@ class Connection : public Watcher {
 
   /// Takes over a connected, non-blocking socket.
   void open(Descriptor socket, TimePoint now);
+  /// Takes over what another one let go.
+  void open(OpenConnection from, TimePoint now);
+  /// Lets go of the client without closing its connection.
+  OpenConnection release();
   bool is_open() const { return socket_.is_open(); }
   void close();
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/net/listener.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -62,6 +63,13 @@ tl::expected<Descriptor, int> open(const addrinfo& info) {
 }
 
 }  // namespace
+
+tl::expected<Listener, std::string> Listener::share() const {
+  Descriptor other(::fcntl(socket.get(), F_DUPFD_CLOEXEC, 0));
+  if (!other.is_open())
+    return tl::unexpected(fmt::format("cannot go on listening on {}: {}", name, std::strerror(errno)));
+  return Listener{std::move(other), name, {}};
+}
 
 tl::expected<Listener, std::string> listen_on(const std::string& address, std::uint16_t port) {
   addrinfo hints{};

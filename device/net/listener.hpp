@@ -15,6 +15,9 @@ struct Listener {
   Descriptor socket;
   std::string name;  ///< "127.0.0.1:1502", "[::]:502"
   GuestList guests{};
+
+  /// Another descriptor of the same socket, open to everyone. The error says why there is none.
+  tl::expected<Listener, std::string> share() const;
 };
 
 /// Listens on a TCP port (0: any free one, which `name` tells), open to everyone. `address` is an IP address

@@ -17,25 +17,29 @@ bool is_ignored(int signal) {
 }  // namespace
 
 Signals::Signals(Loop& loop) : loop_(loop) {
-  sigemptyset(&stopping_);
-  sigaddset(&stopping_, SIGINT);
-  sigaddset(&stopping_, SIGTERM);
-  if (!is_ignored(SIGHUP)) sigaddset(&stopping_, SIGHUP);
-  ::sigprocmask(SIG_BLOCK, &stopping_, nullptr);
+  sigemptyset(&signals_);
+  sigaddset(&signals_, SIGINT);
+  sigaddset(&signals_, SIGTERM);
+  if (!is_ignored(SIGHUP)) sigaddset(&signals_, SIGHUP);
+  ::sigprocmask(SIG_BLOCK, &signals_, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
-  descriptor_ = Descriptor(::signalfd(-1, &stopping_, SFD_NONBLOCK | SFD_CLOEXEC));
+  descriptor_ = Descriptor(::signalfd(-1, &signals_, SFD_NONBLOCK | SFD_CLOEXEC));
   [[maybe_unused]] const bool watched = loop_.watch(descriptor_.get(), Interest::read, *this);
   assert(watched);
 }
 
 Signals::~Signals() {
   loop_.forget(descriptor_.get(), *this);
-  ::sigprocmask(SIG_UNBLOCK, &stopping_, nullptr);
+  ::sigprocmask(SIG_UNBLOCK, &signals_, nullptr);
 }
 
 void Signals::ready(TimePoint) {
   signalfd_siginfo info{};
-  if (::read(descriptor_.get(), &info, sizeof info) == sizeof info) stop_ = static_cast<int>(info.ssi_signo);
+  if (::read(descriptor_.get(), &info, sizeof info) != sizeof info) return;
+  if (info.ssi_signo == SIGHUP)
+    reload_ = true;
+  else
+    stop_ = static_cast<int>(info.ssi_signo);
 }
 
 }  // namespace coupler::node

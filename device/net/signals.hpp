@@ -2,13 +2,15 @@
 #pragma once
 
 #include <csignal>
+#include <utility>
 
 #include "device/net/loop.hpp"
 
 namespace coupler::node {
 
-/// Turns SIGINT, SIGTERM and SIGHUP into a request to stop, which the loop sees in its own time. A SIGHUP
-/// that is ignored at the start (nohup) stays ignored; SIGPIPE is. To be made before any thread is started.
+/// Turns SIGINT and SIGTERM into a request to stop and SIGHUP into one to reload, which the loop sees in its
+/// own time. A SIGHUP that is ignored at the start (nohup) stays ignored; SIGPIPE is. To be made before any
+/// thread is started.
 class Signals : public Watcher {
  public:
   explicit Signals(Loop& loop);
@@ -18,14 +20,17 @@ class Signals : public Watcher {
 
   /// The signal that asked to stop; 0: none did.
   int stop() const { return stop_; }
+  /// Whether SIGHUP came since the last call.
+  bool take_reload() { return std::exchange(reload_, false); }
 
   void ready(TimePoint now) override;
 
  private:
   Loop& loop_;
-  sigset_t stopping_{};
+  sigset_t signals_{};
   Descriptor descriptor_;
   int stop_ = 0;
+  bool reload_ = false;
 };
 
 }  // namespace coupler::node

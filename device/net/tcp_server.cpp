@@ -56,9 +56,9 @@ std::string host_of(const sockaddr_storage& peer) {
 
 }  // namespace
 
-TcpServer::TcpServer(Loop& loop, Listener listener, Server& server, Statistics& statistics, Log& log,
+TcpServer::TcpServer(Loop& loop, const Listener& listener, Server& server, Statistics& statistics, Log& log,
                      std::size_t capacity)
-    : loop_(loop), listener_(std::move(listener)), statistics_(statistics), log_(log) {
+    : loop_(loop), listener_(listener), statistics_(statistics), log_(log) {
   for (std::size_t i = affordable(capacity); i > 0; --i) connections_.emplace_back(loop, server, statistics);
   [[maybe_unused]] const bool watched = loop_.watch(listener_.socket.get(), Interest::read, *this);
   assert(watched);
@@ -74,6 +74,28 @@ std::size_t TcpServer::size() const {
 void TcpServer::ready(TimePoint now) {
   for (int i = 0; i < accepts_per_turn; ++i)
     if (!accept_one(now)) return;
+}
+
+void TcpServer::adopt(std::vector<OpenConnection> clients, TimePoint now) {
+  for (OpenConnection& client : clients) {
+    sockaddr_storage peer{};
+    socklen_t size = sizeof peer;
+    const bool is_there = ::getpeername(client.socket.get(), reinterpret_cast<sockaddr*>(&peer), &size) == 0;
+    if (!is_there || this->size() == capacity()) continue;
+    if (!listener_.guests.admits(peer)) {
+      refuse(std::move(client.socket), peer);
+      continue;
+    }
+    in_use_ = true;
+    free_connection().open(std::move(client), now);
+  }
+}
+
+std::vector<OpenConnection> TcpServer::release() {
+  std::vector<OpenConnection> clients;
+  for (Connection& connection : connections_)
+    if (connection.is_open()) clients.push_back(connection.release());
+  return clients;
 }
 
 /// False: nobody waits, or nobody can be let in now.

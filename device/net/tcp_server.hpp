@@ -5,6 +5,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "device/core/log.hpp"
 #include "device/net/connection.hpp"
@@ -18,8 +19,8 @@ class TcpServer : public Watcher {
  public:
   static constexpr std::size_t max_connections = 256;
 
-  /// `capacity` is lowered to what the limit of open files leaves.
-  TcpServer(Loop& loop, Listener listener, Server& server, Statistics& statistics, Log& log,
+  /// `capacity` is lowered to what the limit of open files leaves. All of them outlive it.
+  TcpServer(Loop& loop, const Listener& listener, Server& server, Statistics& statistics, Log& log,
             std::size_t capacity = max_connections);
   TcpServer(const TcpServer&) = delete;
   TcpServer& operator=(const TcpServer&) = delete;
@@ -29,6 +30,11 @@ class TcpServer : public Watcher {
   std::size_t capacity() const { return connections_.size(); }
   /// Connections that are open now.
   std::size_t size() const;
+
+  /// Takes over clients that another server let go, as far as they may connect and there is room.
+  void adopt(std::vector<OpenConnection> clients, TimePoint now);
+  /// Lets go of all clients without closing their connections.
+  std::vector<OpenConnection> release();
 
   /// Somebody wants to connect.
   void ready(TimePoint now) override;
@@ -45,7 +51,7 @@ class TcpServer : public Watcher {
   void pause(int error);
 
   Loop& loop_;
-  Listener listener_;
+  const Listener& listener_;
   Statistics& statistics_;
   Log& log_;
   std::deque<Connection> connections_;  ///< never grows after the start: addresses are stable

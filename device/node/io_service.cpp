@@ -28,28 +28,33 @@ std::string farewell(int signal, bool safe, const Statistics& statistics) {
 
 }  // namespace
 
-IoService::IoService(const Map& map, Wiring& wiring, Memory& memory, Listener listener, Loop& loop, Log& log)
-    : lines_(*wiring.lines),
+IoService::IoService(const Duty& duty, Loop& loop, Log& log)
+    : lines_(duty.wiring->lines()),
       loop_(loop),
       log_(log),
-      statistics_(memory.statistics()),
-      node_(map, lines_, memory),
-      tcp_(loop, std::move(listener), node_.server(), memory.statistics(), log),
+      statistics_(duty.memory->statistics()),
+      node_(*duty.map, lines_, *duty.memory),
+      tcp_(loop, duty.listener, node_.server(), duty.memory->statistics(), log),
       now_(TimePoint::clock::now()),
       trips_(statistics_.watchdog_trips) {
-  for (EventSource* source : wiring.events) watchers_.emplace_back(loop, *source, log);
+  for (EventSource* source : duty.wiring->events()) watchers_.emplace_back(loop, *source, log);
 }
 
-void IoService::run(const Signals& signals, Pulse* pulse) {
-  for (TimePoint next_beat = now_; signals.stop() == 0;) {
+void IoService::adopt(std::vector<OpenConnection> clients) { tcp_.adopt(std::move(clients), now_); }
+
+void IoService::run(const std::function<bool()>& is_over, Pulse* pulse) {
+  for (TimePoint next_beat = now_; !is_over();) {
     if (pulse != nullptr && now_ >= next_beat) {
       pulse->beat();
       next_beat = now_ + Pulse::period;
     }
     turn(pulse != nullptr ? Patience(Pulse::period) : std::nullopt);
   }
-  log_.write(farewell(signals.stop(), lines_.drive_safe(), statistics_));
 }
+
+std::vector<OpenConnection> IoService::release() { return tcp_.release(); }
+
+void IoService::end(int signal) { log_.write(farewell(signal, lines_.drive_safe(), statistics_)); }
 
 void IoService::turn(Patience at_most) {
   now_ = loop_.run_once(shorter(at_most, shorter(tcp_.patience(), node_.handler().patience(now_))));
@@ -61,7 +66,7 @@ void IoService::turn(Patience at_most) {
 void IoService::log_trips() {
   if (trips_ == statistics_.watchdog_trips) return;
   trips_ = statistics_.watchdog_trips;
-  log_.write("the watchdog expired: no master that writes was heard in time; outputs go to their safe state");
+  log_.warn("the watchdog expired: no master that writes was heard in time; outputs go to their safe state");
 }
 
 }  // namespace coupler::node

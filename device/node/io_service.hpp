@@ -2,26 +2,32 @@
 #pragma once
 
 #include <deque>
+#include <functional>
+#include <vector>
 
 #include "device/core/log.hpp"
-#include "device/gpio/make_lines.hpp"
 #include "device/keeper/pulse.hpp"
-#include "device/net/signals.hpp"
 #include "device/net/tcp_server.hpp"
+#include "device/node/duty.hpp"
 #include "device/node/edge_watcher.hpp"
 #include "device/node/node.hpp"
 
 namespace coupler::node {
 
-/// Answers masters with the lines of a map: all that happens between the start and the end of a node.
+/// Answers masters with the lines of a map.
 class IoService {
  public:
-  /// All of them outlive it.
-  IoService(const Map& map, Wiring& wiring, Memory& memory, Listener listener, Loop& loop, Log& log);
+  /// All of them outlive it. The duty is in force.
+  IoService(const Duty& duty, Loop& loop, Log& log);
 
-  /// Serves until a signal asks to stop, then drives the outputs to their safe state. `pulse` (may be null)
-  /// is told that the loop turns.
-  void run(const Signals& signals, Pulse* pulse);
+  /// Goes on with clients that another one let go.
+  void adopt(std::vector<OpenConnection> clients);
+  /// Serves until `is_over`, asked at each turn, says so. `pulse` (may be null) is told that the loop turns.
+  void run(const std::function<bool()>& is_over, Pulse* pulse);
+  /// Lets go of its clients, outputs as they are.
+  std::vector<OpenConnection> release();
+  /// The end after a signal: drives the outputs to their safe state.
+  void end(int signal);
 
  private:
   void turn(std::optional<std::chrono::milliseconds> at_most);

@@ -37,17 +37,25 @@ unsigned interval_for(const char* watchdog) {
 
 }  // namespace
 
-ServiceManager::ServiceManager(const char* socket, const char* watchdog, std::string status)
-    : socket_(connect_to(socket == nullptr ? "" : socket)),
-      status_(std::move(status)),
-      interval_(interval_for(watchdog)) {}
+ServiceManager::ServiceManager(const char* socket, const char* watchdog)
+    : socket_(connect_to(socket == nullptr ? "" : socket)), interval_(interval_for(watchdog)) {}
 
 void ServiceManager::beat() {
-  if (!is_ready_) send("READY=1\nSTATUS=" + status_);
-  is_ready_ = true;
+  if (!std::exchange(is_ready_, true)) ready(status_);
   if (interval_ == 0 || ++beats_ < interval_) return;
   beats_ = 0;
   send("WATCHDOG=1");
+}
+
+void ServiceManager::reloading(TimePoint now) {
+  using std::chrono::microseconds;
+  send("RELOADING=1\nMONOTONIC_USEC=" +
+       std::to_string(std::chrono::duration_cast<microseconds>(now.time_since_epoch()).count()));
+}
+
+void ServiceManager::ready(std::string status) {
+  status_ = std::move(status);
+  send("READY=1\nSTATUS=" + status_);
 }
 
 void ServiceManager::stopping() { send("STOPPING=1"); }

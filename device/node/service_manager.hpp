@@ -3,7 +3,9 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "device/core/time.hpp"
 #include "device/keeper/pulse.hpp"
 #include "device/net/descriptor.hpp"
 
@@ -14,13 +16,18 @@ namespace coupler::node {
 class ServiceManager : public Pulse {
  public:
   /// The values of NOTIFY_SOCKET and WATCHDOG_USEC; null: nobody wants to know.
-  ServiceManager(const char* socket, const char* watchdog, std::string status);
+  ServiceManager(const char* socket, const char* watchdog);
 
   bool is_there() const { return socket_.is_open(); }
 
+  /// What it is told with the first sign of life.
+  void set_status(std::string status) { status_ = std::move(status); }
   /// The first one: ready, with the status. Later ones keep the manager's watchdog from killing the node, at
   /// twice the rate that it asks for. Never blocks.
   void beat() override;
+  /// A new map is being read; ready() tells how that ended.
+  void reloading(TimePoint now);
+  void ready(std::string status);
   void stopping();
 
  private:

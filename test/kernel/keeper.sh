@@ -36,25 +36,6 @@ pull_away_from() {
 coils_are() { [ "$(answered master -t 0 -r 0 -c 6 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*([01]).*/\1/p' | tr '\n' ' ')" = "$1 " ]; }
 write_outputs() { answered master -t 0 -r 0 127.0.0.1 -- "${written[@]}" >/dev/null; }
 
-# Reads the wires of held lines as fast as it can and tells each change. "armed" comes first.
-watch_wires() {
-  exec python3 -u -c '
-import sys
-files = [open(name, "rb", buffering=0) for name in sys.argv[1:]]
-def levels():
-    for file in files:
-        file.seek(0)
-    return [file.read(1) for file in files]
-before = levels()
-print("armed")
-while True:
-    now = levels()
-    if now != before:
-        print("changed", before, now)
-    before = now
-' "$(sim_wire plant 2)/value" "$(sim_wire plant 5)/value"
-}
-
 sim_define plant 8
 sim_plug plant
 plant_node keeper.yaml
@@ -67,7 +48,7 @@ for signal in KILL STOP SEGV TERM; do
   check "the outputs are written" wait_until 15 write_outputs
   check "and driven" wires_are written
   pull_away_from safe
-  start wires watch_wires
+  start wires watch_wires 2 5
   check "the held lines are watched" wait_until 10 says wires armed
   kill -s "$signal" "$before"
   check "every output is in its safe state, against its pull" wait_until 5 wires_are safe

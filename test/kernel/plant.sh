@@ -5,6 +5,7 @@
 #   plant_node MAP [ARGS…]     starts the node with a map and waits until it serves
 #   input N, coil N            prints 0 or 1, as mbpoll reads it
 #   set_coil N 0|1             writes it
+#   watch_wires LINE…          tells each change of these wires; to be started, then wait for it to say "armed"
 # A request that is answered with an exception fails and prints mbpoll's text.
 
 # shellcheck source=gpio-sim.sh
@@ -42,3 +43,24 @@ register() { read_one 4 "$1"; }
 set_coil() { answered master -t 0 -r "$1" 127.0.0.1 -- "$2" >/dev/null; }
 input_is() { [ "$(input "$1")" = "$2" ]; }
 level_is() { [ "$(sim_value plant "$1")" = "$2" ]; }
+
+# Reads the wires of lines as fast as it can and tells each change. "armed" comes first. To be started.
+watch_wires() {
+  local line files=()
+  for line in "$@"; do files+=("$(sim_wire plant "$line")/value"); done
+  exec python3 -u -c '
+import sys
+files = [open(name, "rb", buffering=0) for name in sys.argv[1:]]
+def levels():
+    for file in files:
+        file.seek(0)
+    return [file.read(1) for file in files]
+before = levels()
+print("armed")
+while True:
+    now = levels()
+    if now != before:
+        print("changed", before, now)
+    before = now
+' "${files[@]}"
+}

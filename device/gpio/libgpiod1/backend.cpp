@@ -17,6 +17,7 @@ class ValueOutputs : public OutputGroup {
  public:
   explicit ValueOutputs(std::unique_ptr<Request> request) : request_(std::move(request)) {}
   const std::string& name() const override { return request_->name(); }
+  bool is_plugged() override { return request_->is_plugged(); }
   int drive(Span<const int> levels) override {
     return gpiod_line_set_value_bulk(request_->bulk(), levels.data()) == 0 ? 0 : errno;
   }
@@ -33,6 +34,7 @@ class ValueInputs : public InputGroup {
  public:
   explicit ValueInputs(std::unique_ptr<Request> request) : request_(std::move(request)) {}
   const std::string& name() const override { return request_->name(); }
+  bool is_plugged() override { return request_->is_plugged(); }
   int read(Span<int> levels, TimePoint) override {
     return gpiod_line_get_value_bulk(request_->bulk(), levels.data()) == 0 ? 0 : errno;
   }
@@ -56,8 +58,7 @@ int request_type(Edge edge) {
   return GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES;
 }
 
-}  // namespace
-
+/// nullopt with errno set if it cannot be opened.
 std::optional<Chip> read_chip(const std::string& path) {
   const libgpiod1::ChipHandle chip(gpiod_chip_open(path.c_str()), gpiod_chip_close);
   if (!chip) return std::nullopt;
@@ -70,6 +71,10 @@ std::optional<Chip> read_chip(const std::string& path) {
   }
   return read;
 }
+
+}  // namespace
+
+Inventory chips() { return Inventory(read_chip); }
 
 bool fits(const std::vector<Wanted>& group, const Wanted& line) {
   const Wanted& first = group.front();

@@ -24,6 +24,7 @@ class EventLine : public InputGroup, public EventSource {
   EventLine(std::unique_ptr<Request> request, Edge watched, std::chrono::microseconds debounce);
 
   const std::string& name() const override { return request_->name(); }
+  bool is_plugged() override { return request_->is_plugged(); }
   int read(Span<int> levels, TimePoint now) override;
   int descriptor() const override { return descriptor_; }
   bool take_edges() override;

@@ -62,7 +62,7 @@ tl::expected<std::unique_ptr<Request>, std::string> Request::make(const std::vec
   if (gpiod_line_bulk_num_lines(request->bulk()) != lines.size()) return refused(opened);
 
   std::array<int, max_group_size> levels{};
-  for (std::size_t i = 0; i < lines.size(); ++i) levels[i] = initial_level(*lines[i].point);
+  for (std::size_t i = 0; i < lines.size(); ++i) levels[i] = lines[i].level;
   const gpiod_line_request_config config{consumer, type, flags_of(lines.front().point->line)};
   if (gpiod_line_request_bulk(request->bulk(), &config, levels.data()) != 0) return refused(opened);
   return request;

@@ -3,6 +3,7 @@
 
 #include <gpiod.h>
 
+#include <cerrno>
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
@@ -18,8 +19,8 @@ using ChipHandle = std::unique_ptr<gpiod_chip, decltype(&gpiod_chip_close)>;
 /// Lines of one chip that the kernel gave to this process. They are released at the end.
 class Request {
  public:
-  /// One to max_group_size lines of one chip with the same flags; outputs begin at their points' initial
-  /// levels, with no other level in between. `type`: GPIOD_LINE_REQUEST_…. The error names chip, line and
+  /// One to max_group_size lines of one chip with the same flags; outputs begin at their wanted levels,
+  /// with no other level in between. `type`: GPIOD_LINE_REQUEST_…. The error names chip, line and
   /// holder.
   static tl::expected<std::unique_ptr<Request>, std::string> make(const std::vector<Wanted>& lines, int type);
 
@@ -30,6 +31,7 @@ class Request {
   gpiod_line_bulk* bulk() { return &bulk_; }
   gpiod_line* first() { return gpiod_line_bulk_get_line(&bulk_, 0); }
   const std::string& name() const { return name_; }
+  bool is_plugged() { return gpiod_line_update(first()) == 0 || errno != ENODEV; }
 
  private:
   Request(ChipHandle chip, const std::vector<Wanted>& lines);

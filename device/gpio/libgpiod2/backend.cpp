@@ -17,21 +17,22 @@ using namespace libgpiod2;
 /// Outputs of one request: one system call drives them all.
 class Outputs : public OutputGroup {
  public:
-  Outputs(RequestHandle request, std::string name) : request_(std::move(request)), name_(std::move(name)) {}
+  Outputs(Request request, std::string name) : request_(std::move(request)), name_(std::move(name)) {}
   const std::string& name() const override { return name_; }
+  bool is_plugged() override { return request_.is_plugged(); }
   int drive(Span<const int> levels) override {
     for (std::size_t i = 0; i < levels.size(); ++i)
       values_[i] = levels[i] != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
-    return gpiod_line_request_set_values(request_.get(), values_.data()) == 0 ? 0 : errno;
+    return gpiod_line_request_set_values(request_.lines.get(), values_.data()) == 0 ? 0 : errno;
   }
   int read(Span<int> levels) override {
-    if (gpiod_line_request_get_values(request_.get(), values_.data()) != 0) return errno;
+    if (gpiod_line_request_get_values(request_.lines.get(), values_.data()) != 0) return errno;
     for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = values_[i] == GPIOD_LINE_VALUE_ACTIVE ? 1 : 0;
     return 0;
   }
 
  private:
-  RequestHandle request_;
+  Request request_;
   std::array<gpiod_line_value, max_group_size> values_{};
   std::string name_;
 };
@@ -44,8 +45,7 @@ std::size_t kinds(const std::vector<Wanted>& lines) {
   return count;
 }
 
-}  // namespace
-
+/// nullopt with errno set if it cannot be opened.
 std::optional<Chip> read_chip(const std::string& path) {
   const ChipHandle chip(gpiod_chip_open(path.c_str()));
   if (!chip) return std::nullopt;
@@ -60,6 +60,10 @@ std::optional<Chip> read_chip(const std::string& path) {
   }
   return read;
 }
+
+}  // namespace
+
+Inventory chips() { return Inventory(read_chip); }
 
 bool fits(const std::vector<Wanted>& group, const Wanted& line) {
   if (group.front().line.chip != line.line.chip || is_output(group.front()) != is_output(line)) return false;

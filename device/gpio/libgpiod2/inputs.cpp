@@ -15,26 +15,26 @@ constexpr std::size_t events_at_once = 64;
 
 }  // namespace
 
-Inputs::Inputs(RequestHandle request, const std::vector<Wanted>& lines)
+Inputs::Inputs(Request request, const std::vector<Wanted>& lines)
     : request_(std::move(request)),
       events_(gpiod_edge_event_buffer_new(events_at_once)),
       lines_(lines.size(), {0, EdgeTally(Edge::both, false)}),
       name_(names_of(lines)) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const unsigned offset = lines[i].line.offset;
-    const bool level = gpiod_line_request_get_value(request_.get(), offset) == GPIOD_LINE_VALUE_ACTIVE;
+    const bool level = gpiod_line_request_get_value(request_.lines.get(), offset) == GPIOD_LINE_VALUE_ACTIVE;
     lines_[i] = {offset, EdgeTally(lines[i].counted.value_or(Edge::both), level)};
   }
   ::fcntl(descriptor(), F_SETFL, ::fcntl(descriptor(), F_GETFL) | O_NONBLOCK);
 }
 
 int Inputs::read(Span<int> levels, TimePoint) {
-  if (gpiod_line_request_get_values(request_.get(), values_.data()) != 0) return errno;
+  if (gpiod_line_request_get_values(request_.lines.get(), values_.data()) != 0) return errno;
   for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = values_[i] == GPIOD_LINE_VALUE_ACTIVE ? 1 : 0;
   return 0;
 }
 
-int Inputs::descriptor() const { return gpiod_line_request_get_fd(request_.get()); }
+int Inputs::descriptor() const { return gpiod_line_request_get_fd(request_.lines.get()); }
 
 void Inputs::add(gpiod_edge_event* event) {
   const unsigned offset = gpiod_edge_event_get_line_offset(event);
@@ -50,7 +50,8 @@ void Inputs::add(gpiod_edge_event* event) {
 
 bool Inputs::take_edges() {
   for (;;) {
-    const int count = gpiod_line_request_read_edge_events(request_.get(), events_.get(), events_at_once);
+    const int count =
+        gpiod_line_request_read_edge_events(request_.lines.get(), events_.get(), events_at_once);
     if (count < 0) return errno == EAGAIN || errno == EINTR;
     for (int i = 0; i < count; ++i)
       add(gpiod_edge_event_buffer_get_event(events_.get(), static_cast<unsigned long>(i)));

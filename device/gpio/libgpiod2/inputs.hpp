@@ -19,9 +19,10 @@ namespace coupler::node::libgpiod2 {
 class Inputs : public InputGroup, public EventSource {
  public:
   /// `request` holds `lines`, in this order.
-  Inputs(RequestHandle request, const std::vector<Wanted>& lines);
+  Inputs(Request request, const std::vector<Wanted>& lines);
 
   const std::string& name() const override { return name_; }
+  bool is_plugged() override { return request_.is_plugged(); }
   int read(Span<int> levels, TimePoint now) override;
   int descriptor() const override;
   bool take_edges() override;
@@ -36,7 +37,7 @@ class Inputs : public InputGroup, public EventSource {
 
   void add(gpiod_edge_event* event);
 
-  RequestHandle request_;
+  Request request_;
   Owned<gpiod_edge_event_buffer, gpiod_edge_event_buffer_free> events_;
   std::array<gpiod_line_value, max_group_size> values_{};
   SharedArray<Counted> lines_;  ///< shared: a process that is started anew sees no gap in their sequence

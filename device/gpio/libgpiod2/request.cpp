@@ -2,6 +2,7 @@
 #include "device/gpio/libgpiod2/request.hpp"
 
 #include <cerrno>
+#include <utility>
 
 #include "device/gpio/line_group.hpp"
 
@@ -53,11 +54,11 @@ gpiod_line_edge edge_of(const std::optional<Edge>& counted) {
   return GPIOD_LINE_EDGE_BOTH;
 }
 
-void set_output(gpiod_line_settings* settings, const Point& point) {
+void set_output(gpiod_line_settings* settings, const Wanted& wanted) {
   gpiod_line_settings_set_direction(settings, GPIOD_LINE_DIRECTION_OUTPUT);
-  gpiod_line_settings_set_drive(settings, drive_of(point.line.drive));
+  gpiod_line_settings_set_drive(settings, drive_of(wanted.point->line.drive));
   gpiod_line_settings_set_output_value(
-      settings, initial_level(point) != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE);
+      settings, wanted.level != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE);
 }
 
 void set_input(gpiod_line_settings* settings, const Wanted& wanted) {
@@ -74,7 +75,7 @@ bool add(gpiod_line_config* config, const Wanted& wanted) {
   gpiod_line_settings_set_active_low(settings.get(), wanted.point->line.active_low);
   gpiod_line_settings_set_bias(settings.get(), bias_of(wanted.point->line.bias));
   if (is_output(wanted))
-    set_output(settings.get(), *wanted.point);
+    set_output(settings.get(), wanted);
   else
     set_input(settings.get(), wanted);
   return gpiod_line_config_add_line_settings(config, &wanted.line.offset, 1, settings.get()) == 0;
@@ -89,8 +90,8 @@ bool same_kind(const Wanted& a, const Wanted& b) {
          a.counted == b.counted;
 }
 
-tl::expected<RequestHandle, std::string> request(const std::vector<Wanted>& lines) {
-  const ChipHandle chip(gpiod_chip_open(lines.front().line.chip->path.c_str()));
+tl::expected<Request, std::string> request(const std::vector<Wanted>& lines) {
+  ChipHandle chip(gpiod_chip_open(lines.front().line.chip->path.c_str()));
   const auto refused = [&] {
     return tl::unexpected(
         refusal(lines, errno, [&](unsigned offset) { return holder_of(chip.get(), offset); }));
@@ -104,7 +105,7 @@ tl::expected<RequestHandle, std::string> request(const std::vector<Wanted>& line
     if (!add(config.get(), wanted)) return refused();
   RequestHandle made(gpiod_chip_request_lines(chip.get(), options.get(), config.get()));
   if (!made) return refused();
-  return made;
+  return Request{std::move(chip), std::move(made)};
 }
 
 }  // namespace coupler::node::libgpiod2

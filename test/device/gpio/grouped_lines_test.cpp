@@ -203,7 +203,7 @@ TEST(CountedLines, Edges_are_told_by_address_and_losses_logged_once_per_burst) {
   auto group = std::make_unique<FakeEvents>(hardware);
   FakeEvents& events = *group;
   std::vector<WiredInputs> inputs;
-  inputs.push_back({std::move(group), {4, 6}, &events});
+  inputs.push_back({std::move(group), {4, 6}, &events, true});
   GroupedLines lines({}, std::move(inputs), log);
   Told told;
   TimePoint now{std::chrono::hours(1)};

@@ -120,14 +120,25 @@ TEST(Accepting, The_loop_sleeps_for_ever_when_nobody_is_connected) {
 }
 
 TEST(Stopping, A_signal_to_stop_is_seen_by_the_loop) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM}) {
     Loop loop;
     Signals signals(loop);
     EXPECT_EQ(signals.stop(), 0);
     ::raise(signal);
     loop.run_once(std::chrono::milliseconds(1000));
     EXPECT_EQ(signals.stop(), signal);
+    EXPECT_FALSE(signals.take_reload());
   }
+}
+
+TEST(Stopping, A_hangup_is_no_reason_to_stop_but_to_reload_once) {
+  Loop loop;
+  Signals signals(loop);
+  ::raise(SIGHUP);
+  loop.run_once(std::chrono::milliseconds(1000));
+  EXPECT_EQ(signals.stop(), 0);
+  EXPECT_TRUE(signals.take_reload());
+  EXPECT_FALSE(signals.take_reload());
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ class Client {
 /// A server on a free loopback port, run by the test step by step.
 struct TcpUnderTest {
   explicit TcpUnderTest(std::size_t capacity = 8, GuestList guests = {})
-      : tcp(loop, listen(std::move(guests)), server, node.statistics, log, capacity) {}
+      : listener(listen(std::move(guests))), tcp(loop, listener, server, node.statistics, log, capacity) {}
 
   static Listener listen(GuestList guests) {
     auto listener = listen_on("127.0.0.1", 0);
@@ -111,6 +111,7 @@ struct TcpUnderTest {
   Server server{1, node.handler, node.statistics};
   FakeLog log;
   Loop loop;
+  Listener listener;
   TcpServer tcp;
 };
 

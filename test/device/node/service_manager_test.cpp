@@ -38,7 +38,8 @@ class Managed : public testing::Test {
 };
 
 TEST_F(Managed, Only_a_loop_that_turns_is_ready) {
-  ServiceManager manager(name_.c_str(), nullptr, "serving plant");
+  ServiceManager manager(name_.c_str(), nullptr);
+  manager.set_status("serving plant");
   ASSERT_TRUE(manager.is_there());
   EXPECT_EQ(news(), "");
   for (int i = 0; i < 100; ++i) manager.beat();
@@ -49,7 +50,7 @@ TEST_F(Managed, Only_a_loop_that_turns_is_ready) {
 }
 
 TEST_F(Managed, Its_watchdog_is_fed_twice_in_its_time) {
-  ServiceManager manager(name_.c_str(), "2000000", "");
+  ServiceManager manager(name_.c_str(), "2000000");
   manager.beat();
   news();
   int fed = 0;
@@ -64,7 +65,7 @@ TEST_F(Managed, Its_watchdog_is_fed_twice_in_its_time) {
 }
 
 TEST_F(Managed, A_short_watchdog_is_fed_at_each_beat) {
-  ServiceManager manager(name_.c_str(), "1", "");
+  ServiceManager manager(name_.c_str(), "1");
   manager.beat();
   news();
   EXPECT_EQ(news(), "WATCHDOG=1");
@@ -72,14 +73,24 @@ TEST_F(Managed, A_short_watchdog_is_fed_at_each_beat) {
   EXPECT_EQ(news(), "WATCHDOG=1");
 }
 
+TEST_F(Managed, A_reload_is_told_with_its_time_and_its_end) {
+  ServiceManager manager(name_.c_str(), nullptr);
+  manager.beat();
+  news();
+  manager.reloading(TimePoint(std::chrono::microseconds(1234567)));
+  EXPECT_EQ(news(), "RELOADING=1\nMONOTONIC_USEC=1234567");
+  manager.ready("serving more");
+  EXPECT_EQ(news(), "READY=1\nSTATUS=serving more");
+}
+
 TEST_F(Managed, A_manager_that_does_not_read_blocks_nobody) {
-  ServiceManager manager(name_.c_str(), "1", "");
+  ServiceManager manager(name_.c_str(), "1");
   for (int i = 0; i < 100'000; ++i) manager.beat();
 }
 
 TEST(Unmanaged, Nobody_is_told) {
   for (const char* socket : {static_cast<const char*>(nullptr), "", "/nowhere/notify", "@nobody"}) {
-    ServiceManager manager(socket, "1", "");
+    ServiceManager manager(socket, "1");
     EXPECT_FALSE(manager.is_there());
     manager.beat();
     manager.stopping();

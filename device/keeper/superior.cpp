@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/keeper/superior.hpp"
+
+#include <cassert>
+
+#include "device/keeper/channel.hpp"
+
+namespace coupler::node {
+
+void Superior::watch(Loop& loop) {
+  loop_ = &loop;
+  [[maybe_unused]] const bool watched = loop.watch(channel_.get(), Interest::read, *this);
+  assert(watched);
+}
+
+void Superior::beat() { channel::send(channel_.get(), channel::Beat{}); }
+
+void Superior::give(const OpenConnection& client) { channel::send(channel_.get(), client); }
+
+void Superior::ready(TimePoint) {
+  const channel::Message message = channel::receive(channel_.get());
+  if (std::holds_alternative<channel::MakeRoom>(message)) wants_room_ = true;
+  // The kernel sends SIGTERM when the keeper dies; until then there is nothing to be heard.
+  if (std::holds_alternative<channel::Ended>(message))
+    loop_->change(channel_.get(), Interest::nothing, *this);
+}
+
+}  // namespace coupler::node

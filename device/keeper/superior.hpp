@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/keeper/pulse.hpp"
+#include "device/net/loop.hpp"
+#include "device/net/open_connection.hpp"
+
+namespace coupler::node {
+
+/// The keeper, as its I/O process knows it: hears that its loop turns, may ask it to make room for another
+/// one, and takes its clients over.
+class Superior : public Pulse, public Watcher {
+ public:
+  /// `channel` is a connected socket that keeps messages apart.
+  explicit Superior(Descriptor channel) : channel_(std::move(channel)) {}
+
+  /// Listens to it from now on.
+  void watch(Loop& loop);
+
+  void beat() override;
+  /// It asked this process to give its clients away and end.
+  bool wants_room() const { return wants_room_; }
+  void give(const OpenConnection& client);
+
+  void ready(TimePoint now) override;
+
+ private:
+  Descriptor channel_;
+  Loop* loop_ = nullptr;
+  bool wants_room_ = false;
+};
+
+}  // namespace coupler::node

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/map/owned_map.hpp"
+#include "device/gpio/wiring.hpp"
+#include "device/net/listener.hpp"
+#include "device/node/memory.hpp"
+
+namespace coupler::node {
+
+/// A map and all that it takes to serve it. It outlives the processes that do.
+struct Duty {
+  MapPtr owner;  ///< null: the map is somebody else's
+  const Map* map = nullptr;
+  std::string address;  ///< that the listener was asked for
+  std::uint16_t port = 0;
+  Listener listener;
+  std::unique_ptr<NextWiring> prepared;  ///< before it is in force
+  std::unique_ptr<Wiring> wiring;        ///< when it is
+  std::unique_ptr<Memory> memory;
+};
+
+}  // namespace coupler::node

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/node/station.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "common/map/fingerprint.hpp"
+#include "device/node/io_service.hpp"
+#include "device/node/servable.hpp"
+
+namespace coupler::node {
+namespace {
+
+/// Masters need not notice the change from one to the other.
+bool looks_the_same(const Duty& a, const Duty& b) {
+  return a.map->fingerprint == b.map->fingerprint && a.map->connection.unit == b.map->connection.unit &&
+         a.address == b.address && a.port == b.port;
+}
+
+}  // namespace
+
+void tell(Log& log, const Refusal& refusal) {
+  for (std::string_view errors = refusal.errors; !errors.empty();) {
+    const auto end = std::min(errors.find('\n'), errors.size());
+    log.fail(fmt::format("error: {}", errors.substr(0, end)));
+    errors.remove_prefix(std::min(end + 1, errors.size()));
+  }
+}
+
+tl::expected<void, Refusal> Station::start(const Map& map) {
+  auto first = prepare(map, nullptr);
+  if (!first) return tl::unexpected(std::move(first).error());
+  duty_ = *std::move(first);
+  duty_->wiring = duty_->prepared->take_over();
+  log_.write(greeting());
+  manager_.set_status(greeting());
+  return {};
+}
+
+/// The network first: outputs are not touched by a program that then cannot serve them.
+tl::expected<std::unique_ptr<Duty>, Refusal> Station::prepare(const Map& map, MapPtr owner) {
+  if (auto servable = check_servable(map); !servable)
+    return tl::unexpected(Refusal{Refusal::map_is_wrong, std::move(servable).error()});
+  auto guests = guests_of(map);
+  if (!guests) return tl::unexpected(Refusal{Refusal::map_is_wrong, std::move(guests).error()});
+
+  auto duty = std::make_unique<Duty>();
+  duty->owner = std::move(owner);
+  duty->map = &map;
+  duty->address = address_for(map, options_);
+  duty->port = options_.port.value_or(map.connection.port);
+  auto listener = listen(duty->address, duty->port);
+  if (!listener) return tl::unexpected(Refusal{Refusal::device_failed, std::move(listener).error()});
+  duty->listener = *std::move(listener);
+  duty->listener.guests = *std::move(guests);
+  auto wiring = prepare_wiring(map, options_.simulated, duty_ ? duty_->wiring.get() : nullptr, log_);
+  if (!wiring) return tl::unexpected(Refusal{Refusal::device_failed, std::move(wiring).error()});
+  duty->prepared = *std::move(wiring);
+  duty->memory = std::make_unique<Memory>(map, TimePoint::clock::now());
+  return duty;
+}
+
+tl::expected<Listener, std::string> Station::listen(const std::string& address, std::uint16_t port) {
+  if (duty_ && duty_->address == address && duty_->port == port) return duty_->listener.share();
+  auto listener = listen_on(address, port);
+  if (!listener && duty_ && duty_->port == port)
+    return tl::unexpected(listener.error() +
+                          "; this node listens on that port, and can change the address alone only when it "
+                          "is started anew");
+  return listener;
+}
+
+std::string Station::greeting() const {
+  const Map& map = *duty_->map;
+  return fmt::format("serving {} ({} point{}, fingerprint {}) on {}{}", map.name, map.points.size(),
+                     map.points.size() == 1 ? "" : "s", fingerprint_text(map.fingerprint),
+                     duty_->listener.name, options_.simulated ? ", simulated" : "");
+}
+
+bool Station::needs_keeper() const {
+  const auto is_wired = [](const Point& point) { return point.line.present(); };
+  return !options_.simulated && std::any_of(duty_->map->points.begin(), duty_->map->points.end(), is_wired);
+}
+
+bool Station::serve_alone(Loop& loop, Signals& signals) {
+  Pulse* const managed = manager_.is_there() ? &manager_ : nullptr;
+  for (std::vector<OpenConnection> clients; !needs_keeper(); change(clients)) {
+    IoService service(*duty_, loop, log_);
+    service.adopt(std::move(clients));
+    bool to_change = false;
+    service.run(
+        [&] {
+          if (signals.take_reload()) to_change = reload();
+          return to_change || signals.stop() != 0;
+        },
+        managed);
+    if (signals.stop() != 0) {
+      service.end(signals.stop());
+      return false;
+    }
+    clients = service.release();
+  }
+  return true;
+}
+
+int Station::serve(Superior& superior, std::vector<OpenConnection> clients) {
+  Loop loop;
+  if (!loop.is_open()) {
+    tell(log_, {Refusal::device_failed, std::strerror(errno)});
+    return Refusal::device_failed;
+  }
+  const Signals signals(loop);
+  superior.watch(loop);
+  IoService service(*duty_, loop, log_);
+  service.adopt(std::move(clients));
+  service.run([&] { return signals.stop() != 0 || superior.wants_room(); }, &superior);
+  if (signals.stop() != 0)
+    service.end(signals.stop());
+  else
+    for (const OpenConnection& client : service.release()) superior.give(client);
+  return 0;
+}
+
+bool Station::reload() {
+  if (!read_again_) {
+    log_.write("SIGHUP: the map of this node is built in, so there is nothing to read again");
+    return false;
+  }
+  manager_.reloading(TimePoint::clock::now());
+  if (const MapPtr map = read_again_(log_)) {
+    auto next = prepare(map->map(), map);
+    if (next) {
+      next_ = *std::move(next);
+      return true;
+    }
+    tell(log_, next.error());
+  }
+  log_.fail(fmt::format("the new map is refused; the old one goes on: {}", greeting()));
+  manager_.ready(greeting());
+  return false;
+}
+
+bool Station::look_after(TimePoint) {
+  return duty_->wiring->mend(duty_->memory->watchdog().state() == OutputWatchdog::State::expired);
+}
+
+void Station::change(std::vector<OpenConnection>& clients) {
+  if (!next_) return;
+  const bool same = looks_the_same(*duty_, *next_);
+  next_->memory->carry_over(*duty_->memory, TimePoint::clock::now());
+  next_->wiring = next_->prepared->take_over();
+  if (!same) clients.clear();
+  duty_ = std::exchange(next_, nullptr);
+  log_.write(
+      fmt::format("read the map again: {}{}", greeting(), same ? "" : "; masters have to connect again"));
+  manager_.ready(greeting());
+}
+
+bool Station::make_safe() {
+  const bool safe = duty_->wiring->lines().drive_safe();
+  duty_->memory->watchdog().disarm();
+  return safe;
+}
+
+}  // namespace coupler::node

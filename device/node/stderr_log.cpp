@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/node/stderr_log.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <syslog.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace coupler::node {
+namespace {
+
+/// The variable is inherited by processes whose stderr leads elsewhere.
+bool is_stderr(const char* stream) {
+  struct stat now {};
+  return stream != nullptr && ::fstat(STDERR_FILENO, &now) == 0 &&
+         fmt::format("{}:{}", now.st_dev, now.st_ino) == stream;
+}
+
+}  // namespace
+
+StderrLog::StderrLog(const char* journal_stream) : to_journal_(is_stderr(journal_stream)) {}
+
+void StderrLog::write(std::string_view line) { put(LOG_INFO, line); }
+void StderrLog::warn(std::string_view line) { put(LOG_WARNING, line); }
+void StderrLog::fail(std::string_view line) { put(LOG_ERR, line); }
+
+void StderrLog::put(int priority, std::string_view line) const {
+  if (to_journal_)
+    fmt::print(stderr, "<{}>{}\n", priority, line);
+  else
+    fmt::print(stderr, "coupler-node: {}\n", line);
+}
+
+}  // namespace coupler::node

@@ -1,0 +1,131 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# SIGHUP: the node reads its map again while a master writes and reads, and no line moves that did not change. Kept
+# outputs are pulled away from their levels and watched at their wires all the time.
+#   test/kernel/run test/kernel/reload.sh BUILD_DIR
+set -euo pipefail
+bin=$(realpath "${1:?the build folder}")/bin
+cd "$(dirname "$0")"
+# shellcheck source=plant.sh
+. ./plant.sh
+plant_chip
+map=/tmp/map.yaml
+cp reload.yaml "$map"
+
+io_process() { pgrep -P "$(pid node)"; }
+# How often the node said so before.
+times() { grep -cE -- "$1" "$(log node)" || true; }
+# Gives the node the map on stdin; the rest is check's: what it says then, and how often it said so before.
+reload_with() {
+  local said=$1 before
+  cat >"$map"
+  before=$(times "$said")
+  kill -HUP "$(pid node)"
+  wait_until 10 says node "$said" $((before + 1))
+}
+taken='read the map again: serving plant'
+refused='the new map is refused; the old one goes on'
+
+# Writes and reads back without a pause, on one connection as long as it lasts. Tells each lost one, and each answer that is
+# wrong; says "going" when the first round is done, and the number of rounds at the end.
+traffic() {
+  exec python3 -u -c '
+import signal, sys
+from pymodbus.client import ModbusTcpClient
+going = True
+def stop(*_):
+    global going
+    going = False
+signal.signal(signal.SIGTERM, stop)
+rounds = lost = 0
+client = ModbusTcpClient("127.0.0.1", port=1502, timeout=5, retries=0)
+client.connect()
+while going:
+    try:
+        answers = [client.write_coil(0, True), client.read_coils(0, 2), client.read_holding_registers(0, 1)]
+        if any(answer.isError() and not hasattr(answer, "exception_code") for answer in answers):
+            raise ConnectionError("no answer")
+        if any(answer.isError() for answer in answers) or answers[1].bits[:2] != [True, True] or answers[2].registers != [1234]:
+            print("wrong", *map(str, answers))
+    except Exception as error:
+        lost += 1
+        print("lost", repr(error))
+        client.close()
+        client.connect()
+    if rounds == 0:
+        print("going")
+    rounds += 1
+print("rounds", rounds, "lost", lost)
+'
+}
+
+plant_node "$map"
+check "a register is written" answered master -t 4 -r 0 127.0.0.1 -- 1234
+for coil in 0 1; do check "coil $coil is written" set_coil "$coil" 1; done
+sim_pull plant 0 down
+sim_pull plant 1 up
+sim_pull plant 3 up
+sim_pull plant 4 down
+expect "the first kept line is driven, against its pull" 1 "$(sim_value plant 0)"
+expect "the second, active-low, too" 0 "$(sim_value plant 1)"
+for _ in 1 2 3; do sim_pull plant 2 up; sleep 0.02; sim_pull plant 2 down; sleep 0.02; done
+expect "three presses are counted" 3 "$(read_one 3 0)"
+start wires watch_wires 0 1
+check "the kept lines are watched" wait_until 10 says wires armed
+start traffic traffic
+check "a master writes and reads" wait_until 30 says traffic going
+
+echo "# maps that are refused"
+before=$(io_process)
+check "one that is no map" reload_with "$refused" <<<'name: ['
+check "its place is told" says node 'map.yaml:[0-9]+:[0-9]+: error'
+check "a line that belongs to somebody else" reload_with "$refused" < <(sed 's/offset: 3}/offset: 6}/' reload.yaml)
+check "its holder is told" says node 'hog-a'
+check "a line that is not there" reload_with "$refused" < <(sed 's/line: BUTTON/line: BOTTON/' reload.yaml)
+check "an address that this machine has not" reload_with "$refused" < <(cat reload.yaml; echo 'listen: 192.0.2.1')
+check "another polarity of an output beside one that stays" reload_with "$refused" \
+  < <(sed 's/offset: 0}/offset: 0}, active_low: true/' reload.yaml)
+check "with the remedy" says node "point 'kept'.* start the node anew"
+check "a point in the identity area" reload_with "$refused" < <(sed 's/presses: {address: 0/presses: {address: 0xFF00/' reload.yaml)
+expect "the I/O process is the same after all of them" "$before" "$(io_process)"
+expect "nothing moved" 0 "$(sim_value plant 3)"
+
+echo "# a map that looks the same to masters: one output has another line"
+check "it is taken" reload_with "$taken" < <(sed 's/offset: 3}/offset: 5}, initial: on/' reload.yaml)
+sim_pull plant 5 down
+expect "the new line has its initial level, against its pull" 1 "$(sim_value plant 5)"
+expect "and its coil shows it" 1 "$(coil 2)"
+expect "the old line is in its safe state, against its pull" 1 "$(sim_pull plant 3 down; sim_value plant 3)"
+expect "counters go on" 3 "$(read_one 3 0)"
+sim_pull plant 2 up; sleep 0.02; sim_pull plant 2 down; sleep 0.02
+expect "and count" 4 "$(read_one 3 0)"
+refuse "the master did not notice" says traffic lost
+
+echo "# a map with other points"
+sed 's/leaves: .*/arrives: {address: 7, line: {chip: plant, offset: 7}, active_low: true, initial: on}/; s/line: BUTTON/line: BUTTON, active_low: true/; s/offset: 3}/offset: 5}/' \
+  reload.yaml >/tmp/other.yaml
+check "it is taken" reload_with "$taken" </tmp/other.yaml
+check "masters are told to look again" says node 'masters have to connect again'
+expect "the output that is not in it is in its safe state, against its pull" 1 "$(sim_value plant 4)"
+sim_pull plant 7 up
+check "the new one is driven, against its pull" level_is 7 0
+refuse "what is gone is not served" coil 3
+expect "the input has its new polarity" 1 "$(input 0)"
+check "the master found out" wait_until 5 says traffic lost
+
+echo "# again and again"
+before=$(times "$taken")
+for _ in {1..10}; do
+  check "there" reload_with "$taken" <reload.yaml
+  check "and back" reload_with "$taken" </tmp/other.yaml
+done
+expect "twenty times" $((before + 20)) "$(times "$taken")"
+
+echo "# the end"
+check "the traffic ends" stop traffic TERM
+refuse "no answer was wrong" says traffic wrong
+grep rounds "$(log traffic)"
+stop wires KILL || true
+refuse "no kept line moved, all the time" says wires changed
+check "the node ends well" stop node TERM
+cat "$(log node)"

@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# A chip is unplugged while it is served, and comes back under another number: Linux 6.1 does not give the old one again
+# when lines were held at that moment.
+#   test/kernel/run test/kernel/unplug.sh BUILD_DIR
+set -euo pipefail
+bin=$(realpath "${1:?the build folder}")/bin
+cd "$(dirname "$0")"
+# shellcheck source=plant.sh
+. ./plant.sh
+plant_chip
+
+exception_04() { grep -qi 'device or server failure' < <(answered "$@" 2>&1 || true); }
+press() { sim_pull plant 2 up; sleep 0.02; sim_pull plant 2 down; sleep 0.02; }
+lost='(failed: No such device)'
+back='works again'
+holds_no_line() { ! ls -l "/proc/$(pid node)/fd" "/proc/$(pgrep -P "$(pid node)")/fd" | grep gpio; }
+times() { grep -cE -- "$1" "$(log node)" || true; }
+
+plant_node reload.yaml
+check "an output is written" set_coil 0 1
+check "an active-low one too" set_coil 1 1
+check "a register too" answered master -t 4 -r 0 127.0.0.1 -- 1234
+press
+expect "a press is counted" 1 "$(read_one 3 0)"
+
+for round in 1 2; do
+  echo "# unplugged, round $round"
+  chip=$(sim_chip plant)
+  before=$(times "$lost")
+  sim_unplug plant
+  check "the node notices, though nobody asks" wait_until 5 says node "$lost" $((before + 3))
+  check "reading an input is answered with exception 04" exception_04 master -t 1 -r 0 -c 1 127.0.0.1
+  check "writing an output too" exception_04 master -t 0 -r 0 127.0.0.1 -- 0
+  expect "what is not wired is served as ever" 1234 "$(register 0)"
+  expect "an output shows what it was driven to" 1 "$(coil 0)"
+  expect "each loss is told once" $((before + 3)) "$(times "$lost")"
+  check "nothing of the chip is held" wait_until 5 holds_no_line
+  [ "$round" = 1 ] || sim_create stranger 4
+
+  before=$(times "$back")
+  sim_plug plant
+  sim_pull plant 0 down
+  sim_pull plant 1 up
+  check "outputs are driven as they were, against their pull" wait_until 5 level_is 0 1
+  check "of both polarities" wait_until 5 level_is 1 0
+  check "inputs are read" wait_until 5 input_is 0 0
+  sim_pull plant 2 up
+  check "and follow" wait_until 5 input_is 0 1
+  sim_pull plant 2 down
+  check "each return is told" wait_until 5 says node "$back" $((before + 3))
+  expect "once" $((before + 3)) "$(times "$back")"
+  check "outputs can be written" set_coil 0 1
+  counted=$(read_one 3 0)
+  press
+  expect "edges are counted" $((counted + 1)) "$(read_one 3 0)"
+  refuse "the chip has another number" test "$chip" = "$(sim_chip plant)"
+done
+
+echo "# somebody else takes a line before the node does"
+before=$(times 'is busy')
+sim_unplug plant
+check "the node notices" wait_until 5 says node "$lost" 9
+sim_hog plant 0 output-low thief
+sim_plug plant
+check "who holds it is told" wait_until 5 says node "held by 'thief'"
+check "inputs work all the same" wait_until 5 input_is 0 0
+check "the output's request is answered with exception 04" exception_04 master -t 0 -r 0 127.0.0.1 -- 1
+sleep 2
+expect "told once, not at each try" $((before + 1)) "$(times 'is busy')"
+refuse "no I/O process died" says node 'the I/O process'
+status=0; stop node TERM || status=$?
+expect "the node ends in order" 0 "$status"
+cat "$(log node)"
