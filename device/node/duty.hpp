@@ -5,6 +5,8 @@
 #include <string>
 
 #include "common/map/owned_map.hpp"
+#include "device/analogue/sysfs_channels.hpp"
+#include "device/core/hardware.hpp"
 #include "device/gpio/wiring.hpp"
 #include "device/net/listener.hpp"
 #include "device/node/memory.hpp"
@@ -21,6 +23,11 @@ struct Duty {
   std::unique_ptr<NextWiring> prepared;  ///< before it is in force
   std::unique_ptr<Wiring> wiring;        ///< when it is
   std::unique_ptr<Memory> memory;
+  std::unique_ptr<SysfsChannels> channels;   ///< null: no register has one
+  std::unique_ptr<AnaloguePoints> analogue;  ///< the points that have them; null as well
+
+  /// Once it is in force.
+  Hardware hardware() const { return {wiring->lines(), analogue.get()}; }
 };
 
 }  // namespace coupler::node

@@ -29,11 +29,11 @@ std::string farewell(int signal, bool safe, const Statistics& statistics) {
 }  // namespace
 
 IoService::IoService(const Duty& duty, Loop& loop, Log& log)
-    : lines_(duty.wiring->lines()),
+    : hardware_(duty.hardware()),
       loop_(loop),
       log_(log),
       statistics_(duty.memory->statistics()),
-      node_(*duty.map, lines_, *duty.memory),
+      node_(*duty.map, hardware_, *duty.memory),
       tcp_(loop, duty.listener, node_.server(), duty.memory->statistics(), log),
       now_(TimePoint::clock::now()),
       trips_(statistics_.watchdog_trips) {
@@ -54,7 +54,7 @@ void IoService::run(const std::function<bool()>& is_over, Pulse* pulse) {
 
 std::vector<OpenConnection> IoService::release() { return tcp_.release(); }
 
-void IoService::end(int signal) { log_.write(farewell(signal, lines_.drive_safe(), statistics_)); }
+void IoService::end(int signal) { log_.write(farewell(signal, hardware_.drive_safe(), statistics_)); }
 
 void IoService::turn(Patience at_most) {
   now_ = loop_.run_once(shorter(at_most, shorter(tcp_.patience(), node_.handler().patience(now_))));

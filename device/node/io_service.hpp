@@ -14,7 +14,7 @@
 
 namespace coupler::node {
 
-/// Answers masters with the lines of a map.
+/// Answers masters with the hardware of a map.
 class IoService {
  public:
   /// All of them outlive it. The duty is in force.
@@ -33,7 +33,7 @@ class IoService {
   void turn(std::optional<std::chrono::milliseconds> at_most);
   void log_trips();
 
-  Lines& lines_;
+  Hardware hardware_;
   Loop& loop_;
   Log& log_;
   std::deque<EdgeWatcher> watchers_;

@@ -10,8 +10,8 @@ namespace coupler::node {
 class Node {
  public:
   /// All of them outlive the node; the memory is of this map.
-  Node(const Map& map, Lines& lines, Memory& memory)
-      : handler_(map, memory.image(), lines, memory.statistics(), memory.watchdog(), memory.links()),
+  Node(const Map& map, Hardware hardware, Memory& memory)
+      : handler_(map, memory.image(), hardware, memory.statistics(), memory.watchdog(), memory.links()),
         server_(map.connection.unit, handler_, memory.statistics()) {}
 
   Handler& handler() { return handler_; }

@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "common/map/fingerprint.hpp"
+#include "device/analogue/open_channels.hpp"
+#include "device/analogue/sampler.hpp"
 #include "device/node/io_service.hpp"
 #include "device/node/servable.hpp"
 
@@ -35,6 +38,9 @@ tl::expected<void, Refusal> Station::start(const Map& map) {
   auto first = prepare(map, nullptr);
   if (!first) return tl::unexpected(std::move(first).error());
   duty_ = *std::move(first);
+  if (duty_->analogue && !duty_->analogue->drive_all())
+    return tl::unexpected(
+        Refusal{Refusal::device_failed, "not every analogue output can be driven to its initial value"});
   duty_->wiring = duty_->prepared->take_over();
   log_.write(greeting());
   manager_.set_status(greeting());
@@ -61,6 +67,12 @@ tl::expected<std::unique_ptr<Duty>, Refusal> Station::prepare(const Map& map, Ma
   if (!wiring) return tl::unexpected(Refusal{Refusal::device_failed, std::move(wiring).error()});
   duty->prepared = *std::move(wiring);
   duty->memory = std::make_unique<Memory>(map, TimePoint::clock::now());
+  if (options_.simulated) return duty;
+  auto channels = open_channels(map, log_);
+  if (!channels) return tl::unexpected(Refusal{Refusal::device_failed, std::move(channels).error()});
+  duty->channels = *std::move(channels);
+  if (duty->channels)
+    duty->analogue = std::make_unique<AnaloguePoints>(map, duty->memory->image(), *duty->channels);
   return duty;
 }
 
@@ -82,7 +94,7 @@ std::string Station::greeting() const {
 }
 
 bool Station::needs_keeper() const {
-  const auto is_wired = [](const Point& point) { return point.line.present(); };
+  const auto is_wired = [](const Point& point) { return point.line.present() || is_analogue(point); };
   return !options_.simulated && std::any_of(duty_->map->points.begin(), duty_->map->points.end(), is_wired);
 }
 
@@ -115,6 +127,8 @@ int Station::serve(Superior& superior, std::vector<OpenConnection> clients) {
   }
   const Signals signals(loop);
   superior.watch(loop);
+  std::optional<Sampler> sampler;
+  if (duty_->channels) sampler.emplace(*duty_->channels, Sampler::period_for(duty_->map->polling.rate));
   IoService service(*duty_, loop, log_);
   service.adopt(std::move(clients));
   service.run([&] { return signals.stop() != 0 || superior.wants_room(); }, &superior);
@@ -153,6 +167,9 @@ void Station::change(std::vector<OpenConnection>& clients) {
   const bool same = looks_the_same(*duty_, *next_);
   next_->memory->carry_over(*duty_->memory, TimePoint::clock::now());
   next_->wiring = next_->prepared->take_over();
+  if (duty_->channels) duty_->channels->give_way(next_->channels.get());
+  // Outputs that both have keep their value, which was carried over; what fails says so.
+  if (next_->analogue) (void)next_->analogue->drive_all();
   if (!same) clients.clear();
   duty_ = std::exchange(next_, nullptr);
   log_.write(
@@ -161,7 +178,7 @@ void Station::change(std::vector<OpenConnection>& clients) {
 }
 
 bool Station::make_safe() {
-  const bool safe = duty_->wiring->lines().drive_safe();
+  const bool safe = duty_->hardware().drive_safe();
   duty_->memory->watchdog().disarm();
   return safe;
 }

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/analogue/open_channels.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "device/analogue/sampler.hpp"
+#include "test/device/analogue/fake_sysfs.hpp"
+#include "test/device/core/fake_log.hpp"
+#include "test/fakes/map_builder.hpp"
+
+namespace coupler::node {
+namespace {
+
+using codec::Type;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Input register 0: voltage0 of "adc"; holding registers 0: its DAC, 1: a PWM.
+fakes::MapBuilder board() {
+  fakes::MapBuilder map;
+  map.add(Table::input_registers, "volts", 0, Type::INT, [](Point& p) { p.iio = {"adc", "voltage0"}; });
+  map.add(Table::holding_registers, "setpoint", 0, Type::UINT, [](Point& p) { p.iio = {"adc", "voltage0"}; });
+  map.add(Table::holding_registers, "fan", 1, Type::UINT, [](Point& p) {
+    p.pwm = {"pwmchip0", 0, microseconds(40)};
+  });
+  return map;
+}
+
+struct ChannelsOfAMap : testing::Test {
+  ChannelsOfAMap() {
+    sysfs.add_iio();
+    sysfs.add_pwm();
+  }
+
+  void open(MapPtr of) {
+    map = std::move(of);
+    auto opened = open_channels(map->map(), log, sysfs.root);
+    ASSERT_TRUE(opened) << opened.error();
+    channels = *std::move(opened);
+  }
+  std::string error(MapPtr of) {
+    map = std::move(of);
+    const auto opened = open_channels(map->map(), log, sysfs.root);
+    return opened ? "" : opened.error();
+  }
+  const Point& point(std::string_view name) const { return *find(map->map(), name); }
+
+  FakeSysfs sysfs;
+  FakeLog log;
+  MapPtr map;
+  std::unique_ptr<SysfsChannels> channels;
+};
+
+TEST_F(ChannelsOfAMap, Are_none_without_analogue_points) {
+  open(fakes::MapBuilder().many(Table::holding_registers, 0, 4).build());
+  EXPECT_EQ(nullptr, channels);
+}
+
+TEST_F(ChannelsOfAMap, Are_left_as_they_are_until_they_are_driven) {
+  sysfs.write(FakeSysfs::dac(), "77");
+  open(board().build());
+  EXPECT_EQ("77", sysfs.read(FakeSysfs::dac()));
+  EXPECT_EQ("0", sysfs.read(FakeSysfs::pwm("enable")));
+}
+
+TEST_F(ChannelsOfAMap, Are_driven_in_their_own_units) {
+  open(board().build());
+  EXPECT_EQ(Channels::Outcome::done, channels->drive(point("setpoint"), 2));
+  EXPECT_EQ(Channels::Outcome::done, channels->drive(point("fan"), 75));
+  EXPECT_EQ("4000", sysfs.read(FakeSysfs::dac()));
+  EXPECT_EQ("30000", sysfs.read(FakeSysfs::pwm("duty_cycle")));
+}
+
+TEST_F(ChannelsOfAMap, Accept_what_they_can_be_driven_to) {
+  open(board().build());
+  EXPECT_TRUE(channels->accepts(point("fan"), 100));
+  EXPECT_FALSE(channels->accepts(point("fan"), 100.1));
+  EXPECT_FALSE(channels->accepts(point("fan"), -0.1));
+  EXPECT_FALSE(channels->accepts(point("setpoint"), 3));
+}
+
+TEST_F(ChannelsOfAMap, That_fail_are_logged_once_per_change) {
+  open(board().build());
+  sysfs.remove("class");
+  EXPECT_EQ(Channels::Outcome::failed, channels->drive(point("fan"), 10));
+  EXPECT_EQ(Channels::Outcome::failed, channels->drive(point("fan"), 20));
+  sysfs.add_pwm();
+  EXPECT_EQ(Channels::Outcome::done, channels->drive(point("fan"), 10));
+  EXPECT_THAT(log.lines, ElementsAre(HasSubstr("pwmchip0 (fan) channel 0 failed: No such file or directory"),
+                                     "pwmchip0 (fan) channel 0 works again"));
+}
+
+TEST_F(ChannelsOfAMap, Are_sampled_while_there_is_a_sampler) {
+  open(board().build());
+  EXPECT_EQ(std::nullopt, channels->read(point("volts"), TimePoint::clock::now()));
+  const Sampler sampler(*channels, milliseconds(1));
+  EXPECT_DOUBLE_EQ(0.4, channels->read(point("volts"), TimePoint::clock::now()).value_or(-1));
+  sysfs.write("bus/iio/devices/iio:device0/in_voltage0_raw", "2200");
+  double seen = 0;
+  for (int i = 0; i < 1000 && seen != 1; ++i) {
+    std::this_thread::sleep_for(milliseconds(5));
+    seen = channels->read(point("volts"), TimePoint::clock::now()).value_or(seen);
+  }
+  EXPECT_DOUBLE_EQ(1, seen);
+  EXPECT_THAT(log.lines, IsEmpty());
+}
+
+TEST_F(ChannelsOfAMap, That_hold_no_number_cannot_be_read_and_say_so_once) {
+  open(board().build());
+  sysfs.write("bus/iio/devices/iio:device0/in_voltage0_raw", "none");
+  const Sampler sampler(*channels, milliseconds(1));
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(std::nullopt, channels->read(point("volts"), TimePoint::clock::now()));
+  EXPECT_THAT(log.lines, ElementsAre(HasSubstr("iio:device0 (adc) voltage0 failed: ")));
+}
+
+TEST_F(ChannelsOfAMap, That_cannot_be_had_are_all_told_in_one_run) {
+  sysfs.remove("bus");
+  EXPECT_THAT(error(board().build()), testing::MatchesRegex("point 'volts': .*\npoint 'setpoint': [^\n]*"));
+}
+
+TEST_F(ChannelsOfAMap, Have_initial_and_safe_values_that_they_can_be_driven_to) {
+  auto wrong = board();
+  const auto too_much = wrong.keep({101});
+  wrong.add(Table::holding_registers, "second", 2, Type::UINT, [&](Point& p) {
+    p.pwm = {"pwmchip0", 0, microseconds(40)};
+    p.initial = too_much;
+    p.safe = Safe::on;
+    p.safe_value = too_much;
+  });
+  const std::string said = error(wrong.build());
+  EXPECT_THAT(said, HasSubstr("point 'second': pwmchip0 (fan) channel 0 is the channel of point 'fan' too"));
+  EXPECT_THAT(said, HasSubstr("initial value 101; set 'initial' to one in its range, 0 … 100 %"));
+  EXPECT_THAT(said, HasSubstr("safe value 101"));
+}
+
+TEST(SamplingPeriod, Is_that_of_the_map_within_limits) {
+  EXPECT_EQ(milliseconds(100), Sampler::period_for(10));
+  EXPECT_EQ(Sampler::shortest, Sampler::period_for(1e6));
+  EXPECT_EQ(Sampler::longest, Sampler::period_for(0.001));
+}
+
+}  // namespace
+}  // namespace coupler::node
