@@ -31,7 +31,7 @@ Cost cost_of(const ReadSpan& span, const Link& link) {
   cost.requests = 1;
   (holds_bits(span.table) ? cost.bits : cost.registers) = count;
   cost.bytes = 2 * modbus::mbap_size + request_pdu + reply_head + values;
-  cost.time = link.round_trip + link.pause + values * byte_time;
+  cost.time = link.round_trip + link.pause + values * link.byte_time;
   return cost;
 }
 

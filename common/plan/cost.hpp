@@ -14,10 +14,9 @@ struct Link {
   std::chrono::nanoseconds round_trip = std::chrono::milliseconds(1);
   /// The pause that the device needs before the next request: Limits::request_gap.
   std::chrono::nanoseconds pause{0};
+  /// For every byte of values in a reply: at 100 Mbit/s.
+  std::chrono::nanoseconds byte_time{80};
 };
-
-/// Every byte of values in a reply, at 100 Mbit/s.
-constexpr std::chrono::nanoseconds byte_time{80};
 
 /// The bytes of values in the reply (MAP 6.1 to 6.4).
 std::uint32_t value_bytes(Table table, std::uint32_t count);
@@ -28,7 +27,7 @@ struct Cost {
   std::size_t registers = 0;
   std::size_t bits = 0;
   std::size_t bytes = 0;  ///< ADUs of requests and replies (TCP 3.1); what carries them not counted
-  /// round trip + pause + byte_time × value bytes for each request, one after the other.
+  /// round_trip + pause + byte_time × value bytes for each request, one after the other.
   std::chrono::nanoseconds time{0};
 
   Cost& operator+=(const Cost& other);

@@ -23,7 +23,7 @@ Strategy strategy(std::string_view name, const Polling& polling, const Map& map,
 
 /// The widest hole that is read faster than a request is made, plus one; never wider than a request.
 std::uint16_t widest_gap(Table table, const Link& link) {
-  const auto request = (link.round_trip + link.pause) / byte_time;  // in bytes of values
+  const auto request = (link.round_trip + link.pause) / link.byte_time;  // in bytes of values
   const auto addresses = holds_bits(table) ? 8 * request : request / 2;
   const auto limit = holds_bits(table) ? modbus::max_read_bits : modbus::max_read_registers;
   return static_cast<std::uint16_t>(std::clamp<decltype(addresses)>(addresses, 1, limit));
