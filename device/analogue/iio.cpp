@@ -74,7 +74,7 @@ struct Found {
   std::string channel;
   std::string file;  ///< of the value
 
-  std::string described() const { return fmt::format("{} {}", device.described(), channel); }
+  std::string described() const { return fmt::format("{} {}put {}", device.described(), direction, channel); }
 };
 
 /// The channels' names, from those of their files.

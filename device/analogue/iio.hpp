@@ -14,7 +14,7 @@ namespace coupler::node {
 /// An ADC or sensor.
 struct IioInput {
   std::string device;  ///< "iio:device0"
-  std::string name;    ///< for the log: "iio:device0 (adc) voltage0"
+  std::string name;    ///< for the log: "iio:device0 (adc) input voltage0"
   Attribute file;
   double gain = 1;
   double offset = 0;

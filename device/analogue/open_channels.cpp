@@ -38,7 +38,7 @@ class Opener {
   tl::expected<std::unique_ptr<SysfsChannels>, std::string> finish(Log& log) {
     if (!errors_.empty()) return tl::unexpected(std::move(errors_));
     if (inputs_.empty() && outputs_.empty()) return nullptr;
-    return std::make_unique<SysfsChannels>(std::move(inputs_), std::move(outputs_), log);
+    return std::make_unique<SysfsChannels>(sysfs_, std::move(inputs_), std::move(outputs_), log);
   }
 
  private:

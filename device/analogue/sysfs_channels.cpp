@@ -32,8 +32,9 @@ const std::string& name_of(const WiredOutput& output) {
   return std::get<PwmOutput>(output.channel).name();
 }
 
-SysfsChannels::SysfsChannels(std::vector<WiredInput> inputs, std::vector<WiredOutput> outputs, Log& log)
-    : errors_(inputs.size() + outputs.size()), outputs_(std::move(outputs)) {
+SysfsChannels::SysfsChannels(std::string sysfs, std::vector<WiredInput> inputs,
+                             std::vector<WiredOutput> outputs, Log& log)
+    : sysfs_(std::move(sysfs)), errors_(inputs.size() + outputs.size()), outputs_(std::move(outputs)) {
   faults_.reserve(inputs.size() + outputs_.size());
   for (WiredInput& input : inputs) {
     faults_.emplace_back(input.channel.name, errors_[faults_.size()], log);
@@ -78,6 +79,28 @@ void SysfsChannels::give_way(const SysfsChannels* successor) {
   for (const WiredOutput& output : outputs_)
     if (!goes_on(output) && output.point->safe != Safe::hold)
       (void)drive(*output.point, safe_value_of(*output.point));
+}
+
+std::vector<const Point*> SysfsChannels::mend() {
+  std::vector<const Point*> mended;
+  const auto replace = [&](const Point& point, auto& channel, auto again) {
+    if (!again) return;
+    channel = *std::move(again);
+    mended.push_back(&point);
+  };
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    WiredInput& input = inputs_[i].wired;
+    if (errors_[i] == ENODEV) replace(*input.point, input.channel, open_iio_input(sysfs_, input.point->iio));
+  }
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const Point& point = *outputs_[i].point;
+    if (errors_[inputs_.size() + i] != ENODEV) continue;
+    if (point.iio.present())
+      replace(point, outputs_[i].channel, open_iio_output(sysfs_, point.iio));
+    else
+      replace(point, outputs_[i].channel, PwmOutput::open(sysfs_, point.pwm));
+  }
+  return mended;
 }
 
 }  // namespace coupler::node

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -39,7 +40,9 @@ class SysfsChannels : public Channels {
     Latest latest;
   };
 
-  SysfsChannels(std::vector<WiredInput> inputs, std::vector<WiredOutput> outputs, Log& log);
+  /// `sysfs` is where they were found.
+  SysfsChannels(std::string sysfs, std::vector<WiredInput> inputs, std::vector<WiredOutput> outputs,
+                Log& log);
 
   std::optional<double> read(const Point& input, TimePoint now) override;
   bool accepts(const Point& output, double value) const override;
@@ -48,11 +51,16 @@ class SysfsChannels : public Channels {
   /// Drives outputs that its successor (may be null) does not have to their safe state.
   void give_way(const SysfsChannels* successor);
 
+  /// Finds channels again whose device was unplugged and is back; tells which. Processes that were forked
+  /// before do not know of it.
+  std::vector<const Point*> mend();
+
   std::deque<Sampled>& inputs() { return inputs_; }
 
  private:
   std::size_t index_of(const Point& output) const;
 
+  std::string sysfs_;
   SharedArray<int> errors_;  ///< the last of each input, then of each output
   std::deque<Sampled> inputs_;
   std::vector<WiredOutput> outputs_;

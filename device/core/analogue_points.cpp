@@ -87,24 +87,25 @@ void AnaloguePoints::restore(Range holding, const Point& end) {
   });
 }
 
+bool AnaloguePoints::drive(const Point& output, bool safe) {
+  std::uint16_t* registers = image_.find(output.table, range(output)).data();
+  const bool to_safe_value = safe && output.safe != Safe::hold;
+  const double value = to_safe_value ? safe_value_of(output) : value_in(output, registers);
+  if (!std::isfinite(value) || channels_.drive(output, value) != Outcome::done) return false;
+  if (to_safe_value) put_value(value, output, registers);
+  return true;
+}
+
 bool AnaloguePoints::drive_all() {
   bool good = true;
-  each_output(map_, [&](const Point& output) {
-    const double value = value_in(output, image_.find(output.table, range(output)).data());
-    good &= std::isfinite(value) && channels_.drive(output, value) == Outcome::done;
-  });
+  each_output(map_, [&](const Point& output) { good &= drive(output, false); });
   return good;
 }
 
 bool AnaloguePoints::drive_safe() {
   bool good = true;
   each_output(map_, [&](const Point& output) {
-    if (output.safe == Safe::hold) return;
-    const double value = safe_value_of(output);
-    if (channels_.drive(output, value) == Outcome::done)
-      put_value(value, output, image_.find(output.table, range(output)).data());
-    else
-      good = false;
+    if (output.safe != Safe::hold) good &= drive(output, true);
   });
   return good;
 }

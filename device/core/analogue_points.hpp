@@ -32,6 +32,9 @@ class AnaloguePoints {
   /// Drives every output to what the image says. Tries all of them; false if one cannot be driven.
   [[nodiscard]] bool drive_all();
 
+  /// Drives one output to its safe state, if `safe`, or else to what the image says. False if it cannot be.
+  [[nodiscard]] bool drive(const Point& output, bool safe);
+
   /// Drives every output to its safe state (`hold` stays), and the image shows it. Tries all of them; false
   /// if one cannot be driven.
   [[nodiscard]] bool drive_safe();

@@ -26,6 +26,16 @@ struct Duty {
   std::unique_ptr<SysfsChannels> channels;   ///< null: no register has one
   std::unique_ptr<AnaloguePoints> analogue;  ///< the points that have them; null as well
 
+  /// Channels whose device is back are used again, outputs driven as they were before, or safe if `safe`.
+  /// True: there are some.
+  bool mend_channels(bool safe) {
+    if (!channels) return false;
+    const auto mended = channels->mend();
+    for (const Point* point : mended)
+      if (is_writable(point->table)) (void)analogue->drive(*point, safe);
+    return !mended.empty();
+  }
+
   /// Once it is in force.
   Hardware hardware() const { return {wiring->lines(), analogue.get()}; }
 };

@@ -159,7 +159,10 @@ bool Station::reload() {
 }
 
 bool Station::look_after(TimePoint) {
-  return duty_->wiring->mend(duty_->memory->watchdog().state() == OutputWatchdog::State::expired);
+  const bool safe = duty_->memory->watchdog().state() == OutputWatchdog::State::expired;
+  const bool lines = duty_->wiring->mend(safe);
+  const bool channels = duty_->mend_channels(safe);
+  return lines || channels;
 }
 
 void Station::change(std::vector<OpenConnection>& clients) {

@@ -115,7 +115,7 @@ TEST_F(ChannelsOfAMap, That_hold_no_number_cannot_be_read_and_say_so_once) {
   const Sampler sampler(*channels, milliseconds(1));
   for (int i = 0; i < 3; ++i)
     EXPECT_EQ(std::nullopt, channels->read(point("volts"), TimePoint::clock::now()));
-  EXPECT_THAT(log.lines, ElementsAre(HasSubstr("iio:device0 (adc) voltage0 failed: ")));
+  EXPECT_THAT(log.lines, ElementsAre(HasSubstr("iio:device0 (adc) input voltage0 failed: ")));
 }
 
 TEST_F(ChannelsOfAMap, That_cannot_be_had_are_all_told_in_one_run) {

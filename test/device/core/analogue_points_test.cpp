@@ -201,6 +201,16 @@ TEST(AnaloguePoints, At_the_start_outputs_are_driven_to_what_the_image_says) {
   EXPECT_THAT(node.channels.driven, ElementsAre(Pair(0, 20), Pair(1, 0)));
 }
 
+TEST(AnaloguePoints, One_output_is_driven_as_the_image_says_or_to_its_safe_state) {
+  NodeUnderTest node(board().build());
+  node.ask(write(4, {50, 60}));
+  node.channels.driven.clear();
+  for (const char* name : {"lamp", "pump"}) EXPECT_TRUE(node.analogue.drive(*find(node.map, name), false));
+  for (const char* name : {"lamp", "pump"}) EXPECT_TRUE(node.analogue.drive(*find(node.map, name), true));
+  EXPECT_THAT(node.channels.driven, ElementsAre(Pair(4, 50), Pair(5, 60), Pair(4, 50), Pair(5, 30)));
+  EXPECT_EQ(reply(3, {50, 30}), node.ask(pdu(3, {4, 2})));
+}
+
 TEST(AnaloguePoints, A_write_to_an_output_arms_the_watchdog_which_drives_lines_and_channels) {
   auto map = board();
   map.watchdog({std::chrono::milliseconds(500), Watchdog::FedBy::any, Watchdog::Recovery::manual});
