@@ -14,7 +14,7 @@ master() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 502 "$@"; }
 quietly() { local output; output=$("$@" 2>&1) || { echo "$output"; return 1; }; }
 property() { systemctl show --value -p "$1" "$unit"; }
 is() { [ "$(property "$1")" = "$2" ]; }
-in_journal() { journalctl -u "$unit" -o cat --no-pager | grep -E -- "$1"; }
+in_journal() { grep -qE -- "$1" <<<"$(journalctl -u "$unit" -o cat --no-pager "${@:2}")"; }
 keeper() { property MainPID; }
 io_process() { pgrep -P "$(keeper)"; }
 of_process() { sed -nE "s/^$2:[[:space:]]*(.*)/\1/p" "/proc/$1/status"; }
@@ -56,6 +56,8 @@ for process in "$(keeper)" "$(io_process)"; do
   check "$name is in group gpio" grep -qw "$(getent group gpio | cut -d: -f3)" <<<"$(of_process "$process" Groups)"
   expect "$name may bind port 502 and nothing else that root may" 0000000000000400 "$(of_process "$process" CapEff)"
   expect "$name can gain nothing" "0000000000000400 1" "$(of_process "$process" CapBnd) $(of_process "$process" NoNewPrivs)"
+  resident=$(of_process "$process" VmRSS)
+  check "$name has at most 6 MiB resident: $resident" test "${resident% kB}" -le 6144
   expect "$name has a filter of system calls" 2 "$(of_process "$process" Seccomp)"
 done
 check "it answers on port 502" wait_until 5 serves
@@ -66,6 +68,21 @@ sim_pull plant 1 down
 check "an output is written" set_coil 0 0
 check "and another" set_coil 1 1
 expect "the chip has them" "0 1" "$(sim_value plant 0) $(sim_value plant 1)"
+
+echo "# reloaded"
+before=$(keeper)
+sed 's/^  coils:/&\n    spare: 5/' node.yaml >/etc/coupler/node.yaml
+check "systemd passes it on" systemctl reload "$unit"
+check "a point that is new is served" wait_until 10 set_coil 5 1
+check "the journal tells" in_journal '^read the map again: serving plant \(5 points'
+echo 'name: [' >/etc/coupler/node.yaml
+systemctl reload "$unit"
+check "a wrong map is refused" wait_until 10 in_journal '^the new map is refused; the old one goes on'
+expect "the service is as active as before" "active running" "$(property ActiveState) $(property SubState)"
+check "and serves the map that it had" set_coil 5 0
+expect "outputs are as they were" "0 1" "$(sim_value plant 0) $(sim_value plant 1)"
+expect "by the same keeper" "$before" "$(keeper)"
+cp node.yaml /etc/coupler/node.yaml
 
 echo "# the sandbox, from inside"
 install sandbox.sh /usr/local/bin/probe-sandbox # this tree may be in /tmp, which the service does not see
@@ -105,6 +122,8 @@ check "at once" [ $(($(microseconds) - started)) -lt 5000000 ]
 expect "with success" "inactive success 0" "$(property ActiveState) $(property Result) $(property ExecMainStatus)"
 check "it says that outputs are in their safe state" in_journal 'Terminated: outputs are in their safe state'
 refuse "no process is left" pgrep coupler-node
+refuse "no line in the journal repeats name or priority" in_journal '^(<[0-9]>|coupler-node: )'
+check "what is wrong is in the journal as an error" in_journal 'error: ' -p err
 echo "# the journal of the service:"
 journalctl -u "$unit" -o short-monotonic --no-pager | sed 's/^/#   /'
 
