@@ -145,7 +145,7 @@ bool Station::reload() {
     return false;
   }
   manager_.reloading(TimePoint::clock::now());
-  if (const MapPtr map = read_again_(log_)) {
+  if (const MapPtr map = read_again_()) {
     auto next = prepare(map->map(), map);
     if (next) {
       next_ = *std::move(next);

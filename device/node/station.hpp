@@ -15,8 +15,8 @@
 
 namespace coupler::node {
 
-/// Reads the map again; null after telling the log what is wrong with it.
-using ReadAgain = std::function<MapPtr(Log&)>;
+/// Reads the map again; null after telling what is wrong with it.
+using ReadAgain = std::function<MapPtr()>;
 
 /// Why a map is not served.
 struct Refusal {

@@ -11,6 +11,8 @@
 namespace coupler::node {
 namespace {
 
+constexpr std::string_view speaker = "coupler-node: ";
+
 /// The variable is inherited by processes whose stderr leads elsewhere.
 bool is_stderr(const char* stream) {
   struct stat now {};
@@ -22,15 +24,20 @@ bool is_stderr(const char* stream) {
 
 StderrLog::StderrLog(const char* journal_stream) : to_journal_(is_stderr(journal_stream)) {}
 
-void StderrLog::write(std::string_view line) { put(LOG_INFO, line); }
-void StderrLog::warn(std::string_view line) { put(LOG_WARNING, line); }
-void StderrLog::fail(std::string_view line) { put(LOG_ERR, line); }
+void StderrLog::write(std::string_view line) { put(LOG_INFO, speaker, line); }
+void StderrLog::warn(std::string_view line) { put(LOG_WARNING, speaker, line); }
+void StderrLog::fail(std::string_view line) { put(LOG_ERR, speaker, line); }
 
-void StderrLog::put(int priority, std::string_view line) const {
+void StderrLog::tell(const Diagnostic& diagnostic) {
+  const bool is_error = diagnostic.severity == Diagnostic::Severity::error;
+  put(is_error ? LOG_ERR : LOG_WARNING, "", to_string(diagnostic));
+}
+
+void StderrLog::put(int priority, std::string_view who, std::string_view line) const {
   if (to_journal_)
     fmt::print(stderr, "<{}>{}\n", priority, line);
   else
-    fmt::print(stderr, "coupler-node: {}\n", line);
+    fmt::print(stderr, "{}{}\n", who, line);
 }
 
 }  // namespace coupler::node

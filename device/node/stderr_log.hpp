@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/map/diagnostic.hpp"
 #include "device/core/log.hpp"
 
 namespace coupler::node {
@@ -16,9 +17,11 @@ class StderrLog : public Log {
   void write(std::string_view line) override;
   void warn(std::string_view line) override;
   void fail(std::string_view line) override;
+  /// As compilers tell them, for editors.
+  void tell(const Diagnostic& diagnostic);
 
  private:
-  void put(int priority, std::string_view line) const;
+  void put(int priority, std::string_view who, std::string_view line) const;
 
   bool to_journal_;
 };

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clients that one server lets go and another one goes on with.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "test/device/net/tcp_under_test.hpp"
+
+namespace coupler::node {
+namespace {
+
+using testing::ElementsAreArray;
+
+struct HandedOver : testing::Test {
+  /// From one node to the other.
+  void hand_over() {
+    std::vector<OpenConnection> clients = one.tcp.release();
+    EXPECT_EQ(one.tcp.size(), 0U);
+    other.tcp.adopt(std::move(clients), TimePoint::clock::now());
+    other.settle();
+  }
+  TcpUnderTest one;
+  TcpUnderTest other;
+};
+
+TEST_F(HandedOver, A_client_notices_nothing) {
+  Client client = one.connect();
+  client.send(question(1));
+  one.settle();
+  EXPECT_THAT(client.received(), ElementsAreArray(answer_to(1)));
+  hand_over();
+  client.send(question(2));
+  other.settle();
+  EXPECT_THAT(client.received(), ElementsAreArray(answer_to(2)));
+  EXPECT_EQ(other.tcp.size(), 1U);
+}
+
+TEST_F(HandedOver, Half_a_request_is_completed_by_the_other_half) {
+  Client client = one.connect();
+  const Pdu whole = question(7);
+  client.send(Pdu(whole.begin(), whole.begin() + 5));
+  one.settle();
+  hand_over();
+  client.send(Pdu(whole.begin() + 5, whole.end()));
+  other.settle();
+  EXPECT_THAT(client.received(), ElementsAreArray(answer_to(7)));
+}
+
+TEST_F(HandedOver, Whole_requests_that_wait_behind_replies_are_answered_in_order_and_none_is_lost) {
+  Client client = one.connect();
+  // Until the kernel keeps no more replies for a client that does not read.
+  const Pdu long_question = adu(0, pdu(3, {0, 125}));
+  std::uint32_t asked = 0;
+  while (asked < one.node.statistics.requests + 500 && client.send(long_question)) {
+    ++asked;
+    one.loop.run_once(std::chrono::milliseconds(0));
+  }
+  one.settle();
+  const std::uint32_t before = one.node.statistics.requests;
+  ASSERT_LT(before, asked);
+  hand_over();
+  std::size_t answered = 0;
+  for (int quiet = 0; quiet < 20;) {
+    const std::size_t size = client.received().size();
+    answered += size;
+    quiet = size == 0 ? quiet + 1 : 0;
+    other.loop.run_once(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(answered, asked * std::size_t{259});
+  EXPECT_EQ(one.node.statistics.requests + other.node.statistics.requests, asked);
+}
+
+TEST(HandingOver, Who_may_not_connect_any_more_is_not_taken_over) {
+  TcpUnderTest one;
+  TcpUnderTest other(8, GuestList({*parse_network("192.0.2.0/24")}));
+  const Client client = one.connect();
+  other.tcp.adopt(one.tcp.release(), TimePoint::clock::now());
+  EXPECT_EQ(other.tcp.size(), 0U);
+  EXPECT_EQ(other.node.statistics.refusals, 1U);
+}
+
+TEST(HandingOver, Who_has_written_feeds_the_watchdog_of_the_next) {
+  TcpUnderTest one;
+  Client client = one.connect();
+  client.send(adu(1, pdu(6, {0, 5})));
+  one.settle();
+  const auto clients = one.tcp.release();
+  ASSERT_EQ(clients.size(), 1U);
+  EXPECT_TRUE(clients[0].has_written);
+}
+
+}  // namespace
+}  // namespace coupler::node

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <utility>
+
+#include "device/node/station.hpp"
+#include "test/device/core/fake_log.hpp"
+#include "test/fakes/map_builder.hpp"
+
+namespace coupler::node {
+namespace {
+
+using codec::Type;
+using fakes::MapBuilder;
+using modbus::Range;
+using testing::Contains;
+using testing::HasSubstr;
+
+Options simulated() {
+  Options options;
+  options.simulated = true;
+  options.port = 0;
+  return options;
+}
+
+/// A simulated node with lamp and speed, and a map that it reads at the next reload.
+class Simulated : public testing::Test {
+ protected:
+  Simulated() { EXPECT_TRUE(station_.start(first_->map()).has_value()); }
+
+  static MapBuilder plant() {
+    MapBuilder builder("plant");
+    builder.add(Table::coils, "lamp", 0, Type::BOOL).add(Table::holding_registers, "speed", 0, Type::INT);
+    return builder;
+  }
+  /// What is left of one client.
+  std::size_t reload() {
+    EXPECT_TRUE(station_.reload());
+    std::vector<OpenConnection> clients(1);
+    station_.change(clients);
+    return clients.size();
+  }
+
+  MapPtr first_ = plant().build();
+  MapPtr next_;
+  Options options_ = simulated();
+  FakeLog log_;
+  ServiceManager nobody_{nullptr, nullptr};
+  Station station_{options_, [this] { return next_; }, nobody_, log_};
+};
+
+TEST_F(Simulated, A_map_that_looks_the_same_keeps_the_clients) {
+  next_ = plant().build();
+  EXPECT_EQ(reload(), 1U);
+  EXPECT_THAT(log_.lines, Contains(HasSubstr("read the map again: serving plant (2 points")));
+}
+
+TEST_F(Simulated, Another_map_sends_them_away) {
+  next_ = plant().add(Table::coils, "horn", 1, Type::BOOL).build();
+  EXPECT_EQ(reload(), 0U);
+  EXPECT_THAT(log_.lines, Contains(HasSubstr("masters have to connect again")));
+}
+
+TEST_F(Simulated, Another_unit_id_too) {
+  next_ = plant().unit(7).build();
+  EXPECT_EQ(reload(), 0U);
+}
+
+TEST_F(Simulated, A_map_that_cannot_be_read_is_refused) {
+  EXPECT_FALSE(station_.reload());
+  EXPECT_THAT(log_.lines, Contains(HasSubstr("the new map is refused; the old one goes on: serving plant")));
+}
+
+TEST_F(Simulated, A_map_that_no_node_can_serve_is_refused) {
+  next_ = plant().add(Table::input_registers, "high", 0xFF00, Type::INT).build();
+  EXPECT_FALSE(station_.reload());
+  EXPECT_THAT(log_.lines, Contains(HasSubstr("point 'high'")));
+}
+
+TEST_F(Simulated, An_address_that_is_not_this_machines_is_refused) {
+  options_.listen = "192.0.2.1";
+  next_ = plant().build();
+  EXPECT_FALSE(station_.reload());
+  EXPECT_THAT(log_.lines, Contains(HasSubstr("cannot listen on 192.0.2.1")));
+}
+
+TEST_F(Simulated, Lines_that_cannot_be_had_are_refused) {
+  options_.simulated = false;
+  options_.listen = "127.0.0.1";
+  next_ = plant()
+              .add(Table::coils, "horn", 1, Type::BOOL, [](Point& p) { p.line.chip = "no-such-chip"; })
+              .build();
+  EXPECT_FALSE(station_.reload());
+  EXPECT_THAT(log_.lines, Contains(HasSubstr("point 'horn'")));
+}
+
+TEST(BuiltIn, A_node_without_a_file_ignores_the_wish_to_reload) {
+  const Options options = simulated();
+  FakeLog log;
+  ServiceManager nobody(nullptr, nullptr);
+  Station station(options, {}, nobody, log);
+  const MapPtr map = MapBuilder().many(Table::coils, 0, 1).build();
+  ASSERT_TRUE(station.start(map->map()).has_value());
+  EXPECT_FALSE(station.reload());
+  EXPECT_THAT(log.lines.back(), HasSubstr("built in"));
+}
+
+}  // namespace
+}  // namespace coupler::node

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "device/node/stderr_log.hpp"
+
+namespace coupler::node {
+namespace {
+
+std::string stderr_stream() {
+  struct stat now {};
+  EXPECT_EQ(::fstat(STDERR_FILENO, &now), 0);
+  return std::to_string(now.st_dev) + ":" + std::to_string(now.st_ino);
+}
+
+/// What the log says of one event of each kind.
+std::string said(const char* journal_stream, bool is_really = false) {
+  testing::internal::CaptureStderr();
+  const std::string stream = is_really ? stderr_stream() : "";
+  StderrLog log(is_really ? stream.c_str() : journal_stream);
+  log.write("serving");
+  log.warn("lost");
+  log.fail("refused");
+  log.tell({Diagnostic::Severity::error, "map.yaml", 3, 7, "wrong", "mend it"});
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(StderrLog, People_see_who_speaks_and_diagnostics_as_editors_know_them) {
+  const std::string expected =
+      "coupler-node: serving\ncoupler-node: lost\ncoupler-node: refused\nmap.yaml:3:7: error: wrong; mend "
+      "it\n";
+  EXPECT_EQ(said(nullptr), expected);
+  EXPECT_EQ(said("1:2"), expected) << "a journal that stderr does not lead to";
+  EXPECT_EQ(said("nonsense"), expected);
+}
+
+TEST(StderrLog, The_journal_sees_how_important_it_is) {
+  EXPECT_EQ(said(nullptr, true), "<6>serving\n<4>lost\n<3>refused\n<3>map.yaml:3:7: error: wrong; mend it\n");
+}
+
+}  // namespace
+}  // namespace coupler::node
