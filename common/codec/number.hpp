@@ -87,4 +87,44 @@ constexpr std::uint16_t encode_part(std::uint8_t value, const Format& format) {
   return m == 0xFF00 ? static_cast<std::uint16_t>(value << 8) : std::uint16_t{value};
 }
 
+/// The value of a type of any width.
+template <class T>
+T take(const Format& format, const std::uint16_t* registers) {
+  if constexpr (sizeof(T) == 1)
+    return static_cast<T>(decode_part(registers[0], format));
+  else
+    return decode<T>(registers, format.order);
+}
+
+/// Writes a value of any width; the other bits of a shared register stay.
+template <class T>
+void put(T value, const Format& format, std::uint16_t* registers) {
+  if constexpr (sizeof(T) == 1) {
+    const auto kept = static_cast<std::uint16_t>(registers[0] & ~mask(format));
+    registers[0] = static_cast<std::uint16_t>(kept | encode_part(static_cast<std::uint8_t>(value), format));
+  } else {
+    encode(value, format.order, registers);
+  }
+}
+
+/// Calls f with a zero of the C++ type that stands for the IEC type (all but STRING).
+template <class F>
+auto with_number(Type type, F&& f) {
+  switch (type) {
+    case Type::SINT: return f(std::int8_t{});
+    case Type::WORD:
+    case Type::UINT: return f(std::uint16_t{});
+    case Type::INT: return f(std::int16_t{});
+    case Type::DWORD:
+    case Type::UDINT: return f(std::uint32_t{});
+    case Type::DINT: return f(std::int32_t{});
+    case Type::LWORD:
+    case Type::ULINT: return f(std::uint64_t{});
+    case Type::LINT: return f(std::int64_t{});
+    case Type::REAL: return f(float{});
+    case Type::LREAL: return f(double{});
+    default: return f(std::uint8_t{});  // BOOL, BYTE, USINT, CHAR
+  }
+}
+
 }  // namespace coupler::codec

@@ -24,36 +24,6 @@ Value widen(T value) {
     return std::uint64_t{value};
 }
 
-/// Calls f with a value of the C++ type that stands for the IEC type (numbers only).
-template <class F>
-auto with_number(Type type, F&& f) {
-  switch (type) {
-    case Type::SINT: return f(std::int8_t{});
-    case Type::WORD:
-    case Type::UINT: return f(std::uint16_t{});
-    case Type::INT: return f(std::int16_t{});
-    case Type::DWORD:
-    case Type::UDINT: return f(std::uint32_t{});
-    case Type::DINT: return f(std::int32_t{});
-    case Type::LWORD:
-    case Type::ULINT: return f(std::uint64_t{});
-    case Type::LINT: return f(std::int64_t{});
-    case Type::REAL: return f(float{});
-    case Type::LREAL: return f(double{});
-    default: return f(std::uint8_t{});  // BYTE, USINT, CHAR
-  }
-}
-
-template <class T>
-void put(T number, const Format& format, std::uint16_t* registers) {
-  if constexpr (sizeof(T) == 1) {
-    const auto kept = static_cast<std::uint16_t>(registers[0] & ~mask(format));
-    registers[0] = static_cast<std::uint16_t>(kept | encode_part(static_cast<std::uint8_t>(number), format));
-  } else {
-    encode(number, format.order, registers);
-  }
-}
-
 template <class To>
 tl::unexpected<std::string> out_of_range(const Value& value, Type type) {
   if constexpr (std::is_floating_point_v<To>)
@@ -122,13 +92,8 @@ Value decode(const std::uint16_t* registers, const Format& format) {
     decode_text(registers, format, text);
     return text;
   }
-  return with_number(format.type, [&](auto zero) -> Value {
-    using T = decltype(zero);
-    if constexpr (sizeof(T) == 1)
-      return widen(static_cast<T>(decode_part(registers[0], format)));
-    else
-      return widen(decode<T>(registers, format.order));
-  });
+  return with_number(format.type,
+                     [&](auto zero) -> Value { return widen(take<decltype(zero)>(format, registers)); });
 }
 
 Result encode(const Value& value, const Format& format, std::uint16_t* registers) {

@@ -68,6 +68,25 @@ std::string_view enumerator(Edge edge) {
   return {};
 }
 
+std::string_view enumerator(HostOptions::Publish publish) {
+  return publish == HostOptions::Publish::always ? "HostOptions::Publish::always"
+                                                 : "HostOptions::Publish::on_change";
+}
+
+std::string_view enumerator(HostOptions::WriteFunction function) {
+  switch (function) {
+    case HostOptions::WriteFunction::automatic: return "HostOptions::WriteFunction::automatic";
+    case HostOptions::WriteFunction::single: return "HostOptions::WriteFunction::single";
+    case HostOptions::WriteFunction::multiple: return "HostOptions::WriteFunction::multiple";
+  }
+  return {};
+}
+
+std::string_view enumerator(HostOptions::WriteQueue queue) {
+  return queue == HostOptions::WriteQueue::latest ? "HostOptions::WriteQueue::latest"
+                                                  : "HostOptions::WriteQueue::every";
+}
+
 /// Fields after the last one that differs from its default are left out.
 std::string format(const Format& format) {
   const Format usual;
@@ -99,10 +118,43 @@ std::string edge(const EdgeOf& edge) {
   return edge.present() ? fmt::format("{{{}, {}}}", literal(edge.input), enumerator(edge.edge)) : "{}";
 }
 
-/// Counter and latched, if it has one of them.
-std::string edges(const Point& point) {
-  if (!point.counter.present() && !point.latched.present()) return {};
-  return fmt::format(", {}, {}", edge(point.counter), edge(point.latched));
+std::string iio(const Iio& iio) {
+  return iio.present() ? fmt::format("{{{}, {}}}", literal(iio.device), literal(iio.channel)) : "{}";
+}
+
+std::string pwm(const Pwm& pwm) {
+  return pwm.present() ? fmt::format("{{{}, {}, {}ns}}", literal(pwm.chip), pwm.channel, pwm.period.count())
+                       : "{}";
+}
+
+std::string deadman(const HostOptions::Deadman& deadman) {
+  return deadman.present() ? fmt::format("{{{}ms, {}}}", deadman.timeout.count(), registers(deadman.value))
+                           : "{}";
+}
+
+/// As a row says it; those of most points say "{}".
+std::string host(const HostOptions& options) {
+  const auto text = [](const HostOptions& o) {
+    return fmt::format("{{{:#}, {}, {:#}, {}ms, {}, {},\n      {}, {}, {}, {}}}", o.rate,
+                       enumerator(o.publish), o.deadband, o.max_interval.count(), o.latch, o.queue_size,
+                       enumerator(o.write_function), enumerator(o.write_queue), o.verify_write,
+                       deadman(o.deadman));
+  };
+  std::string out = text(options);
+  return out == text(HostOptions{}) ? "{}" : out;
+}
+
+/// What few points have: counter, latched, count, scale, iio, pwm, safe registers, read address, host. Empty
+/// for all others.
+std::string rest(const Point& point) {
+  const auto text = [](const Point& p) {
+    return fmt::format("{}, {}, {}, {{{:#}, {:#}}}, {}, {}, {}, {}, {}", edge(p.counter), edge(p.latched),
+                       p.count, p.scale.gain, p.scale.offset, iio(p.iio), pwm(p.pwm), registers(p.safe_value),
+                       p.read_address ? fmt::format("::std::uint16_t{{{}}}", *p.read_address) : "{}",
+                       host(p.host));
+  };
+  const std::string out = text(point);
+  return out == text(Point{}) ? std::string() : ",\n     " + out;
 }
 
 std::string place(const Point& point) {
@@ -124,12 +176,17 @@ std::string row(const Point& point) {
       "     {}, {}{}}},\n",
       what, place(point), literal(point.name), to_string(point.table), point.address, format(point.format),
       enumerator(point.access), registers(point.initial), enumerator(point.safe), line(point.line),
-      literal(point.description), literal(point.units), edges(point));
+      literal(point.description), literal(point.units), rest(point));
 }
 
 std::string row(const SimWire& wire) {
   return fmt::format("    {{{}, {}, {}, {}us}},\n", literal(wire.from), literal(wire.to), wire.invert,
                      wire.square.count());
+}
+
+std::string row(const Unreadable& area) {
+  return fmt::format("    {{Table::{}, Range::of({}, {})}},\n", to_string(area.table), area.range.start(),
+                     area.range.count());
 }
 
 std::string row(std::string_view address) { return fmt::format("    {},\n", literal(address)); }

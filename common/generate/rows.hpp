@@ -14,6 +14,8 @@ std::string row(const Point& point);
 
 std::string row(const SimWire& wire);
 
+std::string row(const Unreadable& area);
+
 /// One of the addresses that may connect.
 std::string row(std::string_view address);
 

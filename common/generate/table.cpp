@@ -44,23 +44,28 @@ using ::coupler::Access;
 using ::coupler::Bias;
 using ::coupler::Drive;
 using ::coupler::Edge;
+using ::coupler::HostOptions;
 using ::coupler::Map;
+using ::coupler::OnReconnect;
+using ::coupler::OnShutdown;
 using ::coupler::Point;
 using ::coupler::Safe;
 using ::coupler::SimWire;
 using ::coupler::Table;
+using ::coupler::Unreadable;
 using ::coupler::Watchdog;
 using ::coupler::codec::Encoding;
 using ::coupler::codec::Half;
 using ::coupler::codec::Order;
 using ::coupler::codec::Type;
+using ::coupler::modbus::Range;
 using namespace ::std::chrono_literals;
 
 /// Registers as they stand on the wire.
 template <::std::uint16_t... Words>
 constexpr ::std::uint16_t registers[] = {{Words...}};
 
-{points}{sim}{allow}// The file itself, byte by byte: the node serves it.
+{points}{sim}{allow}{unreadable}// The file itself, byte by byte: the node serves it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 constexpr char text[] =
@@ -80,6 +85,7 @@ constexpr Map map{{
     {{text, sizeof text - 1}},
     0x{crc:08x},  // CRC-32 of the text
     {{{listen}, {allow_name}, {watchdog}, {readback}}},  // listen, allow, watchdog, readback
+    OnReconnect::{on_reconnect}, OnShutdown::{on_shutdown}, {unreadable_name},
 }};
 
 }}  // namespace coupler::maps::{name}
@@ -120,10 +126,15 @@ std::string table_source(const Map& map, const Stamp& stamp) {
       arg("points",
           array("Point points",
                 "Name, table, address, format, access; initial registers, safe, line; description, units, "
-                "counter, latched.",
+                "and what few points have: counter, latched, count, scale, iio, pwm, safe registers, read "
+                "address, host.",
                 map.points)),
       arg("sim", array("SimWire sim", "From, to, invert, period of a square wave.", map.sim)),
       arg("allow", array("::std::string_view allow", "Who may connect.", map.service.allow)),
+      arg("unreadable", array("Unreadable unreadable", "What is never read.", map.unreadable)),
+      arg("unreadable_name", map.unreadable.empty() ? "{}" : "unreadable"),
+      arg("on_reconnect", map.on_reconnect == OnReconnect::drop ? "drop" : "restore"),
+      arg("on_shutdown", map.on_shutdown == OnShutdown::hold ? "hold" : "safe"),
       arg("listen", literal(map.service.listen)),
       arg("allow_name", map.service.allow.empty() ? "{}" : "allow"),
       arg("watchdog", watchdog(map.service.watchdog)), arg("readback", map.service.readback),

@@ -34,15 +34,20 @@ std::string order(const Point& point) {
   return std::string(codec::to_string(point.format.order, one_register));
 }
 
+/// As C's printf writes "%a:%a".
+std::string scale(const Point& point) {
+  return fmt::format("{:a}:{:a}", point.scale.gain, point.scale.offset);
+}
+
 }  // namespace
 
 std::string canonical_line(const Point& point) {
   const bool text = point.format.type == codec::Type::STRING;
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", to_string(point.table), point.address,
-                     part(point), point.name, to_string(point.format.type), order(point), 1,
+                     part(point), point.name, to_string(point.format.type), order(point), point.count,
                      text ? fmt::to_string(point.format.length) : "-",
                      text ? codec::to_string(point.format.encoding) : "-",
-                     text ? (ignores_byte_order(point.format) ? "true" : "false") : "-", "0x1p+0:0x0p+0",
+                     text ? (ignores_byte_order(point.format) ? "true" : "false") : "-", scale(point),
                      to_string(point.access));
 }
 

@@ -18,6 +18,10 @@ Span<const std::string_view> OwnedMap::keep(std::vector<std::string_view> list) 
   return lists_.emplace_back(std::move(list));
 }
 
+Span<const Unreadable> OwnedMap::keep(std::vector<Unreadable> areas) {
+  return areas_.emplace_back(std::move(areas));
+}
+
 void OwnedMap::finish(Map head, std::vector<Point> points, std::vector<SimWire> sim) {
   points_ = std::move(points);
   sim_ = std::move(sim);

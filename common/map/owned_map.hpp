@@ -24,6 +24,7 @@ class OwnedMap {
   std::string_view keep(std::string text);
   /// Keeps a copy of the registers.
   Span<const std::uint16_t> keep(std::vector<std::uint16_t> registers);
+  Span<const Unreadable> keep(std::vector<Unreadable> areas);
   /// Keeps the list; what its elements view must be kept, too.
   Span<const std::string_view> keep(std::vector<std::string_view> list);
 
@@ -36,6 +37,7 @@ class OwnedMap {
   std::deque<std::string> texts_;
   std::deque<std::vector<std::uint16_t>> registers_;
   std::deque<std::vector<std::string_view>> lists_;
+  std::deque<std::vector<Unreadable>> areas_;
   std::vector<Point> points_;
   std::vector<SimWire> sim_;
   Map map_;

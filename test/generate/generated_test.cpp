@@ -5,6 +5,7 @@
 #include "common/map/loader/load.hpp"
 #include "example_map.hpp"
 #include "hard_map.hpp"
+#include "manners_map.hpp"
 #include "test/generate/same_map.hpp"
 
 namespace coupler {
@@ -31,6 +32,12 @@ TEST(Generated, Everything_that_is_hard_to_write_in_cpp_survives) {
   const MapPtr loaded = load(HARD_MAP);
   ASSERT_TRUE(loaded);
   testing::expect_same(maps::hard::map, loaded->map());
+}
+
+TEST(Generated, What_the_host_does_with_points_survives) {
+  const MapPtr loaded = load(MANNERS_MAP);
+  ASSERT_TRUE(loaded);
+  testing::expect_same(maps::manners::map, loaded->map());
 }
 
 TEST(Generated, The_text_is_the_file_byte_by_byte) {

@@ -35,19 +35,48 @@ inline void expect_same(const EdgeOf& a, const EdgeOf& b) {
   EXPECT_EQ(a.edge, b.edge);
 }
 
+inline void expect_same(Span<const std::uint16_t> a, Span<const std::uint16_t> b) {
+  EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
+}
+
+inline void expect_same(const HostOptions& a, const HostOptions& b) {
+  EXPECT_EQ(a.rate, b.rate);
+  EXPECT_EQ(a.publish, b.publish);
+  EXPECT_EQ(a.deadband, b.deadband);
+  EXPECT_EQ(a.max_interval, b.max_interval);
+  EXPECT_EQ(a.latch, b.latch);
+  EXPECT_EQ(a.queue_size, b.queue_size);
+  EXPECT_EQ(a.write_function, b.write_function);
+  EXPECT_EQ(a.write_queue, b.write_queue);
+  EXPECT_EQ(a.verify_write, b.verify_write);
+  EXPECT_EQ(a.deadman.timeout, b.deadman.timeout);
+  expect_same(a.deadman.value, b.deadman.value);
+}
+
 inline void expect_same(const Point& a, const Point& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.table, b.table);
   EXPECT_EQ(a.address, b.address);
   expect_same(a.format, b.format);
   EXPECT_EQ(a.access, b.access);
-  EXPECT_TRUE(std::equal(a.initial.begin(), a.initial.end(), b.initial.begin(), b.initial.end()));
+  expect_same(a.initial, b.initial);
   EXPECT_EQ(a.safe, b.safe);
   expect_same(a.line, b.line);
   EXPECT_EQ(a.description, b.description);
   EXPECT_EQ(a.units, b.units);
   expect_same(a.counter, b.counter);
   expect_same(a.latched, b.latched);
+  EXPECT_EQ(a.count, b.count);
+  EXPECT_EQ(a.scale.gain, b.scale.gain);
+  EXPECT_EQ(a.scale.offset, b.scale.offset);
+  EXPECT_EQ(a.iio.device, b.iio.device);
+  EXPECT_EQ(a.iio.channel, b.iio.channel);
+  EXPECT_EQ(a.pwm.chip, b.pwm.chip);
+  EXPECT_EQ(a.pwm.channel, b.pwm.channel);
+  EXPECT_EQ(a.pwm.period, b.pwm.period);
+  expect_same(a.safe_value, b.safe_value);
+  EXPECT_EQ(a.read_address, b.read_address);
+  expect_same(a.host, b.host);
 }
 
 inline void expect_same(const SimWire& a, const SimWire& b) {
@@ -109,6 +138,13 @@ inline void expect_same(const Map& a, const Map& b) {
   EXPECT_EQ(a.text, b.text);
   EXPECT_EQ(a.text_crc, b.text_crc);
   expect_same(a.service, b.service);
+  EXPECT_EQ(a.on_reconnect, b.on_reconnect);
+  EXPECT_EQ(a.on_shutdown, b.on_shutdown);
+  ASSERT_EQ(a.unreadable.size(), b.unreadable.size());
+  for (std::size_t i = 0; i < a.unreadable.size(); ++i) {
+    EXPECT_EQ(a.unreadable[i].table, b.unreadable[i].table);
+    EXPECT_EQ(a.unreadable[i].range, b.unreadable[i].range);
+  }
 }
 
 }  // namespace coupler::testing

@@ -13,7 +13,7 @@ struct DraftPoint {
   Point point;
   Position name_at;
   Position address_at;
-  Position line_at;
+  Position line_at;     ///< `line`, `iio` or `pwm`
   Position edge_at;     ///< the input that `counter` or `latched` names
   bool placed = false;  ///< address and format are known, and the range ends by 65535
 };

@@ -14,6 +14,8 @@ constexpr S bits = S::coil | S::discrete_input;
 constexpr S registers = S::input_register | S::holding_register;
 constexpr S point = bits | registers;
 constexpr S line = S::coil_line | S::input_line;
+constexpr S treatment = point | S::defaults;
+constexpr S writing = S::coil | S::holding_register | S::defaults;
 
 constexpr Key origin(std::string_view name, S sections, K kind, std::string_view example,
                      std::string_view summary) {
@@ -42,6 +44,7 @@ constexpr Key same_as(std::string_view name, Key key) {
 
 constexpr double most_address = 65535;
 constexpr double most_seconds = 3600;
+constexpr double most_double = std::numeric_limits<double>::max();
 
 constexpr std::array keys{
     // The map: the origin's keys.
@@ -73,10 +76,6 @@ constexpr std::array keys{
            project("addressing", S::map, K::choice, "modicon", "what the addresses count")),
     project("limits", S::map, K::section, "{read_registers: 64}", "what the device takes in one request"),
     project("sim", S::map, K::section, "[{from: valve, to: valve_is_open}]", "wires of the simulated chip"),
-    later("defaults", S::map, "{rate: 5}", "host behaviour of all points"),
-    later("on_reconnect", S::map, "restore", "what becomes of writes when the link returns"),
-    later("on_shutdown", S::map, "safe", "what becomes of outputs when the driver ends"),
-    later("unreadable", S::map, "[{table: coils, from: 8, to: 15}]", "addresses that the device refuses"),
     later("reserve", S::map, "[{table: coils, from: 8, to: 15}]", "addresses kept free"),
     project("listen", S::map, K::text, "127.0.0.1", "interface of the node"),
     project("allow", S::map, K::list, "[192.168.0.0/24, 10.0.0.7]", "who may connect to the node"),
@@ -126,21 +125,56 @@ constexpr std::array keys{
     within(0, 60,
            project("debounce", S::discrete_input | S::input_line, K::duration, "5ms",
                    "how long a level must last to count")),
-    later("count", point, "4", "an array of values"),
-    later("scale", registers, "0.1", "published value = raw × gain + offset"),
-    later("read_address", point, "512", "where an output reads back"),
-    later("rate", point, "1", "polling rate of the point"),
-    later("publish", point, "on_change", "when a value is published"),
-    later("deadband", point, "0.5", "the least change that is published"),
-    later("max_interval", point, "1s", "the longest silence of a topic"),
-    later("latch", point, "true", "late subscribers get the last value"),
-    later("queue_size", point, "10", "queue of the topic"),
-    later("write_function", point, "single", "function code of writes"),
-    later("verify_write", point, "true", "read back after a write"),
-    later("write_queue", point, "every", "which waiting writes are sent"),
-    later("deadman", point, "{timeout: 1s, value: 0}", "value when no message comes"),
-    later("iio", registers, "{device: adc0, channel: 0}", "an analogue input"),
-    later("pwm", registers, "{chip: pwmchip0, channel: 0, period: 1ms}", "an analogue output"),
+    within(1, modbus::max_read_bits, project("count", point, K::integer, "4", "an array of so many values")),
+    project("scale", registers, K::other, "0.1", "published value = raw × gain + offset"),
+    project("iio", registers, K::section, "{device: adc0, channel: voltage0}", "an analogue channel"),
+    project("pwm", S::holding_register, K::section, "{chip: pwmchip0, channel: 0, period: 1ms}",
+            "a PWM channel; the value is its duty in percent"),
+    project("safe", S::holding_register, K::value, "0",
+            "value of 'iio' or 'pwm' when nobody is in command; or hold"),
+    // How the host treats a point: for one, or in `defaults:` for all.
+    within(0.001, 10000, project("rate", treatment, K::number, "1", "polling rate in Hz")),
+    one_of("always|on_change",
+           project("publish", treatment, K::choice, "on_change", "when a value is published")),
+    within(0, most_double,
+           project("deadband", registers | S::defaults, K::number, "0.5",
+                   "changes up to this are not published")),
+    within(0, most_seconds,
+           project("max_interval", treatment, K::duration, "1s", "the longest silence of a topic")),
+    project("latch", treatment, K::boolean, "true", "late subscribers get the last value"),
+    within(1, 10000,
+           project("queue_size", treatment, K::integer, "10", "messages that wait for a subscriber")),
+    one_of("single|multiple", project("write_function", writing, K::choice, "single",
+                                      "function codes of writes: 5 and 6, or 15 and 16")),
+    project("verify_write", writing, K::boolean, "true", "read back after a write"),
+    one_of("latest|every",
+           project("write_queue", writing, K::choice, "every", "which of the waiting writes are sent")),
+    project("deadman", writing, K::section, "{timeout: 1s, value: 0}",
+            "what is written when no message comes"),
+    project("read_address", S::coil | S::holding_register, K::address, "512", "where the output reads back"),
+    // The map: the host's manners.
+    project("defaults", S::map, K::section, "{rate: 5}", "how the host treats all points"),
+    one_of("drop|restore", project("on_reconnect", S::map, K::choice, "restore",
+                                   "what becomes of outputs when the link returns")),
+    one_of("hold|safe",
+           project("on_shutdown", S::map, K::choice, "safe", "what becomes of outputs when the driver ends")),
+    project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
+            "addresses that the device refuses"),
+    one_of("coils|discrete_inputs|input_registers|holding_registers",
+           project("table", S::area, K::choice, "coils", "the area's table")),
+    project("from", S::area, K::address, "8", "its first address"),
+    project("to", S::area, K::address, "15", "its last address"),
+    // `scale:`, `iio:`, `pwm:`, `deadman:`
+    project("gain", S::scale, K::number, "0.1", "raw is multiplied by it"),
+    project("offset", S::scale, K::number, "-40", "and this is added"),
+    project("device", S::iio, K::text, "adc0", "name or label of the device, or iio:device0"),
+    project("channel", S::iio, K::text, "voltage0", "the channel's id"),
+    project("chip", S::pwm, K::text, "pwmchip0", "the PWM chip"),
+    within(0, 255, project("channel", S::pwm, K::integer, "0", "its channel")),
+    within(1e-6, 10, project("period", S::pwm, K::duration, "1ms", "of the pulses")),
+    within(0.001, most_seconds,
+           project("timeout", S::deadman, K::duration, "1s", "the longest silence of the topic")),
+    project("value", S::deadman, K::value, "0", "what is written then"),
     // `line:`
     project("chip", line, K::text, "gpiochip0", "the chip: name, device file or label"),
     within(0, 65535, project("offset", line, K::integer, "17", "the line's number on the chip")),
@@ -153,9 +187,9 @@ constexpr std::array keys{
            project("write_registers", S::limits, K::integer, "123", "registers in one write")),
     within(1, modbus::max_write_bits,
            project("write_bits", S::limits, K::integer, "1968", "bits in one write")),
-    within(
-        0, most_seconds,
-        project("request_gap", S::limits, K::duration, "5ms", "pause between a reply and the next request")),
+    within(0, most_seconds,
+           project("request_gap", S::limits, K::duration, "5ms",
+                   "pause between a reply and the next request")),
     within(0, most_seconds,
            project("connect_delay", S::limits, K::duration, "100ms", "pause after connecting")),
     within(1, 65535, project("connections", S::limits, K::integer, "1", "connections that the device takes")),

@@ -17,6 +17,12 @@ std::string_view describe(Section section) {
     case Section::wire: return "a wire of 'sim'";
     case Section::watchdog: return "'watchdog'";
     case Section::edge: return "'counter' and 'latched'";
+    case Section::scale: return "'scale'";
+    case Section::iio: return "'iio'";
+    case Section::pwm: return "'pwm'";
+    case Section::deadman: return "'deadman'";
+    case Section::defaults: return "'defaults'";
+    case Section::area: return "an area of 'unreadable'";
     case Section::none: break;
   }
   return "nothing";

@@ -14,7 +14,7 @@
 namespace coupler::loader {
 
 /// The places in a map that have keys of their own. Bits, so that a key may belong to several.
-enum class Section : std::uint16_t {
+enum class Section : std::uint32_t {
   none = 0,
   map = 1,      ///< the top of the file
   mapping = 2,  ///< the tables
@@ -28,7 +28,13 @@ enum class Section : std::uint16_t {
   wire = 512,  ///< one element of `sim:`
   watchdog = 1024,
   edge = 2048,  ///< `counter:` and `latched:`
-  last = edge
+  scale = 1U << 12U,
+  iio = 1U << 13U,
+  pwm = 1U << 14U,
+  deadman = 1U << 15U,
+  defaults = 1U << 16U,
+  area = 1U << 17U,  ///< one element of `unreadable:`
+  last = area
 };
 constexpr Section operator|(Section a, Section b) {
   return static_cast<Section>(static_cast<unsigned>(a) | static_cast<unsigned>(b));

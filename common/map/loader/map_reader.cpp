@@ -14,6 +14,7 @@
 #include "common/map/loader/service_reader.hpp"
 #include "common/map/loader/settings_reader.hpp"
 #include "common/map/loader/sim_reader.hpp"
+#include "common/map/loader/unreadable_reader.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -30,7 +31,7 @@ std::string_view read_name(const Reader& top, const Entry& root, Context& contex
   return name;
 }
 
-PointDefaults read_point_defaults(const Reader& top) {
+PointDefaults read_point_defaults(const Reader& top, Context& context) {
   PointDefaults defaults;
   bool bytes_reversed = false;
   bool most_significant_first = false;
@@ -38,6 +39,7 @@ PointDefaults read_point_defaults(const Reader& top) {
   top.boolean("byteorder_reverse", bytes_reversed);
   top.boolean("wordorder_reverse", most_significant_first);
   defaults.order = codec::make_order(!most_significant_first, bytes_reversed);
+  defaults.host = read_host_defaults(top, context);
   return defaults;
 }
 
@@ -49,7 +51,8 @@ void read_table(const Entry& entry, Table table, const PointDefaults& defaults, 
 }
 
 /// In the order of the file.
-DraftPoints read_points(const Reader& top, const Entry& root, Context& context) {
+DraftPoints read_points(const Reader& top, const Entry& root, const PointDefaults& defaults,
+                        Context& context) {
   DraftPoints points;
   const Entry* mapping = top.find("mapping");
   if (mapping == nullptr) {
@@ -60,7 +63,6 @@ DraftPoints read_points(const Reader& top, const Entry& root, Context& context) 
   if (!check_map(*mapping, "'mapping' holds the tables", "write 'coils:', 'holding_registers:' … below it",
                  context))
     return points;
-  const PointDefaults defaults = read_point_defaults(top);
   const Reader reader(*mapping, Section::mapping, context);
   for (const Table table : tables)
     if (const Entry* entry = reader.find(to_string(table)))
@@ -95,10 +97,14 @@ void read_map(const Entry& root, std::string_view text, Context& context) {
   head.polling = read_polling(top);
   head.limits = read_limits(top, context);
   head.service = read_service(top, context);
-  const DraftPoints drafts = read_points(top, root, context);
+  const PointDefaults defaults = read_point_defaults(top, context);
+  const DraftPoints drafts = read_points(top, root, defaults, context);
   check_points(drafts, head.limits, top.has("addressing"), context);
   std::vector<SimWire> sim = read_sim(top, drafts, context);
   check_edges(drafts, sim, context);
+  head.unreadable = context.map.keep(read_unreadable(top, drafts, defaults.addressing, context));
+  top.choice("on_reconnect", {OnReconnect::drop, OnReconnect::restore}, head.on_reconnect);
+  top.choice("on_shutdown", {OnShutdown::hold, OnShutdown::safe}, head.on_shutdown);
   if (context.problems.has_errors()) return;
 
   std::vector<Point> points;

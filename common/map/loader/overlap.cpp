@@ -15,8 +15,10 @@ struct Claim {
   const DraftPoint* owner;
 };
 
+bool is_wired(const Point& point) { return point.line.present() || is_analogue(point); }
+
 bool tolerable(const Point& a, const Point& b) {
-  return !(is_writable(a) && is_writable(b)) && !a.line.present() && !b.line.present();
+  return !(is_writable(a) && is_writable(b)) && !is_wired(a) && !is_wired(b);
 }
 
 /// "holding_registers 5 … 8".

@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include "common/map/loader/channel_reader.hpp"
 #include "common/map/loader/edge_reader.hpp"
 #include "common/map/loader/format_reader.hpp"
-#include "common/map/loader/initial_reader.hpp"
 #include "common/map/loader/line_reader.hpp"
 #include "common/map/loader/reader.hpp"
+#include "common/map/loader/scale_reader.hpp"
+#include "common/map/loader/value_reader.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -35,12 +37,56 @@ void read_address(const Entry* entry, const Entry& point, Addressing addressing,
 
 void check_range(const DraftPoint& draft, Context& context) {
   const Point& point = draft.point;
-  const std::uint32_t count = codec::registers(point.format);
-  if (modbus::Range::make(point.address, count)) return;
-  context.problems.error(
-      draft.address_at,
-      fmt::format("{} needs {} registers from {} on, past 65535", shown(point.name), count, point.address),
-      fmt::format("the last address for it is {}", 65536 - count));
+  const std::uint32_t size = std::uint32_t{point.count} * codec::registers(point.format);
+  if (modbus::Range::make(point.address, size)) return;
+  context.problems.error(draft.address_at,
+                         fmt::format("{} needs {} {} from {} on, past 65535", shown(point.name), size,
+                                     holds_bits(point.table) ? "addresses" : "registers", point.address),
+                         fmt::format("the last address for it is {}", 65536 - size));
+}
+
+/// An array's elements stand one behind the other, so they must fill whole registers.
+void read_count(const Reader& reader, Point& point, Context& context) {
+  const Entry* entry = reader.find("count");
+  if (entry == nullptr) return;
+  reader.integer("count", point.count);
+  if (point.count == 1 || holds_bits(point.table)) return;
+  const codec::Type type = point.format.type;
+  if (type == codec::Type::STRING || is_partial(point))
+    context.problems.error(entry->key_at, fmt::format("there are no arrays of {}", to_string(type)),
+                           type == codec::Type::STRING
+                               ? "write one point for each text"
+                               : "write one point each, or use a type of whole registers");
+}
+
+/// Hardware is behind single values.
+void check_array(const Reader& reader, const Point& point, Context& context) {
+  if (point.count == 1) return;
+  for (const std::string_view key : {"line", "counter", "latched", "iio", "pwm"}) {
+    if (find_key(key, section_of(point.table)) == nullptr) continue;
+    if (const Entry* entry = reader.find(key))
+      context.problems.error(entry->key_at, fmt::format("'{}' does not apply to an array", key),
+                             "write one point for each value");
+  }
+}
+
+void read_read_address(const Reader& reader, Addressing addressing, Point& point, Context& context) {
+  const Entry* entry = is_writable(point.table) ? reader.find("read_address") : nullptr;
+  if (entry == nullptr) return;
+  const auto address =
+      parse_address(entry->kind == Entry::Kind::scalar ? entry->text : "", point.table, addressing);
+  if (!address)
+    context.problems.error(entry->at, address.error().what, address.error().remedy);
+  else if (!is_readable(point))
+    context.problems.error(entry->key_at,
+                           "'read_address' is for a point that is read, this one has 'access: write'",
+                           "remove one of the two");
+  else if (!modbus::Range::make(*address, range(point).count()))
+    context.problems.error(entry->at,
+                           fmt::format("{} does not fit there, it would end past 65535", shown(point.name)),
+                           "write a smaller address");
+  else
+    point.read_address = *address;
 }
 
 void read_access(const Reader& reader, Point& point, Context& context) {
@@ -61,12 +107,21 @@ void read_options(const Entry& entry, const PointDefaults& defaults, DraftPoint&
   const std::size_t errors = context.problems.errors();
   read_address(reader.find("address"), entry, defaults.addressing, draft, context);
   if (!holds_bits(point.table)) read_format(reader, entry, defaults.order, point.format, context);
+  if (context.problems.errors() == errors) read_count(reader, point, context);
   if (context.problems.errors() == errors) check_range(draft, context);
   draft.placed = context.problems.errors() == errors;
-  if (draft.placed) read_initial(reader, point, context);
+  if (draft.placed && !holds_bits(point.table)) read_scale(reader, point, context);
+  if (const Entry* initial = reader.find("initial"); draft.placed && initial != nullptr)
+    point.initial = read_value("initial", *initial, point, context);
   read_access(reader, point, context);
-  if (holds_bits(point.table)) read_line(reader, draft, context);
+  if (draft.placed) read_read_address(reader, defaults.addressing, point, context);
+  if (holds_bits(point.table))
+    read_line(reader, draft, context);
+  else
+    read_channel(reader, draft, context);
   read_edges(reader, draft, context);
+  check_array(reader, point, context);
+  read_host_options(reader, defaults.host, draft, context);
   reader.text("description", point.description);
   reader.text("units", point.units);
 }
@@ -86,6 +141,8 @@ DraftPoint read_point(const Entry& entry, Table table, const PointDefaults& defa
     const std::size_t errors = context.problems.errors();
     read_address(&entry, entry, defaults.addressing, draft, context);
     draft.placed = context.problems.errors() == errors;
+    const Entry nothing;
+    read_host_options(Reader(nothing, section_of(table), context), defaults.host, draft, context);
   } else {
     const std::string given = entry.kind == Entry::Kind::scalar ? entry.text.substr(0, 10) : "0";
     context.problems.error(

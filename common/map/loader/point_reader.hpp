@@ -6,6 +6,7 @@
 #include "common/map/loader/context.hpp"
 #include "common/map/loader/draft_point.hpp"
 #include "common/map/loader/entry.hpp"
+#include "common/map/loader/host_options_reader.hpp"
 
 namespace coupler::loader {
 
@@ -14,6 +15,7 @@ struct PointDefaults {
   Addressing addressing = Addressing::zero_based;
   codec::Order order =
       codec::Order::CDAB;  ///< of values of two and four registers; fewer keep the bytes' part
+  HostDefaults host{};
 };
 
 /// One entry of a table: `name: address` (coils and discrete inputs) or `name: {options}`.

@@ -10,8 +10,12 @@
 namespace coupler::loader {
 namespace {
 
-/// The same text for the same line, as far as the file tells.
-std::string line_key(const Line& line) {
+/// The same text for the same line or channel, as far as the file tells. Empty: there is none.
+std::string hardware(const Point& point) {
+  if (point.iio.present()) return fmt::format("iio {} {}", point.iio.device, point.iio.channel);
+  if (point.pwm.present()) return fmt::format("pwm {} {}", point.pwm.chip, point.pwm.channel);
+  const Line& line = point.line;
+  if (!line.present()) return {};
   if (!line.name.empty()) return std::string(line.name);
   constexpr std::string_view folder = "/dev/";
   const bool device_file = line.chip.substr(0, folder.size()) == folder;
@@ -19,13 +23,13 @@ std::string line_key(const Line& line) {
 }
 
 void check_size(const DraftPoint& draft, std::string_view key, std::uint16_t limit, Context& context) {
-  const std::uint16_t size = codec::registers(draft.point.format);
+  const std::uint32_t size = range(draft.point).count();
   if (size > limit)
-    context.problems.error(
-        draft.name_at,
-        fmt::format("{} has {} registers, more than '{}' of 'limits' ({}) takes in one request",
-                    shown(draft.point.name), size, key, limit),
-        fmt::format("make it shorter, or raise '{}' if the device takes more", key));
+    context.problems.error(draft.name_at,
+                           fmt::format("{} has {} {}, more than '{}' of 'limits' ({}) takes in one request",
+                                       shown(draft.point.name), size,
+                                       holds_bits(draft.point.table) ? "bits" : "registers", key, limit),
+                           fmt::format("make it shorter, or raise '{}' if the device takes more", key));
 }
 
 }  // namespace
@@ -33,25 +37,29 @@ void check_size(const DraftPoint& draft, std::string_view key, std::uint16_t lim
 void check_lines(const DraftPoints& points, Context& context) {
   std::unordered_map<std::string, const DraftPoint*> first;
   for (const DraftPoint& draft : points) {
-    if (!draft.point.line.present()) continue;
-    const auto [found, is_new] = first.emplace(line_key(draft.point.line), &draft);
+    std::string key = hardware(draft.point);
+    if (key.empty()) continue;
+    const auto [found, is_new] = first.emplace(std::move(key), &draft);
+    const std::string_view kind = is_analogue(draft.point) ? "channel" : "line";
     if (!is_new)
       context.problems.error(
           draft.line_at,
-          fmt::format("the GPIO line of {} is already that of {} (line {})", shown(draft.point.name),
-                      shown(found->second->point.name), found->second->line_at.line),
-          "give each point a line of its own");
+          fmt::format("the {}{} of {} is already that of {} (line {})", kind == "line" ? "GPIO " : "", kind,
+                      shown(draft.point.name), shown(found->second->point.name), found->second->line_at.line),
+          fmt::format("give each point a {} of its own", kind));
   }
 }
 
 void check_sizes(const DraftPoints& points, const Limits& limits, Context& context) {
   for (const DraftPoint& draft : points) {
-    if (!draft.placed || holds_bits(draft.point.table)) continue;
-    const bool too_long_to_read = codec::registers(draft.point.format) > limits.read_registers;
-    if (too_long_to_read || !is_writable(draft.point))
-      check_size(draft, "read_registers", limits.read_registers, context);
+    if (!draft.placed) continue;
+    const bool bits = holds_bits(draft.point.table);
+    const std::uint16_t most_read = bits ? limits.read_bits : limits.read_registers;
+    if (range(draft.point).count() > most_read || !is_writable(draft.point))
+      check_size(draft, bits ? "read_bits" : "read_registers", most_read, context);
     else
-      check_size(draft, "write_registers", limits.write_registers, context);
+      check_size(draft, bits ? "write_bits" : "write_registers",
+                 bits ? limits.write_bits : limits.write_registers, context);
   }
 }
 

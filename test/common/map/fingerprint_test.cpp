@@ -36,6 +36,18 @@ TEST(Fingerprint, The_order_of_the_file_is_not_in_it) {
   EXPECT_EQ(test::map_of(points)->map().fingerprint, sample_fingerprint);
 }
 
+TEST(Fingerprint, Arrays_have_their_count_and_scales_are_hexadecimal_as_in_c) {
+  Point point;
+  point.name = "heat";
+  point.table = Table::input_registers;
+  point.address = 4;
+  point.format.type = codec::Type::INT;
+  point.count = 3;
+  point.scale = {0.1, -273.15};
+  EXPECT_EQ(canonical_line(point),
+            "input_registers 4 - heat INT AB 3 - - - 0x1.999999999999ap-4:-0x1.1126666666666p+8 read");
+}
+
 TEST(Fingerprint, Deployment_is_not_in_it) {
   auto points = test::sample_points();
   for (Point& point : points) {
@@ -43,6 +55,9 @@ TEST(Fingerprint, Deployment_is_not_in_it) {
     point.units = "mm";
     point.line.name = "GPIO17";
     point.safe = Safe::hold;
+    point.host.rate = 3;
+    point.read_address = 512;
+    point.pwm.chip = "pwmchip0";
   }
   EXPECT_EQ(test::map_of(points)->map().fingerprint, sample_fingerprint);
 }

@@ -6,7 +6,7 @@
 
 namespace coupler::loader {
 
-/// `initial:`, put into registers as they stand on the wire. The point's format must be known.
-void read_initial(const Reader& reader, Point& point, Context& context);
+/// `scale:`, a number or a map of gain and offset.
+void read_scale(const Reader& reader, Point& point, Context& context);
 
 }  // namespace coupler::loader

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arrays, scaling, analogue channels, and what the host does with points. What is refused is in
+// test/maps/bad.
+#include <gtest/gtest.h>
+
+#include "common/codec/scale.hpp"
+#include "test/common/map/loader/loaded.hpp"
+
+namespace coupler {
+namespace {
+
+using namespace std::chrono_literals;
+using test::load_clean;
+using test::map_of;
+using test::OnePoint;
+using Words = std::vector<std::uint16_t>;
+
+Words words(Span<const std::uint16_t> span) { return {span.begin(), span.end()}; }
+
+TEST(Array, Its_range_holds_all_its_values) {
+  EXPECT_EQ(range(*OnePoint("coils", "{address: 4, count: 8}").operator->()), modbus::Range::of(4, 8));
+  EXPECT_EQ(range(*OnePoint("input_registers", "{address: 4, type: DINT, count: 3}").operator->()),
+            modbus::Range::of(4, 6));
+}
+
+TEST(Array, Its_initial_value_is_a_list_or_one_for_all) {
+  EXPECT_EQ(words(OnePoint("coils", "{address: 0, count: 3, initial: [on, off, on]}")->initial),
+            (Words{1, 0, 1}));
+  EXPECT_EQ(
+      words(OnePoint("holding_registers", "{address: 0, type: INT, count: 2, initial: [7, -1]}")->initial),
+      (Words{7, 0xFFFF}));
+  EXPECT_EQ(words(OnePoint("holding_registers", "{address: 0, type: DINT, order: ABCD, count: 2, initial: 1}")
+                      ->initial),
+            (Words{0, 1, 0, 1}));
+}
+
+TEST(Scaled, A_number_is_the_gain_and_a_map_has_the_offset_too) {
+  const OnePoint gain("input_registers", "{address: 0, type: INT, scale: 0.1}");
+  EXPECT_EQ(gain->scale.gain, 0.1);
+  EXPECT_EQ(gain->scale.offset, 0);
+  const OnePoint both("input_registers", "{address: 0, type: INT, scale: {gain: 2, offset: -40}}");
+  EXPECT_EQ(both->scale.gain, 2);
+  EXPECT_EQ(both->scale.offset, -40);
+}
+
+TEST(Scaled, Values_in_the_map_are_written_as_they_are_published) {
+  const OnePoint point(
+      "holding_registers",
+      "{address: 0, type: INT, scale: 0.1, initial: 12.5, deadman: {timeout: 1s, value: -1}}");
+  EXPECT_EQ(words(point->initial), Words{125});
+  EXPECT_EQ(words(point->host.deadman.value), Words{0xFFF6});
+}
+
+TEST(Analogue, A_register_names_the_channel_behind_it) {
+  const OnePoint in("input_registers", "{address: 0, type: INT, iio: {device: adc0, channel: voltage3}}");
+  EXPECT_EQ(in->iio.device, "adc0");
+  EXPECT_EQ(in->iio.channel, "voltage3");
+  const OnePoint out("holding_registers",
+                     "{address: 0, type: UINT, pwm: {chip: pwmchip0, channel: 2, period: 50us}}");
+  EXPECT_EQ(out->pwm.chip, "pwmchip0");
+  EXPECT_EQ(out->pwm.channel, 2);
+  EXPECT_EQ(out->pwm.period, 50us);
+  EXPECT_EQ(out->safe, Safe::off);
+}
+
+TEST(Analogue, Its_safe_state_is_off_hold_or_a_value) {
+  const std::string pwm =
+      "{address: 0, type: UINT, scale: 0.5, pwm: {chip: p, channel: 0, period: 1ms}, safe: ";
+  EXPECT_EQ(OnePoint("holding_registers", pwm + "hold}")->safe, Safe::hold);
+  EXPECT_EQ(OnePoint("holding_registers", pwm + "off}")->safe, Safe::off);
+  const OnePoint value("holding_registers", pwm + "25}");
+  EXPECT_EQ(value->safe, Safe::on);
+  EXPECT_EQ(words(value->safe_value), Words{50});
+}
+
+TEST(HostOptions, A_point_has_its_own) {
+  const OnePoint point(
+      "holding_registers",
+      "{address: 0, type: INT, rate: 2, publish: on_change, deadband: 0.5, max_interval: 3s, "
+      "latch: true, queue_size: 4, write_function: multiple, write_queue: every, verify_write: "
+      "true, deadman: {timeout: 250ms, value: 7}, read_address: 512}");
+  const HostOptions& host = point->host;
+  EXPECT_EQ(host.rate, 2);
+  EXPECT_EQ(host.publish, HostOptions::Publish::on_change);
+  EXPECT_EQ(host.deadband, 0.5);
+  EXPECT_EQ(host.max_interval, 3s);
+  EXPECT_TRUE(host.latch);
+  EXPECT_EQ(host.queue_size, 4U);
+  EXPECT_EQ(host.write_function, HostOptions::WriteFunction::multiple);
+  EXPECT_EQ(host.write_queue, HostOptions::WriteQueue::every);
+  EXPECT_TRUE(host.verify_write);
+  EXPECT_EQ(host.deadman.timeout, 250ms);
+  EXPECT_EQ(words(host.deadman.value), Words{7});
+  EXPECT_EQ(read_range(*point.operator->()), modbus::Range::of(512, 1));
+}
+
+TEST(HostOptions, Defaults_are_for_points_that_say_nothing) {
+  const std::string defaults = "defaults: {rate: 2, publish: on_change, verify_write: true}";
+  EXPECT_EQ(OnePoint("coils", "0", defaults)->host.rate, 2);
+  EXPECT_TRUE(OnePoint("coils", "0", defaults)->host.verify_write);
+  EXPECT_EQ(OnePoint("coils", "{address: 0, rate: 7}", defaults)->host.rate, 7);
+  EXPECT_EQ(OnePoint("coils", "{address: 0, publish: always}", defaults)->host.publish,
+            HostOptions::Publish::always);
+}
+
+TEST(HostOptions, A_default_that_a_point_cannot_have_is_not_its_own) {
+  const std::string defaults =
+      "defaults: {publish: on_change, deadband: 2, write_function: single, verify_write: true, deadman: "
+      "{timeout: "
+      "1s, value: 0}}";
+  EXPECT_EQ(OnePoint("discrete_inputs", "0", defaults)->host.deadband, 0);
+  EXPECT_FALSE(OnePoint("discrete_inputs", "0", defaults)->host.verify_write);
+  EXPECT_FALSE(OnePoint("discrete_inputs", "0", defaults)->host.deadman.present());
+  EXPECT_EQ(OnePoint("holding_registers", "{address: 0, type: DINT}", defaults)->host.write_function,
+            HostOptions::WriteFunction::automatic);
+  EXPECT_EQ(words(OnePoint("holding_registers", "{address: 0, type: DINT}", defaults)->host.deadman.value),
+            (Words{0, 0}));
+}
+
+TEST(Unreadable, Areas_are_sorted_and_in_the_addressing_of_the_map) {
+  const MapPtr map = load_clean(map_of("coils", "p: 1",
+                                       "addressing: modicon\n"
+                                       "unreadable: [{table: holding_registers, from: 40011, to: 40020},"
+                                       " {table: coils, from: 9, to: 16}]"));
+  ASSERT_EQ(map->map().unreadable.size(), 2U);
+  EXPECT_EQ(map->map().unreadable[0].table, Table::coils);
+  EXPECT_EQ(map->map().unreadable[0].range, modbus::Range::of(8, 8));
+  EXPECT_EQ(map->map().unreadable[1].range, modbus::Range::of(10, 10));
+}
+
+TEST(Link, What_becomes_of_outputs_is_said_at_the_top) {
+  const MapPtr map = load_clean(map_of("coils", "p: 1", "on_reconnect: restore\non_shutdown: safe"));
+  EXPECT_EQ(map->map().on_reconnect, OnReconnect::restore);
+  EXPECT_EQ(map->map().on_shutdown, OnShutdown::safe);
+}
+
+}  // namespace
+}  // namespace coupler
