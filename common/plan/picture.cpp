@@ -19,24 +19,34 @@ using modbus::Range;
 constexpr double margin = 16;
 constexpr double width = TableLayout::left + large.columns * large.cell + margin;
 constexpr double letter = 6.1;  ///< width of one, about
-/// Rates: a colour each, then again from the first. Told apart by people who do not see red and green, too.
-constexpr std::array<std::string_view, 6> colours{"#0072b2", "#e69f00", "#009e73",
-                                                  "#cc79a7", "#56b4e9", "#8c6d31"};
+/// Rates: a colour each, dark enough for white names; then again from the first.
+constexpr std::array<std::string_view, 6> colours{"#0072b2", "#b85c00", "#00795a",
+                                                  "#a8457f", "#7a5c1e", "#4b4f9e"};
 
-constexpr std::string_view style =
-    "text{font:11px "
-    "sans-serif;fill:#222}.h{font-size:15px;font-weight:bold}.t{font-size:13px;font-weight:bold}"
-    ".a{fill:#666;text-anchor:end}.c{fill:#999;font-size:9px;text-anchor:middle}.n{fill:#fff;font-size:10px;"
-    "text-anchor:middle}.row{fill:#f3f3f3}.s{fill-opacity:.18;stroke-width:1.5}.p{stroke:#fff;stroke-width:."
-    "7}"
-    ".w{fill:#fff;stroke:#666;stroke-dasharray:3 "
-    "2}.wn{fill:#444}.hole{fill:url(#hole)}.u{fill:url(#unreadable)}";
+/// In an HTML page a style holds for the whole page: everything is below the class of the image.
+constexpr std::string_view style = R"(
+.coupler-plan text { font: 11px sans-serif; fill: #222 }
+.coupler-plan .map { font-size: 15px; font-weight: bold }
+.coupler-plan .table { font-size: 13px; font-weight: bold }
+.coupler-plan .address { fill: #666; text-anchor: end }
+.coupler-plan .column { fill: #999; font-size: 9px; text-anchor: middle }
+.coupler-plan .name { fill: #fff; font-size: 10px; text-anchor: middle }
+.coupler-plan .name.unread { fill: #444 }
+.coupler-plan .row { fill: #f3f3f3 }
+.coupler-plan .request { fill-opacity: .18; stroke-width: 1.5 }
+.coupler-plan .point { stroke: #fff; stroke-width: .7 }
+.coupler-plan .unread-point { fill: #fff; stroke: #666; stroke-dasharray: 3 2 }
+.coupler-plan .hole { fill: url(#coupler-plan-hole) }
+.coupler-plan .unreadable { fill: url(#coupler-plan-unreadable) }
+)";
 
-constexpr std::string_view patterns =
-    "<defs><pattern id=\"hole\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\">"
-    "<path d=\"M0 6L6 0\" stroke=\"#777\" stroke-width=\".8\"/></pattern>"
-    "<pattern id=\"unreadable\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\">"
-    "<path d=\"M0 0L6 6M0 6L6 0\" stroke=\"#c1121f\" stroke-width=\"1\"/></pattern></defs>\n";
+constexpr std::string_view patterns = R"(<defs>
+<pattern id="coupler-plan-hole" width="6" height="6" patternUnits="userSpaceOnUse">
+<path d="M0 6L6 0" stroke="#777" stroke-width=".8"/></pattern>
+<pattern id="coupler-plan-unreadable" width="6" height="6" patternUnits="userSpaceOnUse">
+<path d="M0 0L6 6M0 6L6 0" stroke="#c1121f" stroke-width="1"/></pattern>
+</defs>
+)";
 
 /// Names of points are safe, but a description is any text.
 std::string escaped(std::string_view text) {
@@ -69,14 +79,14 @@ class Picture {
 
   std::string draw() {
     y_ = margin + 14;
-    text(margin, y_, "h", fmt::format("{}: {} points, {}", map_.name, map_.points.size(), requests()));
+    text(margin, y_, "map", fmt::format("{}: {} points, {}", map_.name, map_.points.size(), requests()));
     y_ += 12;
     legend();
     for (const Table table : tables) draw(table);
     return fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" "
         "height=\"{1:g}\" "
-        "role=\"img\">\n<title>{2}: how it is read</title>\n<style>{3}</style>\n{4}"
+        "role=\"img\" class=\"coupler-plan\">\n<title>{2}: how it is read</title>\n<style>{3}</style>\n{4}"
         "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{5}</svg>\n",
         width, y_ + margin, escaped(map_.name), style, patterns, out_);
   }
@@ -105,19 +115,19 @@ class Picture {
     const auto ranges = shown(table);
     if (ranges.empty()) return;
     y_ += 34;
-    text(margin, y_, "t", heading(table));
+    text(margin, y_, "table", heading(table));
     const TableLayout layout(ranges, scale_, y_ + 18);
     for (std::uint32_t i = 0; i < scale_.columns; i += scale_.names ? 1 : 8)
-      text(TableLayout::left + scale_.cell * (i + 0.5), y_ + 13, "c", fmt::format("+{}", i));
+      text(TableLayout::left + scale_.cell * (i + 0.5), y_ + 13, "column", fmt::format("+{}", i));
     for (const auto& row : layout.rows()) {
-      if (row.after_skip) text(TableLayout::left - 24, row.y - 4, "a", "⋮");
+      if (row.after_skip) text(TableLayout::left - 24, row.y - 4, "address", "⋮");
       box({TableLayout::left, row.y + 1, scale_.cell * scale_.columns, scale_.height - 2}, "row", "", "");
-      text(TableLayout::left - 8, row.y + scale_.height / 2 + 4, "a",
+      text(TableLayout::left - 8, row.y + scale_.height / 2 + 4, "address",
            fmt::format("{} · {}", row.first, modicon(table, row.first)));
     }
     for (const Unreadable& area : map_.unreadable)
       if (area.table == table)
-        boxes(layout, area.range, "u", "",
+        boxes(layout, area.range, "unreadable", "",
               fmt::format("unreadable: {} to {}", area.range.start(), area.range.last()));
     for (std::size_t i = 0; i < plan_.size(); ++i)
       for (const ReadSpan& span : plan_[i].spans)
@@ -131,9 +141,9 @@ class Picture {
                                    heading(span.table), span.range.start(), span.range.last(),
                                    span.points.size(), plan_[group].rate, explain_end(span, map_));
     const std::string_view colour = colours[group % colours.size()];
-    boxes(layout, span.range, "s", fmt::format(" fill=\"{0}\" stroke=\"{0}\"", colour), title);
+    boxes(layout, span.range, "request", fmt::format(" fill=\"{0}\" stroke=\"{0}\"", colour), title);
     for (const Range hole : holes(span, map_))
-      boxes(layout, hole, "hole", "", fmt::format("{} to {}: read, but no point", hole.start(), hole.last()));
+      boxes(layout, hole, "hole", "", fmt::format("{} to {}: read, for no point", hole.start(), hole.last()));
   }
 
   /// Points in the same place (bits of a register) stand side by side in it.
@@ -173,10 +183,10 @@ class Picture {
     bool named = false;
     for (const Box& whole : layout.boxes(place_of)) {
       const Box cell = whole.inset(scale_.names ? 4 : 2.5).part(i, count);
-      box(cell, read ? "p" : "w", read ? fmt::format(" fill=\"{}\"", colour) : "", title);
+      box(cell, read ? "point" : "unread-point", read ? fmt::format(" fill=\"{}\"", colour) : "", title);
       const auto fitting = static_cast<std::size_t>(std::max(0.0, (cell.width - 4) / letter));
       if (scale_.names && !named && fitting >= 2)
-        text(cell.x + cell.width / 2, cell.y + cell.height / 2 + 4, read ? "n" : "n wn",
+        text(cell.x + cell.width / 2, cell.y + cell.height / 2 + 4, read ? "name" : "name unread",
              point.name.size() <= fitting ? std::string(point.name)
                                           : std::string(point.name.substr(0, fitting - 1)) + "…");
       named = true;
@@ -191,12 +201,12 @@ class Picture {
       x += 34 + letter * static_cast<double>(what.size());
     };
     for (std::size_t i = 0; i < plan_.size(); ++i)
-      entry("p", fmt::format(" fill=\"{}\"", colours[i % colours.size()]),
+      entry("point", fmt::format(" fill=\"{}\"", colours[i % colours.size()]),
             fmt::format("{:g} Hz", plan_[i].rate));
-    entry("s", " fill=\"#444\" stroke=\"#444\"", "one request");
-    entry("hole", "", "read, but no point");
-    entry("w", "", "not read");
-    if (!map_.unreadable.empty()) entry("u", "", "unreadable");
+    entry("request", " fill=\"#444\" stroke=\"#444\"", "one request");
+    entry("hole", "", "read, for no point");
+    entry("unread-point", "", "not read");
+    if (!map_.unreadable.empty()) entry("unreadable", "", "unreadable");
     y_ += 12;
   }
 

@@ -34,7 +34,7 @@ constexpr Scale small{64, 16, 16, false};
 /// Where the addresses of one table are: rows of `columns` each, those in which nothing is left out.
 class TableLayout {
  public:
-  static constexpr double left = 84;  ///< room for the addresses of the rows
+  static constexpr double left = 110;  ///< room for the addresses of the rows
   static constexpr double skip = 14;  ///< height of what stands for rows left out
 
   /// `shown`: what must be visible.

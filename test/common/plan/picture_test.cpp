@@ -52,7 +52,7 @@ TEST(Picture, It_shows_points_requests_and_holes) {
   const std::string svg = drawn(builder);
   EXPECT_THAT(svg, HasSubstr("<title>holding_registers_3: WORD, 3 to 3, 10 Hz</title>"));
   EXPECT_THAT(svg, HasSubstr("<title>request: holding registers 0 to 3 (2 points) at 10 Hz; ends: "));
-  EXPECT_THAT(svg, HasSubstr("<title>1 to 2: read, but no point</title>"));
+  EXPECT_THAT(svg, HasSubstr("<title>1 to 2: read, for no point</title>"));
   EXPECT_THAT(svg, Not(HasSubstr("discrete inputs"))) << "a table without points";
 }
 
@@ -72,8 +72,8 @@ TEST(Picture, Text_of_the_map_cannot_break_out_of_it) {
 }
 
 TEST(Picture, Of_many_points_the_names_are_in_tooltips_only) {
-  EXPECT_THAT(drawn(MapBuilder().many(hr, 0, 20)), HasSubstr("class=\"n\""));
-  EXPECT_THAT(drawn(MapBuilder().many(hr, 0, 700)), Not(HasSubstr("class=\"n\"")));
+  EXPECT_THAT(drawn(MapBuilder().many(hr, 0, 20)), HasSubstr("class=\"name\""));
+  EXPECT_THAT(drawn(MapBuilder().many(hr, 0, 700)), Not(HasSubstr("class=\"name\"")));
 }
 
 }  // namespace
