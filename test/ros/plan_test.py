@@ -26,6 +26,24 @@ mapping:
     limit: {address: 20, type: INT}
     far_away: {address: 65535, type: UINT}
 """
+RATES = """
+name: plan
+address: localhost
+rate: 10
+registers_read_continuous: true
+unreadable: [{table: holding_registers, from: 24, to: 27}]
+mapping:
+  coils: {lamp: {address: 3, read_address: 515}, horn: 514}
+  holding_registers:
+    speed: {address: 0, type: REAL, rate: 100}
+    setpoint: {address: 2, type: REAL}
+    position: {address: 4, type: DINT, rate: 100}
+    profile: {address: 8, type: REAL, count: 6, rate: 2}
+    before: {address: 22, type: UINT}
+    behind: {address: 29, type: UINT}
+    command: {address: 30, type: UINT, access: write}
+    last: {address: 31, type: UINT}
+"""
 IDENTITY = ("input_registers", 0xFF00, 0xFF0C)
 TABLES = {number: table for table, number in READ.items()}
 
@@ -75,6 +93,20 @@ class Plan(testing.RosTest):
         (plan,), asked, _ = self.start(MAP)
         self.assertEqual(len(plan), 7)
         self.assertEqual(asked.cycles(len(plan), 3), [plan] * 3)
+
+    def test_each_rate_has_requests_and_deadlines_of_its_own(self):
+        plan, asked, _ = self.start(RATES)
+        fast, middle, slow = plan
+        self.assertEqual((len(fast), len(middle), len(slow)), (1, 5, 1))
+        self.assertIn(("coils", 514, 515), middle, "where the lamp reads back")
+        wait_until(lambda: asked.requests.count(slow[0]) == 5, "two seconds of the slowest rate")
+        reads = asked.requests[1:]
+        self.assertEqual(set(reads), {request for group in plan for request in group})
+        for request, rate in ((middle[0], 10), (fast[0], 100)):
+            self.assertLessEqual(reads.count(request), 2 * rate + 3, "what was left out is not made up for")
+            self.assertGreater(reads.count(request), rate, "half of them, on a machine that does other things, too")
+        for request in middle:
+            self.assertAlmostEqual(reads.count(request), reads.count(middle[0]), delta=1)
 
     def test_a_refused_hole_is_found_told_and_left_out(self):
         _, asked, driver = self.start(MAP, missing=[("holding_registers", 2), ("coils", 499)])

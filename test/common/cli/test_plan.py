@@ -62,6 +62,23 @@ class Plan(Cli):
         plan = self.json(text="registers_read_continuous: true\n" + SPREAD)
         self.assertEqual(plan["groups"][0]["spans"][2]["holes"], [{"from": 2, "to": 8}])
 
+    def test_has_a_group_for_each_rate_the_fastest_first(self):
+        groups = self.json(text=SPREAD.replace("INT}", "INT, rate: 200}"))["groups"]
+        self.assertEqual([group["rate_hz"] for group in groups], [200, 100])
+        self.assertEqual([span["points"] for span in groups[0]["spans"]], [["speed"]])
+
+    def test_lists_what_is_not_read(self):
+        text = SPREAD.replace("INT}", "INT, access: write}")
+        self.assertEqual(self.json(text=text)["not_read"], [{"point": "speed", "reason": "write_only"}])
+        self.assertIn("Not read, can only be written: speed\n", self.plan(text=text).stdout)
+
+    def test_does_not_cross_what_is_unreadable(self):
+        text = SPREAD.replace("mapping:", "registers_read_continuous: true\n"
+                              "unreadable: [{table: holding_registers, from: 4, to: 5}]\nmapping:")
+        spans = self.json(text=text)["groups"][0]["spans"]
+        self.assertEqual([(span["from"], span["to"], span["end"]["reason"]) for span in spans[2:]],
+                         [(0, 1, "unreadable"), (9, 9, "end_of_table")])
+
     def test_draws_a_picture_that_is_well_formed(self):
         self.assertEqual(self.plan("--svg", "cell.svg").returncode, 0)
         root = ElementTree.parse(self.folder / "cell.svg").getroot()
