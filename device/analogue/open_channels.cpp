@@ -9,14 +9,14 @@
 #include <utility>
 
 #include "device/core/analogue_points.hpp"
-#include "device/core/analogue_value.hpp"
 
 namespace coupler::node {
 namespace {
 
 double initial_value_of(const Point& output) {
   constexpr std::array<std::uint16_t, 4> zero{};
-  return value_in(output, output.initial.empty() ? zero.data() : output.initial.data());
+  return codec::published(output.initial.empty() ? zero.data() : output.initial.data(), output.format,
+                          output.scale);
 }
 
 /// Finds, and collects what went wrong so that one run tells everything.

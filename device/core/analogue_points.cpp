@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 
-#include "device/core/analogue_value.hpp"
 #include "device/core/each_point.hpp"
 
 namespace coupler::node {
@@ -21,6 +20,11 @@ void each_channel(const Map& map, Table table, Range touched, Use use) {
   each_number(map, table, touched, [&](const Point& point) {
     if (is_analogue(point)) use(point);
   });
+}
+
+/// What the point's registers say; not finite if a REAL or LREAL is not.
+double value_in(const Point& point, const std::uint16_t* registers) {
+  return codec::published(registers, point.format, point.scale);
 }
 
 template <class Use>
@@ -43,7 +47,7 @@ bool AnaloguePoints::read(Range inputs, TimePoint now) {
   bool good = true;
   each_channel(map_, Table::input_registers, inputs, [&](const Point& point) {
     if (const auto value = channels_.read(point, now); value && std::isfinite(*value))
-      put_value(*value, point, image_.find(point.table, range(point)).data());
+      codec::encode_nearest(*value, point.format, point.scale, image_.find(point.table, range(point)).data());
     else
       good = false;
   });
@@ -92,7 +96,7 @@ bool AnaloguePoints::drive(const Point& output, bool safe) {
   const bool to_safe_value = safe && output.safe != Safe::hold;
   const double value = to_safe_value ? safe_value_of(output) : value_in(output, registers);
   if (!std::isfinite(value) || channels_.drive(output, value) != Outcome::done) return false;
-  if (to_safe_value) put_value(value, output, registers);
+  if (to_safe_value) codec::encode_nearest(value, output.format, output.scale, registers);
   return true;
 }
 
