@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "common/codec/number.hpp"
 #include "common/map/point.hpp"
-#include "host/ros/element.hpp"
 
 namespace coupler::driver {
 
@@ -39,36 +39,27 @@ struct ArrayMessage {
     shape(message, point);
     const std::size_t width = codec::registers(point.format);
     for (std::size_t i = 0; i < point.count; ++i)
-      message.data[i] = decode_element<T>(registers + i * width, point.format);
+      message.data[i] = codec::take<T>(point.format, registers + i * width);
   }
   static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
     if (auto wrong = wrong_size(message.data.size(), point.count, ""); !wrong.empty()) return wrong;
     const std::size_t width = codec::registers(point.format);
     for (std::size_t i = 0; i < point.count; ++i)
-      encode_element(static_cast<T>(message.data[i]), point.format, registers + i * width);
+      codec::put(static_cast<T>(message.data[i]), point.format, registers + i * width);
     return {};
   }
 };
 
-/// `count` coils or discrete inputs, or registers of which each gives its bit.
+/// `count` coils or discrete inputs.
 struct BoolsMessage {
   using Message = coupler_driver::BoolArray;
   static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
     message.data.resize(point.count);
-    const bool whole = holds_bits(point.table);
-    for (std::size_t i = 0; i < point.count; ++i)
-      message.data[i] =
-          whole ? registers[i] != 0 : decode_element<std::uint8_t>(registers + i, point.format) != 0;
+    for (std::size_t i = 0; i < point.count; ++i) message.data[i] = registers[i] != 0;
   }
   static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
     if (auto wrong = wrong_size(message.data.size(), point.count, ""); !wrong.empty()) return wrong;
-    for (std::size_t i = 0; i < point.count; ++i) {
-      const std::uint8_t on = message.data[i] != 0 ? 1 : 0;
-      if (holds_bits(point.table))
-        registers[i] = on;
-      else
-        encode_element(on, point.format, registers + i);
-    }
+    for (std::size_t i = 0; i < point.count; ++i) registers[i] = message.data[i] != 0 ? 1 : 0;
     return {};
   }
 };
@@ -83,7 +74,7 @@ struct BitsMessage {
     message.data.resize(point.count * bits);
     auto* out = message.data.data();
     for (std::size_t n = 0; n < point.count; ++n, registers += codec::registers(point.format)) {
-      const T value = decode_element<T>(registers, point.format);
+      const T value = codec::take<T>(point.format, registers);
       for (std::size_t i = 0; i < bits; ++i) *out++ = static_cast<std::uint8_t>(value >> i & 1U);
     }
   }
@@ -96,7 +87,7 @@ struct BitsMessage {
       T value = 0;
       for (std::size_t i = 0; i < bits; ++i)
         if (*in++ != 0) value = static_cast<T>(value | T{1} << i);
-      encode_element(value, point.format, registers);
+      codec::put(value, point.format, registers);
     }
     return {};
   }

@@ -3,14 +3,12 @@
 //   decode(registers, point, message): bit tables give each bit as one register, 0 or 1; no allocation once
 //   the message has been filled before;
 //   encode(message, point, registers): returns what is wrong with the value and what to do, or an empty
-//   text; fills range(point).count() registers.
+//   text; fills range(point).count() registers, which were zero.
 #pragma once
 
 #include <std_msgs/Char.h>
 #include <std_msgs/Float32.h>
 #include <std_msgs/Float32MultiArray.h>
-#include <std_msgs/Float64.h>
-#include <std_msgs/Float64MultiArray.h>
 #include <std_msgs/Int16.h>
 #include <std_msgs/Int16MultiArray.h>
 #include <std_msgs/Int32.h>
@@ -18,7 +16,6 @@
 #include <std_msgs/Int64.h>
 #include <std_msgs/Int64MultiArray.h>
 #include <std_msgs/Int8.h>
-#include <std_msgs/Int8MultiArray.h>
 #include <std_msgs/UInt16.h>
 #include <std_msgs/UInt16MultiArray.h>
 #include <std_msgs/UInt32.h>
@@ -26,9 +23,9 @@
 #include <std_msgs/UInt64.h>
 #include <std_msgs/UInt64MultiArray.h>
 #include <std_msgs/UInt8.h>
-#include <std_msgs/UInt8MultiArray.h>
 
 #include "host/ros/array_message.hpp"
+#include "host/ros/scaled_message.hpp"
 #include "host/ros/value_message.hpp"
 
 namespace coupler::driver {
@@ -43,6 +40,7 @@ auto with_number_message(const Point& point, F&& f) {
 template <class F>
 auto with_message(const Point& point, F&& f) {
   using codec::Type;
+  if (point.scale.present()) return point.count > 1 ? f(ScaledArrayMessage{}) : f(ScaledMessage{});
   switch (point.format.type) {
     case Type::BOOL:
       if (point.count > 1) return f(BoolsMessage{});
@@ -52,16 +50,14 @@ auto with_message(const Point& point, F&& f) {
     case Type::WORD: return f(BitsMessage<std::uint16_t>{});
     case Type::DWORD: return f(BitsMessage<std::uint32_t>{});
     case Type::LWORD: return f(BitsMessage<std::uint64_t>{});
-    case Type::SINT:
-      return with_number_message<std::int8_t, std_msgs::Int8, std_msgs::Int8MultiArray>(point, f);
+    case Type::SINT: return f(NumberMessage<std::int8_t, std_msgs::Int8>{});
     case Type::INT:
       return with_number_message<std::int16_t, std_msgs::Int16, std_msgs::Int16MultiArray>(point, f);
     case Type::DINT:
       return with_number_message<std::int32_t, std_msgs::Int32, std_msgs::Int32MultiArray>(point, f);
     case Type::LINT:
       return with_number_message<std::int64_t, std_msgs::Int64, std_msgs::Int64MultiArray>(point, f);
-    case Type::USINT:
-      return with_number_message<std::uint8_t, std_msgs::UInt8, std_msgs::UInt8MultiArray>(point, f);
+    case Type::USINT: return f(NumberMessage<std::uint8_t, std_msgs::UInt8>{});
     case Type::UINT:
       return with_number_message<std::uint16_t, std_msgs::UInt16, std_msgs::UInt16MultiArray>(point, f);
     case Type::UDINT:
@@ -72,8 +68,7 @@ auto with_message(const Point& point, F&& f) {
       return with_number_message<float, std_msgs::Float32, std_msgs::Float32MultiArray>(point, f);
     case Type::LREAL:
       return with_number_message<double, std_msgs::Float64, std_msgs::Float64MultiArray>(point, f);
-    case Type::CHAR:
-      return with_number_message<std::uint8_t, std_msgs::Char, std_msgs::UInt8MultiArray>(point, f);
+    case Type::CHAR: return f(NumberMessage<std::uint8_t, std_msgs::Char>{});
     case Type::STRING: break;
   }
   return f(TextMessage{});

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "common/codec/number.hpp"
 #include "common/codec/text.hpp"
 #include "common/map/point.hpp"
-#include "host/ros/element.hpp"
 
 namespace coupler::driver {
 
@@ -31,10 +31,10 @@ template <class T, class M>
 struct NumberMessage {
   using Message = M;
   static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
-    message.data = decode_element<T>(registers, point.format);
+    message.data = codec::take<T>(point.format, registers);
   }
   static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
-    encode_element(static_cast<T>(message.data), point.format, registers);
+    codec::put(static_cast<T>(message.data), point.format, registers);
     return {};
   }
 };

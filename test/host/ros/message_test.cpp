@@ -85,6 +85,23 @@ TEST(Message, Several_coils_are_one_element_each) {
   EXPECT_EQ(back, registers);
 }
 
+TEST(Message, A_scaled_point_is_a_Float64_and_an_array_of_them) {
+  Point point = point_of(codec::Type::INT, 2);
+  point.scale = {0.5, 10};
+  EXPECT_TRUE(is_carried_by<std_msgs::Float64MultiArray>(point));
+  const std::vector<std::uint16_t> registers{4, 0xFFFF};
+  ScaledArrayMessage::Message message;
+  ScaledArrayMessage::decode(registers.data(), point, message);
+  EXPECT_THAT(message.data, ElementsAre(12, 9.5));
+  std::vector<std::uint16_t> back(2);
+  EXPECT_EQ(ScaledArrayMessage::encode(message, point, back.data()), "");
+  EXPECT_EQ(back, registers);
+  message.data[1] = 1e9;
+  EXPECT_THAT(ScaledArrayMessage::encode(message, point, back.data()), HasSubstr("out of range"));
+  point.count = 1;
+  EXPECT_TRUE(is_carried_by<std_msgs::Float64>(point));
+}
+
 TEST(Message, A_wrong_number_of_elements_is_refused_with_the_right_one) {
   std::vector<std::uint16_t> registers(8);
   std_msgs::Int16MultiArray numbers;

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages of points with a scale: what they publish is a Float64, whatever the device holds.
+#pragma once
+
+#include <std_msgs/Float64.h>
+#include <std_msgs/Float64MultiArray.h>
+
+#include "common/codec/scale.hpp"
+#include "host/core/value_text.hpp"
+#include "host/ros/array_message.hpp"
+
+namespace coupler::driver {
+
+struct ScaledMessage {
+  using Message = std_msgs::Float64;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    message.data = codec::published(registers, point.format, point.scale);
+  }
+  static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
+    return encode_scaled(message.data, point, registers);
+  }
+};
+
+struct ScaledArrayMessage {
+  using Message = std_msgs::Float64MultiArray;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    shape(message, point);
+    for (double& value : message.data) {
+      value = codec::published(registers, point.format, point.scale);
+      registers += codec::registers(point.format);
+    }
+  }
+  static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
+    std::string wrong = wrong_size(message.data.size(), point.count, "");
+    for (std::size_t i = 0; i < point.count && wrong.empty(); ++i) {
+      wrong = encode_scaled(message.data[i], point, registers);
+      registers += codec::registers(point.format);
+    }
+    return wrong;
+  }
+};
+
+}  // namespace coupler::driver
