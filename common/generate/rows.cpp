@@ -144,17 +144,21 @@ std::string host(const HostOptions& options) {
   return out == text(HostOptions{}) ? "{}" : out;
 }
 
-/// What few points have: counter, latched, count, scale, iio, pwm, safe registers, read address, host. Empty
-/// for all others.
+/// What few points have behind counter and latched: count, scale, iio, pwm, safe registers, read address,
+/// host.
 std::string rest(const Point& point) {
-  const auto text = [](const Point& p) {
-    return fmt::format("{}, {}, {}, {{{:#}, {:#}}}, {}, {}, {}, {}, {}", edge(p.counter), edge(p.latched),
-                       p.count, p.scale.gain, p.scale.offset, iio(p.iio), pwm(p.pwm), registers(p.safe_value),
-                       p.read_address ? fmt::format("::std::uint16_t{{{}}}", *p.read_address) : "{}",
-                       host(p.host));
-  };
-  const std::string out = text(point);
-  return out == text(Point{}) ? std::string() : ",\n     " + out;
+  return fmt::format("{}, {{{:#}, {:#}}}, {}, {}, {}, {}, {}", point.count, point.scale.gain,
+                     point.scale.offset, iio(point.iio), pwm(point.pwm), registers(point.safe_value),
+                     point.read_address ? fmt::format("::std::uint16_t{{{}}}", *point.read_address) : "{}",
+                     host(point.host));
+}
+
+/// All that most points do not have.
+std::string extras(const Point& point) {
+  const std::string edges = fmt::format(", {}, {}", edge(point.counter), edge(point.latched));
+  const std::string more = rest(point);
+  if (more != rest(Point{})) return edges + ",\n     " + more;
+  return point.counter.present() || point.latched.present() ? edges : std::string();
 }
 
 std::string place(const Point& point) {
@@ -176,7 +180,7 @@ std::string row(const Point& point) {
       "     {}, {}{}}},\n",
       what, place(point), literal(point.name), to_string(point.table), point.address, format(point.format),
       enumerator(point.access), registers(point.initial), enumerator(point.safe), line(point.line),
-      literal(point.description), literal(point.units), rest(point));
+      literal(point.description), literal(point.units), extras(point));
 }
 
 std::string row(const SimWire& wire) {
