@@ -86,7 +86,6 @@ std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const
   for (const std::uint32_t i : points) {
     const Point& point = map_.points[i];
     const Range range = read_range(point);
-    if (refuses(point.table, range, refused)) continue;
     if (!spans.empty() && spans.back().table == point.table) {
       ReadSpan& last = spans.back();
       const auto apart = why_apart(last, range, refused);

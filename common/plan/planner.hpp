@@ -44,9 +44,12 @@ class Planner {
   /// Every point that can be read, the fastest rate first.
   const std::vector<RateGroup>& groups() const { return groups_; }
 
-  /// The requests for `points`, given in the order of a RateGroup; ordered by table and address. A request
-  /// that contains one of `refused` is not made: a point that does is left out.
+  /// The requests for `points`, given in the order of a RateGroup; ordered by table and address. Points are
+  /// not joined to a request that contains one of `refused`.
   std::vector<ReadSpan> plan(Span<const std::uint32_t> points, Span<const Unreadable> refused = {}) const;
+
+  /// Some of the addresses are those of a point that can be read.
+  bool has_points(Table table, modbus::Range range) const { return readable_[index(table)].overlaps(range); }
 
   const Map& map() const { return map_; }
 

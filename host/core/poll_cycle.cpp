@@ -8,13 +8,15 @@
 
 namespace coupler::driver {
 
-PollCycle::PollCycle(const Map& map) : planner_(map), wanted_(map.points.size(), true) {
+PollCycle::PollCycle(const Map& map)
+    : planner_(map), wanted_(map.points.size(), true), given_up_(map.points.size(), false) {
   for (const plan::RateGroup& points : planner_.groups())
     groups_.push_back({&points, Schedule(period_of(points.rate))});
 }
 
 void PollCycle::start(Time now) {
   refused_.clear();
+  given_up_.assign(given_up_.size(), false);
   found_.clear();
   others_first_ = false;
   for (Group& group : groups_) {
@@ -83,7 +85,10 @@ std::vector<std::uint32_t> PollCycle::rejected(Time now) {
       continue;
     }
     plan::Split parts = split(span, planner_.map());
-    if (parts.pieces.empty()) given_up.push_back(span.points.front());
+    if (parts.pieces.empty()) {
+      given_up.push_back(span.points.front());
+      given_up_[span.points.front()] = true;
+    }
     open.insert(open.end(), parts.pieces.rbegin(), parts.pieces.rend());
     hole = parts.hole;
   }
@@ -96,8 +101,7 @@ std::vector<std::uint32_t> PollCycle::rejected(Time now) {
 }
 
 void PollCycle::give_up(Time now) {
-  for (const std::uint32_t point : current().points)
-    refused_.push_back({current().table, read_range(planner_.map().points[point])});
+  for (const std::uint32_t point : current().points) given_up_[point] = true;
   remove_current();
   done(now);
 }
@@ -120,7 +124,7 @@ std::uint64_t PollCycle::overruns() const {
 void PollCycle::replan(Group& group, Time now) {
   std::vector<std::uint32_t> points;
   for (const std::uint32_t point : group.points->points)
-    if (wanted_[point]) points.push_back(point);
+    if (wanted_[point] && !given_up_[point]) points.push_back(point);
   const std::vector<Step> old = std::exchange(group.steps, {});
   for (ReadSpan& span : planner_.plan(points, refused_)) {
     const auto same = std::find_if(old.begin(), old.end(), [&](const Step& step) {
@@ -144,6 +148,7 @@ void PollCycle::done(Time now) {
   others_first_ = false;
   if (group.next < group.steps.size()) return;
   group.next = 0;
+  cycle_time_ = now - group.schedule.due();
   group.schedule.advance(now);
   others_first_ = due() <= now;
   if (!group.parted.empty()) learn(group);
@@ -163,9 +168,11 @@ void PollCycle::learn(Group& group) {
   bool found_hole = false;
   for (const auto& [whole, hole] : std::exchange(group.parted, {})) {
     if (holds_smaller(whole)) continue;
-    found_.push_back({whole.table, hole.value_or(whole.range), hole.has_value()});
-    if (hole) refused_.push_back({whole.table, *hole});
-    found_hole = found_hole || hole;
+    // With points of another rate in it, the hole is an unlikely cause.
+    const bool blame_hole = hole && !planner_.has_points(whole.table, *hole);
+    found_.push_back({whole.table, blame_hole ? *hole : whole.range, blame_hole});
+    if (blame_hole) refused_.push_back({whole.table, *hole});
+    found_hole = found_hole || blame_hole;
   }
   if (found_hole && !std::exchange(group.joined_again, true)) group.stale = true;
 }

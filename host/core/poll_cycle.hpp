@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/plan/planner.hpp"
@@ -52,6 +53,9 @@ class PollCycle {
   /// What was found out, since the last call, about requests that were rejected: each is told once.
   std::vector<Refusal> take_refusals();
 
+  /// From its deadline to its last answer: the cycle that has ended since the last call, if one has.
+  std::optional<Duration> take_cycle_time() { return std::exchange(cycle_time_, std::nullopt); }
+
   struct Status {
     double rate;             ///< Hz
     std::size_t requests;    ///< in a cycle, at the moment
@@ -77,10 +81,10 @@ class PollCycle {
     Schedule schedule;
     std::vector<Step> steps{};
     std::size_t next = 0;
-    bool stale = false;          ///< to be planned anew when no cycle runs
-    bool joined_again = false;   ///< planned anew after what it learned: once is enough
+    bool stale = false;            ///< to be planned anew when no cycle runs
+    bool joined_again = false;     ///< planned anew after what it learned: once is enough
     std::vector<Parted> parted{};  ///< in the cycle that runs
-    std::uint64_t served = 0;    ///< the number of its last request
+    std::uint64_t served = 0;      ///< the number of its last request
 
     bool idle() const { return steps.empty() || next == 0; }
     Time due() const;
@@ -92,13 +96,15 @@ class PollCycle {
   void learn(Group& group);
 
   plan::Planner planner_;
-  std::vector<bool> wanted_;  ///< by point
+  std::vector<bool> wanted_;    ///< by point
+  std::vector<bool> given_up_;  ///< by point
   std::vector<Group> groups_;
   std::size_t current_ = 0;
   std::uint64_t requests_ = 0;
   bool others_first_ = false;        ///< a cycle has ended: who waits has a turn
-  std::vector<Unreadable> refused_;  ///< a request that contains one is not made
+  std::vector<Unreadable> refused_;  ///< no request of several points contains one
   std::vector<Refusal> found_;
+  std::optional<Duration> cycle_time_;
 };
 
 }  // namespace coupler::driver

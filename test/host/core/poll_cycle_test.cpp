@@ -1,88 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/core/poll_cycle.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <set>
+#include <map>
 #include <string>
 
-#include "test/fakes/map_builder.hpp"
+#include "test/host/core/poll_cycle_fixture.hpp"
 
 namespace coupler::driver {
 namespace {
 
 using fakes::MapBuilder;
 using std::chrono::milliseconds;
-using testing::Contains;
-using testing::Each;
+using test::PollCycleTest;
+using test::registers;
 using testing::ElementsAre;
 using testing::IsEmpty;
-using testing::Not;
 
 constexpr Table hr = Table::holding_registers;
-constexpr Time begin = Time{} + std::chrono::hours(1);
 
 auto at_rate(double rate) {
   return [rate](Point& point) { point.host.rate = rate; };
-}
-
-/// A cycle, and a device in which some addresses are missing and every request takes its time.
-struct PollCycleTest : testing::Test {
-  void plan(MapBuilder builder) {
-    owned = builder.build();
-    cycle.emplace(owned->map());
-    cycle->start(now);
-  }
-
-  /// One request, if one is due: "0+4", with a "!" if it was rejected.
-  std::string step() {
-    const ReadSpan* span = cycle->select(now);
-    if (span == nullptr) return {};
-    auto text = fmt::format("{}+{}", span->range.start(), span->range.count());
-    now += reply_time;
-    bool good = span->range.count() <= longest;
-    for (std::uint32_t i = 0; i < span->range.count(); ++i)
-      good = good && missing.count(span->range.start() + i) == 0;
-    if (good) {
-      cycle->answered(std::nullopt, now);
-      return text;
-    }
-    for (const std::uint32_t point : cycle->rejected(now))
-      given_up.push_back(std::string(owned->map().points[point].name));
-    return text + "!";
-  }
-  /// Everything that is due, then to the next deadline.
-  std::vector<std::string> run() {
-    std::vector<std::string> requests;
-    while (cycle->due() <= now) {
-      const std::string request = step();
-      if (!request.empty()) requests.push_back(request);
-    }
-    if (cycle->due() < Time::max()) now = cycle->due();
-    return requests;
-  }
-  /// The requests of each of `count` steps.
-  std::vector<std::string> steps(int count) {
-    std::vector<std::string> requests;
-    for (int i = 0; i < count; ++i) requests.push_back(step());
-    return requests;
-  }
-
-  Time now = begin;
-  Duration reply_time = milliseconds(1);
-  std::uint32_t longest = 125;
-  std::set<std::uint32_t> missing;
-  std::vector<std::string> given_up;
-  MapPtr owned;
-  std::optional<PollCycle> cycle;
-};
-
-MapBuilder points(std::initializer_list<unsigned> addresses) {
-  MapBuilder builder;
-  for (const unsigned address : addresses) builder.many(hr, address, 1);
-  builder.head().polling.register_continuous = true;
-  return builder;
 }
 
 TEST_F(PollCycleTest, A_map_without_points_is_never_due) {
@@ -150,84 +89,8 @@ TEST_F(PollCycleTest, Overruns_are_counted_for_each_rate) {
   EXPECT_EQ(cycle->overruns(), status[0].overruns);
 }
 
-TEST_F(PollCycleTest, A_rejected_request_is_parted_until_the_hole_is_found_and_the_rest_is_joined_again) {
-  missing = {9};
-  plan(points({0, 2, 4, 6, 8, 10, 12, 14}));
-  EXPECT_THAT(run(), ElementsAre("0+15!", "0+7", "8+7!", "8+3!", "8+1", "10+1", "12+3"));
-  EXPECT_THAT(run(), ElementsAre("0+9", "10+5"));
-  EXPECT_THAT(given_up, IsEmpty());
-  EXPECT_EQ(cycle->status().front().requests, 2U);
-}
-
-TEST_F(PollCycleTest, A_hole_is_told_once_with_what_to_add_to_the_map) {
-  missing = {9};
-  plan(points({0, 2, 8, 12}));
-  run();
-  const auto refusals = cycle->take_refusals();
-  ASSERT_EQ(refusals.size(), 1U);
-  EXPECT_THAT(to_string(refusals[0]),
-              testing::HasSubstr("unreadable: [{table: holding_registers, from: 9, to: 11}]"));
-  run();
-  run();
-  EXPECT_THAT(cycle->take_refusals(), IsEmpty());
-}
-
-TEST_F(PollCycleTest, Several_holes_are_found_in_one_cycle) {
-  missing = {1, 11};
-  plan(points({0, 2, 4, 6, 8, 10, 12, 14}));
-  run();
-  EXPECT_THAT(run(), ElementsAre("0+1", "2+9", "12+3"));
-  EXPECT_THAT(run(), Each(Not(testing::EndsWith("!"))));
-}
-
-TEST_F(PollCycleTest, A_point_that_is_refused_by_itself_is_given_up_and_the_rest_goes_on) {
-  missing = {2};
-  plan(points({0, 1, 2, 3}));
-  EXPECT_THAT(run(), ElementsAre("0+4!", "0+2", "2+2!", "2+1!", "3+1"));
-  EXPECT_THAT(given_up, ElementsAre("holding_registers_2"));
-  EXPECT_THAT(run(), ElementsAre("0+2", "3+1"));
-  EXPECT_THAT(cycle->take_refusals(), IsEmpty()) << "the point has been told";
-}
-
-TEST_F(PollCycleTest, All_bits_of_a_refused_register_are_given_up_with_one_request) {
-  missing = {0};
-  MapBuilder builder;
-  for (std::uint8_t bit = 0; bit < 3; ++bit)
-    builder.add(hr, std::string("bit") + char('a' + bit), 0, codec::Type::BOOL,
-                [bit](Point& point) { point.format.bit = bit; });
-  plan(builder);
-  EXPECT_THAT(run(), ElementsAre("0+1!"));
-  EXPECT_THAT(given_up, ElementsAre("bita", "bitb", "bitc"));
-  EXPECT_EQ(cycle->due(), Time::max());
-}
-
-TEST_F(PollCycleTest, A_device_that_takes_fewer_than_the_map_says_is_asked_for_less) {
-  longest = 40;
-  plan(MapBuilder().many(hr, 0, 100));
-  EXPECT_THAT(run(), ElementsAre("0+100!", "0+50!", "0+25", "25+25", "50+50!", "50+25", "75+25"));
-  EXPECT_THAT(run(), ElementsAre("0+25", "25+25", "50+25", "75+25"));
-  const auto refusals = cycle->take_refusals();
-  ASSERT_EQ(refusals.size(), 2U);
-  EXPECT_THAT(to_string(refusals[0]), testing::HasSubstr("limits: {read_registers: …}"));
-}
-
-TEST_F(PollCycleTest, A_function_that_the_device_does_not_know_is_not_tried_again) {
-  plan(points({0, 1}));
-  cycle->select(now);
-  cycle->give_up(now);
-  EXPECT_EQ(cycle->due(), Time::max());
-}
-
-TEST_F(PollCycleTest, With_a_new_connection_everything_is_asked_for_again) {
-  missing = {2};
-  plan(points({0, 1, 2, 3}));
-  run();
-  cycle->start(now);
-  EXPECT_THAT(run(), Contains("0+4!"));
-}
-
 TEST_F(PollCycleTest, An_answer_is_news_when_it_differs_from_the_last) {
-  plan(points({0}));
+  plan(registers({0}));
   const auto answer = [this](std::optional<modbus::Exception> exception) {
     cycle->select(now);
     const bool news = cycle->answered(exception, now);
@@ -241,7 +104,7 @@ TEST_F(PollCycleTest, An_answer_is_news_when_it_differs_from_the_last) {
 }
 
 TEST_F(PollCycleTest, Only_what_is_wanted_is_read) {
-  plan(points({0, 1, 2, 100}));
+  plan(registers({0, 1, 2, 100}));
   cycle->want(0, false);
   cycle->want(3, false);
   run();
@@ -251,7 +114,7 @@ TEST_F(PollCycleTest, Only_what_is_wanted_is_read) {
 }
 
 TEST_F(PollCycleTest, Nobody_wants_anything_no_request_is_made) {
-  plan(points({0, 1}));
+  plan(registers({0, 1}));
   cycle->want(0, false);
   cycle->want(1, false);
   EXPECT_THAT(run(), IsEmpty());
@@ -259,7 +122,7 @@ TEST_F(PollCycleTest, Nobody_wants_anything_no_request_is_made) {
 }
 
 TEST_F(PollCycleTest, The_first_who_wants_something_has_it_at_once) {
-  plan(points({0, 1}));
+  plan(registers({0, 1}));
   cycle->want(0, false);
   cycle->want(1, false);
   run();
@@ -271,7 +134,7 @@ TEST_F(PollCycleTest, The_first_who_wants_something_has_it_at_once) {
 }
 
 TEST_F(PollCycleTest, A_wish_that_changes_in_a_running_cycle_changes_the_next_one) {
-  plan(points({0, 100, 200}));
+  plan(registers({0, 100, 200}));
   EXPECT_EQ(step(), "0+1");
   cycle->want(1, false);
   EXPECT_THAT(steps(3), ElementsAre("100+1", "200+1", ""));
@@ -281,7 +144,7 @@ TEST_F(PollCycleTest, A_wish_that_changes_in_a_running_cycle_changes_the_next_on
 
 TEST_F(PollCycleTest, What_was_learned_is_kept_when_wishes_change) {
   missing = {1};
-  plan(points({0, 2, 4}));
+  plan(registers({0, 2, 4}));
   run();
   cycle->want(2, false);
   EXPECT_THAT(run(), ElementsAre("0+1", "2+1"));
