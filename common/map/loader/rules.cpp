@@ -12,7 +12,9 @@ namespace {
 
 /// The same text for the same line or channel, as far as the file tells. Empty: there is none.
 std::string hardware(const Point& point) {
-  if (point.iio.present()) return fmt::format("iio {} {}", point.iio.device, point.iio.channel);
+  // An ADC and a DAC of one device may number their channels alike.
+  if (point.iio.present())
+    return fmt::format("iio {} {} {}", to_string(point.table), point.iio.device, point.iio.channel);
   if (point.pwm.present()) return fmt::format("pwm {} {}", point.pwm.chip, point.pwm.channel);
   const Line& line = point.line;
   if (!line.present()) return {};
