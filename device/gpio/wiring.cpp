@@ -63,7 +63,7 @@ tl::expected<std::unique_ptr<NextWiring>, std::string> prepare_wiring(const Map&
                                                                       Wiring* before, Log& log) {
   if (simulated) return std::make_unique<NextSimulated>(map, before);
 #ifdef COUPLER_WITH_GPIOD
-  return wire(map, static_cast<HeldWiring*>(before), log);
+  return wire(map, dynamic_cast<HeldWiring*>(before), log);
 #else
   const auto* wired =
       std::find_if(map.points.begin(), map.points.end(), [](const auto& p) { return p.line.present(); });

@@ -87,14 +87,23 @@ TEST_F(Simulated, An_address_that_is_not_this_machines_is_refused) {
   EXPECT_THAT(log_.lines, Contains(HasSubstr("cannot listen on 192.0.2.1")));
 }
 
-TEST_F(Simulated, Lines_that_cannot_be_had_are_refused) {
-  options_.simulated = false;
-  options_.listen = "127.0.0.1";
-  next_ = plant()
-              .add(Table::coils, "horn", 1, Type::BOOL, [](Point& p) { p.line.chip = "no-such-chip"; })
-              .build();
-  EXPECT_FALSE(station_.reload());
-  EXPECT_THAT(log_.lines, Contains(HasSubstr("point 'horn'")));
+TEST(OnItsBoard, Lines_that_cannot_be_had_are_refused) {
+  Options options = simulated();
+  options.simulated = false;
+  options.listen = "127.0.0.1";
+  FakeLog log;
+  ServiceManager nobody(nullptr, nullptr);
+  const MapPtr first = MapBuilder().many(Table::coils, 0, 1).build();
+  const MapPtr next =
+      MapBuilder()
+          .add(Table::coils, "horn", 1, Type::BOOL, [](Point& p) { p.line.chip = "no-such-chip"; })
+          .build();
+  Station station(
+      options, [&] { return next; }, nobody, log);
+  ASSERT_TRUE(station.start(first->map()).has_value());
+  EXPECT_FALSE(station.needs_keeper());
+  EXPECT_FALSE(station.reload());
+  EXPECT_THAT(log.lines, Contains(HasSubstr("point 'horn'")));
 }
 
 TEST(BuiltIn, A_node_without_a_file_ignores_the_wish_to_reload) {
