@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <string>
 
-#include "common/modbus/limits.hpp"
 #include "host/core/backoff.hpp"
-#include "host/core/identity_check.hpp"
-#include "host/core/paced_transport.hpp"
-#include "host/core/poll_cycle.hpp"
-#include "host/core/sink.hpp"
-#include "host/core/write_queue.hpp"
+#include "host/core/reader.hpp"
+#include "host/core/writer.hpp"
 
 namespace coupler::driver {
 
@@ -21,43 +16,58 @@ namespace coupler::driver {
 /// either, since a value from a place that now means something else would be published under the old name.
 /// The connection is closed (it may be the only one the device has) and the identity is asked for again after
 /// the back-off.
+///
+/// push(), refuse(), statistics() and qualities() are for any thread. All others are for one at a time: the
+/// owner of the connection, or, for send_now() alone, one who has made sure that the owner only waits.
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
-  Device(const Map& map, Verify verify, MapLoader load, Transport& transport, Clock& clock,
-         WriteQueue& writes, Sink& sink);
+  Device(const Map& map, Verify verify, MapLoader load, Transport& transport, Clock& clock, Sink& sink);
+
+  /// Queues a write. Its listener gets the result.
+  void push(const Write& write) { writer_.push(write); }
+  /// A value that is none of its point: counted, and told to the listener.
+  void refuse(const Write& write, std::string_view why) { writer_.refuse(write, why); }
+
+  /// Sends what is queued without waiting for anything, if that is possible now. If false, step() must be
+  /// called.
+  bool send_now() { return connected_ && writer_.send_now(); }
 
   /// Does what is due, at most one read or one write, and returns the time of what is due next: now or
   /// earlier if there is more to do. A write in the queue is always due while connected.
   Time step();
-
-  /// The program ends: drops the connection without trying again.
+  /// Bytes have come while no step() ran: an answer to send_now(), or else the end of the connection.
+  void arrived();
+  /// The program ends: outputs go where `on_shutdown` wants them, the connection is dropped for good.
   void stop();
 
-  std::uint64_t overruns() const { return cycle_.overruns(); }
+  /// Whether somebody wants the values of a point (index into Map::points).
+  void want(std::uint32_t point, bool wanted) { reader_.want(point, wanted); }
+
+  DeviceSnapshot statistics() const { return statistics_.snapshot(); }
+  std::vector<PointQuality> qualities() const { return qualities_.snapshot(clock_.now()); }
 
  private:
   Time connect();
   Result<> prove_equal();
   Result<> judge(const Identity& identity);
   void explain_silence(const Error& error);
-  void write(const Write& write);
-  void drop_writes();
-  void read();
-  void rejected_read(modbus::Exception code);
-  void handle_read_error(const Error& error);
+  Result<> do_what_is_due(Time now);
+  Time due() const;
+  Time probe_due() const { return transport_.last_answer() + map_.connection.timeout; }
   void came_online();
   void lost(const Error& error);
-  std::string describe(const ReadSpan& span) const;
 
   Map map_;
   Verify verify_;
   MapLoader load_;
-  PacedTransport transport_;
   Clock& clock_;
-  WriteQueue& writes_;
   Sink& sink_;
-  PollCycle cycle_;
+  DeviceStatistics statistics_;
+  PointQualities qualities_;
+  PacedTransport transport_;
+  Writer writer_;
+  Reader reader_;
   Backoff backoff_;
 
   bool connected_ = false;  ///< proven equal; reads and writes may go out
@@ -66,9 +76,6 @@ class Device {
   std::string last_trouble_;               ///< why the last attempt failed, so that it is told once
   bool silence_told_ = false;              ///< that the identity was not answered, and the remedy
   std::uint64_t refused_fingerprint_ = 0;  ///< whose differences have been told
-  std::uint64_t dropped_writes_ = 0;       ///< since the connection was lost
-  std::array<std::uint8_t, modbus::max_read_bits> bits_{};
-  std::array<std::uint16_t, modbus::max_read_registers> registers_{};
 };
 
 }  // namespace coupler::driver

@@ -4,23 +4,50 @@
 #include <utility>
 
 namespace coupler::driver {
+namespace {
+
+/// For safe values at the end: the program is to be gone within a second.
+constexpr auto longest_farewell = std::chrono::milliseconds(700);
+
+}  // namespace
 
 DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink)
     : transport_(transport),
-      device_(map, verify, std::move(load), transport, clock_, writes_, sink),
+      device_(map, verify, std::move(load), transport, clock_, sink),
+      ends_safely_(map.on_shutdown == OnShutdown::safe),
       thread_([this] { run(); }) {}
 
 DeviceThread::~DeviceThread() {
   stopping_ = true;
+  transport_.wake();
+  if (ends_safely_) stopped_.get_future().wait_for(longest_farewell);
   clock_.stop();
-  writes_.stop();
   transport_.interrupt();
   thread_.join();
 }
 
+void DeviceThread::write(const Write& write) {
+  device_.push(write);
+  const std::unique_lock turn(turn_, std::try_to_lock);
+  if (!turn || !device_.send_now()) transport_.wake();
+}
+
+Time DeviceThread::step() {
+  const std::lock_guard turn(turn_);
+  return device_.step();
+}
+
 void DeviceThread::run() {
-  while (!stopping_) writes_.wait_until(device_.step());
-  device_.stop();
+  while (!stopping_) {
+    if (transport_.wait_until(step()) != Transport::Woken::by_bytes) continue;
+    const std::lock_guard turn(turn_);
+    device_.arrived();
+  }
+  {
+    const std::lock_guard turn(turn_);
+    device_.stop();
+  }
+  stopped_.set_value();
 }
 
 }  // namespace coupler::driver

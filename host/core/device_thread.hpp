@@ -2,6 +2,8 @@
 #pragma once
 
 #include <atomic>
+#include <future>
+#include <mutex>
 #include <thread>
 
 #include "host/core/device.hpp"
@@ -9,26 +11,38 @@
 
 namespace coupler::driver {
 
-/// Runs a device in its own thread, so that a dead one slows no other. That thread owns the connection.
+/// Runs a device in its own thread, so that a dead one slows no other. That thread owns the connection, and
+/// it alone receives. While it waits for the next thing to do, another thread may send a write by itself: the
+/// answer wakes the owner. So a write to an idle device costs no thread hand-over.
 class DeviceThread {
  public:
   DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink);
-  /// Ends the request in progress and waits for the thread: milliseconds.
+  /// Ends the request in progress and waits for the thread: milliseconds, or, where outputs are to go to
+  /// their safe values, most of a second at the worst.
   ~DeviceThread();
   DeviceThread(const DeviceThread&) = delete;
   DeviceThread& operator=(const DeviceThread&) = delete;
 
-  /// From any thread.
-  WriteQueue& writes() { return writes_; }
+  // From any thread; none of them waits for a request.
+
+  /// Takes a write on its way: sends it at once if the connection is idle, otherwise queues it.
+  void write(const Write& write);
+  /// Counts a value that is none of its point, and tells the listener.
+  void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
+  DeviceSnapshot statistics() const { return device_.statistics(); }
+  std::vector<PointQuality> qualities() const { return device_.qualities(); }
 
  private:
   void run();
+  Time step();
 
   Transport& transport_;
   SteadyClock clock_;
-  WriteQueue writes_;
   Device device_;
+  bool ends_safely_;  ///< writes safe values at the end
+  std::mutex turn_;   ///< held by the one who uses the connection; others than the owner only try
   std::atomic<bool> stopping_{false};
+  std::promise<void> stopped_;
   std::thread thread_;  // last: it uses the others
 };
 

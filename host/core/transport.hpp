@@ -6,12 +6,15 @@
 #include "common/base/span.hpp"
 #include "common/map/table.hpp"
 #include "common/modbus/range.hpp"
+#include "common/modbus/write_request.hpp"
+#include "host/core/clock.hpp"
 #include "host/core/error.hpp"
 
 namespace coupler::driver {
 
-/// The port to one unit of a Modbus device. Each request waits for its reply, at most for the device's
-/// timeout. One thread calls it; only interrupt() may come from another.
+/// The port to one unit of a Modbus device. One request is in flight at a time; its reply is awaited for the
+/// device's timeout at most. It belongs to one thread; another may call send() while it knows, by a lock of
+/// its own, that the owner does nothing but wait_until(). interrupt() and wake() may come from anywhere.
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -25,16 +28,20 @@ class Transport {
   virtual Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) = 0;
   /// FC 3 or 4: `range.count()` (at most 125) registers.
   virtual Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) = 0;
-
-  virtual Result<> write_coil(std::uint16_t address, bool on) = 0;                                   // FC 5
-  virtual Result<> write_register(std::uint16_t address, std::uint16_t value) = 0;                   // FC 6
-  virtual Result<> write_coils(std::uint16_t address, Span<const std::uint8_t> bits) = 0;            // FC 15
-  virtual Result<> write_registers(std::uint16_t address, Span<const std::uint16_t> registers) = 0;  // FC 16
-  /// FC 22: register = (register & and_mask) | (or_mask & ~and_mask), MAP 6.16.
-  virtual Result<> mask_write(std::uint16_t address, std::uint16_t and_mask, std::uint16_t or_mask) = 0;
   /// FC 20 with one group: fills `registers` (1 … 121) from a file.
   virtual Result<> read_file_record(std::uint16_t file, std::uint16_t record,
                                     Span<std::uint16_t> registers) = 0;
+
+  /// Sends and waits for nothing. receive() must follow before any other request.
+  virtual Result<> send(const modbus::WriteRequest& request) = 0;
+  /// The answer to what was sent, at the latest a timeout after that.
+  virtual Result<> receive(const modbus::WriteRequest& request) = 0;
+
+  enum class Woken { by_time, by_call, by_bytes };
+  /// Returns when bytes have come (or the connection has ended), after wake(), or at `time`.
+  virtual Woken wait_until(Time time) = 0;
+  /// Ends the wait in progress, or the next one.
+  virtual void wake() = 0;
 };
 
 }  // namespace coupler::driver

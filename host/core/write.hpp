@@ -6,20 +6,29 @@
 
 #include "common/map/map.hpp"
 #include "common/modbus/limits.hpp"
-#include "host/core/transport.hpp"
+#include "host/core/write_result.hpp"
 
 namespace coupler::driver {
 
 /// A value on its way to the device, encoded. It owns its registers, so that a queue of them allocates
 /// nothing.
 struct Write {
-  std::uint32_t point = 0;                                            ///< index into Map::points
-  std::array<std::uint16_t, modbus::max_read_registers> registers{};  ///< codec::registers(point.format) are
-                                                                      ///< used; coils: the first, 0 or 1
+  std::uint32_t point = 0;  ///< index into Map::points
+  /// range(point).count() of them are used. Coils: bit i % 16 of element i / 16, so that one coil is the
+  /// first, 0 or 1.
+  std::array<std::uint16_t, modbus::max_read_registers> registers{};
+  bool alone = false;                 ///< sent by itself, whatever waits before and behind it
+  bool of_deadman = false;            ///< made by the driver because no message came
+  WriteListener* listener = nullptr;  ///< told what became of it; lives until then
+
+  bool bit(std::size_t i) const { return (registers[i / 16] >> i % 16 & 1U) != 0; }
+  void set_bit(std::size_t i) {
+    registers[i / 16] = static_cast<std::uint16_t>(registers[i / 16] | 1U << i % 16);
+  }
 };
 
-/// Carries it out. A point that shares its register with others changes only its own bits: by FC 22 where the
-/// device has it, otherwise by reading the register and writing it back.
-Result<> perform(const Write& write, const Map& map, Transport& transport);
+/// A value as a point's `initial`, `safe_value` and deadman give it: bit tables one element a bit. Empty is
+/// all zero.
+Write make_write(const Map& map, std::uint32_t point, Span<const std::uint16_t> value);
 
 }  // namespace coupler::driver

@@ -2,14 +2,17 @@
 #include "host/modbus/modbus_transport.hpp"
 
 #include <modbus/modbus.h>
+#include <poll.h>
 #include <sys/socket.h>
 
+#include <array>
 #include <cerrno>
 
 #include <fmt/format.h>
 
 #include "host/modbus/file_exchange.hpp"
 #include "host/modbus/open_socket.hpp"
+#include "host/modbus/raw_exchange.hpp"
 
 namespace coupler::driver {
 
@@ -85,34 +88,46 @@ Result<> ModbusTransport::read_registers(Table table, modbus::Range range, std::
                 range.count());
 }
 
-Result<> ModbusTransport::write_coil(std::uint16_t address, bool on) {
-  return result(modbus_write_bit(context_.get(), address, on ? 1 : 0), 1);
-}
-
-Result<> ModbusTransport::write_register(std::uint16_t address, std::uint16_t value) {
-  return result(modbus_write_register(context_.get(), address, value), 1);
-}
-
-Result<> ModbusTransport::write_coils(std::uint16_t address, Span<const std::uint8_t> bits) {
-  const auto count = static_cast<std::uint32_t>(bits.size());
-  return result(modbus_write_bits(context_.get(), address, static_cast<int>(count), bits.data()), count);
-}
-
-Result<> ModbusTransport::write_registers(std::uint16_t address, Span<const std::uint16_t> registers) {
-  const auto count = static_cast<std::uint32_t>(registers.size());
-  return result(modbus_write_registers(context_.get(), address, static_cast<int>(count), registers.data()),
-                count);
-}
-
-Result<> ModbusTransport::mask_write(std::uint16_t address, std::uint16_t and_mask, std::uint16_t or_mask) {
-  return result(modbus_mask_write_register(context_.get(), address, and_mask, or_mask), 1);
+modbus::Frame ModbusTransport::next_header() {
+  ++sent_.transaction;
+  sent_.unit = unit_;
+  return sent_;
 }
 
 Result<> ModbusTransport::read_file_record(std::uint16_t file, std::uint16_t record,
                                            Span<std::uint16_t> registers) {
   if (socket_ < 0) return fail(NotConnected{"not connected"});
   const modbus::FileRecord wanted{file, record, static_cast<std::uint16_t>(registers.size())};
-  return exchange_file_record(socket_, unit_, timeout_, wanted, registers);
+  return exchange_file_record(socket_, next_header(), timeout_, wanted, registers);
+}
+
+Result<> ModbusTransport::send(const modbus::WriteRequest& request) {
+  if (socket_ < 0) return fail(NotConnected{"not connected"});
+  answer_by_ = Deadline(timeout_);
+  return send_request(socket_, next_header(), request.pdu());
+}
+
+Result<> ModbusTransport::receive(const modbus::WriteRequest& request) {
+  modbus::Framer framer;
+  const auto reply = receive_reply(socket_, sent_, timeout_, answer_by_, framer);
+  if (!reply) return tl::make_unexpected(reply.error());
+  const auto checked = modbus::check_reply(request, *reply);
+  if (checked) return {};
+  if (checked.error().exception) return fail(ExceptionReply{*checked.error().exception});
+  return fail(BadFrame{"not the answer to what was written"});
+}
+
+Transport::Woken ModbusTransport::wait_until(Time time) {
+  const auto left = time == Time::max() ? Duration::max() : time - std::chrono::steady_clock::now();
+  if (left <= Duration::zero()) return Woken::by_time;
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
+  const timespec wait{seconds.count(), (left - seconds).count()};
+  std::array<pollfd, 3> wanted{
+      {{wakeup_.fd(), POLLIN, 0}, {interrupted_.fd(), POLLIN, 0}, {socket_, POLLIN, 0}}};
+  ::ppoll(wanted.data(), wanted.size(), &wait, nullptr);
+  if (wanted[0].revents != 0) wakeup_.clear();
+  if (wanted[2].revents != 0) return Woken::by_bytes;
+  return wanted[0].revents != 0 || wanted[1].revents != 0 ? Woken::by_call : Woken::by_time;
 }
 
 }  // namespace coupler::driver

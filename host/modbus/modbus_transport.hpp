@@ -6,15 +6,19 @@
 #include <string>
 
 #include "common/map/map.hpp"
+#include "common/modbus/frame.hpp"
 #include "host/core/transport.hpp"
+#include "host/modbus/deadline.hpp"
 #include "host/modbus/event.hpp"
+#include "host/modbus/wakeup.hpp"
 
 struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for its context
 
 namespace coupler::driver {
 
-/// One unit of a Modbus/TCP device, by libmodbus. It connects by itself, since libmodbus's connect can be
-/// neither interrupted nor made to resolve names in the background.
+/// One unit of a Modbus/TCP device. libmodbus reads. It cannot be asked to send a write and to receive the
+/// answer later, in another thread: those are ADUs of ours on the same socket. Connecting is ours too, since
+/// libmodbus's connect can be neither interrupted nor made to resolve names in the background.
 class ModbusTransport : public Transport {
  public:
   explicit ModbusTransport(const Connection& connection);
@@ -27,16 +31,17 @@ class ModbusTransport : public Transport {
   void interrupt() override;
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
-  Result<> write_coil(std::uint16_t address, bool on) override;
-  Result<> write_register(std::uint16_t address, std::uint16_t value) override;
-  Result<> write_coils(std::uint16_t address, Span<const std::uint8_t> bits) override;
-  Result<> write_registers(std::uint16_t address, Span<const std::uint16_t> registers) override;
-  Result<> mask_write(std::uint16_t address, std::uint16_t and_mask, std::uint16_t or_mask) override;
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
+  Result<> send(const modbus::WriteRequest& request) override;
+  Result<> receive(const modbus::WriteRequest& request) override;
+  Woken wait_until(Time time) override;
+  void wake() override { wakeup_.call(); }
 
  private:
   /// What a libmodbus call that should return `expected` came to.
   Result<> result(int returned, std::uint32_t expected) const;
+  /// The header of the next request that is not libmodbus's.
+  modbus::Frame next_header();
 
   std::string host_;
   std::uint16_t port_;
@@ -44,6 +49,9 @@ class ModbusTransport : public Transport {
   std::chrono::milliseconds timeout_;
   std::unique_ptr<_modbus, void (*)(_modbus*)> context_;
   Event interrupted_;
+  Wakeup wakeup_;
+  modbus::Frame sent_;  ///< the header of the request that receive() awaits the answer to
+  Deadline answer_by_{std::chrono::milliseconds(0)};
   std::mutex socket_mutex_;  ///< between closing the socket and interrupt(); never held during a request
   int socket_ = -1;
 };

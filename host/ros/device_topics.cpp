@@ -36,8 +36,8 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verif
       online_(advertise_online(handle, map)),
       transport_(map.connection),
       thread_(map, verify, load_map, transport_, *this),
-      writes_{[this](const Write& write) { accept(write); },
-              [this](const std::string& what) { on_report(Level::warning, "dropped a write to " + what); }} {
+      writes_{[this](const Write& write) { thread_.write(write); },
+              [this](std::uint32_t point, const std::string& what) { refuse(point, what); }} {
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)
     if (is_writable(map_.points[i]))
       subscribers_.push_back(
@@ -69,10 +69,11 @@ void DeviceTopics::on_report(Level level, const std::string& text) {
   log(level, fmt::format("{}: {}", map_.name, text));
 }
 
-void DeviceTopics::accept(const Write& write) {
-  if (!thread_.writes().push(write))
-    on_report(Level::warning, fmt::format("dropped a write to {}: {} writes wait already; write less often",
-                                          map_.points[write.point].name, WriteQueue::capacity));
+void DeviceTopics::refuse(std::uint32_t point, const std::string& what) {
+  Write refused;
+  refused.point = point;
+  thread_.refuse(refused, what);
+  on_report(Level::warning, "dropped a write to " + what);
 }
 
 }  // namespace coupler::driver

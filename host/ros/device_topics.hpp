@@ -29,7 +29,7 @@ class DeviceTopics : public Sink {
   void on_report(Level level, const std::string& text) override;
 
  private:
-  void accept(const Write& write);
+  void refuse(std::uint32_t point, const std::string& what);
 
   Map map_;
   std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read

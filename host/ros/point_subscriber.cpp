@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/point_subscriber.hpp"
 
+#include <array>
+
 #include "host/ros/in_place_queue.hpp"
 #include "host/ros/message.hpp"
 
@@ -16,15 +18,14 @@ ros::Subscriber subscribe(ros::NodeHandle& handle, const std::string& topic, con
   return with_message(map.points[index], [&](auto kind) {
     using Kind = decltype(kind);
     using Message = typename Kind::Message;
-    const auto receive = [&handler, topic, index,
-                          &point = map.points[index]](const boost::shared_ptr<const Message>& message) {
-      Write write;
-      write.point = index;
-      const std::string wrong = Kind::encode(*message, point, write.registers.data());
+    const auto receive = [&handler, &map, topic, index](const boost::shared_ptr<const Message>& message) {
+      std::array<std::uint16_t, modbus::max_write_bits> values{};
+      const Point& point = map.points[index];
+      const std::string wrong = Kind::encode(*message, point, values.data());
       if (wrong.empty())
-        handler.accept(write);
+        handler.accept(make_write(map, index, {values.data(), range(point).count()}));
       else
-        handler.refuse(topic + ": " + wrong);
+        handler.refuse(index, topic + ": " + wrong);
     };
     auto options =
         ros::SubscribeOptions::create<Message>(topic, writes_per_value * map.points[index].host.queue_size,

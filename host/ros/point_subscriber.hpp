@@ -13,8 +13,8 @@ namespace coupler::driver {
 /// What the subscriptions of a device share.
 struct WriteHandler {
   std::function<void(const Write&)> accept;
-  std::function<void(const std::string& what)>
-      refuse;  ///< the value cannot be written: topic, reason, remedy
+  /// The value cannot be written: the point's index, what was wrong and the remedy.
+  std::function<void(std::uint32_t point, const std::string& what)> refuse;
 };
 
 /// Subscribes to `topic` with the message type of `map.points[index]`. The handler is called in ROS's network

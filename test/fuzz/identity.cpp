@@ -49,11 +49,10 @@ class Impostor : public driver::Transport {
   void close() override {}
   void interrupt() override {}
   Result<> read_bits(Table, modbus::Range, std::uint8_t*) override { return unexpected(); }
-  Result<> write_coil(std::uint16_t, bool) override { return unexpected(); }
-  Result<> write_register(std::uint16_t, std::uint16_t) override { return unexpected(); }
-  Result<> write_coils(std::uint16_t, Span<const std::uint8_t>) override { return unexpected(); }
-  Result<> write_registers(std::uint16_t, Span<const std::uint16_t>) override { return unexpected(); }
-  Result<> mask_write(std::uint16_t, std::uint16_t, std::uint16_t) override { return unexpected(); }
+  Result<> send(const modbus::WriteRequest&) override { return unexpected(); }
+  Result<> receive(const modbus::WriteRequest&) override { return unexpected(); }
+  Woken wait_until(driver::Time) override { return Woken::by_time; }
+  void wake() override {}
 
  private:
   /// At most so many of the bytes that are left.

@@ -38,7 +38,7 @@ struct DeviceTest : testing::Test {
     const Map& map = owned->map();
     sink.emplace(map);
     const auto load = [this](std::string_view, std::string_view) { return LoadResult{served, {}}; };
-    engine.emplace(map, verify, load, device, clock, writes, *sink);
+    engine.emplace(map, verify, load, device, clock, *sink);
   }
 
   /// The device is a node that serves this map.
@@ -53,16 +53,16 @@ struct DeviceTest : testing::Test {
     while (clock.now() < end) clock.sleep_until(std::min(engine->step(), end));
   }
 
-  void push(std::string_view point, std::uint16_t value) {
+  void push(std::string_view point, std::uint16_t value, WriteListener* listener = nullptr) {
     Write write;
     write.point = static_cast<std::uint32_t>(find(owned->map(), point) - owned->map().points.data());
     write.registers[0] = value;
-    writes.push(write);
+    write.listener = listener;
+    engine->push(write);
   }
 
   FakeClock clock;
   TimedDevice device{clock};
-  WriteQueue writes;
   MapPtr owned;
   MapPtr served;
   std::optional<RecordingSink> sink;

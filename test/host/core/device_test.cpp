@@ -24,7 +24,7 @@ TEST_F(DeviceTest, Slow_replies_make_cycles_fewer_not_late) {
   device.reply_time = milliseconds(130);
   run_for(milliseconds(1000));
   EXPECT_EQ(sink->values["a"].size(), 5U);
-  EXPECT_GE(engine->overruns(), 4U);
+  EXPECT_GE(engine->statistics().overruns, 4U);
 }
 
 TEST_F(DeviceTest, It_is_online_once_it_answers) {

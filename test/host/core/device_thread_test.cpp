@@ -41,7 +41,7 @@ TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
   ASSERT_EQ(sink.first.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
   Write on;
   on.registers[0] = 1;
-  ASSERT_TRUE(thread.writes().push(on));
+  thread.write(on);
   EXPECT_EQ(sink.written.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
 }
 

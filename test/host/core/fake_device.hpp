@@ -2,16 +2,21 @@
 #pragma once
 
 #include <algorithm>
+#include <condition_variable>
 #include <deque>
+#include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "common/map/identity.hpp"
+#include "common/modbus/request.hpp"
 #include "host/core/transport.hpp"
 
 namespace coupler::driver::test {
@@ -26,6 +31,8 @@ class FakeDevice : public Transport {
   std::deque<Error> next_errors;  ///< each for one request, before it does anything
   std::string file;               ///< what FC 20 gives
   bool connected = false;
+  std::function<void()> during_read;    ///< what happens while a read waits for its answer
+  bool missing_for_reads_only = false;  ///< writes to what is missing are acknowledged
 
   /// The device is a node that serves `map`.
   void serve(const Map& map) {
@@ -55,22 +62,27 @@ class FakeDevice : public Transport {
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override {
     return read(table, range, [&](std::uint32_t i, std::uint16_t value) { registers[i] = value; });
   }
-  Result<> write_coil(std::uint16_t address, bool on) override {
-    return write("coil", Table::coils, address, {static_cast<std::uint16_t>(on ? 1 : 0)});
+  Result<> send(const modbus::WriteRequest&) override {
+    if (!connected) return fail(NotConnected{"not connected"});
+    return {};
   }
-  Result<> write_register(std::uint16_t address, std::uint16_t value) override {
-    return write("register", Table::holding_registers, address, {value});
+  /// Requests take effect when their answer is fetched.
+  Result<> receive(const modbus::WriteRequest& request) override {
+    requests.push_back(describe(request));
+    if (const auto error = planned()) return tl::make_unexpected(*error);
+    return carry_out(request);
   }
-  Result<> write_coils(std::uint16_t address, Span<const std::uint8_t> bits) override {
-    return write("coils", Table::coils, address, {bits.begin(), bits.end()});
+  Woken wait_until(Time time) override {
+    std::unique_lock lock(mutex_);
+    const auto called = [this] { return std::exchange(called_, false); };
+    const bool woken =
+        time == Time::max() ? (woken_.wait(lock, called), true) : woken_.wait_until(lock, time, called);
+    return woken ? Woken::by_call : Woken::by_time;
   }
-  Result<> write_registers(std::uint16_t address, Span<const std::uint16_t> registers) override {
-    return write("registers", Table::holding_registers, address, {registers.begin(), registers.end()});
-  }
-  Result<> mask_write(std::uint16_t address, std::uint16_t and_mask, std::uint16_t or_mask) override {
-    const std::uint16_t old = values[{Table::holding_registers, address}];
-    return write("mask", Table::holding_registers, address,
-                 {static_cast<std::uint16_t>((old & and_mask) | (or_mask & ~and_mask))});
+  void wake() override {
+    const std::lock_guard lock(mutex_);
+    called_ = true;
+    woken_.notify_all();
   }
   Result<> read_file_record(std::uint16_t number, std::uint16_t record,
                             Span<std::uint16_t> registers) override {
@@ -95,6 +107,7 @@ class FakeDevice : public Transport {
   template <class Put>
   Result<> read(Table table, modbus::Range range, Put&& put) {
     requests.push_back(fmt::format("read {} {}+{}", to_string(table), range.start(), range.count()));
+    if (during_read) during_read();
     if (const auto error = planned()) return tl::make_unexpected(*error);
     for (std::uint32_t i = 0; i < range.count(); ++i)
       if (missing.count({table, range.start() + i}) != 0)
@@ -105,16 +118,52 @@ class FakeDevice : public Transport {
     }
     return {};
   }
-  Result<> write(std::string_view what, Table table, std::uint16_t address,
-                 const std::vector<std::uint16_t>& data) {
-    requests.push_back(fmt::format("write {} {}", what, address));
-    if (const auto error = planned()) return tl::make_unexpected(*error);
-    for (std::uint32_t i = 0; i < data.size(); ++i) values[{table, address + i}] = data[i];
+  /// "write coil 5", "write registers 7+4", "write mask 3"
+  static std::string describe(const modbus::WriteRequest& request) {
+    const auto parsed = modbus::parse_request(request.pdu());
+    switch (request.function()) {
+      case modbus::Function::write_single_coil: return fmt::format("write coil {}", request.address());
+      case modbus::Function::write_single_register:
+        return fmt::format("write register {}", request.address());
+      case modbus::Function::mask_write_register: return fmt::format("write mask {}", request.address());
+      case modbus::Function::write_multiple_coils:
+        return fmt::format("write coils {}+{}", request.address(),
+                           std::get<modbus::WriteBits>(*parsed).range.count());
+      default:
+        return fmt::format("write registers {}+{}", request.address(),
+                           std::get<modbus::WriteRegisters>(*parsed).range.count());
+    }
+  }
+  Result<> carry_out(const modbus::WriteRequest& request) {
+    const auto parsed = modbus::parse_request(request.pdu());
+    if (!parsed) return fail(ExceptionReply{parsed.error()});
+    if (const auto* bits = std::get_if<modbus::WriteBits>(&*parsed))
+      return put(Table::coils, bits->range,
+                 [&](std::uint32_t i) { return std::uint16_t(bits->packed[i / 8] >> i % 8 & 1); });
+    if (const auto* registers = std::get_if<modbus::WriteRegisters>(&*parsed))
+      return put(Table::holding_registers, registers->range,
+                 [&](std::uint32_t i) { return modbus::get_u16(&registers->values[2 * i]); });
+    const auto& mask = std::get<modbus::MaskWrite>(*parsed);
+    const std::uint16_t old = values[{Table::holding_registers, mask.range.start()}];
+    return put(Table::holding_registers, mask.range, [&](std::uint32_t) {
+      return static_cast<std::uint16_t>((old & mask.and_mask) | (mask.or_mask & ~mask.and_mask));
+    });
+  }
+  template <class Get>
+  Result<> put(Table table, modbus::Range range, Get&& get) {
+    for (std::uint32_t i = 0; i < range.count(); ++i)
+      if (!missing_for_reads_only && missing.count({table, range.start() + i}) != 0)
+        return fail(ExceptionReply{modbus::Exception::illegal_data_address});
+    for (std::uint32_t i = 0; i < range.count(); ++i) values[{table, range.start() + i}] = get(i);
     return {};
   }
   std::uint8_t byte(std::size_t at) const {
     return at < file.size() ? static_cast<std::uint8_t>(file[at]) : 0;
   }
+
+  std::mutex mutex_;
+  std::condition_variable woken_;
+  bool called_ = false;
 };
 
 }  // namespace coupler::driver::test

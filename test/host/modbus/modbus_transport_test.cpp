@@ -11,6 +11,7 @@ namespace coupler::driver {
 namespace {
 
 using modbus::Range;
+using modbus::WriteRequest;
 using std::chrono::milliseconds;
 
 Connection connection_to(std::uint16_t port, milliseconds timeout = milliseconds(5000)) {
@@ -28,6 +29,10 @@ bool is(const Result<>& result) {
 
 struct ModbusTransportTest : testing::Test {
   ModbusTransportTest() { EXPECT_TRUE(transport.connect()); }
+  Result<> write(const WriteRequest& request) {
+    if (auto sent = transport.send(request); !sent) return sent;
+    return transport.receive(request);
+  }
   test::ModbusServer server;
   ModbusTransport transport{connection_to(server.port())};
 };
@@ -50,12 +55,12 @@ TEST_F(ModbusTransportTest, Each_table_is_read_with_its_own_function) {
 }
 
 TEST_F(ModbusTransportTest, What_is_written_arrives) {
-  const std::uint8_t bits[] = {1, 0, 1};
+  const std::uint16_t bits[] = {1, 0, 1};
   const std::uint16_t registers[] = {7, 8, 9};
-  ASSERT_TRUE(transport.write_coil(1, true));
-  ASSERT_TRUE(transport.write_coils(10, bits));
-  ASSERT_TRUE(transport.write_register(1, 0xBEEF));
-  ASSERT_TRUE(transport.write_registers(10, registers));
+  ASSERT_TRUE(write(WriteRequest::coil(1, true)));
+  ASSERT_TRUE(write(WriteRequest::coils(10, bits)));
+  ASSERT_TRUE(write(WriteRequest::register_value(1, 0xBEEF)));
+  ASSERT_TRUE(write(WriteRequest::registers(10, registers)));
   EXPECT_EQ(server.tables().tab_bits[1], 1);
   EXPECT_EQ(server.tables().tab_bits[12], 1);
   EXPECT_EQ(server.tables().tab_registers[1], 0xBEEF);
@@ -64,7 +69,7 @@ TEST_F(ModbusTransportTest, What_is_written_arrives) {
 
 TEST_F(ModbusTransportTest, A_mask_write_changes_the_bits_outside_the_and_mask) {
   server.tables().tab_registers[1] = 0x1234;
-  ASSERT_TRUE(transport.mask_write(1, 0xFF00, 0x00AB));
+  ASSERT_TRUE(write(WriteRequest::mask(1, 0xFF00, 0x00AB)));
   EXPECT_EQ(server.tables().tab_registers[1], 0x12AB);
 }
 
@@ -82,6 +87,52 @@ TEST_F(ModbusTransportTest, Without_a_connection_a_request_fails) {
   EXPECT_TRUE(
       is<TransportFailure>(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
   EXPECT_TRUE(is<NotConnected>(transport.read_file_record(1, 0, {&word, 1})));
+}
+
+TEST_F(ModbusTransportTest, What_was_sent_is_answered_while_its_sender_does_other_things) {
+  const auto request = WriteRequest::coil(1, true);
+  ASSERT_TRUE(transport.send(request));
+  EXPECT_EQ(transport.wait_until(std::chrono::steady_clock::now() + std::chrono::seconds(20)),
+            Transport::Woken::by_bytes);
+  EXPECT_TRUE(transport.receive(request));
+}
+
+TEST_F(ModbusTransportTest, A_wait_ends_by_time_or_by_a_call_even_one_that_came_before) {
+  const auto now = std::chrono::steady_clock::now();
+  EXPECT_EQ(transport.wait_until(now + milliseconds(5)), Transport::Woken::by_time);
+  transport.wake();
+  EXPECT_EQ(transport.wait_until(now + std::chrono::seconds(20)), Transport::Woken::by_call);
+  EXPECT_EQ(transport.wait_until(std::chrono::steady_clock::now() + milliseconds(5)),
+            Transport::Woken::by_time);
+}
+
+TEST(ModbusTransport, A_late_answer_to_an_earlier_write_is_a_bad_frame) {
+  test::LoopbackServer confused([](int fd) {
+    std::uint8_t query[12];
+    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+    query[1] = static_cast<std::uint8_t>(query[1] - 1);  // the transaction before
+    return ::send(fd, query, sizeof query, MSG_NOSIGNAL) > 0;
+  });
+  ModbusTransport transport(connection_to(confused.port()));
+  ASSERT_TRUE(transport.connect());
+  const auto request = WriteRequest::coil(1, true);
+  ASSERT_TRUE(transport.send(request));
+  EXPECT_TRUE(is<BadFrame>(transport.receive(request)));
+}
+
+TEST(ModbusTransport, An_exception_code_that_no_specification_has_is_told) {
+  test::LoopbackServer odd([](int fd) {
+    std::uint8_t query[12];
+    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+    const std::uint8_t reply[] = {query[0], query[1], 0, 0, 0, 3, query[6], std::uint8_t(query[7] | 0x80),
+                                  0x60};
+    return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
+  });
+  ModbusTransport transport(connection_to(odd.port()));
+  ASSERT_TRUE(transport.connect());
+  const auto request = WriteRequest::coil(1, true);
+  ASSERT_TRUE(transport.send(request));
+  EXPECT_EQ(exception_in(transport.receive(request).error())->code, static_cast<modbus::Exception>(0x60));
 }
 
 TEST(ModbusTransport, Nobody_there_is_told_with_host_port_and_cause) {

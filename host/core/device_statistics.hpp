@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "host/core/error.hpp"
+#include "host/core/histogram.hpp"
+#include "host/core/identity_check.hpp"
+#include "host/core/write_result.hpp"
+
+namespace coupler::driver {
+
+/// What can be said of a device at one moment. Counts are since the program began.
+struct DeviceSnapshot {
+  bool online = false;
+  std::string trouble;                        ///< why it is not online
+  std::optional<Identity::Verdict> identity;  ///< at the last connect; nullopt: not asked
+  std::uint64_t connections = 0;              ///< that were made and proven; all but the first are reconnects
+  std::uint64_t requests = 0;
+  std::uint64_t timeouts = 0;
+  std::uint64_t failures = 0;                   ///< requests that ended the connection in another way
+  std::array<std::uint64_t, 256> exceptions{};  ///< by code
+  std::uint64_t rejected_ranges = 0;
+  std::uint64_t overruns = 0;
+  std::array<std::uint64_t, WriteResult::outcomes> writes{};  ///< by outcome
+  Histogram latency;                                          ///< from request to answer
+  Histogram cycles;  ///< from the deadline of a polling cycle to its last answer
+
+  std::uint64_t written(WriteResult::Outcome outcome) const {
+    return writes[static_cast<std::size_t>(outcome)];
+  }
+};
+
+/// Counts what a device does; read from any thread. Allocates nothing but the text of a trouble.
+class DeviceStatistics {
+ public:
+  void answered(Duration after, const Result<>& result);
+  void wrote(WriteResult::Outcome outcome);
+  void cycle_ended(Duration after, std::uint64_t overruns);
+  void rejected();
+  void identified(Identity::Verdict verdict);
+  void online();
+  void offline(const std::string& trouble);
+
+  DeviceSnapshot snapshot() const;
+
+ private:
+  mutable std::mutex mutex_;
+  DeviceSnapshot now_;
+};
+
+}  // namespace coupler::driver

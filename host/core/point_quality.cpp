@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/core/point_quality.hpp"
+
+#include "common/plan/planner.hpp"
+#include "host/core/schedule.hpp"
+
+namespace coupler::driver {
+
+using State = PointQuality::State;
+
+std::string_view to_string(State state) {
+  switch (state) {
+    case State::good: return "good";
+    case State::stale: return "stale";
+    case State::never_read: return "never read";
+    case State::exception: return "exception";
+    case State::rejected: return "rejected";
+    case State::offline: return "offline";
+  }
+  return "?";
+}
+
+void PointQualities::good(Span<const std::uint32_t> points, Time at) {
+  const std::lock_guard lock(mutex_);
+  for (const std::uint32_t point : points) {
+    points_[point].last_good = at;
+    points_[point].failing = false;
+  }
+}
+
+void PointQualities::exception(Span<const std::uint32_t> points, modbus::Exception code) {
+  const std::lock_guard lock(mutex_);
+  for (const std::uint32_t point : points) {
+    points_[point].last_exception = code;
+    points_[point].failing = true;
+  }
+}
+
+void PointQualities::rejected(Span<const std::uint32_t> points, modbus::Exception code) {
+  exception(points, code);
+  const std::lock_guard lock(mutex_);
+  for (const std::uint32_t point : points) points_[point].rejected = true;
+}
+
+void PointQualities::connected() {
+  const std::lock_guard lock(mutex_);
+  for (Entry& entry : points_) entry.failing = entry.rejected = false;
+}
+
+void PointQualities::online(bool online) {
+  const std::lock_guard lock(mutex_);
+  online_ = online;
+}
+
+State PointQualities::state_of(const Entry& entry, const Point& point, Time now) const {
+  if (!online_) return State::offline;
+  if (entry.rejected) return State::rejected;
+  if (entry.failing) return State::exception;
+  if (!entry.last_good) return State::never_read;
+  const Duration patience = 2 * period_of(plan::rate_of(map_, point)) + map_.connection.timeout;
+  return now - *entry.last_good > patience ? State::stale : State::good;
+}
+
+std::vector<PointQuality> PointQualities::snapshot(Time now) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<PointQuality> result;
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    result.push_back(
+        {state_of(points_[i], map_.points[i], now), points_[i].last_good, points_[i].last_exception});
+  return result;
+}
+
+}  // namespace coupler::driver

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "common/base/span.hpp"
+#include "common/map/map.hpp"
+#include "common/modbus/exception.hpp"
+#include "host/core/clock.hpp"
+
+namespace coupler::driver {
+
+/// How far the last value of a point can be trusted.
+struct PointQuality {
+  enum class State : std::uint8_t {
+    good,
+    stale,       ///< nothing new for two periods of its rate and a timeout
+    never_read,  ///< since the program began
+    exception,   ///< the last question was answered with an exception
+    rejected,    ///< the device does not have it: not asked for again while the connection lasts
+    offline      ///< the device does not answer
+  };
+  State state = State::never_read;
+  std::optional<Time> last_good{};                    ///< of the last value
+  std::optional<modbus::Exception> last_exception{};  ///< the last one there was, however long ago
+};
+
+/// "good", "never read" …
+std::string_view to_string(PointQuality::State state);
+
+/// The quality of each point of a device; read from any thread.
+class PointQualities {
+ public:
+  /// What `map` views must outlive it.
+  explicit PointQualities(const Map& map) : map_(map), points_(map.points.size()) {}
+
+  void good(Span<const std::uint32_t> points, Time at);
+  void exception(Span<const std::uint32_t> points, modbus::Exception code);
+  void rejected(Span<const std::uint32_t> points, modbus::Exception code);
+  /// All that an earlier connection rejected may be there now.
+  void connected();
+  void online(bool online);
+
+  /// By point, as of `now`. Points that can only be written stay never_read.
+  std::vector<PointQuality> snapshot(Time now) const;
+
+ private:
+  struct Entry {
+    std::optional<Time> last_good{};
+    std::optional<modbus::Exception> last_exception{};
+    bool failing = false;
+    bool rejected = false;
+  };
+  PointQuality::State state_of(const Entry& entry, const Point& point, Time now) const;
+
+  Map map_;
+  mutable std::mutex mutex_;
+  std::vector<Entry> points_;
+  bool online_ = false;
+};
+
+}  // namespace coupler::driver

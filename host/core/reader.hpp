@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "common/modbus/limits.hpp"
+#include "host/core/device_statistics.hpp"
+#include "host/core/paced_transport.hpp"
+#include "host/core/point_quality.hpp"
+#include "host/core/poll_cycle.hpp"
+#include "host/core/sink.hpp"
+#include "host/core/writer.hpp"
+
+namespace coupler::driver {
+
+/// What reads one device: makes the requests of the polling cycle and hands on the values.
+///
+/// A value that was asked for before a newer one was written is not handed on: the old one would flicker
+/// back.
+class Reader {
+ public:
+  /// What `map` views, and everything given by reference, must outlive it.
+  Reader(const Map& map, Transport& transport, Clock& clock, const Writer& writer,
+         DeviceStatistics& statistics, PointQualities& qualities, Sink& sink);
+
+  /// A new connection.
+  void start();
+  /// When step() has something to do.
+  Time due() const { return cycle_.due(); }
+  /// Makes the request that is due, if there is one. An error means that the connection is of no more use; an
+  /// exception is none.
+  Result<> step();
+  /// Asks for something only to hear whether the device is there.
+  Result<> probe();
+
+  void want(std::uint32_t point, bool wanted) { cycle_.want(point, wanted); }
+
+ private:
+  Result<> request(const ReadSpan& span);
+  void publish(const ReadSpan& span);
+  const ReadSpan& without_pending(const ReadSpan& span);
+  void refused(modbus::Exception code);
+  void report_refusals();
+  std::string describe(const ReadSpan& span) const;
+
+  Map map_;
+  Transport& transport_;
+  Clock& clock_;
+  const Writer& writer_;
+  DeviceStatistics& statistics_;
+  PointQualities& qualities_;
+  Sink& sink_;
+  PollCycle cycle_;
+  ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< kept for its memory
+  std::array<std::uint8_t, modbus::max_read_bits> bits_{};
+  std::array<std::uint16_t, modbus::max_read_registers> registers_{};
+};
+
+}  // namespace coupler::driver

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/core/writer.hpp"
+
+#include <fmt/format.h>
+
+#include "host/core/read_back.hpp"
+#include "host/core/write_values.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using Outcome = WriteResult::Outcome;
+
+/// With these the device has carried out nothing of a request, and the cause may be how it was put together:
+/// a device that takes one value only, or one of several that it does not have.
+bool may_be_of_merging(modbus::Exception code) {
+  return code == modbus::Exception::illegal_function || code == modbus::Exception::illegal_data_address ||
+         code == modbus::Exception::illegal_data_value;
+}
+
+void tell(const Write& write, const WriteResult& result, DeviceStatistics& statistics) {
+  statistics.wrote(result.outcome);
+  if (write.listener != nullptr) write.listener->on_result(result);
+}
+
+WriteResult with_reason(Outcome outcome, std::string_view why) {
+  WriteResult result;
+  result.outcome = outcome;
+  result.why = why;
+  return result;
+}
+
+}  // namespace
+
+Writer::Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
+               Sink& sink)
+    : map_(map),
+      transport_(transport),
+      clock_(clock),
+      statistics_(statistics),
+      sink_(sink),
+      queue_(map),
+      deadmen_(map),
+      values_(map.on_reconnect),
+      batch_(map),
+      done_(map) {}
+
+void Writer::push(const Write& write) {
+  deadmen_.fed(write.point, clock_.now());
+  const WriteQueue::Pushed pushed = queue_.push(write);
+  if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded}, statistics_);
+  if (pushed.accepted) return;
+  const WriteResult full = with_reason(Outcome::dropped, "too many writes wait already; write less often");
+  tell(write, full, statistics_);
+  report(write, full);
+}
+
+void Writer::refuse(const Write& write, std::string_view why) {
+  tell(write, with_reason(Outcome::refused, why), statistics_);
+}
+
+bool Writer::send_now() {
+  if (!batch_.empty() || !transport_.is_ready()) return false;
+  queue_.take(batch_, merges_);
+  if (batch_.empty()) return true;  // the owner was faster
+  if (batch_.needs_read()) return false;
+  sent_ = batch_.request();
+  if (const auto sent = transport_.send(*sent_); !sent) send_error_ = sent.error();
+  return !send_error_;
+}
+
+void Writer::fire_deadmen() {
+  while (const auto point = deadmen_.take_expired(clock_.now())) {
+    const HostOptions::Deadman& deadman = map_.points[*point].host.deadman;
+    Write write = make_write(map_, *point, deadman.value);
+    write.of_deadman = true;
+    const WriteQueue::Pushed pushed = queue_.push(write);
+    if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded}, statistics_);
+    if (!pushed.accepted) {  // it goes when there is room: the queue is being emptied
+      deadmen_.put_back(*point);
+      return;
+    }
+    sink_.on_report(Level::warning, fmt::format("no message for {} in {} ms: its deadman value is written",
+                                                name(*point), deadman.timeout.count()));
+  }
+}
+
+Result<> Writer::step() {
+  if (send_error_) return finish(tl::make_unexpected(*std::exchange(send_error_, std::nullopt)));
+  if (sent_) return finish(transport_.receive(*sent_));
+  fire_deadmen();
+  if (batch_.empty()) queue_.take(batch_, merges_);
+  if (batch_.empty()) return {};
+  return finish(exchange(batch_, map_, transport_));
+}
+
+Result<> Writer::finish(const Result<>& answer) {
+  sent_.reset();
+  const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
+  if (!answer && exception == nullptr) return answer;  // disconnected() tells them
+  std::swap(batch_, done_);
+  const bool again = exception != nullptr && done_.writes().size() > 1 && may_be_of_merging(exception->code);
+  if (again && std::exchange(merges_, false))
+    sink_.on_report(Level::info,
+                    fmt::format("writes to {} and its neighbours were refused in one request: {}; they are "
+                                "written one by one while this connection lasts",
+                                name(done_.writes().front().point), to_string(answer.error())));
+  Result<> link;
+  for (const Write& write : done_.writes()) {
+    WriteBatch alone(map_);
+    if (again && link) alone.add(write);
+    const Result<> own = !link ? link : again ? exchange(alone, map_, transport_) : answer;
+    if (const auto finished = finish_one(write, own); !finished) link = finished;
+  }
+  done_.clear();
+  return link;
+}
+
+Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
+  if (answer) {
+    values_.remember(write);
+    if (map_.points[write.point].host.verify_write) return verify(write);
+    settle(write, {Outcome::ok});
+    return {};
+  }
+  if (const ExceptionReply* exception = exception_in(answer.error())) {
+    settle(write, {Outcome::exception, exception->code});
+    return {};
+  }
+  values_.remember(write);
+  if (write.of_deadman) deadmen_.put_back(write.point);
+  settle(write, with_reason(Outcome::lost, to_string(answer.error())));
+  return answer;
+}
+
+Result<> Writer::verify(const Write& write) {
+  ReadBack back;
+  const Result<> read = back.read(write, map_, transport_);
+  const ExceptionReply* exception = read ? nullptr : exception_in(read.error());
+  if (!read && exception == nullptr) return finish_one(write, read);
+  WriteResult result;
+  if (exception != nullptr) {
+    result = {Outcome::not_taken, exception->code};
+  } else if (!back.is_equal()) {
+    result.outcome = Outcome::not_taken;
+    result.written = back.written();
+    result.found = back.found();
+  }
+  settle(write, result);
+  return {};
+}
+
+void Writer::settle(const Write& write, const WriteResult& result) {
+  queue_.settled(write.point);
+  tell(write, result, statistics_);
+  if (result.outcome != Outcome::ok && result.outcome != Outcome::kept) report(write, result);
+}
+
+void Writer::report(const Write& write, const WriteResult& result) {
+  sink_.on_report(Level::warning, fmt::format("write to {} {}", name(write.point), to_string(result)));
+}
+
+Result<> Writer::reconnected() {
+  merges_ = true;
+  fire_deadmen();
+  std::vector<Write> values;
+  for (const auto& [point, write] : values_.all())
+    if (!queue_.is_pending(point)) values.push_back(write);
+  const auto refused = write_values(values, map_, transport_);
+  if (!refused) return tl::make_unexpected(refused.error());
+  for (const auto& [point, code] : *refused)
+    sink_.on_report(Level::warning, fmt::format("{} was not restored: {}", name(point),
+                                                to_string(Error(ExceptionReply{code}))));
+  if (!values.empty())
+    sink_.on_report(Level::info, fmt::format("{} outputs were restored", values.size() - refused->size()));
+  return {};
+}
+
+void Writer::disconnected(const Error& why) {
+  sent_.reset();
+  send_error_.reset();
+  std::swap(batch_, done_);
+  for (const Write& write : done_.writes()) finish_one(write, tl::make_unexpected(why));
+  done_.clear();
+  while (const auto write = queue_.take()) drop(*write);
+}
+
+void Writer::drop(const Write& write) {
+  values_.remember(write);
+  if (write.of_deadman) deadmen_.put_back(write.point);
+  const auto result = with_reason(values_.are_kept() ? Outcome::kept : Outcome::dropped, "not connected");
+  queue_.settled(write.point);
+  tell(write, result, statistics_);
+  if (values_.are_kept() || dropped_++ > 0) return;
+  sink_.on_report(Level::warning, fmt::format("write to {} {}, as all until the device is back",
+                                              name(write.point), to_string(result)));
+}
+
+void Writer::shut_down() {
+  if (map_.on_shutdown != OnShutdown::safe) return;
+  if (sent_) finish(transport_.receive(*sent_));
+  const auto refused = write_values(safe_values(map_), map_, transport_);
+  if (!refused) {
+    sink_.on_report(Level::error,
+                    "not all outputs could be set to their safe values: " + to_string(refused.error()));
+    return;
+  }
+  for (const auto& [point, code] : *refused)
+    sink_.on_report(Level::error, fmt::format("{} could not be set to its safe value: {}", name(point),
+                                              to_string(Error(ExceptionReply{code}))));
+}
+
+}  // namespace coupler::driver

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "host/core/deadmen.hpp"
+#include "host/core/device_statistics.hpp"
+#include "host/core/paced_transport.hpp"
+#include "host/core/sink.hpp"
+#include "host/core/write_queue.hpp"
+#include "host/core/written_values.hpp"
+
+namespace coupler::driver {
+
+/// What writes to one device: sends what the queue holds, tells each write its result, and makes the writes
+/// that nobody asked for at that moment: those of deadmen, after a reconnect, at the end.
+///
+/// push() and refuse() may come from any thread. All others belong to the one who uses the transport.
+class Writer {
+ public:
+  /// What `map` views, and everything given by reference, must outlive it.
+  Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics, Sink& sink);
+
+  void push(const Write& write);
+  /// A value that is none of its point.
+  void refuse(const Write& write, std::string_view why);
+
+  /// Sends the next writes without waiting for the answer, if nothing is in flight and no pause or reading
+  /// must come first. True if there is nothing else to do until the answer has come.
+  bool send_now();
+  /// An answer is to come to what send_now() has sent.
+  bool awaits_answer() const { return sent_.has_value(); }
+
+  /// When step() has something to do; the past if it has now.
+  Time due() const { return batch_.empty() && queue_.empty() ? deadmen_.due() : Time::min(); }
+  /// Awaits the answer to what is in flight, or makes the next request and awaits that. An error means that
+  /// the connection is of no more use; an exception is none.
+  Result<> step();
+
+  /// A new connection: under `on_reconnect: restore` the outputs get their last values.
+  Result<> reconnected();
+  /// There is no connection: nobody waits for what was sent or queued.
+  void disconnected(const Error& why);
+  /// As `on_shutdown` says, the last thing before the connection is closed.
+  void shut_down();
+
+  /// Whether a newer value of the point is on its way than the one just read.
+  bool is_pending(std::uint32_t point) const { return queue_.is_pending(point); }
+  bool any_pending() const { return queue_.any_pending(); }
+
+  /// Writes that were dropped since the last call of it.
+  std::uint64_t take_dropped() { return std::exchange(dropped_, 0); }
+
+ private:
+  void fire_deadmen();
+  Result<> finish(const Result<>& answer);
+  Result<> finish_one(const Write& write, const Result<>& answer);
+  Result<> verify(const Write& write);
+  void settle(const Write& write, const WriteResult& result);
+  void report(const Write& write, const WriteResult& result);
+  void drop(const Write& write);
+  std::string_view name(std::uint32_t point) const { return map_.points[point].name; }
+
+  Map map_;
+  PacedTransport& transport_;
+  Clock& clock_;
+  DeviceStatistics& statistics_;
+  Sink& sink_;
+  WriteQueue queue_;
+  Deadmen deadmen_;
+  WrittenValues values_;
+  WriteBatch batch_;                          ///< in flight, or next
+  WriteBatch done_;                           ///< answered; kept for its memory
+  std::optional<modbus::WriteRequest> sent_;  ///< batch_, where send_now() has sent it
+  std::optional<Error> send_error_;           ///< it could not be sent
+  bool merges_ = true;                        ///< the device takes several values in one request
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace coupler::driver

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Requests and replies that libmodbus cannot frame, or whose two halves it cannot part.
+#pragma once
+
+#include <chrono>
+
+#include "common/modbus/frame.hpp"
+#include "host/core/error.hpp"
+#include "host/modbus/deadline.hpp"
+
+namespace coupler::driver {
+
+/// Sends `pdu` with the header `to` on a connected, non-blocking socket. It never waits: what does not go out
+/// at once is an error.
+Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu);
+
+/// Awaits the one reply that has this transaction and unit. Its PDU is valid as long as the framer.
+Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::chrono::milliseconds timeout,
+                                    const Deadline& deadline, modbus::Framer& framer);
+
+}  // namespace coupler::driver

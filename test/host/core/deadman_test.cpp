@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "test/fakes/map_builder.hpp"
+#include "test/host/core/device_fixture.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using codec::Type;
+using std::chrono::milliseconds;
+
+struct DeadmanTest : test::DeviceTest {
+  void start_online() {
+    fakes::MapBuilder builder;
+    const auto stop = builder.keep({1});
+    builder.add(Table::holding_registers, "speed", 5, Type::UINT, [&](Point& point) {
+      point.access = Access::write;
+      point.host.deadman = {milliseconds(200), stop};
+    });
+    owned = builder.build();
+    sink.emplace(owned->map());
+    engine.emplace(owned->map(), Verify::off, nullptr, device, clock, *sink);
+    run_for(milliseconds(10));
+  }
+  std::uint16_t speed() { return device.values[{Table::holding_registers, 5}]; }
+  std::size_t writes() const { return device.count("write register 5"); }
+};
+
+TEST_F(DeadmanTest, A_command_that_falls_silent_is_replaced_once_and_reported) {
+  start_online();
+  push("speed", 500);
+  run_for(milliseconds(190));
+  EXPECT_EQ(speed(), 500);
+  run_for(milliseconds(30));
+  EXPECT_EQ(speed(), 1);
+  run_for(milliseconds(1000));
+  EXPECT_EQ(writes(), 2U);
+  EXPECT_EQ(sink->reported("no message for speed in 200 ms"), 1);
+}
+
+TEST_F(DeadmanTest, Messages_keep_the_command) {
+  start_online();
+  for (int i = 0; i < 10; ++i) {
+    push("speed", 500);
+    run_for(milliseconds(150));
+  }
+  EXPECT_EQ(writes(), 10U);
+}
+
+TEST_F(DeadmanTest, The_next_message_arms_it_again) {
+  start_online();
+  for (int i = 0; i < 2; ++i) {
+    push("speed", 500);
+    run_for(milliseconds(300));
+  }
+  EXPECT_EQ(writes(), 4U);
+}
+
+TEST_F(DeadmanTest, Before_the_first_message_nothing_is_written) {
+  start_online();
+  run_for(milliseconds(1000));
+  EXPECT_EQ(writes(), 0U);
+}
+
+TEST_F(DeadmanTest, A_command_that_fell_silent_while_the_device_was_away_is_replaced_when_it_is_back) {
+  start_online();
+  push("speed", 500);
+  run_for(milliseconds(10));
+  device.next_errors.push_back(TransportFailure{"reset"});
+  push("speed", 501);
+  device.refuse_connect = NotConnected{"refused"};
+  run_for(milliseconds(1000));
+  EXPECT_EQ(speed(), 500);
+  device.refuse_connect.reset();
+  run_for(milliseconds(2000));
+  EXPECT_EQ(speed(), 1);
+}
+
+TEST_F(DeadmanTest, A_deadman_value_that_was_lost_is_written_again) {
+  start_online();
+  push("speed", 500);
+  run_for(milliseconds(100));
+  device.next_errors.push_back(Timeout{milliseconds(3000)});
+  run_for(milliseconds(500));
+  EXPECT_EQ(speed(), 1);
+}
+
+}  // namespace
+}  // namespace coupler::driver

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/core/write_batch.hpp"
+
+#include <gmock/gmock.h>
+
+#include "common/modbus/request.hpp"
+#include "test/fakes/map_builder.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using codec::Type;
+using fakes::MapBuilder;
+
+/// A batch of the points of these names; stops at the first that does not go into it.
+struct WriteBatchTest : testing::Test {
+  int take(MapBuilder& builder, std::initializer_list<const char*> names) {
+    owned = builder.build();
+    batch.emplace(owned->map());
+    int taken = 0;
+    for (const char* name : names) {
+      const std::uint16_t one = 1;
+      const auto point = static_cast<std::uint32_t>(find(owned->map(), name) - owned->map().points.begin());
+      if (!batch->add(make_write(owned->map(), point, {&one, 1}))) break;
+      ++taken;
+    }
+    return taken;
+  }
+  static MapBuilder registers(void (*adjust)(Point&)) {
+    MapBuilder builder;
+    for (std::uint16_t i = 0; i < 4; ++i)
+      builder.add(Table::holding_registers, std::string(1, static_cast<char>('a' + i)), i, Type::UINT,
+                  adjust);
+    return builder;
+  }
+  static void plain(Point&) {}
+  MapPtr owned;
+  std::optional<WriteBatch> batch;
+};
+
+TEST_F(WriteBatchTest, Neighbouring_registers_become_one_request_whatever_their_order) {
+  auto builder = registers(plain);
+  EXPECT_EQ(take(builder, {"b", "a", "c"}), 3);
+  const auto request = batch->request();
+  const auto parsed = modbus::parse_request(request.pdu());
+  EXPECT_EQ(std::get<modbus::WriteRegisters>(*parsed).range, modbus::Range::of(0, 3));
+}
+
+TEST_F(WriteBatchTest, Points_with_something_between_them_do_not_merge) {
+  auto builder = registers(plain);
+  EXPECT_EQ(take(builder, {"a", "c"}), 1);
+}
+
+TEST_F(WriteBatchTest, A_request_has_no_more_registers_than_the_device_takes) {
+  auto builder = registers(plain);
+  builder.head().limits.write_registers = 2;
+  EXPECT_EQ(take(builder, {"a", "b", "c"}), 2);
+}
+
+TEST_F(WriteBatchTest, A_request_has_no_more_coils_than_the_device_takes) {
+  MapBuilder builder;
+  builder.many(Table::coils, 0, 9);
+  builder.head().limits.write_bits = 8;
+  EXPECT_EQ(take(builder, {"coils_0", "coils_1", "coils_2", "coils_3", "coils_4", "coils_5", "coils_6",
+                           "coils_7", "coils_8"}),
+            8);
+}
+
+TEST_F(WriteBatchTest, Points_with_write_function_single_never_merge) {
+  auto builder =
+      registers([](Point& point) { point.host.write_function = HostOptions::WriteFunction::single; });
+  EXPECT_EQ(take(builder, {"a", "b"}), 1);
+}
+
+TEST_F(WriteBatchTest, Points_whose_every_value_counts_never_merge) {
+  auto builder = registers([](Point& point) { point.host.write_queue = HostOptions::WriteQueue::every; });
+  EXPECT_EQ(take(builder, {"a", "b"}), 1);
+}
+
+TEST_F(WriteBatchTest, With_write_function_multiple_one_value_goes_by_the_function_for_several) {
+  auto builder =
+      registers([](Point& point) { point.host.write_function = HostOptions::WriteFunction::multiple; });
+  take(builder, {"a"});
+  EXPECT_EQ(batch->request().function(), modbus::Function::write_multiple_registers);
+  MapBuilder coils;
+  coils.add(Table::coils, "k", 0, Type::BOOL,
+            [](Point& point) { point.host.write_function = HostOptions::WriteFunction::multiple; });
+  take(coils, {"k"});
+  EXPECT_EQ(batch->request().function(), modbus::Function::write_multiple_coils);
+}
+
+TEST_F(WriteBatchTest, An_array_of_coils_is_one_request) {
+  MapBuilder builder;
+  builder.add(Table::coils, "k", 3, Type::BOOL, [](Point& point) { point.count = 20; });
+  owned = builder.build();
+  std::vector<std::uint16_t> bits(20);
+  bits[0] = bits[18] = 1;
+  batch.emplace(owned->map());
+  batch->add(make_write(owned->map(), 0, bits));
+  const auto request = batch->request();
+  const auto parsed = modbus::parse_request(request.pdu());
+  const auto& written = std::get<modbus::WriteBits>(*parsed);
+  EXPECT_EQ(written.range, modbus::Range::of(3, 20));
+  EXPECT_THAT(std::vector<int>(written.packed.begin(), written.packed.end()), testing::ElementsAre(1, 0, 4));
+}
+
+}  // namespace
+}  // namespace coupler::driver

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of writes, seen by those who make them.
+#include <gmock/gmock.h>
+
+#include "test/fakes/map_builder.hpp"
+#include "test/host/core/device_fixture.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using codec::Type;
+using std::chrono::milliseconds;
+using testing::ElementsAre;
+using Outcome = WriteResult::Outcome;
+
+struct Results : WriteListener {
+  std::vector<Outcome> outcomes;
+  std::string text;
+  void on_result(const WriteResult& result) override {
+    outcomes.push_back(result.outcome);
+    text = to_string(result);
+  }
+};
+
+struct WriteResultsTest : test::DeviceTest {
+  /// Four coils and four registers, side by side.
+  void start_online(void (*adjust)(Map&) = nullptr, void (*adjust_point)(Point&) = nullptr) {
+    const auto point = [&](Point& each) {
+      if (adjust_point != nullptr) adjust_point(each);
+    };
+    for (std::uint16_t i = 0; i < 4; ++i) {
+      builder.add(Table::coils, "k" + std::to_string(i), i, Type::BOOL, point);
+      builder.add(Table::holding_registers, "r" + std::to_string(i), i, Type::UINT, point);
+    }
+    if (adjust != nullptr) adjust(builder.head());
+    owned = builder.build();
+    sink.emplace(owned->map());
+    engine.emplace(owned->map(), Verify::off, nullptr, device, clock, *sink);
+    run_for(milliseconds(50));
+    device.requests.clear();
+  }
+  std::uint64_t written(Outcome outcome) const { return engine->statistics().written(outcome); }
+  fakes::MapBuilder builder;
+  Results results;
+};
+
+TEST_F(WriteResultsTest, A_write_that_is_acknowledged_is_ok) {
+  start_online();
+  push("k1", 1, &results);
+  EXPECT_TRUE(results.outcomes.empty()) << "not before the device has said so";
+  engine->step();
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::ok));
+  EXPECT_EQ(written(Outcome::ok), 1U);
+}
+
+TEST_F(WriteResultsTest, A_burst_becomes_one_request_and_each_write_has_its_result) {
+  start_online();
+  for (const char* name : {"r0", "r1", "r2", "r3"}) push(name, 7, &results);
+  engine->step();
+  EXPECT_THAT(device.requests, ElementsAre("write registers 0+4"));
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::ok, Outcome::ok, Outcome::ok, Outcome::ok));
+}
+
+TEST_F(WriteResultsTest, A_value_that_a_newer_one_overtakes_is_superseded) {
+  start_online();
+  Results newer;
+  push("r0", 1, &results);
+  push("r0", 2, &newer);
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::superseded));
+  engine->step();
+  EXPECT_THAT(newer.outcomes, ElementsAre(Outcome::ok));
+  EXPECT_EQ((device.values[{Table::holding_registers, 0}]), 2);
+}
+
+TEST_F(WriteResultsTest, An_exception_is_told_with_its_code_whatever_it_is) {
+  start_online();
+  for (const int code : {4, 5, 6, 0x0A, 0x0B, 0x60}) {
+    device.next_errors.push_back(ExceptionReply{static_cast<modbus::Exception>(code)});
+    push("k0", 1, &results);
+    engine->step();
+    EXPECT_NE(results.text.find(fmt::format("exception {:02X}", code)), std::string::npos) << results.text;
+  }
+  EXPECT_EQ(written(Outcome::exception), 6U);
+  EXPECT_EQ(device.count("connect"), 0U) << "an exception is an answer: the connection stays";
+}
+
+TEST_F(WriteResultsTest, A_device_that_refuses_several_at_once_gets_them_one_by_one) {
+  start_online();
+  device.next_errors.push_back(ExceptionReply{modbus::Exception::illegal_function});
+  push("r0", 1, &results);
+  push("r1", 2, &results);
+  engine->step();
+  EXPECT_THAT(device.requests, ElementsAre("write registers 0+2", "write register 0", "write register 1"));
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::ok, Outcome::ok));
+  push("r0", 3);
+  push("r1", 4);
+  engine->step();
+  EXPECT_EQ(device.requests.back(), "write register 0") << "it is remembered while the connection lasts";
+}
+
+TEST_F(WriteResultsTest, One_address_that_the_device_does_not_have_costs_its_neighbours_nothing) {
+  device.missing.insert({Table::holding_registers, 1});
+  start_online();
+  for (const char* name : {"r0", "r1", "r2"}) push(name, 7, &results);
+  engine->step();
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::ok, Outcome::exception, Outcome::ok));
+}
+
+TEST_F(WriteResultsTest, What_was_sent_when_the_link_broke_is_lost_and_what_waited_is_dropped) {
+  start_online();
+  device.next_errors.push_back(Timeout{milliseconds(3000)});
+  push("r0", 1, &results);
+  push("k0", 1, &results);
+  engine->step();
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::lost, Outcome::dropped));
+}
+
+TEST_F(WriteResultsTest, With_restore_the_last_values_are_written_again_before_new_ones) {
+  start_online([](Map& map) { map.on_reconnect = OnReconnect::restore; });
+  push("r0", 5);
+  engine->step();
+  push("k0", 1);
+  engine->step();
+  device.next_errors.push_back(TransportFailure{"reset"});
+  run_for(milliseconds(99));
+  device.values.clear();
+  push("r1", 6, &results);
+  run_for(milliseconds(300));
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::kept));
+  EXPECT_EQ((device.values[{Table::coils, 0}]), 1);
+  EXPECT_EQ((device.values[{Table::holding_registers, 0}]), 5);
+  EXPECT_EQ((device.values[{Table::holding_registers, 1}]), 6);
+  EXPECT_EQ(device.count("write registers 0+2"), 1U) << "neighbours in one request";
+  EXPECT_EQ(sink->reported("3 outputs were restored"), 1);
+}
+
+TEST_F(WriteResultsTest, A_read_that_a_write_overtakes_does_not_bring_the_old_value_back) {
+  start_online();
+  sink->values.clear();
+  device.during_read = [this] { push("r1", 9); };
+  clock.advance(milliseconds(100));
+  engine->step();  // coils
+  device.during_read = nullptr;
+  EXPECT_EQ(sink->values["k1"].size(), 1U);
+  engine->step();  // the write
+  engine->step();  // registers
+  EXPECT_THAT(sink->values["r1"], ElementsAre(9));
+  clock.advance(milliseconds(100));
+  engine->step();
+  device.during_read = [this] { push("r1", 10); };
+  engine->step();
+  EXPECT_THAT(sink->values["r1"], ElementsAre(9)) << "9 was read after 10 was asked for";
+  EXPECT_THAT(sink->values["r0"], ElementsAre(0, 0)) << "the others are as fresh as ever";
+}
+
+TEST_F(WriteResultsTest, A_value_that_does_not_read_back_is_told_with_both) {
+  start_online(nullptr, [](Point& point) {
+    point.host.verify_write = true;
+    if (point.table == Table::holding_registers)
+      point.read_address = static_cast<std::uint16_t>(point.address + 100);
+  });
+  device.values[{Table::holding_registers, 101}] = 0x0003;
+  push("r1", 4, &results);
+  push("k1", 1, &results);
+  engine->step();
+  engine->step();
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::not_taken, Outcome::ok));
+  EXPECT_EQ(
+      sink->reported("write to r1 was acknowledged, but not taken: 0x0004 was written, 0x0003 reads back"),
+      1);
+}
+
+TEST_F(WriteResultsTest, A_value_that_cannot_be_read_back_is_not_called_taken) {
+  start_online(nullptr, [](Point& point) { point.host.verify_write = true; });
+  device.missing.insert({Table::coils, 0});
+  device.missing_for_reads_only = true;
+  push("k0", 1, &results);
+  engine->step();
+  EXPECT_EQ(results.text, "was acknowledged, but cannot be read back: exception 02 (illegal data address)");
+}
+
+TEST_F(WriteResultsTest, A_value_that_is_none_of_its_point_is_refused) {
+  start_online();
+  Write wrong;
+  wrong.listener = &results;
+  engine->refuse(wrong, "300 is above 255");
+  EXPECT_EQ(results.text, "refused: 300 is above 255");
+  EXPECT_EQ(written(Outcome::refused), 1U);
+}
+
+}  // namespace
+}  // namespace coupler::driver
