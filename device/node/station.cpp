@@ -41,7 +41,7 @@ tl::expected<void, Refusal> Station::start(const Map& map) {
   if (duty_->analogue && !duty_->analogue->drive_all())
     return tl::unexpected(
         Refusal{Refusal::device_failed, "not every analogue output can be driven to its initial value"});
-  duty_->wiring = duty_->prepared->take_over();
+  duty_->wiring = std::exchange(duty_->prepared, nullptr)->take_over();
   log_.write(greeting());
   manager_.set_status(greeting());
   return {};
@@ -169,7 +169,7 @@ void Station::change(std::vector<OpenConnection>& clients) {
   if (!next_) return;
   const bool same = looks_the_same(*duty_, *next_);
   next_->memory->carry_over(*duty_->memory, TimePoint::clock::now());
-  next_->wiring = next_->prepared->take_over();
+  next_->wiring = std::exchange(next_->prepared, nullptr)->take_over();
   if (duty_->channels) duty_->channels->give_way(next_->channels.get());
   // Outputs that both have keep their value, which was carried over; what fails says so.
   if (next_->analogue) (void)next_->analogue->drive_all();
