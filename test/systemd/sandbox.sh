@@ -11,17 +11,11 @@ open_for_both() { (: <>"$1"); }
 open_to_read() { (: <"$1"); }
 write_to() { (: >"$1"); }
 write_number() { echo "$1" >"$2"; }
-run_pwm() {
-  local channel=/sys/class/pwm/pwmchip0/pwm0
-  write_number 0 "${channel%/*}/export" || return
-  for _ in {1..100}; do [ -w $channel/period ] && break; sleep 0.02; done # udev gives it to the group
-  write_number 40000 $channel/period && write_number 10000 $channel/duty_cycle && write_number 1 $channel/enable
-}
 process_1_is_seen() { [ -e /proc/1/comm ]; }
 proc_sys_is_seen() { [ -e /proc/sys ]; }
 
 may "use the chip" open_for_both "$chip"
-may "ask for a PWM channel, set it and let it run" run_pwm
+may "change a PWM channel" write_number 8000 /sys/class/pwm/pwmchip0/pwm0/duty_cycle
 may "drive a DAC" write_number 500 /sys/bus/iio/devices/iio:device0/out_voltage0_raw
 may_not "change what a driver does" write_number 3 /sys/bus/iio/devices/iio:device0/in_voltage0_offset
 may "read its map" open_to_read /etc/coupler/node.yaml

@@ -68,13 +68,20 @@ sim_pull plant 1 down
 check "an output is written" set_coil 0 0
 check "and another" set_coil 1 1
 expect "the chip has them" "0 1" "$(sim_value plant 0) $(sim_value plant 1)"
+fan=/sys/class/pwm/pwmchip0/pwm0/duty_cycle
+dac=/sys/bus/iio/devices/iio:device0/out_voltage0_raw
+check "a PWM channel is written" answered master -t 4 -r 2 127.0.0.1 -- 500
+expect "the chip has it, in ns" 20000 "$(cat "$fan")"
+check "a DAC channel is written" answered master -t 4:float -B -r 0 127.0.0.1 -- 1.25
+expect "the device has it, in mV" 1250 "$(cat "$dac")"
+check "an IIO channel is read" answered master -t 3 -r 1 -c 1 127.0.0.1
 
 echo "# reloaded"
 before=$(keeper)
 sed 's/^  coils:/&\n    spare: 5/' node.yaml >/etc/coupler/node.yaml
 check "systemd passes it on" systemctl reload "$unit"
 check "a point that is new is served" wait_until 10 set_coil 5 1
-check "the journal tells" in_journal '^read the map again: serving plant \(5 points'
+check "the journal tells" in_journal '^read the map again: serving plant \(8 points'
 echo 'name: [' >/etc/coupler/node.yaml
 systemctl reload "$unit"
 check "a wrong map is refused" wait_until 10 in_journal '^the new map is refused; the old one goes on'
