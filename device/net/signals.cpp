@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/net/signals.hpp"
 
+#include <fcntl.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
@@ -14,9 +15,12 @@ bool is_ignored(int signal) {
   return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
+/// Whether this process has a controlling terminal; one that was closed is none.
+bool has_terminal() { return Descriptor(::open("/dev/tty", O_RDONLY | O_NOCTTY | O_CLOEXEC)).is_open(); }
+
 }  // namespace
 
-Signals::Signals(Loop& loop) : loop_(loop) {
+Signals::Signals(Loop& loop) : loop_(loop), has_terminal_(has_terminal()) {
   sigemptyset(&signals_);
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);
@@ -36,7 +40,7 @@ Signals::~Signals() {
 void Signals::ready(TimePoint) {
   signalfd_siginfo info{};
   if (::read(descriptor_.get(), &info, sizeof info) != sizeof info) return;
-  if (info.ssi_signo == SIGHUP)
+  if (info.ssi_signo == SIGHUP && (!has_terminal_ || has_terminal()))
     reload_ = true;
   else
     stop_ = static_cast<int>(info.ssi_signo);

@@ -9,7 +9,8 @@
 namespace coupler::node {
 
 /// Turns SIGINT and SIGTERM into a request to stop and SIGHUP into one to reload, which the loop sees in its
-/// own time. A SIGHUP that is ignored at the start (nohup) stays ignored; SIGPIPE is. To be made before any
+/// own time. The SIGHUP of a terminal that is closed is a request to stop. A SIGHUP that is ignored at the
+/// start (nohup) stays ignored; SIGPIPE is. To be made before any
 /// thread is started.
 class Signals : public Watcher {
  public:
@@ -27,6 +28,7 @@ class Signals : public Watcher {
 
  private:
   Loop& loop_;
+  bool has_terminal_;
   sigset_t signals_{};
   Descriptor descriptor_;
   int stop_ = 0;

@@ -18,7 +18,10 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
   Options options;
   CLI::App app("Serves the points of a map as a Modbus/TCP device: GPIO lines, or simulated ones.", program);
   app.footer("Example, without hardware, for any Modbus master on this machine:\n  " + program + map +
-             " --sim --port 1502");
+             " --sim --port 1502" +
+             (source == MapSource::argument
+                  ? "\nSIGHUP makes it read MAP again; one that cannot be served is refused."
+                  : ""));
   if (source == MapSource::argument)
     app.add_option("MAP", options.map, "The map file, YAML or JSON; - is standard input")->required();
   app.add_option(

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pty.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 
@@ -139,6 +142,25 @@ TEST(Stopping, A_hangup_is_no_reason_to_stop_but_to_reload_once) {
   EXPECT_EQ(signals.stop(), 0);
   EXPECT_TRUE(signals.take_reload());
   EXPECT_FALSE(signals.take_reload());
+}
+
+TEST(Stopping, A_terminal_that_is_closed_is_a_reason_to_stop) {
+  int terminal = -1;
+  const pid_t child = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    Loop loop;
+    Signals signals(loop);
+    [[maybe_unused]] const ssize_t written = ::write(STDOUT_FILENO, "!", 1);
+    for (int i = 0; i < 100 && signals.stop() == 0; ++i) loop.run_once(std::chrono::milliseconds(100));
+    ::_exit(signals.stop() == SIGHUP && !signals.take_reload() ? 0 : 1);
+  }
+  char ready = 0;
+  EXPECT_EQ(::read(terminal, &ready, 1), 1);
+  ::close(terminal);
+  int status = -1;
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
 }
 
 }  // namespace
