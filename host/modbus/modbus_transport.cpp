@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -20,26 +21,34 @@ ModbusTransport::ModbusTransport(const Connection& connection)
     : host_(connection.address),
       port_(connection.port),
       unit_(connection.unit),
-      timeout_(connection.timeout),
       context_(modbus_new_tcp_pi(host_.c_str(), fmt::to_string(port_).c_str()), modbus_free) {
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout_);
-  const auto rest = std::chrono::microseconds(timeout_ - seconds);
-  modbus_set_response_timeout(context_.get(), static_cast<std::uint32_t>(seconds.count()),
-                              static_cast<std::uint32_t>(rest.count()));
   modbus_set_byte_timeout(context_.get(), 0, 0);  // none: the response timeout holds for the whole reply
   modbus_set_error_recovery(context_.get(), MODBUS_ERROR_RECOVERY_NONE);
+  select(connection.unit, connection.timeout);
 }
 
 ModbusTransport::~ModbusTransport() { ModbusTransport::close(); }
 
-Result<> ModbusTransport::connect() {
+void ModbusTransport::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
+  unit_ = unit;
+  modbus_set_slave(context_.get(), unit_);  // open() refuses one that libmodbus does not take
+  if (std::exchange(timeout_, timeout) == timeout) return;
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout_);
+  const auto rest = std::chrono::microseconds(timeout_ - seconds);
+  modbus_set_response_timeout(context_.get(), static_cast<std::uint32_t>(seconds.count()),
+                              static_cast<std::uint32_t>(rest.count()));
+}
+
+Result<> ModbusTransport::connect() { return open(interrupted_); }
+
+Result<> ModbusTransport::open(const Event& interrupt) {
   close();
   if (modbus_set_slave(context_.get(), unit_) != 0)
     return fail(NotConnected{fmt::format("unit {} is reserved; Modbus has units 0 to 247 and 255", unit_)});
-  auto opened = open_socket(host_, port_, timeout_, interrupted_);
+  auto opened = open_socket(host_, port_, timeout_, interrupt);
   if (!opened) return tl::make_unexpected(opened.error());
   const std::lock_guard lock(socket_mutex_);
-  if (interrupted_.is_set()) return fail(NotConnected{"interrupted"});
+  if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
   socket_ = opened->release();
   modbus_set_socket(context_.get(), socket_);
   return {};
@@ -54,6 +63,10 @@ void ModbusTransport::close() {
 
 void ModbusTransport::interrupt() {
   interrupted_.set();
+  hang_up();
+}
+
+void ModbusTransport::hang_up() {
   const std::lock_guard lock(socket_mutex_);
   if (socket_ >= 0) ::shutdown(socket_, SHUT_RDWR);
 }
@@ -118,8 +131,9 @@ Result<> ModbusTransport::receive(const modbus::WriteRequest& request) {
 }
 
 Transport::Woken ModbusTransport::wait_until(Time time) {
-  const auto left = time == Time::max() ? Duration::max() : time - std::chrono::steady_clock::now();
-  if (left <= Duration::zero()) return Woken::by_time;
+  const Time now = std::chrono::steady_clock::now();
+  if (time <= now) return Woken::by_time;
+  const Duration left = time - now;
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
   const timespec wait{seconds.count(), (left - seconds).count()};
   std::array<pollfd, 3> wanted{

@@ -93,6 +93,39 @@ TEST_F(DeviceTest, An_exception_keeps_the_connection_and_is_reported_when_it_com
   EXPECT_EQ(sink->values["a"].size(), 3U);
 }
 
+TEST_F(DeviceTest, A_unit_that_its_gateway_cannot_reach_is_offline_and_the_connection_stays) {
+  start(MapBuilder().holding("a", 5));
+  run_for(milliseconds(50));
+  for (int i = 0; i < 3; ++i)
+    device.next_errors.push_back(ExceptionReply{modbus::Exception::gateway_target_failed_to_respond});
+  run_for(milliseconds(600));
+  EXPECT_EQ(device.count("connect"), 1U);
+  EXPECT_THAT(sink->online, ElementsAre(true, false));
+  run_for(milliseconds(300));
+  EXPECT_THAT(sink->online, ElementsAre(true, false, true));
+  EXPECT_EQ(device.count("connect"), 1U);
+}
+
+TEST_F(DeviceTest, A_unit_that_is_away_is_asked_less_and_less_often) {
+  start(MapBuilder().holding("a", 5));
+  for (int i = 0; i < 100; ++i)
+    device.next_errors.push_back(ExceptionReply{modbus::Exception::gateway_path_unavailable});
+  run_for(milliseconds(1550));
+  EXPECT_EQ(device.count("read input_registers 65280+13"), 5U) << "at 0, 100, 300, 700 and 1500 ms";
+  EXPECT_EQ(device.count("connect"), 1U);
+}
+
+TEST_F(DeviceTest, A_gateway_that_hangs_up_while_its_unit_is_away_is_connected_again) {
+  device.next_errors.push_back(ExceptionReply{modbus::Exception::gateway_path_unavailable});
+  start(MapBuilder().holding("a", 5));
+  engine->step();
+  engine->arrived();
+  EXPECT_FALSE(device.connected);
+  run_for(milliseconds(150));
+  EXPECT_EQ(device.count("connect"), 2U);
+  EXPECT_THAT(sink->online, ElementsAre(true));
+}
+
 TEST_F(DeviceTest, Other_points_are_read_on_when_a_range_is_rejected) {
   device.missing.insert({Table::holding_registers, 12});
   start(MapBuilder().holding("a", 10).holding("b", 11).holding("c", 12).holding("d", 13));

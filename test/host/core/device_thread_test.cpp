@@ -5,6 +5,7 @@
 
 #include <future>
 
+#include "host/core/write_ticket.hpp"
 #include "test/host/core/fake_device.hpp"
 #include "test/host/core/make_map.hpp"
 
@@ -43,6 +44,44 @@ TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
   on.registers[0] = 1;
   thread.write(on);
   EXPECT_EQ(sink.written.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
+}
+
+TEST(DeviceThread, A_write_to_an_idle_device_is_sent_by_the_one_who_makes_it) {
+  const auto owned = MapBuilder().point("a", Table::coils, 1, {}, Access::write).build();
+  FakeDevice device;
+  WaitingSink sink;
+  WriteTicket ticket;
+  Write write;
+  write.listener = &ticket;
+  {
+    DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    for (;;) {  // until it is connected and idle
+      WriteTicket first;
+      Write warm_up;
+      warm_up.listener = &first;
+      thread.write(warm_up);
+      if (first.wait().outcome == WriteResult::Outcome::ok) break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    thread.write(write);
+    EXPECT_EQ(ticket.wait().outcome, WriteResult::Outcome::ok);
+  }
+  EXPECT_EQ(device.senders.back(), std::this_thread::get_id());
+}
+
+TEST(DeviceThread, Every_write_has_a_result_when_it_ends) {
+  const auto owned = MapBuilder().coil("a", 1).build();
+  FakeDevice device;
+  device.refuse_connect = NotConnected{"refused"};
+  WaitingSink sink;
+  WriteTicket ticket;
+  Write write;
+  write.listener = &ticket;
+  {
+    DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    thread.write(write);
+  }
+  EXPECT_EQ(ticket.wait().outcome, WriteResult::Outcome::dropped);
 }
 
 TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {

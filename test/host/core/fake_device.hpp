@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -31,8 +32,9 @@ class FakeDevice : public Transport {
   std::deque<Error> next_errors;  ///< each for one request, before it does anything
   std::string file;               ///< what FC 20 gives
   bool connected = false;
-  std::function<void()> during_read;    ///< what happens while a read waits for its answer
-  bool missing_for_reads_only = false;  ///< writes to what is missing are acknowledged
+  std::vector<std::thread::id> senders;  ///< of writes
+  std::function<void()> during_read;     ///< what happens while a read waits for its answer
+  bool missing_for_reads_only = false;   ///< writes to what is missing are acknowledged
 
   /// The device is a node that serves `map`.
   void serve(const Map& map) {
@@ -64,20 +66,29 @@ class FakeDevice : public Transport {
   }
   Result<> send(const modbus::WriteRequest&) override {
     if (!connected) return fail(NotConnected{"not connected"});
+    const std::lock_guard lock(mutex_);
+    senders.push_back(std::this_thread::get_id());
+    answered_ = true;
+    woken_.notify_all();
     return {};
   }
   /// Requests take effect when their answer is fetched.
   Result<> receive(const modbus::WriteRequest& request) override {
+    {
+      const std::lock_guard lock(mutex_);
+      answered_ = false;
+    }
     requests.push_back(describe(request));
     if (const auto error = planned()) return tl::make_unexpected(*error);
     return carry_out(request);
   }
   Woken wait_until(Time time) override {
     std::unique_lock lock(mutex_);
-    const auto called = [this] { return std::exchange(called_, false); };
-    const bool woken =
-        time == Time::max() ? (woken_.wait(lock, called), true) : woken_.wait_until(lock, time, called);
-    return woken ? Woken::by_call : Woken::by_time;
+    const auto until = std::min(time, std::chrono::steady_clock::now() + std::chrono::hours(1));
+    woken_.wait_until(lock, until, [this] { return called_ || answered_; });
+    const bool called = std::exchange(called_, false);
+    if (answered_) return Woken::by_bytes;
+    return called ? Woken::by_call : Woken::by_time;
   }
   void wake() override {
     const std::lock_guard lock(mutex_);
@@ -164,6 +175,7 @@ class FakeDevice : public Transport {
   std::mutex mutex_;
   std::condition_variable woken_;
   bool called_ = false;
+  bool answered_ = false;
 };
 
 }  // namespace coupler::driver::test

@@ -88,11 +88,11 @@ TEST_F(QualityTest, Requests_answers_and_connections_are_counted) {
   start(MapBuilder().holding("a", 5), Verify::off);
   device.reply_time = milliseconds(4);
   run_for(milliseconds(950));
-  device.next_errors.push_back(ExceptionReply{static_cast<modbus::Exception>(0x0B)});
+  device.next_errors.push_back(ExceptionReply{modbus::Exception::server_device_busy});
   device.next_errors.push_back(Timeout{milliseconds(3000)});
   run_for(milliseconds(500));
   const DeviceSnapshot seen = engine->statistics();
-  EXPECT_EQ(seen.exceptions[0x0B], 1U);
+  EXPECT_EQ(seen.exceptions[6], 1U);
   EXPECT_EQ(seen.timeouts, 1U);
   EXPECT_EQ(seen.connections, 2U);
   EXPECT_EQ(seen.requests, seen.latency.count() + 1);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <thread>
@@ -68,6 +69,8 @@ class ModbusServer {
   std::uint16_t port() const { return server_.port(); }
   /// Safe before a request and after its reply: the reply orders the accesses.
   modbus_mapping_t& tables() { return *tables_; }
+  /// Ends the connection after so many requests, again and again; 0: never.
+  std::atomic<int> hang_up_after{0};
 
  private:
   bool answer(int fd) {
@@ -75,12 +78,14 @@ class ModbusServer {
     modbus_set_socket(context_.get(), fd);
     const int size = modbus_receive(context_.get(), query.data());
     if (size < 0) return false;
+    if (hang_up_after > 0 && ++requests_ % hang_up_after == 0) return false;
     return size == 0 || modbus_reply(context_.get(), query.data(), size, tables_.get()) >= 0;
   }
 
   std::unique_ptr<modbus_t, void (*)(modbus_t*)> context_{modbus_new_tcp("127.0.0.1", 0), modbus_free};
   std::unique_ptr<modbus_mapping_t, void (*)(modbus_mapping_t*)> tables_{
       modbus_mapping_new(100, 100, 100, 100), modbus_mapping_free};
+  int requests_ = 0;
   LoopbackServer server_;  // last: its thread uses the others
 };
 

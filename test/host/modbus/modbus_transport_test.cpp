@@ -106,6 +106,12 @@ TEST_F(ModbusTransportTest, A_wait_ends_by_time_or_by_a_call_even_one_that_came_
             Transport::Woken::by_time);
 }
 
+TEST_F(ModbusTransportTest, The_beginning_of_time_has_passed_and_its_end_is_far) {
+  EXPECT_EQ(transport.wait_until(Time::min()), Transport::Woken::by_time);
+  transport.wake();
+  EXPECT_EQ(transport.wait_until(Time::max()), Transport::Woken::by_call);
+}
+
 TEST(ModbusTransport, A_late_answer_to_an_earlier_write_is_a_bad_frame) {
   test::LoopbackServer confused([](int fd) {
     std::uint8_t query[12];

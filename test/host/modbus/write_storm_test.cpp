@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole of the driver's core on a real socket.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "host/core/device_thread.hpp"
+#include "host/core/write_ticket.hpp"
+#include "host/modbus/modbus_transport.hpp"
+#include "test/fakes/map_builder.hpp"
+#include "test/host/modbus/modbus_server.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using Outcome = WriteResult::Outcome;
+
+struct Deaf : Sink {
+  void on_bits(const ReadSpan&, Span<const std::uint8_t>, Time) override {}
+  void on_registers(const ReadSpan&, Span<const std::uint16_t>, Time) override {}
+  void on_online(bool) override {}
+  void on_report(Level, const std::string&) override {}
+};
+
+/// Counts results from any thread.
+struct Tally : WriteListener {
+  std::atomic<int> all{0};
+  std::atomic<int> ok{0};
+  void on_result(const WriteResult& result) override {
+    if (result.outcome == Outcome::ok) ++ok;
+    ++all;
+  }
+};
+
+struct WriteStorm : testing::Test {
+  MapPtr make_map() const {
+    fakes::MapBuilder builder;
+    builder.many(Table::coils, 0, 32).many(Table::holding_registers, 0, 32);
+    builder.head().connection.address = "localhost";
+    builder.head().connection.port = server.port();
+    builder.head().polling.rate = 500;
+    return builder.build();
+  }
+  /// Returns once a write has come through.
+  static void wait_until_connected(DeviceThread& device) {
+    for (;;) {
+      WriteTicket ticket;
+      Write write;
+      write.listener = &ticket;
+      device.write(write);
+      if (ticket.wait().outcome == Outcome::ok) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+  test::ModbusServer server;
+  MapPtr owned = make_map();
+  ModbusTransport transport{owned->map().connection};
+  Deaf sink;
+};
+
+TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_connections_break) {
+  constexpr int threads = 4;
+  constexpr int writes = 2000;
+  server.hang_up_after = 301;
+  Tally tally;
+  {
+    DeviceThread device(owned->map(), Verify::off, {}, transport, sink);
+    wait_until_connected(device);
+    std::vector<std::thread> writers;
+    for (int t = 0; t < threads; ++t)
+      writers.emplace_back([&, t] {
+        for (int i = 0; i < writes; ++i) {
+          Write write;
+          write.point = static_cast<std::uint32_t>((t * 16 + i) % 64);
+          write.registers[0] = static_cast<std::uint16_t>(i % 2);
+          write.listener = &tally;
+          device.write(write);
+          if (i % 50 == 0) {
+            device.statistics();
+            device.qualities();
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+          }
+        }
+      });
+    for (std::thread& writer : writers) writer.join();
+  }
+  EXPECT_EQ(tally.all, threads * writes);
+  EXPECT_GT(tally.ok, 0);
+}
+
+TEST_F(WriteStorm, What_was_written_last_stands_in_the_device) {
+  {
+    DeviceThread device(owned->map(), Verify::off, {}, transport, sink);
+    wait_until_connected(device);
+    for (std::uint16_t value = 1; value <= 100; ++value)
+      for (std::uint32_t point = 32; point < 40; ++point) {
+        Write write;
+        write.point = point;
+        write.registers[0] = value;
+        WriteTicket ticket;
+        const bool last = value == 100;
+        if (last) write.listener = &ticket;
+        device.write(write);
+        if (last) {
+          EXPECT_EQ(ticket.wait().outcome, Outcome::ok);
+        }
+      }
+    EXPECT_GT(device.statistics().written(Outcome::ok), 0U);
+  }
+  for (int address = 0; address < 8; ++address) EXPECT_EQ(server.tables().tab_registers[address], 100);
+}
+
+}  // namespace
+}  // namespace coupler::driver
