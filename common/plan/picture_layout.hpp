@@ -35,7 +35,7 @@ constexpr Scale small{64, 16, 16, false};
 class TableLayout {
  public:
   static constexpr double left = 110;  ///< room for the addresses of the rows
-  static constexpr double skip = 14;  ///< height of what stands for rows left out
+  static constexpr double skip = 14;   ///< height of what stands for rows left out
 
   /// `shown`: what must be visible.
   TableLayout(const std::vector<modbus::Range>& shown, Scale scale, double top);
