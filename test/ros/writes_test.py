@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What becomes of messages on the way to a device: merged, verified, restored, replaced when they fall silent."""
+import struct
+import time
+
+from std_msgs.msg import Bool, UInt16
+
+from support import process, testing
+from support.peer import Peer
+from support.scripted import Scripted
+from support.topics import wait_until
+
+COUNT = 8
+
+
+def several(extra=""):
+    points = "".join(f"    r{i}: {{address: {i}, type: UINT}}\n" for i in range(COUNT))
+    return f"name: writes\naddress: 127.0.0.1\nrate: 10\ntimeout: 2\n{extra}mapping:\n  holding_registers:\n{points}"
+
+
+def one(options, extra=""):
+    return (f"name: writes\naddress: 127.0.0.1\nrate: 20\ntimeout: 1\n{extra}"
+            f"mapping:\n  holding_registers:\n    speed: {{address: 5, type: UINT{options}}}\n")
+
+
+class Writes(testing.RosTest):
+    def drive(self, text, port):
+        driver = self.driver(f"_map:={process.write_map(text)}", f"_port:={port}", "_verify:=off")
+        driver.wait_for("connected")
+        return driver
+
+    def speed(self):
+        return self.publisher("/writes/speed/write", UInt16)
+
+    def test_a_burst_while_the_device_is_busy_becomes_one_request(self):
+        with Scripted() as device:
+            self.drive(several(), device.port)
+            publishers = self.publishers({f"/writes/r{i}/write": UInt16 for i in range(COUNT)})
+            device.delay = 0.3
+            time.sleep(0.5)
+            device.requests.clear()
+            for value, publisher in enumerate(publishers):
+                publisher.publish(100 + value)
+            wait_until(lambda: device.registers[:COUNT] == list(range(100, 100 + COUNT)), "all values")
+            writes = [pdu for pdu in device.requests if pdu[0] != 3]
+            self.assertLess(len(writes), COUNT, writes)
+            self.assertIn(16, device.functions())
+
+    def test_a_single_write_to_an_idle_device_is_one_register(self):
+        with Scripted() as device:
+            self.drive(one(""), device.port)
+            self.speed().publish(7)
+            wait_until(lambda: device.registers[5] == 7, "the value")
+            self.assertEqual([f for f in device.functions() if f != 3], [6])
+
+    def test_the_old_value_does_not_flicker_back(self):
+        with Scripted() as device:
+            self.drive(one(""), device.port)
+            topic = self.topic("/writes/speed", UInt16)
+            publisher = self.speed()
+            device.delay = 0.1
+            for value in range(1, 6):
+                publisher.publish(value)
+                time.sleep(0.35)
+            self.assertEqual(topic.values, sorted(topic.values), "a value came back after a newer one")
+
+    def test_a_late_answer_with_an_old_transaction_is_never_taken(self):
+        with Scripted() as device:
+            driver = self.drive(one(""), device.port)
+            topic = self.topic("/writes/speed", UInt16)
+            topic.wait_for(lambda _: True)
+            wrong = struct.pack(">BBH", 3, 2, 999)
+            device.script = lambda transaction, unit, pdu: Scripted.frame((transaction - 1) & 0xFFFF, unit, wrong)
+            driver.wait_for("connection lost")
+            device.script = None
+            topic.next()
+            self.assertNotIn(999, topic.values)
+
+    def test_a_value_that_does_not_read_back_is_reported_with_both(self):
+        with Scripted() as device:
+            driver = self.drive(one(", read_address: 105, verify_write: true"), device.port)
+            device.registers[105] = 3
+            self.speed().publish(4)
+            driver.wait_for("write to speed was acknowledged, but not taken: 0x0004 was written, 0x0003 reads back")
+
+    def test_a_device_that_refuses_the_function_for_several_gets_single_ones(self):
+        with Scripted() as device:
+            device.script = lambda transaction, unit, pdu: (
+                Scripted.frame(transaction, unit, bytes([0x90, 1])) if pdu[0] == 16 else None)
+            self.drive(several(), device.port)
+            publishers = self.publishers({f"/writes/r{i}/write": UInt16 for i in range(COUNT)})
+            device.delay = 0.1
+            for publisher in publishers:
+                publisher.publish(5)
+            wait_until(lambda: device.registers[:COUNT] == [5] * COUNT, "all values")
+            self.assertEqual(device.connections, 1)
+
+    def test_a_command_that_falls_silent_is_replaced(self):
+        with Peer() as peer:
+            driver = self.drive(one(", deadman: {timeout: 500ms, value: 1}"), peer.port)
+            self.speed().publish(500)
+            wait_until(lambda: peer.get("holding_registers", 5) == [500], "the command")
+            driver.wait_for("no message for speed in 500 ms")
+            wait_until(lambda: peer.get("holding_registers", 5) == [1], "the deadman's value")
+
+    def test_outputs_are_restored_when_the_device_is_back(self):
+        peer = Peer().start()
+        self.addCleanup(peer.stop)
+        driver = self.drive(one("", "on_reconnect: restore\n"), peer.port)
+        online = self.topic("/writes/online", Bool)
+        self.speed().publish(77)
+        wait_until(lambda: peer.get("holding_registers", 5) == [77], "the command")
+        peer.stop()
+        online.wait_for(lambda value: not value)
+        peer.set("holding_registers", 5, [0])
+        peer.start()
+        wait_until(lambda: peer.get("holding_registers", 5) == [77], "the command again")
+        driver.wait_for("1 outputs were restored")
+
+    def test_outputs_go_to_their_safe_values_at_the_end(self):
+        with Peer() as peer:
+            peer.set("coils", 3, [1, 0])
+            text = ("name: writes\naddress: 127.0.0.1\non_shutdown: safe\nmapping:\n  coils:\n    lamp: 3\n"
+                    "    horn: 4\n")
+            driver = self.drive(text, peer.port)
+            self.assertEqual(driver.interrupt(), 0)
+            self.assertEqual([int(bit) for bit in peer.get("coils", 3, 2)], [0, 0])
+
+
+if __name__ == "__main__":
+    testing.main()
