@@ -31,7 +31,7 @@ Result<> Reader::request(const ReadSpan& span) {
 Result<> Reader::step() {
   if (cycle_.select(clock_.now()) == nullptr) return {};
   const ReadSpan& span = cycle_.current();
-  if (const Result<> answer = request(span); !answer) {
+  if (Result<> answer = request(span); !answer) {
     const ExceptionReply* exception = exception_in(answer.error());
     if (exception == nullptr) return answer;
     refused(exception->code);
@@ -105,8 +105,8 @@ void Reader::report_refusals() {
 Result<> Reader::probe() {
   const auto found = std::find_if(map_.points.begin(), map_.points.end(), is_readable);
   const Point* const asked = found == map_.points.end() ? map_.points.begin() : found;
-  const Result<> answer = map_.points.empty() ? request({Table::coils, modbus::Range::of(0, 1), {}})
-                                              : request({asked->table, read_range(*asked), {}});
+  Result<> answer = map_.points.empty() ? request({Table::coils, modbus::Range::of(0, 1), {}})
+                                        : request({asked->table, read_range(*asked), {}});
   return !answer && exception_in(answer.error()) == nullptr ? answer : Result<>{};
 }
 

@@ -13,8 +13,8 @@ using plan::ReadSpan;
 
 enum class Level { info, warning, error };
 
-/// Where a device's news go. All calls come from the connection's thread, values while the next request
-/// waits: what is done here delays it.
+/// Where a device's news go. Calls come from the connection's thread, values while the next request waits:
+/// what is done here delays it. Only on_report() may also come from a thread that writes.
 class Sink {
  public:
   virtual ~Sink() = default;

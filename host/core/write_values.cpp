@@ -6,7 +6,7 @@ namespace {
 
 Result<> write_batch(const WriteBatch& batch, const Map& map, Transport& transport,
                      std::vector<RefusedValue>& refused) {
-  const Result<> answer = exchange(batch, map, transport);
+  Result<> answer = exchange(batch, map, transport);
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   if (exception == nullptr) return answer;
   if (batch.writes().size() == 1) {
