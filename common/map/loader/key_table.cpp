@@ -74,6 +74,7 @@ constexpr std::array keys{
     // The map: this project's keys.
     one_of("zero_based|modicon",
            project("addressing", S::map, K::choice, "modicon", "what the addresses count")),
+    project("preset", S::map, K::text, "wago_750", "a kind of coupler, and what is true of all of them"),
     project("limits", S::map, K::section, "{read_registers: 64}", "what the device takes in one request"),
     project("sim", S::map, K::section, "[{from: valve, to: valve_is_open}]", "wires of the simulated chip"),
     later("reserve", S::map, "[{table: coils, from: 8, to: 15}]", "addresses kept free"),

@@ -10,6 +10,7 @@
 #include "common/map/loader/names.hpp"
 #include "common/map/loader/overlap.hpp"
 #include "common/map/loader/point_reader.hpp"
+#include "common/map/loader/preset.hpp"
 #include "common/map/loader/rules.hpp"
 #include "common/map/loader/service_reader.hpp"
 #include "common/map/loader/settings_reader.hpp"
@@ -83,13 +84,15 @@ void check_points(const DraftPoints& points, const Limits& limits, bool addressi
 
 }  // namespace
 
-void read_map(const Entry& root, std::string_view text, Context& context) {
-  if (root.kind != Entry::Kind::map) {
-    context.problems.error(root.at, fmt::format("a map of a coupler has keys, this is {}", shown(root)),
+void read_map(const Entry& file, std::string_view text, Context& context) {
+  if (file.kind != Entry::Kind::map) {
+    context.problems.error(file.at, fmt::format("a map of a coupler has keys, this is {}", shown(file)),
                            "begin with 'name: NAME'");
     return;
   }
-  context.only_origin = has_only_origin_keys(root);
+  context.only_origin = has_only_origin_keys(file);
+  const auto preset = read_preset(file, context);
+  const Entry root = preset ? completed(file, *preset) : file;
   const Reader top(root, Section::map, context);
   Map head;
   head.name = read_name(top, root, context);
@@ -98,7 +101,8 @@ void read_map(const Entry& root, std::string_view text, Context& context) {
   head.limits = read_limits(top, context);
   head.service = read_service(top, context);
   const PointDefaults defaults = read_point_defaults(top, context);
-  const DraftPoints drafts = read_points(top, root, defaults, context);
+  DraftPoints drafts = read_points(top, root, defaults, context);
+  if (preset) apply(*preset, drafts, context);
   check_points(drafts, head.limits, top.has("addressing"), context);
   std::vector<SimWire> sim = read_sim(top, drafts, context);
   check_edges(drafts, sim, context);

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/loader/preset.hpp"
+
+#include <gtest/gtest.h>
+
+#include "test/common/map/loader/loaded.hpp"
+
+namespace coupler {
+namespace {
+
+using test::load_clean;
+using test::map_of;
+
+TEST(Preset, Each_one_can_be_used) {
+  for (const loader::PresetFile& file : loader::preset_files()) {
+    SCOPED_TRACE(file.name);
+    const auto preset = loader::parse_preset(file);
+    ASSERT_TRUE(preset) << preset.error();
+    load_clean(map_of("coils", "valve: 0", "preset: " + std::string(file.name)));
+  }
+}
+
+TEST(Preset, What_is_no_area_is_refused_with_its_line) {
+  const auto preset = loader::parse_preset({"other", "areas:\n  - {table: coils, from: 3, to: 2}\n"});
+  ASSERT_FALSE(preset);
+  EXPECT_EQ(preset.error(), "other: line 2 is no element of 'areas'");
+}
+
+TEST(Preset, Its_limits_hold_where_the_map_has_none_of_its_own) {
+  const MapPtr map =
+      load_clean(map_of("coils", "valve: 0", "preset: wago_750\nlimits: {write_registers: 7}"));
+  EXPECT_EQ(map->map().limits.write_registers, 7);
+  EXPECT_EQ(map->map().limits.write_bits, 800);
+}
+
+TEST(Preset, The_maps_own_order_wins) {
+  const std::string points = "speed: {address: 0, type: DINT}";
+  const auto order = [&](const std::string& top) {
+    return load_clean(map_of("holding_registers", points, top))->map().points[0].format.order;
+  };
+  EXPECT_EQ(order("preset: moxa_e1200"), codec::Order::ABCD);
+  EXPECT_EQ(order("preset: moxa_e1200\nwordorder_reverse: false"), codec::Order::CDAB);
+}
+
+TEST(Preset, Outputs_are_read_where_the_coupler_shows_them) {
+  const MapPtr map = load_clean(map_of(
+      "coils", "valve: 3, own: {address: 4, read_address: 100}, blind: {address: 5, access: write}, far: 515",
+      "preset: wago_750"));
+  EXPECT_EQ(read_range(*find(map->map(), "valve")).start(), 515);
+  EXPECT_EQ(read_range(*find(map->map(), "own")).start(), 100);
+  EXPECT_FALSE(find(map->map(), "blind")->read_address);
+  EXPECT_EQ(read_range(*find(map->map(), "far")).start(), 515);
+}
+
+}  // namespace
+}  // namespace coupler
