@@ -6,27 +6,33 @@ if(NOT COUPLER_ROS STREQUAL OFF AND libmodbus_FOUND)
   if(NOT PYTHON_EXECUTABLE AND EXISTS /usr/bin/python3)
     set(PYTHON_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Python that has catkin_pkg")
   endif()
-  find_package(catkin QUIET COMPONENTS roscpp std_msgs message_generation)
+  find_package(catkin QUIET COMPONENTS roscpp std_msgs std_srvs diagnostic_updater message_generation)
   if(catkin_FOUND)
     set(COUPLER_WITH_ROS ON)
   elseif(COUPLER_ROS STREQUAL ON)
-    message(FATAL_ERROR "COUPLER_ROS=ON, but catkin with roscpp, std_msgs and message_generation was not found "
-                        "(apt install catkin libroscpp-dev libstd-msgs-dev ros-message-generation)")
+    message(FATAL_ERROR "COUPLER_ROS=ON, but catkin with roscpp, std_msgs, std_srvs, diagnostic_updater and "
+                        "message_generation was not found (scripts/install-packages ros)")
   endif()
 endif()
 
 if(COUPLER_WITH_ROS)
-  add_message_files(DIRECTORY host/ros/msg FILES BoolArray.msg)
+  set(messages BoolArray.msg PointStatus.msg Status.msg)
+  set(services Read.srv Write.srv)
+  add_message_files(DIRECTORY host/ros/msg FILES ${messages})
+  add_service_files(DIRECTORY host/ros/srv FILES ${services})
   generate_messages(DEPENDENCIES std_msgs)
-  catkin_package(CATKIN_DEPENDS roscpp std_msgs message_runtime)
-  # Where rosmsg looks for it; our msg folder is not at the top.
-  configure_file(host/ros/msg/BoolArray.msg
-                 ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME}/msg/BoolArray.msg COPYONLY)
+  catkin_package(CATKIN_DEPENDS roscpp std_msgs std_srvs diagnostic_updater message_runtime)
+  # Where rosmsg and rossrv look for them; our folders are not at the top.
+  foreach(file ${messages} ${services})
+    get_filename_component(kind ${file} EXT)
+    string(SUBSTRING ${kind} 1 -1 kind)
+    configure_file(host/ros/${kind}/${file} ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME}/${kind}/${file} COPYONLY)
+  endforeach()
   # catkin wants shared libraries and devel/lib; the rooms are small static libraries.
   set(BUILD_SHARED_LIBS OFF)
 else()
-  message(STATUS "Left out: coupler_driver, the ROS driver (no catkin/roscpp/libmodbus, or COUPLER_ROS=OFF; "
-                 "apt install catkin libroscpp-dev libstd-msgs-dev ros-message-generation ros-message-runtime)")
+  message(STATUS "Left out: coupler_driver, the ROS driver (no catkin, roscpp, std_srvs, diagnostic_updater or "
+                 "libmodbus, or COUPLER_ROS=OFF; scripts/install-packages build ros)")
 endif()
 
 # Programs are in build/<preset>/bin. In a catkin workspace (another devel folder) catkin's own choice stands,

@@ -32,8 +32,14 @@ void DeviceThread::write(const Write& write) {
   if (!turn || !device_.send_now()) transport_.wake();
 }
 
+void DeviceThread::want(std::uint32_t point, bool wanted) {
+  wishes_.say(point, wanted);
+  transport_.wake();
+}
+
 Time DeviceThread::step() {
   const std::lock_guard turn(turn_);
+  wishes_.take([this](std::uint32_t point, bool wanted) { device_.want(point, wanted); });
   return device_.step();
 }
 

@@ -8,6 +8,7 @@
 
 #include "host/core/device.hpp"
 #include "host/core/steady_clock.hpp"
+#include "host/core/wishes.hpp"
 
 namespace coupler::driver {
 
@@ -29,6 +30,8 @@ class DeviceThread {
   void write(const Write& write);
   /// Counts a value that is none of its point, and tells the listener.
   void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
+  /// Whether somebody wants the values of a point (index into Map::points). At first all are wanted.
+  void want(std::uint32_t point, bool wanted);
   DeviceSnapshot statistics() const { return device_.statistics(); }
   std::vector<PointQuality> qualities() const { return device_.qualities(); }
 
@@ -39,6 +42,7 @@ class DeviceThread {
   Transport& transport_;
   SteadyClock clock_;
   Device device_;
+  Wishes wishes_;
   bool ends_safely_;  ///< writes safe values at the end
   std::mutex turn_;   ///< held by the one who uses the connection; others than the owner only try
   std::atomic<bool> stopping_{false};

@@ -13,12 +13,16 @@
 namespace coupler::driver {
 namespace {
 
+constexpr auto diagnostics_interval = std::chrono::seconds(1);
+
 std::string topic(const Map& map, std::string_view point) { return fmt::format("{}/{}", map.name, point); }
 
-std::vector<std::unique_ptr<PointPublisher>> advertise_all(ros::NodeHandle& handle, const Map& map) {
-  std::vector<std::unique_ptr<PointPublisher>> result;
-  for (const Point& point : map.points)
-    result.push_back(is_readable(point) ? advertise(handle, topic(map, point.name), point) : nullptr);
+std::vector<std::unique_ptr<PointPublisher>> advertise_all(ros::NodeHandle& handle, const Map& map,
+                                                           Listeners& listeners) {
+  std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
+  for (std::uint32_t i = 0; i < map.points.size(); ++i)
+    if (is_readable(map.points[i]))
+      result[i] = advertise(handle, topic(map, map.points[i].name), map, i, listeners);
   return result;
 }
 
@@ -30,10 +34,14 @@ ros::Publisher advertise_online(ros::NodeHandle& handle, const Map& map) {
 
 }  // namespace
 
-DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verify)
+DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verify, Poll poll)
     : map_(map),
-      publishers_(advertise_all(handle, map)),
+      listeners_(map.points.size()),
+      publishers_(advertise_all(handle, map_, listeners_)),
       online_(advertise_online(handle, map)),
+      status_(handle, map),
+      diagnostics_(map),
+      services_(map, listeners_),
       transport_(map.connection),
       thread_(map, verify, load_map, transport_, *this),
       writes_{[this](const Write& write) { thread_.write(write); },
@@ -42,6 +50,21 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verif
     if (is_writable(map_.points[i]))
       subscribers_.push_back(
           subscribe(handle, topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
+  services_.offer(handle, writes_.accept);
+  if (poll == Poll::subscribed)
+    listeners_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
+}
+
+void DeviceTopics::report(Time now) {
+  const DeviceSnapshot device = thread_.statistics();
+  std::vector<PointQuality> points = thread_.qualities();
+  for (std::uint32_t i = 0; i < points.size(); ++i)  // not old, but not asked for
+    if (points[i].state == PointQuality::State::stale && listeners_.is_unwanted(i))
+      points[i].state = PointQuality::State::never_read;
+  status_.update(device, points, now);
+  if (diagnosed_ != Time::min() && now - diagnosed_ < diagnostics_interval) return;
+  diagnosed_ = now;
+  diagnostics_.update(device, points);
 }
 
 void DeviceTopics::on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) {
@@ -51,8 +74,10 @@ void DeviceTopics::on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, 
 
 void DeviceTopics::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) {
   for (const std::uint32_t index : span.points) {
-    const std::size_t begin = read_range(map_.points[index]).start() - std::size_t{span.range.start()};
-    publishers_[index]->publish(&registers[begin], at);
+    const modbus::Range place = read_range(map_.points[index]);
+    const std::uint16_t* value = &registers[place.start() - std::size_t{span.range.start()}];
+    publishers_[index]->publish(value, at);
+    if (services_.next_value().is_wanted(index)) services_.next_value().bring(value, place.count());
   }
 }
 

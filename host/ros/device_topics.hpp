@@ -9,19 +9,27 @@
 
 #include "host/core/device_thread.hpp"
 #include "host/modbus/modbus_transport.hpp"
+#include "host/ros/device_services.hpp"
+#include "host/ros/diagnostics.hpp"
 #include "host/ros/point_publisher.hpp"
 #include "host/ros/point_subscriber.hpp"
+#include "host/ros/settings.hpp"
+#include "host/ros/status_publisher.hpp"
 
 namespace coupler::driver {
 
 /// One device in ROS: `<name>/<point>` for each readable point, `<name>/<point>/write` for each writable one,
-/// the latched `<name>/online`, and the thread that drives the device. Values are published in that thread as
-/// they are decoded.
+/// the latched `<name>/online` and `<name>/status`, services, diagnostics, and the thread that drives the
+/// device. Values are published in that thread as they are decoded.
 class DeviceTopics : public Sink {
  public:
   /// The map's views must outlive it; ROS must have been shut down before it ends, since callbacks refer to
   /// it.
-  DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verify);
+  DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verify, Poll poll);
+  ~DeviceTopics() override { services_.withdraw(); }
+
+  /// Publishes status and diagnostics where they are due. To be called about ten times a second.
+  void report(Time now);
 
   void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) override;
   void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) override;
@@ -32,9 +40,14 @@ class DeviceTopics : public Sink {
   void refuse(std::uint32_t point, const std::string& what);
 
   Map map_;
+  Listeners listeners_;
   std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
   std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of one span, as publishers take them
   ros::Publisher online_;
+  StatusPublisher status_;
+  Diagnostics diagnostics_;
+  Time diagnosed_ = Time::min();
+  DeviceServices services_;
   ModbusTransport transport_;
   DeviceThread thread_;
   WriteHandler writes_;

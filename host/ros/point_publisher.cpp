@@ -11,11 +11,16 @@ namespace {
 template <class Kind>
 class TypedPublisher : public PointPublisher {
  public:
-  TypedPublisher(ros::NodeHandle& handle, const std::string& topic, const Point& point)
+  TypedPublisher(ros::NodeHandle& handle, const std::string& topic, const Point& point, std::uint32_t index,
+                 Listeners& listeners)
       : point_(point), policy_(point) {
-    const auto somebody_came = [this](const ros::SingleSubscriberPublisher&) { policy_.renew(); };
+    const auto came = [this, index, &listeners](const ros::SingleSubscriberPublisher&) {
+      policy_.renew();
+      listeners.came(index);
+    };
+    const auto left = [index, &listeners](const ros::SingleSubscriberPublisher&) { listeners.left(index); };
     auto options = ros::AdvertiseOptions::create<typename Kind::Message>(
-        topic, point.host.queue_size, somebody_came, {}, ros::VoidPtr(), InPlaceQueue::instance());
+        topic, point.host.queue_size, came, left, ros::VoidPtr(), InPlaceQueue::instance());
     options.latch = point.host.latch;
     publisher_ = handle.advertise(options);
   }
@@ -37,10 +42,11 @@ class TypedPublisher : public PointPublisher {
 
 }  // namespace
 
-std::unique_ptr<PointPublisher> advertise(ros::NodeHandle& handle, const std::string& topic,
-                                          const Point& point) {
+std::unique_ptr<PointPublisher> advertise(ros::NodeHandle& handle, const std::string& topic, const Map& map,
+                                          std::uint32_t index, Listeners& listeners) {
+  const Point& point = map.points[index];
   return with_message(point, [&](auto kind) -> std::unique_ptr<PointPublisher> {
-    return std::make_unique<TypedPublisher<decltype(kind)>>(handle, topic, point);
+    return std::make_unique<TypedPublisher<decltype(kind)>>(handle, topic, point, index, listeners);
   });
 }
 

@@ -6,8 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "common/map/point.hpp"
+#include "common/map/map.hpp"
 #include "host/core/clock.hpp"
+#include "host/ros/listeners.hpp"
 
 namespace coupler::driver {
 
@@ -22,8 +23,9 @@ class PointPublisher {
   virtual void renew() = 0;
 };
 
-/// Advertises `topic` with the message type of the point, which must outlive it.
-std::unique_ptr<PointPublisher> advertise(ros::NodeHandle& handle, const std::string& topic,
-                                          const Point& point);
+/// Advertises `topic` with the message type of `map.points[index]`, and tells `listeners` who comes and who
+/// leaves. What `map` views, and the listeners, must outlive it.
+std::unique_ptr<PointPublisher> advertise(ros::NodeHandle& handle, const std::string& topic, const Map& map,
+                                          std::uint32_t index, Listeners& listeners);
 
 }  // namespace coupler::driver

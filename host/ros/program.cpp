@@ -10,6 +10,7 @@
 #include <deque>
 #include <memory>
 #include <set>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,6 +24,7 @@ namespace coupler::driver {
 namespace {
 
 constexpr int wrong_input = 1;
+constexpr auto report_interval = std::chrono::milliseconds(100);
 
 void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", text); }
 
@@ -100,9 +102,10 @@ int run(const Devices& devices) {
   ros::NodeHandle handle;
   std::vector<std::unique_ptr<DeviceTopics>> topics;
   for (const auto& [settings, source] : devices)
-    topics.push_back(
-        std::make_unique<DeviceTopics>(handle, source.map, settings.verify.value_or(Verify::require)));
-  ros::waitForShutdown();
+    topics.push_back(std::make_unique<DeviceTopics>(
+        handle, source.map, settings.verify.value_or(Verify::require), settings.poll.value_or(Poll::all)));
+  for (; ros::ok(); std::this_thread::sleep_for(report_interval))
+    for (const auto& device : topics) device->report(std::chrono::steady_clock::now());
   ros::shutdown();
   return 0;
 }

@@ -64,6 +64,12 @@ Outcome set_verify(Settings& settings, const std::string& text) {
   return {};
 }
 
+Outcome set_poll(Settings& settings, const std::string& text) {
+  if (text != "all" && text != "subscribed") return wrong("poll", text, "all or subscribed");
+  settings.poll = text == "all" ? Poll::all : Poll::subscribed;
+  return {};
+}
+
 Outcome set_text(std::optional<std::string>& field, std::string_view key, const std::string& text) {
   if (text.empty()) return wrong(key, text, "a text; leave it out if there is nothing to say");
   field = text;
@@ -97,7 +103,7 @@ void prefer(std::optional<T>& field, const std::optional<T>& strong) {
 
 }  // namespace
 
-const std::array<SettingKey, 9> setting_keys{{
+const std::array<SettingKey, 10> setting_keys{{
     {"map", "mapping", "the device's map, a YAML or JSON file"},
     {"maps", "",
      "several devices in one process: their maps, as in _maps:=[a.yaml,b.yaml] or --maps a.yaml,b.yaml"},
@@ -109,6 +115,7 @@ const std::array<SettingKey, 9> setting_keys{{
     {"timeout", "", "longest wait for a reply, in seconds"},
     {"verify", "",
      "if the node's map differs: require (default: do not talk to it), warn (go on) or off (do not ask)"},
+    {"poll", "", "which points are read: all (default), or subscribed: those that somebody listens to"},
 }};
 
 Outcome set(Settings& settings, std::string_view key, const std::string& text) {
@@ -121,6 +128,7 @@ Outcome set(Settings& settings, std::string_view key, const std::string& text) {
   if (key == "rate") return set_rate(settings, text);
   if (key == "timeout") return set_timeout(settings, text);
   if (key == "verify") return set_verify(settings, text);
+  if (key == "poll") return set_poll(settings, text);
   return tl::make_unexpected(fmt::format("there is no setting '{}'", key));
 }
 
@@ -136,6 +144,7 @@ Settings overlay(Settings weak, const Settings& strong) {
   prefer(weak.rate, strong.rate);
   prefer(weak.timeout, strong.timeout);
   prefer(weak.verify, strong.verify);
+  prefer(weak.poll, strong.poll);
   return weak;
 }
 

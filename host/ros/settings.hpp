@@ -12,6 +12,12 @@
 
 namespace coupler::driver {
 
+/// Which points are read.
+enum class Poll {
+  all,
+  subscribed  ///< those that somebody listens to
+};
+
 /// What may be said about a device, or about all of them, outside its map. Precedence: map < ROS parameter <
 /// argument.
 struct Settings {
@@ -24,6 +30,7 @@ struct Settings {
   std::optional<double> rate;                        ///< Hz, above 0
   std::optional<std::chrono::milliseconds> timeout;  ///< above 0; given in seconds
   std::optional<Verify> verify;
+  std::optional<Poll> poll;
 };
 
 /// One setting by its name, as ROS parameter (`~key`) and as argument (`_key:=VALUE`, `--key VALUE`).
@@ -32,7 +39,7 @@ struct SettingKey {
   std::string_view alias;  ///< the origin's name for it, or empty
   std::string_view help;
 };
-extern const std::array<SettingKey, 9> setting_keys;
+extern const std::array<SettingKey, 10> setting_keys;
 
 /// Sets what the text says. The error says what the value should have been.
 tl::expected<void, std::string> set(Settings& settings, std::string_view key, const std::string& text);

@@ -4,6 +4,8 @@ each against a device on a raw socket that misbehaves in that way."""
 import struct
 import time
 
+import rospy
+from coupler_driver.msg import PointStatus, Status
 from std_msgs.msg import Bool, Int16, Int32, UInt16
 
 from support import process, testing
@@ -36,6 +38,11 @@ class FaultMatrix(testing.RosTest):
     def expect_online(self, wanted):
         self.online.wait_for(lambda _: self.online.values[-1] == wanted, SOON)
 
+    @staticmethod
+    def status_says_offline():
+        status = rospy.wait_for_message("/plant/status", Status, SOON)
+        return (status.online, status.points[0].quality) == (False, PointStatus.OFFLINE)
+
     LEVEL = "  holding_registers: {level: {address: 4, type: INT}}\n"
 
     def level_follows(self, topic, value):
@@ -48,14 +55,14 @@ class FaultMatrix(testing.RosTest):
         level = self.topic("/plant/level", Int16)
         self.level_follows(level, 1)
         ways = {"reset": self.device.drop, "killed": self.device.stop,
-                "frozen": lambda: setattr(self.device, "answer", lambda request: None),
+                "frozen": lambda: setattr(self.device, "silent", True),
                 "gibberish": lambda: setattr(self.device, "answer", lambda request: Raw(b"HTTP/1.0 400 no\r\n\r\n"))}
         for value, (name, go) in enumerate(ways.items(), start=2):
             with self.subTest(name):
                 self.online.values.clear()
                 go()
                 self.online.wait_for(lambda now: not now, SOON)
-                self.device.answer = self.device.serve
+                self.device.answer, self.device.silent = self.device.serve, False
                 if name == "killed":
                     self.device.start()
                 self.expect_online(True)
@@ -152,10 +159,11 @@ class FaultMatrix(testing.RosTest):
         self.start(self.LEVEL)
         level = self.topic("/plant/level", Int16)
         self.level_follows(level, 5)
-        self.device.answer = lambda request: None
+        self.device.silent = True
         began = time.monotonic()
         self.expect_online(False)
         self.assertLess(time.monotonic() - began, SOON)
+        wait_until(self.status_says_offline, "the status", SOON)
         level.values.clear()
         time.sleep(1.5)
         self.assertEqual(level.values, [])
@@ -236,6 +244,21 @@ class FaultMatrix(testing.RosTest):
             with self.subTest(head, number=number):
                 driver = self.start(f"  holding_registers: {{level: {{address: {number}, type: INT}}}}\n", head=head)
                 self.assertEqual(self.topic("/plant/level", Int16).next(), 22)
+                driver.end()
+
+    # 14. FC 06 or FC 16 is refused
+    def test_14_a_device_without_fc_6_or_without_fc_16_is_written_as_the_map_says(self):
+        for refused, said in ((6, "multiple"), (16, "single")):
+            with self.subTest(without=refused):
+                def answer(request, refused=refused):
+                    if request.function == refused:
+                        raise Refuse(ILLEGAL_FUNCTION)
+                    return self.device.serve(request)
+
+                self.device.answer = answer
+                driver = self.start(f"  holding_registers: {{level: {{address: 4, type: INT, write_function: {said}}}}}\n")
+                self.publisher("/plant/level/write", Int16).publish(100 + refused)
+                wait_until(lambda r=refused: self.device.tables["holding_registers"][4] == 100 + r, "the write")
                 driver.end()
 
     # 15. Bits in registers

@@ -39,12 +39,14 @@ class Shapes(testing.RosTest):
     def holds(self, address, *registers, table="holding_registers"):
         wait_until(lambda: self.peer.get(table, address, len(registers)) == list(registers), "the peer to hold it")
 
-    def test_an_array_is_one_message(self):
+    def test_an_array_is_one_message_both_ways(self):
         speeds = self.topic("/shapes/speeds", Int16MultiArray)
         self.peer.set("holding_registers", 0, [1, 2, 0xFFFF])
         speeds.wait_for(lambda data: list(data) == [1, 2, -1])
-        self.peer.set("holding_registers", 10, [1, 2, 3, 4])
-        self.topic("/shapes/wide", UInt32MultiArray).wait_for(lambda data: list(data) == [0x00010002, 0x00030004])
+        self.publisher("/shapes/speeds/write", Int16MultiArray).publish(data=[7, -8, 9])
+        self.holds(0, 7, 0xFFF8, 9)
+        self.publisher("/shapes/wide/write", UInt32MultiArray).publish(data=[0x00010002, 0x00030004])
+        self.holds(10, 1, 2, 3, 4)
 
     def test_its_dimension_is_labelled_with_the_points_name(self):
         import rospy  # pylint: disable=import-outside-toplevel
@@ -52,10 +54,11 @@ class Shapes(testing.RosTest):
         self.assertEqual([(d.label, d.size, d.stride) for d in message.layout.dim], [("speeds", 3, 3)])
 
     def test_arrays_of_bits_follow_each_other(self):
-        self.peer.set("coils", 8, [True, False, True])
+        self.publisher("/shapes/lamps/write", BoolArray).publish([True, False, True])
+        self.holds(8, True, False, True, table="coils")
         self.topic("/shapes/lamps", BoolArray).wait_for(lambda data: list(data) == [True, False, True])
-        self.peer.set("holding_registers", 20, [1, 0x8000])
-        self.topic("/shapes/flags", BoolArray).wait_for(lambda data: list(data) == [True] + [False] * 30 + [True])
+        self.publisher("/shapes/flags/write", BoolArray).publish([True] + [False] * 30 + [True])
+        self.holds(20, 1, 0x8000)
 
     def test_a_scaled_point_is_read_and_written_in_its_units(self):
         self.peer.set("holding_registers", 30, [615])
@@ -67,9 +70,9 @@ class Shapes(testing.RosTest):
         self.device.wait_for("shapes/temperature/write: not a number; send -3316.8")
         write.publish(1e6)
         self.device.wait_for("is out of range; send -3316.8")
+        self.publisher("/shapes/profile/write", Float64MultiArray).publish(data=[1.5, -2.0])
+        self.holds(40, 3, 0xFFFC)
         self.assertEqual(self.peer.get("holding_registers", 30), [0])
-        self.peer.set("holding_registers", 40, [3, 0xFFFC])
-        self.topic("/shapes/profile", Float64MultiArray).wait_for(lambda data: list(data) == [1.5, -2.0])
 
     def test_on_change_says_what_changed_and_a_newcomer_hears_the_last(self):
         level, raw = self.topic("/shapes/level", UInt16), self.topic("/shapes/raw", UInt16)

@@ -36,7 +36,7 @@ TEST(Arguments, Several_maps_are_a_list_in_each_spelling) {
 
 TEST(Arguments, Each_setting_is_read) {
   const Settings s = parse({"_name:=arm", "_address:=::1", "_port:=1502", "_unit:=255", "_rate:=12.5",
-                            "_timeout:=0.5", "_verify:=warn"})
+                            "_timeout:=0.5", "_verify:=warn", "_poll:=subscribed"})
                          .settings;
   EXPECT_EQ(s.name, "arm");
   EXPECT_EQ(s.address, "::1");
@@ -45,6 +45,7 @@ TEST(Arguments, Each_setting_is_read) {
   EXPECT_EQ(s.rate, 12.5);
   EXPECT_EQ(s.timeout, std::chrono::milliseconds(500));
   EXPECT_EQ(s.verify, Verify::warn);
+  EXPECT_EQ(s.poll, Poll::subscribed);
 }
 
 TEST(Arguments, What_is_ROSs_own_is_passed_over) {
@@ -65,7 +66,7 @@ TEST(Arguments, An_unknown_one_is_a_wrong_call) {
 TEST(Arguments, A_value_out_of_range_is_a_wrong_call) {
   for (const char* argument :
        {"_port:=0", "_port:=65536", "_unit:=256", "_unit:=-1", "_unit:=1.5", "_rate:=0", "_rate:=nan",
-        "_rate:=", "_timeout:=0", "_timeout:=3s", "_verify:=yes", "_map:="})
+        "_rate:=", "_timeout:=0", "_timeout:=3s", "_verify:=yes", "_poll:=some", "_map:="})
     EXPECT_EQ(parse({argument}).exit_code, 2) << argument;
 }
 

@@ -45,6 +45,7 @@ class Device:
         self.requests = []
         self.accepted = 0
         self.answer = self.serve
+        self.silent = False  # as a device that hangs: accepts everything and answers nothing
         self._limit = connections
         self._connections = []
         self._lock = threading.Lock()
@@ -151,6 +152,8 @@ class Device:
         address, count = struct.unpack(">HH", data[1:5].ljust(4, b"\0"))
         request = Request(time.monotonic(), transaction, unit, data[0], address,
                           1 if data[0] in (5, 6) else count, data)
+        if self.silent:
+            return True
         try:
             if request.is_identity:
                 raise Refuse(ILLEGAL_ADDRESS)

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is to be said of a device's state, and how loud: the rules behind /diagnostics.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/map/map.hpp"
+#include "host/core/device_statistics.hpp"
+#include "host/core/point_quality.hpp"
+#include "host/core/sink.hpp"
+
+namespace coupler::driver {
+
+struct Health {
+  Level level;  ///< info: all is well
+  std::string text;
+};
+
+/// error: offline; warning: online with a map that differs.
+Health connection_health(const DeviceSnapshot& now);
+
+/// error: online, and none of the points that are read is good; warning: some are not, or a cycle has been
+/// left out since `before`.
+Health polling_health(const Map& map, const std::vector<PointQuality>& points, const DeviceSnapshot& before,
+                      const DeviceSnapshot& now);
+
+/// warning: a write since `before` did not do what it should.
+Health writes_health(const DeviceSnapshot& before, const DeviceSnapshot& now);
+
+/// "foreign", "equal", …; "not asked".
+std::string_view to_string(const std::optional<Identity::Verdict>& verdict);
+
+}  // namespace coupler::driver

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/ros/device_services.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "common/codec/number.hpp"
+#include "common/plan/planner.hpp"
+#include "host/core/value_text.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using Outcome = WriteResult::Outcome;
+
+/// As long as nothing calls; a call is answered at once.
+const ros::WallDuration idle_turn(1);
+
+std::uint8_t code_of(const std::optional<modbus::Exception>& exception) {
+  return exception ? static_cast<std::uint8_t>(*exception) : 0;
+}
+
+bool is_bit(const Point& point) { return point.format.type == codec::Type::BOOL && point.count == 1; }
+
+/// A value that is read at all comes within this.
+Duration patience(const Map& map, const Point& point) {
+  const std::chrono::duration<double> cycles(2 / plan::rate_of(map, point));
+  return std::chrono::duration_cast<Duration>(cycles) + 2 * map.connection.timeout;
+}
+
+}  // namespace
+
+template <class S, class Function>
+void DeviceServices::advertise(ros::NodeHandle& handle, const std::string& name, Function function) {
+  auto options = ros::AdvertiseServiceOptions::create<S>(
+      fmt::format("{}/{}", map_.name, name),
+      [function](typename S::Request& request, typename S::Response& response) {
+        function(request, response);
+        return true;
+      },
+      ros::VoidPtr(), &queue_);
+  servers_.push_back(handle.advertiseService(options));
+}
+
+void DeviceServices::offer(ros::NodeHandle& handle, std::function<void(const Write&)> accept) {
+  accept_ = std::move(accept);
+  advertise<coupler_driver::Write>(
+      handle, "write", [this](const auto& request, auto& response) { answer_write(request, response); });
+  advertise<coupler_driver::Read>(
+      handle, "read", [this](const auto& request, auto& response) { answer_read(request, response); });
+  for (std::uint32_t i = 0; i < map_.points.size(); ++i)
+    if (is_writable(map_.points[i]) && is_bit(map_.points[i]))
+      advertise<std_srvs::SetBool>(
+          handle, fmt::format("{}/set", map_.points[i].name),
+          [this, i](const auto& request, auto& response) { answer_set(i, request.data != 0, response); });
+  thread_ = std::thread([this] {
+    while (queue_.isEnabled()) queue_.callOne(idle_turn);
+  });
+}
+
+void DeviceServices::withdraw() {
+  queue_.disable();
+  next_value_.end();
+  const std::lock_guard lock(mutex_);
+  accept_ = nullptr;
+}
+
+DeviceServices::~DeviceServices() {
+  withdraw();
+  if (thread_.joinable()) thread_.join();
+}
+
+const Point* DeviceServices::find_point(const std::string& name, std::string& message) const {
+  const Point* point = find(map_, name);
+  if (point == nullptr) message = fmt::format("there is no point '{}' in the map of {}", name, map_.name);
+  return point;
+}
+
+WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::uint16_t> value) {
+  WriteTicket ticket;
+  Write write = make_write(map_, index, value);
+  write.listener = &ticket;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!accept_) return {Outcome::dropped, {}, "dropped: the driver ends"};
+    accept_(write);
+  }
+  return ticket.wait();
+}
+
+void DeviceServices::answer_write(const coupler_driver::Write::Request& request,
+                                  coupler_driver::Write::Response& response) {
+  const Point* point = find_point(request.point, response.message);
+  if (point == nullptr) return;
+  if (!is_writable(*point)) {
+    response.message = fmt::format("{} cannot be written", point->name);
+    return;
+  }
+  std::vector<std::uint16_t> value(range(*point).count());
+  if (const auto parsed = parse_value(request.value, *point, value.data()); !parsed) {
+    response.message = parsed.error();
+    return;
+  }
+  const auto outcome = write(static_cast<std::uint32_t>(point - map_.points.data()), value);
+  response.success = outcome.outcome == Outcome::ok;
+  response.exception = code_of(outcome.exception);
+  response.message = outcome.text;
+}
+
+void DeviceServices::answer_set(std::uint32_t index, bool on, std_srvs::SetBool::Response& response) {
+  const Point& point = map_.points[index];
+  const std::uint16_t value =
+      holds_bits(point.table) ? std::uint16_t{on} : codec::encode_part(on ? 1 : 0, point.format);
+  const auto outcome = write(index, {&value, 1});
+  response.success = outcome.outcome == Outcome::ok;
+  response.message = outcome.text;
+}
+
+void DeviceServices::answer_read(const coupler_driver::Read::Request& request,
+                                 coupler_driver::Read::Response& response) {
+  const Point* point = find_point(request.point, response.message);
+  if (point == nullptr) return;
+  if (const auto why = plan::why_not_read(map_, *point)) {
+    response.message = fmt::format("{} is never read", point->name);
+    return;
+  }
+  const auto index = static_cast<std::uint32_t>(point - map_.points.data());
+  const auto deadline = std::chrono::steady_clock::now() + patience(map_, *point);
+  listeners_.came(index);
+  const auto value = next_value_.wait(index, deadline);
+  listeners_.left(index);
+  response.success = value.has_value();
+  if (value)
+    response.value = format_value(value->data(), *point);
+  else
+    response.message = fmt::format("no value of {} came; {}/status says why", point->name, map_.name);
+}
+
+}  // namespace coupler::driver

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <coupler_driver/Read.h>
+#include <coupler_driver/Write.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <std_srvs/SetBool.h>
+
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "host/core/write.hpp"
+#include "host/core/write_ticket.hpp"
+#include "host/ros/listeners.hpp"
+#include "host/ros/next_value.hpp"
+
+namespace coupler::driver {
+
+/// The services of a device: `<name>/write`, `<name>/read`, and `<name>/<point>/set` for each writable bit.
+/// They answer when the result is known, and therefore have a thread of their own.
+class DeviceServices {
+ public:
+  /// Nothing is offered yet. What `map` views, and the listeners, must outlive it.
+  DeviceServices(const Map& map, Listeners& listeners) : map_(map), listeners_(listeners) {}
+  /// Waits for the call in progress; the write that it waits for must have got its result by then.
+  ~DeviceServices();
+  DeviceServices(const DeviceServices&) = delete;
+  DeviceServices& operator=(const DeviceServices&) = delete;
+
+  /// From here on each write goes to `accept`, which waits for nothing.
+  void offer(ros::NodeHandle& handle, std::function<void(const Write&)> accept);
+  /// Makes no more writes: what `accept` needs may end.
+  void withdraw();
+
+  /// Who waits for a value that is read.
+  NextValue& next_value() { return next_value_; }
+
+ private:
+  template <class S, class Function>
+  void advertise(ros::NodeHandle& handle, const std::string& name, Function function);
+  WriteTicket::Outcome write(std::uint32_t index, Span<const std::uint16_t> value);
+  void answer_write(const coupler_driver::Write::Request& request, coupler_driver::Write::Response& response);
+  void answer_read(const coupler_driver::Read::Request& request, coupler_driver::Read::Response& response);
+  void answer_set(std::uint32_t index, bool on, std_srvs::SetBool::Response& response);
+  const Point* find_point(const std::string& name, std::string& message) const;
+
+  Map map_;
+  Listeners& listeners_;
+  std::mutex mutex_;
+  std::function<void(const Write&)> accept_;  ///< none after withdraw()
+  NextValue next_value_;
+  ros::CallbackQueue queue_;
+  std::vector<ros::ServiceServer> servers_;
+  std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace coupler::driver

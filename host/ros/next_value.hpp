@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "host/core/clock.hpp"
+
+namespace coupler::driver {
+
+/// One who waits for the next value of a point: the connection's thread brings what it has read.
+class NextValue {
+ public:
+  /// The registers of the first value of `point` that comes from now on (bit tables: each bit as one
+  /// register, 0 or 1), or nullopt if none has come until `deadline` or end(). For one thread.
+  std::optional<std::vector<std::uint16_t>> wait(std::uint32_t point, Time deadline) {
+    std::unique_lock lock(mutex_);
+    value_.reset();
+    wanted_ = point;
+    came_.wait_until(lock, deadline, [this] { return value_.has_value() || ended_; });
+    wanted_ = nobody;
+    return std::move(value_);
+  }
+
+  /// Whether there is somebody; costs nothing.
+  bool is_wanted(std::uint32_t point) const { return wanted_.load(std::memory_order_relaxed) == point; }
+  void bring(const std::uint16_t* registers, std::size_t count) {
+    {
+      const std::lock_guard lock(mutex_);
+      value_.emplace(registers, registers + count);
+      wanted_ = nobody;
+    }
+    came_.notify_one();
+  }
+
+  /// Ends the wait in progress and every later one at once.
+  void end() {
+    {
+      const std::lock_guard lock(mutex_);
+      ended_ = true;
+    }
+    came_.notify_one();
+  }
+
+ private:
+  static constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
+
+  std::atomic<std::uint32_t> wanted_{nobody};
+  std::mutex mutex_;
+  std::condition_variable came_;
+  std::optional<std::vector<std::uint16_t>> value_;
+  bool ended_ = false;
+};
+
+}  // namespace coupler::driver

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/ros/status_publisher.hpp"
+
+#include <fmt/format.h>
+
+#include "host/core/health.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using State = PointQuality::State;
+using coupler_driver::PointStatus;
+
+constexpr auto longest_interval = std::chrono::seconds(1);
+
+static_assert(static_cast<int>(State::good) == PointStatus::GOOD &&
+              static_cast<int>(State::stale) == PointStatus::STALE &&
+              static_cast<int>(State::never_read) == PointStatus::NEVER_READ &&
+              static_cast<int>(State::exception) == PointStatus::EXCEPTION &&
+              static_cast<int>(State::rejected) == PointStatus::REJECTED &&
+              static_cast<int>(State::offline) == PointStatus::OFFLINE);
+
+template <class T, class U>
+bool assign(T& field, const U& value) {
+  if (field == value) return false;
+  field = value;
+  return true;
+}
+
+std::string in_words(const PointQuality& quality) {
+  std::string text(to_string(quality.state));
+  if (quality.last_exception) text += "; last " + to_string(Error(ExceptionReply{*quality.last_exception}));
+  return text;
+}
+
+}  // namespace
+
+StatusPublisher::StatusPublisher(ros::NodeHandle& handle, const Map& map)
+    : map_(map),
+      publisher_(handle.advertise<coupler_driver::Status>(fmt::format("{}/status", map.name), 1, true)) {
+  message_.points.resize(map.points.size());
+  for (std::size_t i = 0; i < map.points.size(); ++i) {
+    message_.points[i].name = std::string(map.points[i].name);
+    message_.points[i].quality = 0xFF;  // news whatever it is
+  }
+}
+
+bool StatusPublisher::fill(const DeviceSnapshot& device, const std::vector<PointQuality>& points, Time now) {
+  bool news = assign(message_.online, static_cast<std::uint8_t>(device.online));
+  news |= assign(message_.identity, to_string(device.identity));
+  news |= assign(message_.trouble, device.online ? std::string() : device.trouble);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    coupler_driver::PointStatus& status = message_.points[i];
+    const PointQuality& quality = points[i];
+    const auto code = static_cast<std::uint8_t>(quality.last_exception.value_or(modbus::Exception{}));
+    status.age = quality.last_good ? std::chrono::duration<double>(now - *quality.last_good).count() : -1;
+    const bool other = assign(status.quality, static_cast<std::uint8_t>(quality.state));
+    if (!(assign(status.exception, code) || other)) continue;
+    status.text = in_words(quality);
+    news = true;
+  }
+  return news;
+}
+
+void StatusPublisher::update(const DeviceSnapshot& device, const std::vector<PointQuality>& points,
+                             Time now) {
+  if (!fill(device, points, now) && published_ != Time::min() && now - published_ < longest_interval) return;
+  published_ = now;
+  message_.header.stamp = ros::Time::now();
+  publisher_.publish(message_);
+}
+
+}  // namespace coupler::driver

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Services answer when the result is known, and say what it was."""
+import rospy
+from coupler_driver.srv import Read, Write
+from std_msgs.msg import Bool
+from std_srvs.srv import SetBool
+
+from support import process, testing
+from support.device import ILLEGAL_ADDRESS, Device, Refuse
+
+MAP = """
+name: served
+address: 127.0.0.1
+rate: 20
+timeout: 0.5
+mapping:
+  coils: {lamp: 3, locked: 4}
+  input_registers:
+    pressure: {address: 0, type: INT, scale: 0.5}
+  holding_registers:
+    level: {address: 4, type: INT}
+    speeds: {address: 10, type: UINT, count: 3}
+    label: {address: 20, type: STRING, length: 6}
+"""
+
+
+class Services(testing.RosTest):
+    def setUp(self):
+        self.device = Device().start()
+        self.addCleanup(self.device.stop)
+        driver = self.driver(f"_map:={process.write_map(MAP)}", f"_port:={self.device.port}")
+        driver.wait_for("connected")
+
+    def call(self, name, kind, *arguments):
+        rospy.wait_for_service(f"/served/{name}", 20)
+        return rospy.ServiceProxy(f"/served/{name}", kind)(*arguments)
+
+    def write(self, point, value):
+        return self.call("write", Write, point, value)
+
+    def test_a_write_answers_once_the_device_has_it(self):
+        self.assertTrue(self.write("level", "-5").success)
+        self.assertEqual(self.device.tables["holding_registers"][4], 0xFFFB)
+        self.assertTrue(self.write("speeds", "[1, 2, 3]").success)
+        self.assertEqual(self.device.tables["holding_registers"][10:13], [1, 2, 3])
+        self.assertTrue(self.write("label", "ok").success)
+        self.assertTrue(self.write("lamp", "true").success)
+        self.assertEqual(self.device.tables["coils"][3], 1)
+
+    def test_an_exception_is_told_with_code_and_text(self):
+        def answer(request):
+            if request.function == 5 and request.address == 4:
+                raise Refuse(ILLEGAL_ADDRESS)
+            return self.device.serve(request)
+
+        self.device.answer = answer
+        result = self.write("locked", "true")
+        self.assertEqual((result.success, result.exception), (False, 2))
+        self.assertIn("illegal data address", result.message)
+        result = self.call("locked/set", SetBool, True)
+        self.assertFalse(result.success)
+        self.assertIn("illegal data address", result.message)
+
+    def test_a_bit_is_set_by_the_usual_service(self):
+        for on in (True, False):
+            self.assertTrue(self.call("lamp/set", SetBool, on).success)
+            self.assertEqual(self.device.tables["coils"][3], on)
+
+    def test_what_cannot_be_written_is_told_with_what_can(self):
+        for point, value, expected in (("nothing", "1", "there is no point 'nothing'"),
+                                       ("pressure", "1", "pressure cannot be written"),
+                                       ("level", "70000", "-32768 … 32767"), ("level", "full", "is not a number"),
+                                       ("speeds", "[1]", "give 3")):
+            result = self.write(point, value)
+            self.assertFalse(result.success)
+            self.assertIn(expected, result.message)
+
+    def test_a_write_that_is_lost_is_told(self):
+        self.device.silent = True
+        result = self.write("level", "1")
+        self.assertFalse(result.success)
+        self.assertTrue(result.message)
+        online = self.topic("/served/online", Bool)
+        online.wait_for(lambda now: not now)
+        self.assertIn("not connected", self.write("level", "1").message)
+
+    def test_a_read_brings_the_next_value(self):
+        self.device.tables["input_registers"][0] = 43
+        self.assertEqual(self.call("read", Read, "pressure").value, "21.5")
+        self.device.tables["holding_registers"][10:13] = [7, 8, 9]
+        self.assertEqual(self.call("read", Read, "speeds").value, "[7, 8, 9]")
+        self.device.silent = True
+        result = self.call("read", Read, "pressure")
+        self.assertFalse(result.success)
+        self.assertIn("served/status says why", result.message)
+
+
+if __name__ == "__main__":
+    testing.main()
