@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <string>
 
 namespace coupler::node {
 namespace {
@@ -34,10 +35,10 @@ void StderrLog::tell(const Diagnostic& diagnostic) {
 }
 
 void StderrLog::put(int priority, std::string_view who, std::string_view line) const {
-  if (to_journal_)
-    fmt::print(stderr, "<{}>{}\n", priority, line);
-  else
-    fmt::print(stderr, "{}{}\n", who, line);
+  const std::string text =
+      to_journal_ ? fmt::format("<{}>{}\n", priority, line) : fmt::format("{}{}\n", who, line);
+  // Whoever read it may be gone: that is no reason to end.
+  (void)std::fputs(text.c_str(), stderr);
 }
 
 }  // namespace coupler::node

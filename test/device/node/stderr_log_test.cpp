@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -39,6 +40,17 @@ TEST(StderrLog, People_see_who_speaks_and_diagnostics_as_editors_know_them) {
 
 TEST(StderrLog, The_journal_sees_how_important_it_is) {
   EXPECT_EQ(said(nullptr, true), "<6>serving\n<4>lost\n<3>refused\n<3>map.yaml:3:7: error: wrong; mend it\n");
+}
+
+TEST(StderrLog, Nobody_who_reads_it_is_no_reason_to_end) {
+  const int before = ::dup(STDERR_FILENO);
+  const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
+  ASSERT_GE(full, 0);
+  ::dup2(full, STDERR_FILENO);
+  EXPECT_NO_THROW(StderrLog(nullptr).write("serving"));
+  ::dup2(before, STDERR_FILENO);
+  ::close(before);
+  ::close(full);
 }
 
 }  // namespace
