@@ -47,7 +47,12 @@ Result<> Device::do_what_is_due(Time now) {
 Time Device::due() const { return std::min({writer_.due(), reader_.due(), probe_due()}); }
 
 void Device::arrived() {
-  if (!connected_ || writer_.awaits_answer()) return;
+  if (writer_.awaits_answer()) return;
+  if (!connected_) {  // the unit was away; the gateway goes, too
+    transport_.close();
+    linked_ = false;
+    return;
+  }
   lost(TransportFailure{"the device closed the connection, or sent what nobody asked for"});
 }
 
@@ -55,12 +60,13 @@ void Device::stop() {
   if (connected_) writer_.shut_down();
   writer_.disconnected(NotConnected{"the driver ends"});
   transport_.close();
-  connected_ = false;
+  connected_ = linked_ = false;
   if (std::exchange(online_, false)) sink_.on_online(false);
 }
 
 Time Device::connect() {
-  Result<> result = transport_.connect();
+  Result<> result = linked_ ? Result<>{} : transport_.connect();
+  linked_ = result.has_value();
   if (result && verify_ != Verify::off) result = prove_equal();
   if (result) result = writer_.reconnected();
   if (!result) {
@@ -84,7 +90,8 @@ Result<> Device::prove_equal() {
 }
 
 void Device::explain_silence(const Error& error) {
-  if (!std::holds_alternative<Timeout>(error) || std::exchange(silence_told_, true)) return;
+  const bool silent = std::holds_alternative<Timeout>(error) || is_unit_away(error);
+  if (!silent || std::exchange(silence_told_, true)) return;
   sink_.on_report(Level::warning,
                   "connected, but the question for the device's identity is not answered; if this is a "
                   "foreign coupler that ignores addresses it does not have, start with _verify:=off");
@@ -127,7 +134,8 @@ void Device::came_online() {
 }
 
 void Device::lost(const Error& error) {
-  transport_.close();
+  linked_ = linked_ && is_unit_away(error);
+  if (!linked_) transport_.close();
   connected_ = false;
   retry_at_ = clock_.now() + backoff_.next();
   writer_.disconnected(error);

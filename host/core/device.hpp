@@ -17,6 +17,9 @@ namespace coupler::driver {
 /// The connection is closed (it may be the only one the device has) and the identity is asked for again after
 /// the back-off.
 ///
+/// A unit that its gateway cannot reach is offline, too, and tried again after the back-off, but the
+/// connection to the gateway stays: others may use it.
+///
 /// push(), refuse(), statistics() and qualities() are for any thread. All others are for one at a time: the
 /// owner of the connection, or, for send_now() alone, one who has made sure that the owner only waits.
 class Device {
@@ -70,6 +73,7 @@ class Device {
   Reader reader_;
   Backoff backoff_;
 
+  bool linked_ = false;     ///< there is a connection, to the device or to its gateway
   bool connected_ = false;  ///< proven equal; reads and writes may go out
   bool online_ = false;     ///< connected, and the device has answered
   Time retry_at_ = Time::min();

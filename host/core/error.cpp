@@ -22,6 +22,12 @@ struct Text {
 
 const ExceptionReply* exception_in(const Error& error) { return std::get_if<ExceptionReply>(&error); }
 
+bool is_unit_away(const Error& error) {
+  const ExceptionReply* exception = exception_in(error);
+  return exception != nullptr && (exception->code == modbus::Exception::gateway_path_unavailable ||
+                                  exception->code == modbus::Exception::gateway_target_failed_to_respond);
+}
+
 std::string to_string(const Error& error) { return std::visit(Text{}, error); }
 
 }  // namespace coupler::driver

@@ -47,6 +47,9 @@ tl::unexpected<Error> fail(E error) {
 /// be taken for the answer to the next request.
 const ExceptionReply* exception_in(const Error& error);
 
+/// A gateway is there and says that the unit behind it is not (exceptions 0A and 0B).
+bool is_unit_away(const Error& error);
+
 /// "exception 02 (illegal data address)", "no reply within 3000 ms" …
 std::string to_string(const Error& error);
 

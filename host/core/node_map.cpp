@@ -20,7 +20,7 @@ Result<std::optional<identity::Head>> read_identity(Transport& transport) {
   std::array<std::uint16_t, identity::head_size> area{};
   const auto range = modbus::Range::of(identity::reserved.start(), identity::head_size);
   if (auto read = transport.read_registers(Table::input_registers, range, area.data()); !read) {
-    if (exception_in(read.error()) != nullptr) return std::nullopt;
+    if (exception_in(read.error()) != nullptr && !is_unit_away(read.error())) return std::nullopt;
     return tl::make_unexpected(read.error());
   }
   return identity::read_head(area);

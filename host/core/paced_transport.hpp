@@ -25,6 +25,7 @@ class PacedTransport : public Transport {
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
+  bool reserve() override { return transport_.reserve(); }
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;
   Woken wait_until(Time time) override { return transport_.wait_until(time); }

@@ -34,6 +34,10 @@ Result<> Reader::step() {
   if (Result<> answer = request(span); !answer) {
     const ExceptionReply* exception = exception_in(answer.error());
     if (exception == nullptr) return answer;
+    if (is_unit_away(answer.error())) {
+      qualities_.exception(span.points, exception->code);
+      return answer;
+    }
     refused(exception->code);
   } else {
     publish(span);
@@ -107,7 +111,8 @@ Result<> Reader::probe() {
   const Point* const asked = found == map_.points.end() ? map_.points.begin() : found;
   Result<> answer = map_.points.empty() ? request({Table::coils, modbus::Range::of(0, 1), {}})
                                         : request({asked->table, read_range(*asked), {}});
-  return !answer && exception_in(answer.error()) == nullptr ? answer : Result<>{};
+  if (answer || (exception_in(answer.error()) != nullptr && !is_unit_away(answer.error()))) return {};
+  return answer;
 }
 
 std::string Reader::describe(const ReadSpan& span) const {

@@ -28,8 +28,8 @@ class Reader {
   void start();
   /// When step() has something to do.
   Time due() const { return cycle_.due(); }
-  /// Makes the request that is due, if there is one. An error means that the connection is of no more use; an
-  /// exception is none.
+  /// Makes the request that is due, if there is one. An error means that the connection is of no more use, or
+  /// that the unit is away; any other exception is none.
   Result<> step();
   /// Asks for something only to hear whether the device is there.
   Result<> probe();

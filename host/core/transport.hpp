@@ -32,7 +32,9 @@ class Transport {
   virtual Result<> read_file_record(std::uint16_t file, std::uint16_t record,
                                     Span<std::uint16_t> registers) = 0;
 
-  /// Sends and waits for nothing. receive() must follow before any other request.
+  /// Whether a send() made now would wait for nobody else's request. If true, send() must follow.
+  virtual bool reserve() { return true; }
+  /// Sends and does not wait for the answer. receive() must follow before any other request.
   virtual Result<> send(const modbus::WriteRequest& request) = 0;
   /// The answer to what was sent, at the latest a timeout after that.
   virtual Result<> receive(const modbus::WriteRequest& request) = 0;

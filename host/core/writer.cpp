@@ -63,7 +63,7 @@ bool Writer::send_now() {
   if (!batch_.empty() || !transport_.is_ready()) return false;
   queue_.take(batch_, merges_);
   if (batch_.empty()) return true;  // the owner was faster
-  if (batch_.needs_read()) return false;
+  if (batch_.needs_read() || !transport_.reserve()) return false;
   sent_ = batch_.request();
   if (const auto sent = transport_.send(*sent_); !sent) send_error_ = sent.error();
   return !send_error_;

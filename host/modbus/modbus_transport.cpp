@@ -2,18 +2,18 @@
 #include "host/modbus/modbus_transport.hpp"
 
 #include <modbus/modbus.h>
-#include <poll.h>
 #include <sys/socket.h>
 
-#include <array>
 #include <cerrno>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "host/modbus/exception_code.hpp"
 #include "host/modbus/file_exchange.hpp"
 #include "host/modbus/open_socket.hpp"
 #include "host/modbus/raw_exchange.hpp"
+#include "host/modbus/wait_for.hpp"
 
 namespace coupler::driver {
 
@@ -29,22 +29,23 @@ ModbusTransport::ModbusTransport(const Connection& connection)
 
 ModbusTransport::~ModbusTransport() { ModbusTransport::close(); }
 
-void ModbusTransport::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
+Result<> ModbusTransport::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
   unit_ = unit;
-  modbus_set_slave(context_.get(), unit_);  // open() refuses one that libmodbus does not take
-  if (std::exchange(timeout_, timeout) == timeout) return;
+  if (modbus_set_slave(context_.get(), unit_) != 0)
+    return fail(NotConnected{fmt::format("unit {} is reserved; Modbus has units 0 to 247 and 255", unit_)});
+  if (std::exchange(timeout_, timeout) == timeout) return {};
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout_);
   const auto rest = std::chrono::microseconds(timeout_ - seconds);
   modbus_set_response_timeout(context_.get(), static_cast<std::uint32_t>(seconds.count()),
                               static_cast<std::uint32_t>(rest.count()));
+  return {};
 }
 
 Result<> ModbusTransport::connect() { return open(interrupted_); }
 
 Result<> ModbusTransport::open(const Event& interrupt) {
   close();
-  if (modbus_set_slave(context_.get(), unit_) != 0)
-    return fail(NotConnected{fmt::format("unit {} is reserved; Modbus has units 0 to 247 and 255", unit_)});
+  if (auto selected = select(unit_, timeout_); !selected) return selected;
   auto opened = open_socket(host_, port_, timeout_, interrupt);
   if (!opened) return tl::make_unexpected(opened.error());
   const std::lock_guard lock(socket_mutex_);
@@ -90,15 +91,24 @@ Result<> ModbusTransport::result(int returned, std::uint32_t expected) const {
   }
 }
 
+Result<> ModbusTransport::with_code(Result<> answer, Table table, modbus::Range range) {
+  const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
+  if (exception == nullptr || exception->code != modbus::Exception{}) return answer;
+  const auto code = ask_for_exception(socket_, next_header(), timeout_, table, range);
+  if (!code) return tl::make_unexpected(code.error());
+  return fail(ExceptionReply{*code});
+}
+
 Result<> ModbusTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
   auto* read = table == Table::coils ? modbus_read_bits : modbus_read_input_bits;
-  return result(read(context_.get(), range.start(), static_cast<int>(range.count()), bits), range.count());
+  const int returned = read(context_.get(), range.start(), static_cast<int>(range.count()), bits);
+  return with_code(result(returned, range.count()), table, range);
 }
 
 Result<> ModbusTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
   auto* read = table == Table::holding_registers ? modbus_read_registers : modbus_read_input_registers;
-  return result(read(context_.get(), range.start(), static_cast<int>(range.count()), registers),
-                range.count());
+  const int returned = read(context_.get(), range.start(), static_cast<int>(range.count()), registers);
+  return with_code(result(returned, range.count()), table, range);
 }
 
 modbus::Frame ModbusTransport::next_header() {
@@ -131,17 +141,7 @@ Result<> ModbusTransport::receive(const modbus::WriteRequest& request) {
 }
 
 Transport::Woken ModbusTransport::wait_until(Time time) {
-  const Time now = std::chrono::steady_clock::now();
-  if (time <= now) return Woken::by_time;
-  const Duration left = time - now;
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
-  const timespec wait{seconds.count(), (left - seconds).count()};
-  std::array<pollfd, 3> wanted{
-      {{wakeup_.fd(), POLLIN, 0}, {interrupted_.fd(), POLLIN, 0}, {socket_, POLLIN, 0}}};
-  ::ppoll(wanted.data(), wanted.size(), &wait, nullptr);
-  if (wanted[0].revents != 0) wakeup_.clear();
-  if (wanted[2].revents != 0) return Woken::by_bytes;
-  return wanted[0].revents != 0 || wanted[1].revents != 0 ? Woken::by_call : Woken::by_time;
+  return wait_for(wakeup_, interrupted_, socket_, time);
 }
 
 }  // namespace coupler::driver

@@ -37,16 +37,27 @@ class ModbusTransport : public Transport {
   Woken wait_until(Time time) override;
   void wake() override { wakeup_.call(); }
 
+  // For a connection that several units share.
+
+  /// Whom the next requests are for, and how long their answers may take.
+  Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout);
+  /// connect() that ends when `interrupt` is set.
+  Result<> open(const Event& interrupt);
+  /// From any thread: ends the request in progress; connect() is possible again.
+  void hang_up();
+
  private:
   /// What a libmodbus call that should return `expected` came to.
   Result<> result(int returned, std::uint32_t expected) const;
+  /// The answer to a read, with the exception code that libmodbus did not tell.
+  Result<> with_code(Result<> answer, Table table, modbus::Range range);
   /// The header of the next request that is not libmodbus's.
   modbus::Frame next_header();
 
   std::string host_;
   std::uint16_t port_;
   std::uint8_t unit_;
-  std::chrono::milliseconds timeout_;
+  std::chrono::milliseconds timeout_{0};
   std::unique_ptr<_modbus, void (*)(_modbus*)> context_;
   Event interrupted_;
   Wakeup wakeup_;

@@ -141,6 +141,24 @@ TEST(ModbusTransport, An_exception_code_that_no_specification_has_is_told) {
   EXPECT_EQ(exception_in(transport.receive(request).error())->code, static_cast<modbus::Exception>(0x60));
 }
 
+TEST(ModbusTransport, A_code_that_libmodbus_keeps_to_itself_is_asked_for) {
+  test::LoopbackServer odd([](int fd) {
+    std::uint8_t query[12];
+    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+    const std::uint8_t reply[] = {query[0], query[1], 0, 0, 0, 3, query[6], std::uint8_t(query[7] | 0x80),
+                                  0x60};
+    return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
+  });
+  ModbusTransport transport(connection_to(odd.port()));
+  ASSERT_TRUE(transport.connect());
+  std::uint16_t word = 0;
+  std::uint8_t bit = 0;
+  const auto registers = transport.read_registers(Table::input_registers, Range::of(1, 1), &word);
+  const auto bits = transport.read_bits(Table::discrete_inputs, Range::of(1, 1), &bit);
+  EXPECT_EQ(exception_in(registers.error())->code, static_cast<modbus::Exception>(0x60));
+  EXPECT_EQ(exception_in(bits.error())->code, static_cast<modbus::Exception>(0x60));
+}
+
 TEST(ModbusTransport, Nobody_there_is_told_with_host_port_and_cause) {
   std::uint16_t free_port = 0;
   { free_port = test::ModbusServer().port(); }

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/modbus/unit_transport.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace coupler::driver {
+namespace {
+
+tl::unexpected<Error> interrupted_error() { return fail(NotConnected{"interrupted"}); }
+
+}  // namespace
+
+UnitTransport::UnitTransport(std::shared_ptr<SharedConnection> shared, const Connection& unit,
+                             const Limits& limits)
+    : shared_(std::move(shared)),
+      unit_(unit.unit),
+      timeout_(unit.timeout),
+      gap_(limits.request_gap),
+      delay_(limits.connect_delay) {}
+
+Result<> UnitTransport::open() {
+  shared_->transport.close();
+  Result<> opened = shared_->transport.open(interrupted_);
+  shared_->open = opened.has_value();
+  shared_->opened = std::chrono::steady_clock::now();
+  return opened;
+}
+
+Result<> UnitTransport::connect() {
+  close();
+  if (!take()) return interrupted_error();
+  Result<> result = shared_->transport.select(unit_, timeout_);
+  if (result && !shared_->open) result = open();
+  if (result) {
+    connected_ = true;
+    ended_ = shared_->ended;
+    ++shared_->users;
+  }
+  shared_->turns.release();
+  return result;
+}
+
+void UnitTransport::close() {
+  if (std::exchange(in_flight_, false)) {  // the answer may still come, and would be taken for another
+    shared_->transport.close();
+    shared_->open = false;
+    shared_->turns.release();
+  }
+  if (!std::exchange(connected_, false) || !take()) return;
+  if (--shared_->users == 0) {
+    shared_->transport.close();
+    shared_->open = false;
+  }
+  shared_->turns.release();
+}
+
+void UnitTransport::interrupt() {
+  interrupted_.set();
+  shared_->turns.interrupt(this, [this] { shared_->transport.hang_up(); });
+}
+
+Time UnitTransport::ready() const { return std::max(shared_->opened + delay_, shared_->answered + gap_); }
+
+/// What must be so before a request, in its turn.
+Result<> UnitTransport::prepare() {
+  if (!connected_) return fail(NotConnected{"not connected"});
+  if (ended_ != shared_->ended) return fail(TransportFailure{"the gateway has closed the connection"});
+  if (auto selected = shared_->transport.select(unit_, timeout_); !selected) return selected;
+  if (!shared_->open)
+    if (auto opened = open(); !opened) return opened;
+  Wakeup nobody;
+  wait_for(nobody, interrupted_, -1, ready());
+  if (interrupted_.is_set()) return interrupted_error();
+  return {};
+}
+
+/// The request of this turn has ended.
+Result<> UnitTransport::done(Result<> result) {
+  shared_->answered = std::chrono::steady_clock::now();
+  if (!result && exception_in(result.error()) == nullptr) {
+    shared_->transport.close();
+    shared_->open = false;
+    if (std::holds_alternative<TransportFailure>(result.error()) && !interrupted_.is_set()) ++shared_->ended;
+  }
+  shared_->turns.release();
+  return result;
+}
+
+template <class Request>
+Result<> UnitTransport::in_turn(Request&& request) {
+  if (!take()) return interrupted_error();
+  if (auto prepared = prepare(); !prepared) {
+    shared_->turns.release();
+    return prepared;
+  }
+  return done(request(shared_->transport));
+}
+
+Result<> UnitTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
+  return in_turn([&](ModbusTransport& transport) { return transport.read_bits(table, range, bits); });
+}
+Result<> UnitTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
+  return in_turn(
+      [&](ModbusTransport& transport) { return transport.read_registers(table, range, registers); });
+}
+Result<> UnitTransport::read_file_record(std::uint16_t file, std::uint16_t record,
+                                         Span<std::uint16_t> registers) {
+  return in_turn(
+      [&](ModbusTransport& transport) { return transport.read_file_record(file, record, registers); });
+}
+
+bool UnitTransport::reserve() {
+  if (!shared_->turns.try_take(this)) return false;
+  reserved_ =
+      connected_ && ended_ == shared_->ended && shared_->open && std::chrono::steady_clock::now() >= ready();
+  if (!reserved_) shared_->turns.release();
+  return reserved_;
+}
+
+Result<> UnitTransport::send(const modbus::WriteRequest& request) {
+  const bool reserved = std::exchange(reserved_, false);
+  if (!reserved && !take()) return interrupted_error();
+  if (auto prepared = prepare(); !prepared) {
+    shared_->turns.release();
+    return prepared;
+  }
+  if (auto sent = shared_->transport.send(request); !sent) return done(sent);
+  in_flight_ = true;
+  if (reserved) wake();  // nobody watches a shared socket: the owner goes to receive()
+  return {};
+}
+
+Result<> UnitTransport::receive(const modbus::WriteRequest& request) {
+  in_flight_ = false;
+  return done(shared_->transport.receive(request));
+}
+
+}  // namespace coupler::driver

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "common/map/map.hpp"
+#include "host/modbus/modbus_transport.hpp"
+#include "host/modbus/turns.hpp"
+#include "host/modbus/wait_for.hpp"
+
+namespace coupler::driver {
+
+/// One connection to a gateway. Who has the turn may use the rest.
+struct SharedConnection {
+  explicit SharedConnection(const Connection& gateway) : transport(gateway) {}
+
+  Turns turns;
+  ModbusTransport transport;
+  bool open = false;
+  int users = 0;            ///< units that are connected
+  std::uint64_t ended = 0;  ///< how often the gateway has ended it
+  Time opened{};
+  Time answered{};  ///< the last request
+};
+
+/// One of several units behind a gateway that share a connection, request by request in turn.
+///
+/// A unit that stays silent closes the connection, since its answer may still come; the others open it again
+/// and notice nothing. Where the gateway has ended it, all units have lost it: what is behind may have
+/// changed.
+class UnitTransport : public Transport {
+ public:
+  UnitTransport(std::shared_ptr<SharedConnection> shared, const Connection& unit, const Limits& limits);
+  ~UnitTransport() override { UnitTransport::close(); }
+  UnitTransport(const UnitTransport&) = delete;
+  UnitTransport& operator=(const UnitTransport&) = delete;
+
+  Result<> connect() override;
+  void close() override;
+  void interrupt() override;
+  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
+  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
+  Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
+  bool reserve() override;
+  Result<> send(const modbus::WriteRequest& request) override;
+  Result<> receive(const modbus::WriteRequest& request) override;
+  Woken wait_until(Time time) override { return wait_for(wakeup_, interrupted_, -1, time); }
+  void wake() override { wakeup_.call(); }
+
+ private:
+  bool take() { return shared_->turns.take(this, interrupted_); }
+  template <class Request>
+  Result<> in_turn(Request&& request);
+  Result<> prepare();
+  Result<> open();
+  Time ready() const;
+  Result<> done(Result<> result);
+
+  std::shared_ptr<SharedConnection> shared_;
+  std::uint8_t unit_;
+  std::chrono::milliseconds timeout_;
+  Duration gap_;
+  Duration delay_;
+  Event interrupted_;
+  Wakeup wakeup_;
+  bool connected_ = false;
+  std::uint64_t ended_ = 0;  ///< SharedConnection::ended when it connected
+  bool reserved_ = false;    ///< it has the turn for a send() to come
+  bool in_flight_ = false;   ///< it has the turn until receive()
+};
+
+}  // namespace coupler::driver
