@@ -14,7 +14,11 @@ exception_04() { grep -qi 'device or server failure' < <(answered "$@" 2>&1 || t
 press() { sim_pull plant 2 up; sleep 0.02; sim_pull plant 2 down; sleep 0.02; }
 lost='(failed: No such device)'
 back='works again'
-holds_no_line() { ! ls -l "/proc/$(pid node)/fd" "/proc/$(pgrep -P "$(pid node)")/fd" | grep gpio; }
+holds_no_line() {
+  local io
+  io=$(pgrep -P "$(pid node)") && [ -d "/proc/$io/fd" ] || return
+  [ -z "$(find "/proc/$(pid node)/fd" "/proc/$io/fd" -lname '*gpio*')" ]
+}
 # Requests to the kernel for the map: libgpiod 1 wants one for each polarity of outputs.
 if [[ $(gpiomon --version) == *v1.* ]]; then requests=3; else requests=2; fi
 times() { grep -cE -- "$1" "$(log node)" || true; }
