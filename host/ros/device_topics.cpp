@@ -4,6 +4,7 @@
 #include <std_msgs/Bool.h>
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -34,7 +35,8 @@ ros::Publisher advertise_online(ros::NodeHandle& handle, const Map& map) {
 
 }  // namespace
 
-DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verify, Poll poll)
+DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, std::unique_ptr<Transport> transport,
+                           Verify verify, Poll poll)
     : map_(map),
       listeners_(map.points.size()),
       publishers_(advertise_all(handle, map_, listeners_)),
@@ -42,8 +44,8 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verif
       status_(handle, map),
       diagnostics_(map),
       services_(map, listeners_),
-      transport_(map.connection),
-      thread_(map, verify, load_map, transport_, *this),
+      transport_(std::move(transport)),
+      thread_(map, verify, load_map, *transport_, *this),
       writes_{[this](const Write& write) { thread_.write(write); },
               [this](std::uint32_t point, const std::string& what) { refuse(point, what); }} {
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "host/core/device_thread.hpp"
-#include "host/modbus/modbus_transport.hpp"
 #include "host/ros/device_services.hpp"
 #include "host/ros/diagnostics.hpp"
 #include "host/ros/point_publisher.hpp"
@@ -25,7 +24,8 @@ class DeviceTopics : public Sink {
  public:
   /// The map's views must outlive it; ROS must have been shut down before it ends, since callbacks refer to
   /// it.
-  DeviceTopics(ros::NodeHandle& handle, const Map& map, Verify verify, Poll poll);
+  DeviceTopics(ros::NodeHandle& handle, const Map& map, std::unique_ptr<Transport> transport, Verify verify,
+               Poll poll);
   ~DeviceTopics() override { services_.withdraw(); }
 
   /// Publishes status and diagnostics where they are due. To be called about ten times a second.
@@ -48,7 +48,7 @@ class DeviceTopics : public Sink {
   Diagnostics diagnostics_;
   Time diagnosed_ = Time::min();
   DeviceServices services_;
-  ModbusTransport transport_;
+  std::unique_ptr<Transport> transport_;
   DeviceThread thread_;
   WriteHandler writes_;
   std::vector<ros::Subscriber> subscribers_;

@@ -11,10 +11,12 @@
 #include <memory>
 #include <set>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "host/modbus/make_transports.hpp"
 #include "host/ros/arguments.hpp"
 #include "host/ros/device_topics.hpp"
 #include "host/ros/map_source.hpp"
@@ -101,9 +103,14 @@ int run(const Devices& devices) {
   }
   ros::NodeHandle handle;
   std::vector<std::unique_ptr<DeviceTopics>> topics;
+  std::vector<Map> maps;
+  for (const auto& [settings, source] : devices) maps.push_back(source.map);
+  auto transports = make_transports(maps);
+  auto transport = transports.begin();
   for (const auto& [settings, source] : devices)
-    topics.push_back(std::make_unique<DeviceTopics>(
-        handle, source.map, settings.verify.value_or(Verify::require), settings.poll.value_or(Poll::all)));
+    topics.push_back(std::make_unique<DeviceTopics>(handle, source.map, std::move(*transport++),
+                                                    settings.verify.value_or(Verify::require),
+                                                    settings.poll.value_or(Poll::all)));
   for (; ros::ok(); std::this_thread::sleep_for(report_interval))
     for (const auto& device : topics) device->report(std::chrono::steady_clock::now());
   ros::shutdown();

@@ -9,8 +9,8 @@ from coupler_driver.msg import PointStatus, Status
 from std_msgs.msg import Bool, Int16, Int32, UInt16
 
 from support import process, testing
-from support.device import (BUSY, FAILURE, ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Device, Raw, Refuse,
-                            frame)
+from support.device import (BUSY, FAILURE, ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, NO_RESPONSE, Device, Raw,
+                            Refuse, frame)
 from support.topics import wait_until
 
 TIMEOUT = 0.5
@@ -206,6 +206,27 @@ class FaultMatrix(testing.RosTest):
         level.wait_for(lambda value: value == 39, SOON)
         time.sleep(0.3)
         self.assertEqual(level.values, sorted(level.values), "an older value came after a newer one")
+
+    # 9. One dead unit blocks the gateway
+    def test_09_a_unit_that_is_away_costs_the_others_neither_values_nor_connection(self):
+        def answer(request):
+            if request.unit == 2:
+                raise Refuse(NO_RESPONSE)
+            return self.device.serve(request)
+
+        self.device.answer = answer
+        maps = [process.write_map(f"name: unit{unit}\naddress: 127.0.0.1\nport: {self.device.port}\nunit: {unit}\n"
+                                  f"rate: 20\ntimeout: 0.5\nmapping:\n{self.LEVEL}") for unit in (1, 2, 3)]
+        self.driver(f"_maps:=[{','.join(maps)}]")
+        levels = {unit: self.topic(f"/unit{unit}/level", Int16) for unit in (1, 3)}
+        for unit, level in levels.items():
+            self.level_follows(level, 10 + unit)
+        away = self.topic("/unit2/online", Bool)
+        self.assertFalse(away.next())
+        self.assertLess(len([r for r in self.device.requests if r.unit == 2]), 20, "it is asked less and less often")
+        self.device.answer = self.device.serve
+        away.wait_for(lambda online: online, SOON)
+        self.assertEqual(self.device.accepted, 1, "one connection for all of them")
 
     # 10. Pauses after connecting and between requests
     def test_10_the_device_has_the_pauses_that_the_map_says(self):
