@@ -96,6 +96,13 @@ std::string why_not(const Devices& devices) {
   return {};
 }
 
+/// All at once: each may take most of a second for its safe values.
+void end_all(std::vector<std::unique_ptr<DeviceTopics>>& devices) {
+  std::vector<std::thread> ends;
+  for (auto& device : devices) ends.emplace_back([&device] { device.reset(); });
+  for (std::thread& end : ends) end.join();
+}
+
 int run(const Devices& devices) {
   if (const std::string wrong = why_not(devices); !wrong.empty()) {
     print(wrong);
@@ -114,6 +121,7 @@ int run(const Devices& devices) {
   for (; ros::ok(); std::this_thread::sleep_for(report_interval))
     for (const auto& device : topics) device->report(std::chrono::steady_clock::now());
   ros::shutdown();
+  end_all(topics);
   return 0;
 }
 

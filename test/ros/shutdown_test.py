@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """SIGINT ends the driver with 0, soon, whatever it is doing."""
+import contextlib
 import os
 import socket
 import time
@@ -46,6 +47,18 @@ class Shutdown(unittest.TestCase):
                 with connection:
                     connection.recv(12)
                     self.assert_ends_soon(driver)
+
+    def test_while_many_devices_that_do_not_answer_should_get_safe_values(self):
+        text = "name: silent{number}\naddress: 127.0.0.1\nport: {port}\ntimeout: 60\non_shutdown: safe\n" \
+               "mapping:\n  coils: {{lamp: 3}}\n"
+        with contextlib.ExitStack() as stack:
+            silent = [stack.enter_context(socket.create_server(("127.0.0.1", 0))) for _ in range(20)]
+            maps = [process.write_map(text.format(number=i, port=server.getsockname()[1]))
+                    for i, server in enumerate(silent)]
+            driver = stack.enter_context(process.Driver(f"_maps:=[{','.join(maps)}]"))
+            for server in silent:
+                stack.enter_context(server.accept()[0]).recv(12)
+            self.assert_ends_soon(driver)
 
     def test_while_it_waits_for_a_nodes_map(self):
         with process.Driver("_address:=127.0.0.1", f"_port:={free_port()}") as driver:
