@@ -11,7 +11,7 @@ from std_msgs.msg import Bool, Int16, Int32, UInt16
 from support import process, testing
 from support.device import (BUSY, FAILURE, ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, NO_RESPONSE, Device, Raw,
                             Refuse, frame)
-from support.topics import wait_until
+from support.topics import connected_publishers, wait_until
 
 TIMEOUT = 0.5
 SOON = 10  # seconds; what is waited for takes one or two, the rest is for machines under load
@@ -278,8 +278,10 @@ class FaultMatrix(testing.RosTest):
 
                 self.device.answer = answer
                 driver = self.start(f"  holding_registers: {{level: {{address: 4, type: INT, write_function: {said}}}}}\n")
-                self.publisher("/plant/level/write", Int16).publish(100 + refused)
+                write = connected_publishers({"/plant/level/write": Int16})[0]
+                write.publish(100 + refused)
                 wait_until(lambda r=refused: self.device.tables["holding_registers"][4] == 100 + r, "the write")
+                write.unregister()
                 driver.end()
 
     # 15. Bits in registers

@@ -23,6 +23,7 @@ struct Device {
 template <class M>
 std::vector<ros::Publisher> advertise(ros::NodeHandle& handle, int count) {
   std::vector<ros::Publisher> publishers;
+  publishers.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     publishers.push_back(handle.advertise<M>("bench/p" + std::to_string(i), 10));
   return publishers;
