@@ -193,6 +193,7 @@ TEST_F(UnitTransportTest, Every_write_has_one_result_while_all_units_write_and_t
       devices.push_back(
           std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *transports[i], sink));
     std::vector<std::thread> writers;
+    writers.reserve(units);
     for (const auto& device : devices)
       writers.emplace_back([&tally, &device] {
         for (int i = 0; i < writes; ++i) {

@@ -52,6 +52,13 @@ struct WriteStorm : testing::Test {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
+  static void write(DeviceThread& device, std::uint32_t point, std::uint16_t value, WriteListener* listener) {
+    Write write;
+    write.point = point;
+    write.registers[0] = value;
+    write.listener = listener;
+    device.write(write);
+  }
   test::ModbusServer server;
   MapPtr owned = make_map();
   ModbusTransport transport{owned->map().connection};
@@ -67,6 +74,7 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
     DeviceThread device(owned->map(), Verify::off, {}, transport, sink);
     wait_until_connected(device);
     std::vector<std::thread> writers;
+    writers.reserve(threads);
     for (int t = 0; t < threads; ++t)
       writers.emplace_back([&, t] {
         for (int i = 0; i < writes; ++i) {
@@ -92,19 +100,13 @@ TEST_F(WriteStorm, What_was_written_last_stands_in_the_device) {
   {
     DeviceThread device(owned->map(), Verify::off, {}, transport, sink);
     wait_until_connected(device);
-    for (std::uint16_t value = 1; value <= 100; ++value)
-      for (std::uint32_t point = 32; point < 40; ++point) {
-        Write write;
-        write.point = point;
-        write.registers[0] = value;
-        WriteTicket ticket;
-        const bool last = value == 100;
-        if (last) write.listener = &ticket;
-        device.write(write);
-        if (last) {
-          EXPECT_EQ(ticket.wait().outcome, Outcome::ok);
-        }
-      }
+    for (std::uint16_t value = 1; value < 100; ++value)
+      for (std::uint32_t point = 32; point < 40; ++point) write(device, point, value, nullptr);
+    for (std::uint32_t point = 32; point < 40; ++point) {
+      WriteTicket ticket;
+      write(device, point, 100, &ticket);
+      EXPECT_EQ(ticket.wait().outcome, Outcome::ok);
+    }
     EXPECT_GT(device.statistics().written(Outcome::ok), 0U);
   }
   for (int address = 0; address < 8; ++address) EXPECT_EQ(server.tables().tab_registers[address], 100);
