@@ -12,6 +12,13 @@ class RosTest(unittest.TestCase):
     """What a test starts, listens to or publishes ends with it: a publisher that stayed would count a driver that is
     gone as its subscriber."""
 
+    def run(self, result=None):
+        """On a parameter server as a new roscore has it: a launch file's parameters outlive its nodes."""
+        for name in rospy.get_param_names():
+            if name not in ("/rosdistro", "/rosversion", "/run_id") and not name.startswith("/roslaunch/"):
+                rospy.delete_param(name)
+        return super().run(result)
+
     def topic(self, name, kind):
         topic = Topic(name, kind)
         self.addCleanup(topic.close)
