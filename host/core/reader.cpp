@@ -53,12 +53,12 @@ Result<> Reader::step() {
 
 void Reader::publish(const ReadSpan& span) {
   const Time now = clock_.now();
-  qualities_.good(span.points, now);
   const ReadSpan& fresh = writer_.any_pending() ? without_pending(span) : span;
   if (holds_bits(span.table))
     sink_.on_bits(fresh, {bits_.data(), span.range.count()}, now);
   else
     sink_.on_registers(fresh, {registers_.data(), span.range.count()}, now);
+  qualities_.good(span.points, now);  // last: nobody waits for it
 }
 
 const ReadSpan& Reader::without_pending(const ReadSpan& span) {
