@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -43,10 +44,12 @@ bool Keeper::run() {
 }
 
 IoProcess::End Keeper::watch_over(IoProcess& process) {
-  // Silence is counted in glances, not by the clock: this process may have been stopped itself, and what the
-  // other said meanwhile still waits to be heard.
+  // A glance counts for no longer than it lasts: this process may have been stopped itself, and what the
+  // other said meanwhile still waits to be heard. Nor for longer than it took: a signal cuts it short.
+  using std::chrono::nanoseconds;
   TimePoint heard = process.last_beat();
-  for (auto silence = glance * 0; silence < patience; heard = process.last_beat()) {
+  for (nanoseconds silence{0}; silence < patience; heard = process.last_beat()) {
+    const TimePoint before = TimePoint::clock::now();
     const TimePoint now = loop_.run_once(glance);
     if (signals_.stop() != 0) {
       process.terminate();
@@ -57,7 +60,8 @@ IoProcess::End Keeper::watch_over(IoProcess& process) {
       process.make_room();
       return wait_for(process);
     }
-    silence = process.last_beat() == heard ? silence + glance : glance * 0;
+    const bool is_silent = process.last_beat() == heard;
+    silence = is_silent ? silence + std::min<nanoseconds>(glance, now - before) : nanoseconds(0);
   }
   IoProcess::End end = process.end();
   end.how = fmt::format("was silent for {} s and {}", patience.count(), end.how);

@@ -182,6 +182,22 @@ TEST_F(Kept, A_reload_that_is_refused_leaves_the_process_alone) {
   EXPECT_EQ(lines_.safe_calls, 1);
 }
 
+TEST_F(Kept, Signals_in_quick_succession_are_not_taken_for_silence) {
+  reload_is_good_ = false;
+  enough_ = 2;
+  keep([&](Superior& superior) {
+    superior.beat();
+    for (int i = 0; i < 40; ++i) {
+      ::kill(::getppid(), SIGHUP);
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return beat_for_ever(superior);
+  });
+  EXPECT_GT(reloads_, 10);
+  EXPECT_EQ(lines_.safe_calls, 1) << "at the end, not in between";
+  EXPECT_THAT(log_.lines, testing::IsEmpty());
+}
+
 TEST_F(Kept, Lines_that_come_and_go_are_a_reason_to_replace_the_process) {
   lines_changed_ = true;
   enough_ = 20;
