@@ -67,7 +67,8 @@ Channels::Outcome SysfsChannels::drive(const Point& output, double value) {
   // Not every driver tells the limits of its DAC before.
   const bool is_dac = std::holds_alternative<IioOutput>(outputs_[i].channel);
   if (is_dac && (error == EINVAL || error == ERANGE)) return Outcome::refused;
-  return faults_[inputs_.size() + i].note(error) ? Outcome::done : Outcome::failed;
+  if (faults_[inputs_.size() + i].note(error)) return Outcome::done;
+  return error == ENODEV ? Outcome::absent : Outcome::failed;
 }
 
 void SysfsChannels::give_way(const SysfsChannels* successor) {
@@ -83,22 +84,26 @@ void SysfsChannels::give_way(const SysfsChannels* successor) {
 
 std::vector<const Point*> SysfsChannels::mend() {
   std::vector<const Point*> mended;
-  const auto replace = [&](const Point& point, auto& channel, auto again) {
+  const auto replace = [&](const Point& point, auto& channel, auto again, Fault& fault) {
     if (!again) return;
     channel = *std::move(again);
+    // Unless somebody asks for it, nobody else says so, and it would be found again and again.
+    fault.note(0);
     mended.push_back(&point);
   };
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     WiredInput& input = inputs_[i].wired;
-    if (errors_[i] == ENODEV) replace(*input.point, input.channel, open_iio_input(sysfs_, input.point->iio));
+    if (errors_[i] == ENODEV)
+      replace(*input.point, input.channel, open_iio_input(sysfs_, input.point->iio), faults_[i]);
   }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Point& point = *outputs_[i].point;
+    Fault& fault = faults_[inputs_.size() + i];
     if (errors_[inputs_.size() + i] != ENODEV) continue;
     if (point.iio.present())
-      replace(point, outputs_[i].channel, open_iio_output(sysfs_, point.iio));
+      replace(point, outputs_[i].channel, open_iio_output(sysfs_, point.iio), fault);
     else
-      replace(point, outputs_[i].channel, PwmOutput::open(sysfs_, point.pwm));
+      replace(point, outputs_[i].channel, PwmOutput::open(sysfs_, point.pwm), fault);
   }
   return mended;
 }

@@ -95,9 +95,12 @@ bool AnaloguePoints::drive(const Point& output, bool safe) {
   std::uint16_t* registers = image_.find(output.table, range(output)).data();
   const bool to_safe_value = safe && output.safe != Safe::hold;
   const double value = to_safe_value ? safe_value_of(output) : value_in(output, registers);
-  if (!std::isfinite(value) || channels_.drive(output, value) != Outcome::done) return false;
-  if (to_safe_value) codec::encode_nearest(value, output.format, output.scale, registers);
-  return true;
+  if (!std::isfinite(value)) return false;
+  const Outcome outcome = channels_.drive(output, value);
+  // A device that is unplugged has to come back safe, whoever asks for it then.
+  if (to_safe_value && (outcome == Outcome::done || outcome == Outcome::absent))
+    codec::encode_nearest(value, output.format, output.scale, registers);
+  return outcome == Outcome::done;
 }
 
 bool AnaloguePoints::drive_all() {

@@ -16,7 +16,8 @@ class Channels {
   enum class Outcome {
     done,
     refused,  ///< the hardware works, but does not take this value
-    failed
+    failed,
+    absent  ///< the hardware is unplugged
   };
 
   virtual ~Channels() = default;

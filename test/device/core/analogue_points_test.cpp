@@ -175,6 +175,16 @@ TEST(AnaloguePoints, An_output_that_fails_keeps_no_other_from_its_safe_state) {
   EXPECT_EQ(reply(3, {505, 0, 0, 50, 30}), node.ask(pdu(3, {1, 5})));
 }
 
+TEST(AnaloguePoints, A_safe_state_that_an_unplugged_output_missed_is_what_it_comes_back_with) {
+  NodeUnderTest node(board().build());
+  node.ask(write(1, {505, 0x4148, 0, 50, 60}));
+  node.channels.unplugged = {1};
+  EXPECT_FALSE(node.analogue.drive_safe());
+  node.channels.unplugged.clear();
+  EXPECT_TRUE(node.analogue.drive_all());
+  EXPECT_DOUBLE_EQ(0, node.channels.outputs[1]);
+}
+
 TEST(AnaloguePoints, A_pwm_that_is_off_is_at_0_percent_whatever_its_scale) {
   fakes::MapBuilder map;
   map.add(Table::holding_registers, "fan", 0, Type::INT, [](Point& p) {

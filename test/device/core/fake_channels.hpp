@@ -21,6 +21,7 @@ class FakeChannels : public Channels {
   Outcome drive(const Point& output, double value) override {
     driven.emplace_back(output.address, value);
     if (broken.count(output.address) != 0) return Outcome::failed;
+    if (unplugged.count(output.address) != 0) return Outcome::absent;
     if (picky.count(output.address) != 0) return Outcome::refused;
     outputs[output.address] = value;
     return Outcome::done;
@@ -30,6 +31,7 @@ class FakeChannels : public Channels {
   std::map<std::uint16_t, double> outputs;               ///< as they are driven
   std::vector<std::pair<std::uint16_t, double>> driven;  ///< each call of drive()
   std::set<std::uint16_t> broken;
+  std::set<std::uint16_t> unplugged;
   std::set<std::uint16_t> picky;  ///< refuse every value when it is tried
   double least = 0;
   double most = 100;

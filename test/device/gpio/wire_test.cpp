@@ -302,5 +302,19 @@ TEST_F(Wires, After_the_watchdog_it_comes_back_safe) {
   EXPECT_THAT(news(), ElementsAre("take 0 0", "take 1 1"));
 }
 
+TEST_F(Wires, A_safe_state_that_an_unplugged_chip_missed_is_what_it_comes_back_with) {
+  EXPECT_EQ(change_to(two_lamps()), "");
+  EXPECT_TRUE(write(0, 1));
+  machine.gone = {"gpiochip0"};
+  const std::vector<Chip> chips = std::exchange(machine.chips, {});
+  EXPECT_TRUE(wiring_->mend(false));
+  EXPECT_FALSE(wiring_->lines().drive_safe());
+  machine.chips = chips;
+  machine.gone.clear();
+  news();
+  EXPECT_TRUE(wiring_->mend(false)) << "the watchdog may be idle, or fed again, by now";
+  EXPECT_THAT(news(), ElementsAre("take 0 0", "take 1 1"));
+}
+
 }  // namespace
 }  // namespace coupler::node
