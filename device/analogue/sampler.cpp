@@ -36,8 +36,10 @@ Sampler::~Sampler() {
 void Sampler::run(const Inputs& of_one_device) {
   bool is_first = true;
   for (TimePoint next = TimePoint::clock::now();;) {
-    for (SysfsChannels::Sampled* input : of_one_device)
+    for (SysfsChannels::Sampled* input : of_one_device) {
+      if (stopped_) return;  // the conversions of a slow device are not waited for
       input->latest.put(input->wired.channel.read(), TimePoint::clock::now());
+    }
     next = std::max(next + period_, TimePoint::clock::now());
     std::unique_lock lock(mutex_);
     if (is_first) {
@@ -45,7 +47,7 @@ void Sampler::run(const Inputs& of_one_device) {
       changed_.notify_all();
     }
     is_first = false;
-    if (changed_.wait_until(lock, next, [&] { return stopped_; })) return;
+    if (changed_.wait_until(lock, next, [&]() -> bool { return stopped_; })) return;
   }
 }
 

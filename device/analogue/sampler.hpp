@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -38,7 +39,7 @@ class Sampler {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::size_t sampled_ = 0;  ///< devices that were read once
-  bool stopped_ = false;
+  std::atomic<bool> stopped_ = false;
   std::vector<std::thread> threads_;
 };
 
