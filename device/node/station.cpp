@@ -47,7 +47,8 @@ tl::expected<void, Refusal> Station::start(const Map& map) {
   return {};
 }
 
-/// The network first: outputs are not touched by a program that then cannot serve them.
+/// The network and channels first: outputs are not touched by a program that then cannot serve them. To
+/// request a line drives it; to open a channel does not.
 tl::expected<std::unique_ptr<Duty>, Refusal> Station::prepare(const Map& map, MapPtr owner) {
   if (auto servable = check_servable(map); !servable)
     return tl::unexpected(Refusal{Refusal::map_is_wrong, std::move(servable).error()});
@@ -63,16 +64,17 @@ tl::expected<std::unique_ptr<Duty>, Refusal> Station::prepare(const Map& map, Ma
   if (!listener) return tl::unexpected(Refusal{Refusal::device_failed, std::move(listener).error()});
   duty->listener = *std::move(listener);
   duty->listener.guests = *std::move(guests);
+  duty->memory = std::make_unique<Memory>(map, TimePoint::clock::now());
+  if (!options_.simulated) {
+    auto channels = open_channels(map, log_);
+    if (!channels) return tl::unexpected(Refusal{Refusal::device_failed, std::move(channels).error()});
+    duty->channels = *std::move(channels);
+  }
+  if (duty->channels)
+    duty->analogue = std::make_unique<AnaloguePoints>(map, duty->memory->image(), *duty->channels);
   auto wiring = prepare_wiring(map, options_.simulated, duty_ ? duty_->wiring.get() : nullptr, log_);
   if (!wiring) return tl::unexpected(Refusal{Refusal::device_failed, std::move(wiring).error()});
   duty->prepared = *std::move(wiring);
-  duty->memory = std::make_unique<Memory>(map, TimePoint::clock::now());
-  if (options_.simulated) return duty;
-  auto channels = open_channels(map, log_);
-  if (!channels) return tl::unexpected(Refusal{Refusal::device_failed, std::move(channels).error()});
-  duty->channels = *std::move(channels);
-  if (duty->channels)
-    duty->analogue = std::make_unique<AnaloguePoints>(map, duty->memory->image(), *duty->channels);
   return duty;
 }
 

@@ -61,6 +61,11 @@ cat /tmp/absent.log
 expect "ends the start with 3" 3 "$status"
 check "and says what is missing" grep -q "point 'volts': there is no IIO device 'adc'" /tmp/absent.log
 expect "the PWM does not run" 0 "$(cat $pwm/enable)"
+plant_chip
+sed 's/^mapping:/&\n  coils:\n    lamp: {address: 0, line: {chip: plant, offset: 0}, initial: on}/' analogue.yaml >/tmp/lamp.yaml
+refuse "a map with a line ends the start too" "$bin/coupler-node" /tmp/lamp.yaml 2>/tmp/lamp.log
+check "for the same reason" grep -q "point 'volts'" /tmp/lamp.log
+check "and the line was not driven" grep -q '^input$' < <(gpioinfo | awk '/line +0:/ { print $5 }')
 
 plug_adc
 echo 77 >$dac
@@ -159,6 +164,9 @@ check "the output has its value again" wait_until 5 dac_is 250
 check "and takes another" wait_until 5 set_real 0 0.5
 expect "which it shows" 500 "$(cat $dac)"
 expect "the PWM was left alone" "10000 of 40000, 1" "$(shown)"
+before=$(io_process)
+sleep 3
+expect "nothing is found again that nobody asks for" "$before" "$(io_process)"
 unplug_adc
 stop node TERM || true
 cat "$(log node)"
