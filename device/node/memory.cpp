@@ -23,6 +23,11 @@ bool same_value(const Point& a, const Point& b) {
   return layout(a) == layout(b);
 }
 
+/// Others have the value that their map says.
+bool may_change(const Point& point) {
+  return is_writable(point) || point.counter.present() || point.latched.present();
+}
+
 /// A point that shares its register leaves the others' bits alone.
 void copy(const Point& point, Span<const std::uint16_t> from, Span<std::uint16_t> to) {
   const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
@@ -49,7 +54,7 @@ void Memory::carry_over(const Memory& before, TimePoint now) {
   for (const Point& point : before.map_.points) known.emplace(point.name, &point);
   for (const Point& point : map_.points) {
     const auto old = known.find(point.name);
-    if (old == known.end() || !same_value(*old->second, point)) continue;
+    if (!may_change(point) || old == known.end() || !same_value(*old->second, point)) continue;
     copy(point, before.image_.find(point.table, range(*old->second)), image_.find(point.table, range(point)));
   }
 }

@@ -70,6 +70,25 @@ TEST(NodeMemory, Values_of_points_that_mean_the_same_go_over_wherever_they_stand
   EXPECT_EQ(after.statistics().started, TimePoint(std::chrono::seconds(5)));
 }
 
+TEST(NodeMemory, What_nobody_can_change_is_as_the_new_map_says) {
+  constexpr auto inputs = Table::input_registers;
+  const auto with_version = [](std::uint16_t version) {
+    MapBuilder builder;
+    const auto initial = builder.keep({version});
+    return builder.add(inputs, "version", 0, Type::UINT, [=](Point& p) { p.initial = initial; })
+        .add(inputs, "presses", 1, Type::UINT, [](Point& p) { p.counter.input = "button"; })
+        .build();
+  };
+  const MapPtr old_map = with_version(3);
+  const MapPtr new_map = with_version(4);
+  Memory before(old_map->map(), {});
+  cell(before, inputs, 1) = 9;
+  Memory after(new_map->map(), {});
+  after.carry_over(before, {});
+  EXPECT_EQ(cell(after, inputs, 0), 4);
+  EXPECT_EQ(cell(after, inputs, 1), 9) << "a counter goes on";
+}
+
 TEST(NodeMemory, The_watchdog_waits_anew_and_what_expired_stays_expired) {
   const auto with_timeout = [](int ms) {
     return MapBuilder()
