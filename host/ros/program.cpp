@@ -99,6 +99,7 @@ std::string why_not(const Devices& devices) {
 /// All at once: each may take most of a second for its safe values.
 void end_all(std::vector<std::unique_ptr<DeviceTopics>>& devices) {
   std::vector<std::thread> ends;
+  ends.reserve(devices.size());
   for (auto& device : devices) ends.emplace_back([&device] { device.reset(); });
   for (std::thread& end : ends) end.join();
 }
