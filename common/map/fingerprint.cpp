@@ -4,6 +4,7 @@
 #include <sha256.h>  // libmd
 
 #include <array>
+#include <cstdio>
 
 #include <fmt/format.h>
 
@@ -34,9 +35,11 @@ std::string order(const Point& point) {
   return std::string(codec::to_string(point.format.order, one_register));
 }
 
-/// As C's printf writes "%a:%a".
+/// By C's printf: fmt 10 and later write hexadecimal floats in another way.
 std::string scale(const Point& point) {
-  return fmt::format("{:a}:{:a}", point.scale.gain, point.scale.offset);
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%a:%a", point.scale.gain, point.scale.offset);
+  return text.data();
 }
 
 }  // namespace
