@@ -65,7 +65,7 @@ plant_chip
 sed 's/^mapping:/&\n  coils:\n    lamp: {address: 0, line: {chip: plant, offset: 0}, initial: on}/' analogue.yaml >/tmp/lamp.yaml
 refuse "a map with a line ends the start too" "$bin/coupler-node" /tmp/lamp.yaml 2>/tmp/lamp.log
 check "for the same reason" grep -q "point 'volts'" /tmp/lamp.log
-check "and the line was not driven" grep -q '^input$' < <(gpioinfo | awk '/line +0:/ { print $5 }')
+check "and the line was not driven" grep -qw input < <(gpioinfo | awk '/line +0:/')
 
 plug_adc
 echo 77 >$dac
