@@ -9,15 +9,12 @@ namespace coupler::loader {
 namespace {
 
 /// The keys that a channel must have.
-bool has_all(const Reader& reader, std::initializer_list<std::string_view> keys, const Entry& entry,
-             std::string_view example, Context& context) {
-  for (const std::string_view key : keys) {
-    if (reader.has(key)) continue;
-    context.problems.error(entry.key_at, fmt::format("'{}' has no '{}'", entry.key, key),
-                           fmt::format("write it as in '{}: {}'", entry.key, example));
-    return false;
-  }
-  return true;
+bool has_all(const Reader& point, const Reader& reader, const Entry& entry, Context& context) {
+  const std::string_view key = reader.missing();
+  if (key.empty()) return true;
+  context.problems.error(entry.key_at, fmt::format("'{}' has no '{}'", entry.key, key),
+                         fmt::format("write it as in '{}: {}'", entry.key, point.example(entry.key)));
+  return false;
 }
 
 void check_name(const Reader& reader, std::string_view key, std::string_view name) {
@@ -30,7 +27,7 @@ void read_iio(const Reader& point, DraftPoint& draft, Context& context) {
   draft.line_at = entry->at;
   if (entry->kind != Entry::Kind::map) return point.wrong("iio", "a map of 'device' and 'channel'");
   const Reader reader(*entry, Section::iio, context);
-  if (!has_all(reader, {"device", "channel"}, *entry, "{device: adc0, channel: voltage0}", context)) return;
+  if (!has_all(point, reader, *entry, context)) return;
   Iio& iio = draft.point.iio;
   reader.text("device", iio.device);
   reader.text("channel", iio.channel);
@@ -44,8 +41,7 @@ void read_pwm(const Reader& point, DraftPoint& draft, Context& context) {
   draft.line_at = entry->at;
   if (entry->kind != Entry::Kind::map) return point.wrong("pwm", "a map of 'chip', 'channel' and 'period'");
   const Reader reader(*entry, Section::pwm, context);
-  const std::string_view example = "{chip: pwmchip0, channel: 0, period: 1ms}";
-  if (!has_all(reader, {"chip", "channel", "period"}, *entry, example, context)) return;
+  if (!has_all(point, reader, *entry, context)) return;
   Pwm& pwm = draft.point.pwm;
   reader.text("chip", pwm.chip);
   reader.integer("channel", pwm.channel);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/map/loader/format_reader.hpp"
 
-#include <array>
-
 #include <fmt/format.h>
 
 namespace coupler::loader {
@@ -18,31 +16,27 @@ bool is_text(Type type) { return type == Type::STRING; }
 bool is_byte(Type type) { return codec::width(type) == 8; }
 bool is_bit(Type type) { return type == Type::BOOL; }
 
-/// The keys that only some types have.
-struct TypeKey {
-  std::string_view name;
-  bool (*applies)(Type);
-  std::string_view missing;  ///< the remedy when it is absent; empty if it may be
-};
-constexpr std::array<TypeKey, 5> type_keys{{
-    {"offset", is_byte, "add 'offset: high' or 'offset: low'"},
-    {"length", is_text, "add 'length: BYTES'"},
-    {"bit", is_bit, "add 'bit: 0' … 'bit: 15'"},
-    {"encoding", is_text, ""},
-    {"ignore_byteorder", is_text, ""},
-}};
+/// What to do when a type needs the key.
+std::string missing(std::string_view key) {
+  if (key == "offset") return "add 'offset: high' or 'offset: low'";
+  if (key == "bit") return "add 'bit: 0' … 'bit: 15'";
+  return fmt::format("add '{}: BYTES'", key);
+}
 
+/// The keys that only some types have.
 void check_type_keys(const Reader& reader, const Entry& point, Type type, Context& context) {
-  for (const TypeKey& key : type_keys) {
+  for (const Key& key : all_keys()) {
+    if (key.types.empty()) continue;
     const bool given = reader.has(key.name);
-    if (given && !key.applies(type))
+    const bool applies = applies_to(key, to_string(type));
+    if (given && !applies)
       reader.ignored(key.name, fmt::format("'{}' does not apply to {}", key.name, to_string(type)),
                      "remove it");
-    if (!given && key.applies(type) && !key.missing.empty())
+    if (!given && applies && key.required)
       context.problems.error(
           point.key_at,
           fmt::format("{} is a {} and has no '{}'", shown(point.key), to_string(type), key.name),
-          std::string(key.missing));
+          missing(key.name));
   }
 }
 

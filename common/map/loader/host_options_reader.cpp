@@ -37,7 +37,7 @@ Deadman read_deadman(const Entry& entry, const Point& point, Context& context) {
   Deadman deadman;
   const Reader reader(entry, Section::deadman, context);
   const Entry* value = reader.find("value");
-  if (!reader.has("timeout") || value == nullptr) {
+  if (!reader.missing().empty()) {
     context.problems.error(entry.key_at, "'deadman' has a 'timeout' and a 'value'",
                            "write it as in 'deadman: {timeout: 1s, value: 0}'");
     return deadman;

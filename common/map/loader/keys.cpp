@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/map/loader/keys.hpp"
 
+#include <algorithm>
+
 namespace coupler::loader {
 
 std::string_view describe(Section section) {
@@ -49,14 +51,19 @@ std::vector<std::string_view> key_names(Section section) {
   return names;
 }
 
-std::vector<std::string_view> words(std::string_view choices) {
+std::vector<std::string_view> words(std::string_view joined) {
   std::vector<std::string_view> result;
-  while (!choices.empty()) {
-    const std::size_t bar = choices.find('|');
-    result.push_back(choices.substr(0, bar));
-    choices = bar == std::string_view::npos ? std::string_view{} : choices.substr(bar + 1);
+  while (!joined.empty()) {
+    const std::size_t bar = joined.find('|');
+    result.push_back(joined.substr(0, bar));
+    joined = bar == std::string_view::npos ? std::string_view{} : joined.substr(bar + 1);
   }
   return result;
+}
+
+bool applies_to(const Key& key, std::string_view type) {
+  const auto types = words(key.types);
+  return types.empty() || std::find(types.begin(), types.end(), type) != types.end();
 }
 
 }  // namespace coupler::loader

@@ -55,22 +55,25 @@ enum class ValueKind : std::uint8_t {
   boolean,
   text,
   choice,
+  preset,    ///< the name of one
   duration,  ///< with a unit
   seconds,   ///< a duration; a bare number means seconds
   address,   ///< as Addressing says
   value,     ///< of the point's type
   list,      ///< of texts
-  section,   ///< a map with keys of its own, or a list of such maps
-  other,     ///< not read yet
+  section,   ///< only what Key::inside says
+  points,    ///< name -> point: a map as Key::inside says; for bits just an address will do
 };
 
 enum class Owner : std::uint8_t { origin, project };
 enum class Status : std::uint8_t { supported, later };
 
+/// A value is of `kind`. If `inside` is not none, it may also be a map with that section's keys, or with
+/// `several` a list of such maps.
 struct Key {
   std::string_view name;
   Section sections = Section::none;
-  ValueKind kind = ValueKind::other;
+  ValueKind kind = ValueKind::text;
   std::string_view example;  ///< a good value, as it stands behind "key: "
   std::string_view summary;
   Owner owner = Owner::project;
@@ -79,6 +82,11 @@ struct Key {
   double most = std::numeric_limits<double>::max();
   std::string_view choices = {};  ///< separated by "|"
   std::string_view same_as = {};  ///< another spelling of that key
+  Section inside = Section::none;
+  bool several = false;
+  bool required = false;           ///< where it applies
+  std::string_view types = {};     ///< if not empty, only for points of these types, separated by "|"
+  std::string_view fallback = {};  ///< what holds when it is absent, as it would be written; empty: nothing
 };
 
 Span<const Key> all_keys();
@@ -92,7 +100,10 @@ Section sections_with(std::string_view name);
 /// The names of a section's supported keys.
 std::vector<std::string_view> key_names(Section section);
 
-/// The words of Key::choices.
-std::vector<std::string_view> words(std::string_view choices);
+/// The words of Key::choices or Key::types.
+std::vector<std::string_view> words(std::string_view joined);
+
+/// Does the key go with points of that type?
+bool applies_to(const Key& key, std::string_view type);
 
 }  // namespace coupler::loader

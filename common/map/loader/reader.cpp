@@ -86,6 +86,12 @@ const Entry* Reader::find(std::string_view key) const {
   return found == nullptr ? nullptr : found->value;
 }
 
+std::string_view Reader::missing() const {
+  for (const Key& key : all_keys())
+    if (key.required && overlap(key.sections, section_) && field(key.name) == nullptr) return key.name;
+  return {};
+}
+
 void Reader::wrong(std::string_view key, std::string_view expected) const {
   const Field& f = *field(key);
   context_.problems.error(f.value->at,

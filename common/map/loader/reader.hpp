@@ -26,6 +26,9 @@ class Reader {
   /// The value of a supported key, or nullptr.
   const Entry* find(std::string_view key) const;
   bool has(std::string_view key) const { return find(key) != nullptr; }
+  /// The first required key that is absent; empty if there is none. For sections without a type.
+  std::string_view missing() const;
+  std::string_view example(std::string_view key) const { return find_key(key, section_)->example; }
 
   template <class T>
   void integer(std::string_view key, T& out) const {

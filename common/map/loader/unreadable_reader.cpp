@@ -20,7 +20,7 @@ std::optional<std::uint16_t> read_end(const Reader& area, std::string_view key, 
 
 std::optional<Unreadable> read_area(const Entry& entry, Addressing addressing, Context& context) {
   const Reader area(entry, Section::area, context);
-  if (entry.kind != Entry::Kind::map || !area.has("table") || !area.has("from") || !area.has("to")) {
+  if (entry.kind != Entry::Kind::map || !area.missing().empty()) {
     context.problems.error(entry.at, "an area of 'unreadable' has 'table', 'from' and 'to'",
                            "write it as in 'unreadable: [{table: coils, from: 8, to: 15}]'");
     return std::nullopt;

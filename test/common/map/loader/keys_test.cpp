@@ -33,6 +33,35 @@ TEST(Keys, The_example_of_a_choice_is_one_of_its_words) {
   }
 }
 
+TEST(Keys, What_holds_otherwise_is_a_value_that_one_may_write) {
+  for (const Key& key : all_keys()) {
+    if (key.fallback.empty()) continue;
+    EXPECT_FALSE(key.required) << key.name;
+    const auto choices = words(key.choices);
+    EXPECT_TRUE(choices.empty() || std::find(choices.begin(), choices.end(), key.fallback) != choices.end())
+        << key.name;
+  }
+}
+
+TEST(Keys, What_has_keys_inside_says_which) {
+  for (const Key& key : all_keys()) {
+    const bool container = key.kind == ValueKind::section || key.kind == ValueKind::points;
+    EXPECT_TRUE(key.status == Status::later || !container || key.inside != Section::none) << key.name;
+    EXPECT_TRUE(!key.several || key.inside != Section::none) << key.name;
+  }
+}
+
+TEST(Keys, A_key_for_some_types_names_types_that_there_are) {
+  const Key* type = find_key("type", Section::input_register);
+  const auto types = words(type->choices);
+  for (const Key& key : all_keys())
+    for (const std::string_view word : words(key.types))
+      EXPECT_NE(std::find(types.begin(), types.end(), word), types.end()) << key.name;
+  EXPECT_TRUE(applies_to(*find_key("length", Section::input_register), "STRING"));
+  EXPECT_FALSE(applies_to(*find_key("length", Section::input_register), "INT"));
+  EXPECT_TRUE(applies_to(*find_key("order", Section::input_register), "INT"));
+}
+
 TEST(Keys, Another_spelling_belongs_to_the_same_section) {
   for (const Key& key : all_keys())
     EXPECT_TRUE(key.same_as.empty() || find_key(key.same_as, key.sections) != nullptr) << key.name;
