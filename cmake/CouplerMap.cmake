@@ -4,6 +4,7 @@
 #   NAME_map     library: the map as constant data, coupler::maps::NAME::map in "NAME_map.hpp"
 #   NAME_node    program: the node that serves it (links no YAML parser)
 #   NAME_driver  program: the ROS driver for it, where the ROS driver itself is built
+# The map's lock, map.yaml.lock, must be up to date if the map leaves addresses out (`coupler check map.yaml`).
 # Both programs link the same NAME_map, so they cannot disagree. Works in this tree and in a project that adds this
 # tree by add_subdirectory(). A cross build cannot run the `coupler` that it makes; it is given one that runs here.
 set(COUPLER_HOST_COUPLER "" CACHE FILEPATH "The program coupler of this machine, for cross builds")
@@ -22,12 +23,16 @@ function(coupler_add_map name map)
   endif()
   set(files ${out}/${name}_driver.cpp ${out}/${name}_map.cpp ${out}/${name}_map.hpp ${out}/${name}_node.cpp)
 
+  # A build does not write into the sources: a lock that is missing or not up to date stops it. Whether there is one is
+  # in a file, for a lock that is gone makes nothing newer.
+  file(GLOB lock CONFIGURE_DEPENDS ${map}.lock)
+  file(GENERATE OUTPUT ${out}/${name}.lock_found CONTENT "${lock}\n")
   # The stamp is what gets newer; the files keep their time unless their content changes, so that a map that was only
   # touched compiles nothing. The program carries the templates: a change to them comes through it.
   add_custom_command(OUTPUT ${stamp} BYPRODUCTS ${files}
-    COMMAND ${generator} generate ${map} --out ${out} --name ${name} --quiet
+    COMMAND ${generator} generate ${map} --out ${out} --name ${name} --quiet --locked
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
-    DEPENDS ${map} ${generator}
+    DEPENDS ${map} ${lock} ${out}/${name}.lock_found ${generator}
     COMMENT "Generating ${name} from its map" VERBATIM)
   add_custom_target(${name}_generate DEPENDS ${stamp})
   set_source_files_properties(${files} PROPERTIES GENERATED TRUE)

@@ -9,8 +9,8 @@
 #include <CLI/Formatter.hpp>
 
 #include "common/cli/commands.hpp"
+#include "common/cli/locked_map.hpp"
 #include "common/cli/report.hpp"
-#include "common/map/loader/load.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -18,17 +18,19 @@ namespace {
 struct Arguments {
   std::vector<std::string> maps;
   bool json = false;
+  bool locked = false;
 };
 
 Exit check(const Arguments& arguments) {
   Exit exit = ok;
   for (const std::string& file : arguments.maps) {
-    const LoadResult loaded = load_map_file(file);
+    const LoadResult loaded = load_and_lock(file, arguments.locked);
     if (!loaded.map) exit = bad_input;
     if (arguments.json) {
       std::puts(json_report(file, loaded).c_str());
     } else {
       print(loaded.diagnostics);
+      std::fputs(lock_report(loaded.lock).c_str(), stdout);
       if (loaded.map) std::puts(summary(file, loaded.map->map()).c_str());
     }
   }
@@ -46,8 +48,11 @@ void add_check(CLI::App& program, Exit& exit) {
       ->type_name("");
   command->add_flag("--json", arguments->json,
                     "One JSON object per map on standard output, for editors and scripts");
+  command->add_flag("--locked", arguments->locked,
+                    "Write nothing; a lock that is missing or not up to date is an error. For CI");
   command->footer(
-      "Example:\n  coupler check device.yaml\nExits with 0 if every map is good, with 1 if one is not.");
+      "Example:\n  coupler check device.yaml\nPoints without an address get one, which is kept in "
+      "device.yaml.lock beside the map.\nExits with 0 if every map is good, with 1 if one is not.");
   command->callback([arguments, &exit] { exit = check(*arguments); });
 }
 

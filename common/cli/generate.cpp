@@ -12,10 +12,10 @@
 #include <CLI/Formatter.hpp>
 
 #include "common/cli/commands.hpp"
+#include "common/cli/locked_map.hpp"
 #include "common/cli/report.hpp"
 #include "common/generate/identifier.hpp"
 #include "common/generate/output.hpp"
-#include "common/map/loader/load.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -27,6 +27,7 @@ struct Arguments {
   std::string out;
   std::string name;
   bool quiet = false;
+  bool locked = false;
 };
 
 Exit complain(Exit exit, std::string_view what, std::string_view remedy) {
@@ -52,8 +53,9 @@ Exit write(const Arguments& arguments, const Map& map, const generate::Stamp& st
 }
 
 Exit run(const Arguments& arguments) {
-  const LoadResult loaded = load_map_file(arguments.map);
+  const LoadResult loaded = load_and_lock(arguments.map, arguments.locked);
   print(loaded.diagnostics);
+  std::fputs(lock_report(loaded.lock).c_str(), stdout);
   if (!loaded.map) return bad_input;
   const Map& map = loaded.map->map();
   const std::string source =
@@ -83,6 +85,8 @@ void add_generate(CLI::App& program, Exit& exit) {
       ->add_option("--name", arguments->name,
                    "What the files and the C++ namespace are called; default: the map's name")
       ->type_name("NAME");
+  command->add_flag("--locked", arguments->locked,
+                    "Do not write the map's lock; one that is missing or not up to date is an error");
   command->add_flag("--quiet", arguments->quiet, "Say nothing of files when all is well");
   command->footer(
       "Example:\n  coupler generate device.yaml --out generated\n"

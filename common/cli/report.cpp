@@ -56,15 +56,22 @@ std::string summary(const std::string& file, const Map& map) {
 }
 
 std::string json_report(const std::string& file, const LoadResult& loaded) {
-  ordered_json report{{"file", file},           {"ok", loaded.map != nullptr},
-                      {"name", nullptr},        {"points", nullptr},
-                      {"fingerprint", nullptr}, {"diagnostics", ordered_json::array()}};
+  ordered_json report{{"file", file},
+                      {"ok", loaded.map != nullptr},
+                      {"name", nullptr},
+                      {"points", nullptr},
+                      {"fingerprint", nullptr},
+                      {"lock", nullptr},
+                      {"diagnostics", ordered_json::array()}};
   if (loaded.map) {
     const Map& map = loaded.map->map();
     report["name"] = map.name;
     report["points"] = map.points.size();
     report["fingerprint"] = fingerprint_text(map.fingerprint);
   }
+  const NewLock& lock = loaded.lock;
+  if (!lock.text.empty())
+    report["lock"] = {{"file", lock.path}, {"allocated", lock.allocated}, {"retired", lock.retired}};
   for (const Diagnostic& diagnostic : loaded.diagnostics)
     report["diagnostics"].push_back(to_json(diagnostic));
   // A diagnostic may quote bytes that are not UTF-8.

@@ -52,7 +52,7 @@ void check_image(const Map& map) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace coupler;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const LoadResult loaded = load_map(text, "map");
+  const LoadResult loaded = load_map_with_lock(text, "map", {"map.lock", std::nullopt, LockUse::renew});
   fuzz::check_diagnostics(loaded.diagnostics, text);
   fuzz::require((loaded.map == nullptr) == has_errors(loaded.diagnostics),
                 "there is a map unless there are errors");

@@ -7,6 +7,7 @@
 #include "hard_map.hpp"
 #include "manners_map.hpp"
 #include "test/generate/same_map.hpp"
+#include "unaddressed_map.hpp"
 
 namespace coupler {
 namespace {
@@ -38,6 +39,15 @@ TEST(Generated, What_the_host_does_with_points_survives) {
   const MapPtr loaded = load(MANNERS_MAP);
   ASSERT_TRUE(loaded);
   testing::expect_same(maps::manners::map, loaded->map());
+}
+
+TEST(Generated, Addresses_come_from_the_lock) {
+  const MapPtr loaded = load(COUPLER_SOURCE_DIR "/config/unaddressed.yaml");
+  ASSERT_TRUE(loaded);
+  testing::expect_same(maps::unaddressed::map, loaded->map());
+  const LoadResult served = load_map(maps::unaddressed::map.text, "served");
+  ASSERT_TRUE(served.map);
+  EXPECT_EQ(served.map->map().fingerprint, maps::unaddressed::fingerprint);
 }
 
 TEST(Generated, The_text_is_the_file_byte_by_byte) {

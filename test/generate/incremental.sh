@@ -65,6 +65,20 @@ touch "$program"
 after "another generator runs, and what it makes alike compiles nothing" cell.stamp
 after "and is up to date again"
 
+sed -i 's/lamp: 0/lamp: /' cell.yaml
+! build || fail "an address without a lock did not stop the build"
+grep -q 'there is no .*cell\.yaml\.lock; run `coupler check' log || fail "the build does not say that a lock is missing"
+[[ ! -e cell.yaml.lock ]] || fail "the build wrote a lock"
+"$program" check cell.yaml > log
+after "a lock that comes up is found" cell.stamp cell_map.cpp cell_map.cpp.o
+after "and is then up to date"
+sed -i 's/^coils 0 lamp/coils 5 lamp/' cell.yaml.lock
+after "another lock is another map" cell.stamp cell_map.cpp cell_map.hpp cell_map.cpp.o cell_node.cpp.o
+rm cell.yaml.lock
+! build || fail "a lock that is gone did not stop the build"
+sed -i 's/lamp: /lamp: 0/' cell.yaml
+build || fail "the map with its address again"
+
 sed -i 's/lamp: 0/lamp: 70000/' cell.yaml
 ! build || fail "a bad map did not stop the build"
 grep -Eq 'cell\.yaml:4:[0-9]+: error: ' log || fail "the build does not say what is wrong with the map"

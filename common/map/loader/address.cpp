@@ -60,6 +60,11 @@ tl::expected<std::uint16_t, AddressError> parse_address(std::string_view text, T
   return addressing == Addressing::zero_based ? parse_zero_based(text) : parse_modicon(text, table);
 }
 
+std::string address_text(std::uint16_t address, Table table, Addressing addressing) {
+  if (addressing == Addressing::zero_based) return fmt::to_string(address);
+  return fmt::format("{}{:05}", prefix_of(table), address + 1);
+}
+
 bool looks_like_modicon(std::uint16_t address, Table table) {
   const int prefix = prefix_of(table) - '0';
   return prefix != 0 && address / 10000 == prefix && address % 10000 != 0;

@@ -34,6 +34,9 @@ struct AddressError {
 tl::expected<std::uint16_t, AddressError> parse_address(std::string_view text, Table table,
                                                         Addressing addressing);
 
+/// As parse_address() reads it.
+std::string address_text(std::uint16_t address, Table table, Addressing addressing);
+
 /// The zero-based number looks like one of Modicon's for this table: 10001 … 19999 for discrete inputs.
 /// Coils' numbers look like any other.
 bool looks_like_modicon(std::uint16_t address, Table table);

@@ -6,6 +6,7 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -17,6 +18,12 @@
 
 namespace coupler::loader {
 namespace {
+
+/// Nothing, written out. yaml-cpp's mark of nothing that is not written is somewhere else.
+bool is_null_word(std::string_view text) {
+  const std::string_view word = text.substr(0, text.find_first_of(" \t\r\n,]}"));
+  return word == "~" || word == "null" || word == "Null" || word == "NULL";
+}
 
 constexpr std::size_t deepest = 16;  // a map needs five
 
@@ -50,7 +57,7 @@ class TreeBuilder : public YAML::EventHandler {
     if (!stack_.empty() && stack_.back().has_key) check_colon(stack_.back());
     Entry entry;
     entry.at = position(mark);
-    add(std::move(entry), true);
+    add(std::move(entry), !is_null_word(text_.substr(std::min(offset(mark), text_.size()))));
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,

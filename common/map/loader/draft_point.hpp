@@ -13,9 +13,12 @@ struct DraftPoint {
   Point point;
   Position name_at;
   Position address_at;
-  Position line_at;     ///< `line`, `iio` or `pwm`
-  Position edge_at;     ///< the input that `counter` or `latched` names
-  bool placed = false;  ///< address and format are known, and the range ends by 65535
+  Position line_at;              ///< `line`, `iio` or `pwm`
+  Position edge_at;              ///< the input that `counter` or `latched` names
+  bool placed = false;           ///< address and format are known, and the range ends by 65535
+  bool addressless = false;      ///< the file gives no address, and is right so far
+  bool part_given = false;       ///< the file says which half or bit of its register it is
+  const Entry* entry = nullptr;  ///< in the file
 };
 
 using DraftPoints = std::vector<DraftPoint>;

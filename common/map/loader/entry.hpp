@@ -19,7 +19,8 @@ struct Entry {
   std::string key;  ///< if it stands in a map
   Position key_at;
   Kind kind = Kind::null;
-  Position at;  ///< the value; the key's for what has no place of its own (nothing, or a block below the key)
+  Position at;  ///< the value; the key's for what has no place of its own (nothing that is not written as '~'
+                ///< or 'null', or a block below the key)
   std::string text;     ///< scalar
   bool quoted = false;  ///< a scalar that can only be text
   std::vector<Entry> children;

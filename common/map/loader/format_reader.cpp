@@ -32,7 +32,8 @@ void check_type_keys(const Reader& reader, const Entry& point, Type type, Contex
     if (given && !applies)
       reader.ignored(key.name, fmt::format("'{}' does not apply to {}", key.name, to_string(type)),
                      "remove it");
-    if (!given && applies && key.required)
+    const bool required = key.required || (!key.required_with.empty() && reader.has(key.required_with));
+    if (!given && applies && required)
       context.problems.error(
           point.key_at,
           fmt::format("{} is a {} and has no '{}'", shown(point.key), to_string(type), key.name),

@@ -40,6 +40,11 @@ struct Row : Key {
     row.required = true;
     return row;
   }
+  constexpr Row needed_with(std::string_view other) const {
+    Row row = *this;
+    row.required_with = other;
+    return row;
+  }
   constexpr Row only_for(std::string_view point_types) const {
     Row row = *this;
     row.types = point_types;
@@ -70,12 +75,6 @@ constexpr Row origin(std::string_view name, Section sections, ValueKind kind, st
 constexpr Row project(std::string_view name, Section sections, ValueKind kind, std::string_view example,
                       std::string_view summary) {
   return row(Owner::project, name, sections, kind, example, summary);
-}
-constexpr Row later(std::string_view name, Section sections, std::string_view example,
-                    std::string_view summary) {
-  Row made = project(name, sections, ValueKind::section, example, summary);
-  made.status = Status::later;
-  return made;
 }
 
 }  // namespace coupler::loader

@@ -63,7 +63,8 @@ constexpr Key keys[] = {
         .holds(S::limits),
     project("sim", S::map, K::section, "[{from: valve, to: valve_is_open}]", "wires of the simulated chip")
         .lists(S::wire),
-    later("reserve", S::map, "[{table: coils, from: 8, to: 15}]", "addresses kept free"),
+    project("reserve", S::map, K::section, "[{table: coils, from: 8, to: 15}]", "addresses kept free")
+        .lists(S::area),
     project("listen", S::map, K::text, "127.0.0.1", "interface of the node"),
     project("allow", S::map, K::list, "[192.168.0.0/24, 10.0.0.7]", "who may connect to the node"),
     project("watchdog", S::map, K::section, "{timeout: 500ms}", "safe state when the master is silent")
@@ -81,14 +82,14 @@ constexpr Key keys[] = {
            "registers that can be written")
         .holds(S::holding_register),
     // Points.
-    origin("address", point, K::address, "0", "where the point is in its table").needed(),
+    origin("address", point, K::address, "0", "where the point is in its table"),
     origin("type", registers, K::choice, "INT", "data type of IEC 61131-3")
         .needed()
         .one_of(
             "BOOL|BYTE|WORD|DWORD|LWORD|SINT|INT|DINT|LINT|USINT|UINT|UDINT|ULINT|REAL|LREAL|CHAR|STRING"),
     origin("offset", registers, K::choice, "high", "which byte of the register an 8-bit value is")
         .only_for(byte_types)
-        .needed()
+        .needed_with("address")
         .one_of("high|low"),
     origin("length", registers, K::integer, "12", "bytes of a STRING")
         .only_for("STRING")
@@ -107,7 +108,7 @@ constexpr Key keys[] = {
         .one_of("ABCD|CDAB|BADC|DCBA|AB|BA"),
     project("bit", registers, K::integer, "3", "which bit of the register a BOOL is")
         .only_for("BOOL")
-        .needed()
+        .needed_with("address")
         .within(0, 15),
     project("description", point, K::text, "the left door", "for people"),
     project("units", point, K::text, "mm", "for people"),

@@ -24,7 +24,7 @@ std::string_view describe(Section section) {
     case Section::pwm: return "'pwm'";
     case Section::deadman: return "'deadman'";
     case Section::defaults: return "'defaults'";
-    case Section::area: return "an area of 'unreadable'";
+    case Section::area: return "an area";
     case Section::none: break;
   }
   return "nothing";
@@ -46,8 +46,7 @@ Section sections_with(std::string_view name) {
 std::vector<std::string_view> key_names(Section section) {
   std::vector<std::string_view> names;
   for (const Key& key : all_keys())
-    if (overlap(key.sections, section) && key.status == Status::supported && key.same_as.empty())
-      names.push_back(key.name);
+    if (overlap(key.sections, section) && key.same_as.empty()) names.push_back(key.name);
   return names;
 }
 

@@ -33,7 +33,7 @@ enum class Section : std::uint32_t {
   pwm = 1U << 14U,
   deadman = 1U << 15U,
   defaults = 1U << 16U,
-  area = 1U << 17U,  ///< one element of `unreadable:`
+  area = 1U << 17U,  ///< one element of `unreadable:` or `reserve:`
   last = area
 };
 constexpr Section operator|(Section a, Section b) {
@@ -66,7 +66,6 @@ enum class ValueKind : std::uint8_t {
 };
 
 enum class Owner : std::uint8_t { origin, project };
-enum class Status : std::uint8_t { supported, later };
 
 /// A value is of `kind`. If `inside` is not none, it may also be a map with that section's keys, or with
 /// `several` a list of such maps.
@@ -74,18 +73,18 @@ struct Key {
   std::string_view name;
   Section sections = Section::none;
   ValueKind kind = ValueKind::text;
+  Owner owner = Owner::project;
   std::string_view example;  ///< a good value, as it stands behind "key: "
   std::string_view summary;
-  Owner owner = Owner::project;
-  Status status = Status::supported;
   double least = std::numeric_limits<double>::lowest();  ///< numbers; durations in seconds
   double most = std::numeric_limits<double>::max();
   std::string_view choices = {};  ///< separated by "|"
   std::string_view same_as = {};  ///< another spelling of that key
   Section inside = Section::none;
   bool several = false;
-  bool required = false;           ///< where it applies
-  std::string_view types = {};     ///< if not empty, only for points of these types, separated by "|"
+  bool required = false;                ///< where it applies
+  std::string_view required_with = {};  ///< not required by itself, but beside that key
+  std::string_view types = {};          ///< if not empty, only for points of these types, separated by "|"
   std::string_view fallback = {};  ///< what holds when it is absent, as it would be written; empty: nothing
 };
 
@@ -97,7 +96,7 @@ const Key* find_key(std::string_view name, Section section);
 /// The sections that have a key of that name.
 Section sections_with(std::string_view name);
 
-/// The names of a section's supported keys.
+/// The names of a section's keys.
 std::vector<std::string_view> key_names(Section section);
 
 /// The words of Key::choices or Key::types.

@@ -8,43 +8,75 @@
 #include <iterator>
 #include <optional>
 
+#include <tl/expected.hpp>
+
 #include "common/map/loader/document.hpp"
 #include "common/map/loader/map_reader.hpp"
+#include "common/map/lock/lock.hpp"
 
 namespace coupler {
 namespace {
 
 std::string read_all(std::istream& in) { return {std::istreambuf_iterator<char>(in), {}}; }
 
-LoadResult unreadable(const std::string& path, int error) {
+/// The text, or the system's error number.
+tl::expected<std::string, int> read_file(const std::string& path) {
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return tl::make_unexpected(errno);
+  try {
+    return read_all(in);
+  } catch (const std::exception&) {  // a folder: libstdc++'s buffer throws on a failed read
+    return tl::make_unexpected(EISDIR);
+  }
+}
+
+LoadResult unreadable(const std::string& path, int error, std::string remedy) {
   return {nullptr,
           {{Diagnostic::Severity::error, path, 0, 0,
-            std::string("the file cannot be read: ") + std::strerror(error), "give the path of a map"}}};
+            std::string("the file cannot be read: ") + std::strerror(error), std::move(remedy)}}};
 }
 
 }  // namespace
 
 LoadResult load_map(std::string_view text, std::string_view file) {
+  return load_map_with_lock(text, file, LockFile{});
+}
+
+LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock) {
+  lock::Parsed known;
+  if (lock.text) known = lock::parse(*lock.text, lock.path);
+  // The map's own problems are told too; what its points would get beside a broken lock does not matter.
+  if (!known.diagnostics.empty()) lock.use = LockUse::renew;
+  loader::Placement placement{std::string(file), std::move(lock), std::move(known.lock), {}, {}};
+  placement.problems = std::move(known.diagnostics);
+
   loader::Problems problems(file);
   const auto map = std::make_shared<OwnedMap>();
   loader::Context context{problems, *map};
-  if (const auto root = loader::parse_document(text, problems)) loader::read_map(*root, text, context);
-  const bool failed = problems.has_errors();
-  return {failed ? nullptr : map, std::move(problems).sorted()};
+  if (const auto root = loader::parse_document(text, problems))
+    loader::read_map(*root, text, placement, context);
+  LoadResult result{nullptr, std::move(placement.problems)};
+  if (!problems.has_errors() && !has_errors(result.diagnostics)) {
+    result.map = map;
+    result.lock = std::move(placement.renewed);
+  }
+  for (Diagnostic& diagnostic : std::move(problems).sorted())
+    result.diagnostics.push_back(std::move(diagnostic));
+  return result;
 }
 
-LoadResult load_map_file(const std::string& path) {
+LoadResult load_map_file(const std::string& path, LockUse use) {
   if (path == "-") return load_map(read_all(std::cin), "<stdin>");
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return unreadable(path, errno);
-  std::string text;
-  try {
-    text = read_all(in);
-  } catch (const std::exception&) {  // a folder: libstdc++'s buffer throws on a failed read
-    return unreadable(path, EISDIR);
-  }
-  return load_map(text, path);
+  const auto text = read_file(path);
+  if (!text) return unreadable(path, text.error(), "give the path of a map");
+  LockFile lock{path + ".lock", std::nullopt, use};
+  auto lock_text = read_file(lock.path);
+  if (!lock_text && lock_text.error() != ENOENT)
+    return unreadable(lock.path, lock_text.error(),
+                      "it is the lock of the map: make it a file that can be read");
+  if (lock_text) lock.text = std::move(*lock_text);
+  return load_map_with_lock(*text, path, std::move(lock));
 }
 
 }  // namespace coupler

@@ -5,20 +5,26 @@
 #include <string_view>
 
 #include "common/map/diagnostic.hpp"
+#include "common/map/loader/lock_file.hpp"
 #include "common/map/owned_map.hpp"
 
 namespace coupler {
 
 struct LoadResult {
   MapPtr map;               ///< null if there are errors
-  Diagnostics diagnostics;  ///< in the order of the file
+  Diagnostics diagnostics;  ///< those of the lock, then in the order of the file
+  NewLock lock{};           ///< what has to be written if there are no errors
 };
 
 /// Reads a map from YAML or JSON text; `file` names it in the diagnostics. Every problem is reported, not the
 /// first one (after a syntax error only that one). Never throws.
 LoadResult load_map(std::string_view text, std::string_view file);
 
-/// The same from a file; "-" is standard input. A file that cannot be read is a diagnostic.
-LoadResult load_map_file(const std::string& path);
+/// The same; the lock has the addresses that the map leaves out.
+LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock);
+
+/// The same from a file, and from the lock beside it; "-" is standard input, which has none. A file that
+/// cannot be read is a diagnostic. Nothing is written.
+LoadResult load_map_file(const std::string& path, LockUse use = LockUse::read);
 
 }  // namespace coupler

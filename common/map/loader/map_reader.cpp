@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "common/map/loader/addressed_text.hpp"
 #include "common/map/loader/edge_reader.hpp"
 #include "common/map/loader/names.hpp"
 #include "common/map/loader/overlap.hpp"
@@ -15,7 +16,6 @@
 #include "common/map/loader/service_reader.hpp"
 #include "common/map/loader/settings_reader.hpp"
 #include "common/map/loader/sim_reader.hpp"
-#include "common/map/loader/unreadable_reader.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -44,33 +44,55 @@ PointDefaults read_point_defaults(const Reader& top, Context& context) {
   return defaults;
 }
 
-void read_table(const Entry& entry, Table table, const PointDefaults& defaults, DraftPoints& points,
-                Context& context) {
+/// The points of the file and the readers of their options, side by side.
+struct OpenPoints {
+  DraftPoints drafts;
+  std::vector<Reader> options;
+};
+
+struct TableEntry {
+  const Entry* entry;
+  Table table;
+};
+
+void find_points(const Entry& entry, Table table, std::vector<TableEntry>& found, Context& context) {
   const std::string expected = fmt::format("'{}' holds points", to_string(table));
   if (!check_map(entry, expected, "write one 'name: …' a point below it", context)) return;
-  for (const Entry& point : entry.children) points.push_back(read_point(point, table, defaults, context));
+  for (const Entry& point : entry.children) found.push_back({&point, table});
 }
 
 /// In the order of the file.
-DraftPoints read_points(const Reader& top, const Entry& root, const PointDefaults& defaults,
-                        Context& context) {
-  DraftPoints points;
+std::vector<TableEntry> find_points(const Reader& top, const Entry& root, Context& context) {
+  std::vector<TableEntry> found;
   const Entry* mapping = top.find("mapping");
   if (mapping == nullptr) {
     context.problems.error(root.at, "the map has no 'mapping'",
                            "add 'mapping:' with the tables and their points");
-    return points;
+    return found;
   }
   if (!check_map(*mapping, "'mapping' holds the tables", "write 'coils:', 'holding_registers:' … below it",
                  context))
-    return points;
+    return found;
   const Reader reader(*mapping, Section::mapping, context);
   for (const Table table : tables)
-    if (const Entry* entry = reader.find(to_string(table)))
-      read_table(*entry, table, defaults, points, context);
-  std::stable_sort(points.begin(), points.end(), [](const DraftPoint& a, const DraftPoint& b) {
-    return std::tie(a.name_at.line, a.name_at.column) < std::tie(b.name_at.line, b.name_at.column);
+    if (const Entry* entry = reader.find(to_string(table))) find_points(*entry, table, found, context);
+  std::stable_sort(found.begin(), found.end(), [](const TableEntry& a, const TableEntry& b) {
+    return std::tie(a.entry->key_at.line, a.entry->key_at.column) <
+           std::tie(b.entry->key_at.line, b.entry->key_at.column);
   });
+  return found;
+}
+
+/// Points without an address are not placed yet.
+OpenPoints read_places(const std::vector<TableEntry>& entries, const PointDefaults& defaults,
+                       Context& context) {
+  OpenPoints points;
+  points.drafts.reserve(entries.size());
+  points.options.reserve(entries.size());
+  for (const auto& [entry, table] : entries) {
+    points.options.emplace_back(*entry, section_of(table), context);
+    points.drafts.push_back(read_place(*entry, table, points.options.back(), defaults, context));
+  }
   return points;
 }
 
@@ -84,7 +106,7 @@ void check_points(const DraftPoints& points, const Limits& limits, bool addressi
 
 }  // namespace
 
-void read_map(const Entry& file, std::string_view text, Context& context) {
+void read_map(const Entry& file, std::string_view text, Placement& placement, Context& context) {
   if (file.kind != Entry::Kind::map) {
     context.problems.error(file.at, fmt::format("a map of a coupler has keys, this is {}", shown(file)),
                            "begin with 'name: NAME'");
@@ -101,21 +123,31 @@ void read_map(const Entry& file, std::string_view text, Context& context) {
   head.limits = read_limits(top, context);
   head.service = read_service(top, context);
   const PointDefaults defaults = read_point_defaults(top, context);
-  DraftPoints drafts = read_points(top, root, defaults, context);
+  const Areas unreadable = read_areas(top, "unreadable", defaults.addressing, context);
+  const Areas reserved = read_areas(top, "reserve", defaults.addressing, context);
+  OpenPoints points = read_places(find_points(top, root, context), defaults, context);
+  DraftPoints& drafts = points.drafts;
+  place_points(drafts, ground_of(drafts, reserved, unreadable, preset), placement, context);
+  for (std::size_t i = 0; i < drafts.size(); ++i) read_rest(points.options[i], defaults, drafts[i], context);
   if (preset) apply(*preset, drafts, context);
   check_points(drafts, head.limits, top.has("addressing"), context);
   std::vector<SimWire> sim = read_sim(top, drafts, context);
   check_edges(drafts, sim, context);
-  head.unreadable = context.map.keep(read_unreadable(top, drafts, defaults.addressing, context));
+  check_unreadable(unreadable, drafts, context);
+  check_reserved(reserved, drafts, context);
+  head.unreadable = context.map.keep(sorted_unreadable(unreadable));
   top.choice("on_reconnect", {OnReconnect::drop, OnReconnect::restore}, head.on_reconnect);
   top.choice("on_shutdown", {OnShutdown::hold, OnShutdown::safe}, head.on_shutdown);
   if (context.problems.has_errors()) return;
 
-  std::vector<Point> points;
-  points.reserve(drafts.size());
-  for (const DraftPoint& draft : drafts) points.push_back(draft.point);
-  head.text = context.map.keep(std::string(text));
-  context.map.finish(head, std::move(points), std::move(sim));
+  const bool complete =
+      std::none_of(drafts.begin(), drafts.end(), [](const DraftPoint& d) { return d.addressless; });
+  head.text =
+      context.map.keep(complete ? std::string(text) : addressed_text(text, drafts, defaults.addressing));
+  std::vector<Point> finished;
+  finished.reserve(drafts.size());
+  for (const DraftPoint& draft : drafts) finished.push_back(draft.point);
+  context.map.finish(head, std::move(finished), std::move(sim));
 }
 
 }  // namespace coupler::loader

@@ -5,10 +5,12 @@
 
 #include "common/map/loader/context.hpp"
 #include "common/map/loader/entry.hpp"
+#include "common/map/loader/placement.hpp"
 
 namespace coupler::loader {
 
-/// Reads the whole map and finishes context.map, unless there were errors. `text` is the file.
-void read_map(const Entry& root, std::string_view text, Context& context);
+/// Reads the whole map and finishes context.map, unless there were errors. `text` is the file; points without
+/// an address get theirs from `placement`.
+void read_map(const Entry& root, std::string_view text, Placement& placement, Context& context);
 
 }  // namespace coupler::loader

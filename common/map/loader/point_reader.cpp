@@ -14,14 +14,9 @@
 namespace coupler::loader {
 namespace {
 
-void read_address(const Entry* entry, const Entry& point, Addressing addressing, DraftPoint& draft,
-                  Context& context) {
-  if (entry == nullptr) {
-    context.problems.error(
-        point.key_at, fmt::format("{} has no address; leaving it out is not supported yet", shown(point.key)),
-        "add 'address: NUMBER'");
-    return;
-  }
+void read_address(const Entry* entry, Addressing addressing, DraftPoint& draft, Context& context) {
+  draft.addressless = entry == nullptr;
+  if (draft.addressless) return;
   draft.address_at = entry->at;
   if (entry->kind != Entry::Kind::scalar || entry->quoted) {
     context.problems.error(entry->at, fmt::format("the address is a number, not {}", shown(*entry)),
@@ -101,55 +96,57 @@ void read_access(const Reader& reader, Point& point, Context& context) {
                            "remove 'access'");
 }
 
-void read_options(const Entry& entry, const PointDefaults& defaults, DraftPoint& draft, Context& context) {
-  Point& point = draft.point;
-  const Reader reader(entry, section_of(point.table), context);
-  const std::size_t errors = context.problems.errors();
-  read_address(reader.find("address"), entry, defaults.addressing, draft, context);
-  if (!holds_bits(point.table)) read_format(reader, entry, defaults.order, point.format, context);
-  if (context.problems.errors() == errors) read_count(reader, point, context);
-  if (context.problems.errors() == errors) check_range(draft, context);
-  draft.placed = context.problems.errors() == errors;
-  if (draft.placed && !holds_bits(point.table)) read_scale(reader, point, context);
-  if (const Entry* initial = reader.find("initial"); draft.placed && initial != nullptr)
-    point.initial = read_value("initial", *initial, point, context);
-  read_access(reader, point, context);
-  if (draft.placed) read_read_address(reader, defaults.addressing, point, context);
-  if (holds_bits(point.table))
-    read_line(reader, draft, context);
-  else
-    read_channel(reader, draft, context);
-  read_edges(reader, draft, context);
-  check_array(reader, point, context);
-  read_host_options(reader, defaults.host, draft, context);
-  reader.text("description", point.description);
-  reader.text("units", point.units);
+void check_has_options(const Entry& entry, Context& context) {
+  if (entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null) return;
+  const std::string given = entry.kind == Entry::Kind::scalar ? entry.text.substr(0, 10) : "0";
+  context.problems.error(
+      entry.at, fmt::format("{} has no type", shown(entry.key)),
+      fmt::format("write it as in '{}: {{address: {}, type: INT}}'", entry.key.substr(0, 40), given));
 }
 
 }  // namespace
 
-DraftPoint read_point(const Entry& entry, Table table, const PointDefaults& defaults, Context& context) {
+DraftPoint read_place(const Entry& entry, Table table, const Reader& options, const PointDefaults& defaults,
+                      Context& context) {
   DraftPoint draft;
+  draft.entry = &entry;
   draft.name_at = entry.key_at;
   draft.address_at = entry.key_at;
-  draft.point.name = context.map.keep(entry.key);
-  draft.point.table = table;
-  draft.point.access = is_writable(table) ? Access::read_write : Access::read;
-  if (entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null) {
-    read_options(entry, defaults, draft, context);
-  } else if (holds_bits(table)) {
-    const std::size_t errors = context.problems.errors();
-    read_address(&entry, entry, defaults.addressing, draft, context);
-    draft.placed = context.problems.errors() == errors;
-    const Entry nothing;
-    read_host_options(Reader(nothing, section_of(table), context), defaults.host, draft, context);
-  } else {
-    const std::string given = entry.kind == Entry::Kind::scalar ? entry.text.substr(0, 10) : "0";
-    context.problems.error(
-        entry.at, fmt::format("{} has no type", shown(entry.key)),
-        fmt::format("write it as in '{}: {{address: {}, type: INT}}'", entry.key.substr(0, 40), given));
-  }
+  Point& point = draft.point;
+  point.name = context.map.keep(entry.key);
+  point.table = table;
+  point.access = is_writable(table) ? Access::read_write : Access::read;
+  const bool bits = holds_bits(table);
+  const bool has_options = entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null;
+  const std::size_t errors = context.problems.errors();
+  if (!bits) check_has_options(entry, context);
+  read_address(bits && !has_options ? &entry : options.find("address"), defaults.addressing, draft, context);
+  if (!bits && has_options) read_format(options, entry, defaults.order, point.format, context);
+  draft.part_given = !bits && (options.has("offset") || options.has("bit"));
+  if (context.problems.errors() == errors) read_count(options, point, context);
+  if (context.problems.errors() == errors && !draft.addressless) check_range(draft, context);
+  const bool good = context.problems.errors() == errors;
+  draft.placed = good && !draft.addressless;
+  draft.addressless = good && draft.addressless;
   return draft;
+}
+
+void read_rest(const Reader& options, const PointDefaults& defaults, DraftPoint& draft, Context& context) {
+  Point& point = draft.point;
+  if (draft.placed && !holds_bits(point.table)) read_scale(options, point, context);
+  if (const Entry* initial = options.find("initial"); draft.placed && initial != nullptr)
+    point.initial = read_value("initial", *initial, point, context);
+  read_access(options, point, context);
+  if (draft.placed) read_read_address(options, defaults.addressing, point, context);
+  if (holds_bits(point.table))
+    read_line(options, draft, context);
+  else
+    read_channel(options, draft, context);
+  read_edges(options, draft, context);
+  check_array(options, point, context);
+  read_host_options(options, defaults.host, draft, context);
+  options.text("description", point.description);
+  options.text("units", point.units);
 }
 
 }  // namespace coupler::loader

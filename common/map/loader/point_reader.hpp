@@ -7,6 +7,7 @@
 #include "common/map/loader/draft_point.hpp"
 #include "common/map/loader/entry.hpp"
 #include "common/map/loader/host_options_reader.hpp"
+#include "common/map/loader/reader.hpp"
 
 namespace coupler::loader {
 
@@ -18,7 +19,14 @@ struct PointDefaults {
   HostDefaults host{};
 };
 
-/// One entry of a table: `name: address` (coils and discrete inputs) or `name: {options}`.
-DraftPoint read_point(const Entry& entry, Table table, const PointDefaults& defaults, Context& context);
+// One entry of a table, `name: address` (coils and discrete inputs) or `name: {options}`, is read in two
+// steps, for in between those without an address get theirs. `options` is its reader in both.
+
+/// What decides where the point may stand.
+DraftPoint read_place(const Entry& entry, Table table, const Reader& options, const PointDefaults& defaults,
+                      Context& context);
+
+/// Everything else; values are as they stand in their registers, so this needs the place.
+void read_rest(const Reader& options, const PointDefaults& defaults, DraftPoint& draft, Context& context);
 
 }  // namespace coupler::loader

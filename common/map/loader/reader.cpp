@@ -47,9 +47,6 @@ Reader::Reader(const Entry& map, Section section, Context& context) : section_(s
 void Reader::check_key(const Entry& entry) {
   const Key* key = find_key(entry.key, section_);
   if (key == nullptr) return unknown(entry);
-  if (key->status == Status::later)
-    return context_.problems.error(entry.key_at, fmt::format("'{}' is not supported yet", key->name),
-                                   "remove it, or put a '#' before it, until a later version reads it");
   const Field* first = field(canonical(*key));
   if (first != nullptr)
     return context_.problems.error(

@@ -20,10 +20,10 @@ namespace coupler::loader {
 /// leave `out` as it was, as they do when the key is absent.
 class Reader {
  public:
-  /// Checks the keys: known in this section, supported, given once. `map` must be a map, or nothing.
+  /// Checks the keys: known in this section, given once. `map` must be a map, or nothing.
   Reader(const Entry& map, Section section, Context& context);
 
-  /// The value of a supported key, or nullptr.
+  /// The value of the key, or nullptr.
   const Entry* find(std::string_view key) const;
   bool has(std::string_view key) const { return find(key) != nullptr; }
   /// The first required key that is absent; empty if there is none. For sections without a type.

@@ -70,7 +70,7 @@ void warn_of_modicon_numbers(const DraftPoints& points, Context& context) {
   std::size_t alike = 0;
   std::size_t others = 0;
   for (const DraftPoint& draft : points) {
-    if (!draft.placed || draft.point.table == Table::coils) continue;
+    if (!draft.placed || draft.addressless || draft.point.table == Table::coils) continue;
     const bool similar = looks_like_modicon(draft.point.address, draft.point.table);
     ++(similar ? alike : others);
     if (similar && first == nullptr) first = &draft;

@@ -46,7 +46,7 @@ TEST(Keys, What_holds_otherwise_is_a_value_that_one_may_write) {
 TEST(Keys, What_has_keys_inside_says_which) {
   for (const Key& key : all_keys()) {
     const bool container = key.kind == ValueKind::section || key.kind == ValueKind::points;
-    EXPECT_TRUE(key.status == Status::later || !container || key.inside != Section::none) << key.name;
+    EXPECT_TRUE(!container || key.inside != Section::none) << key.name;
     EXPECT_TRUE(!key.several || key.inside != Section::none) << key.name;
   }
 }
@@ -65,13 +65,6 @@ TEST(Keys, A_key_for_some_types_names_types_that_there_are) {
 TEST(Keys, Another_spelling_belongs_to_the_same_section) {
   for (const Key& key : all_keys())
     EXPECT_TRUE(key.same_as.empty() || find_key(key.same_as, key.sections) != nullptr) << key.name;
-}
-
-TEST(Keys, Later_keys_are_known_but_not_offered) {
-  EXPECT_NE(find_key("reserve", Section::map), nullptr);
-  const auto names = key_names(Section::map);
-  EXPECT_EQ(std::find(names.begin(), names.end(), "reserve"), names.end());
-  EXPECT_NE(std::find(names.begin(), names.end(), "limits"), names.end());
 }
 
 TEST(Keys, A_key_is_found_only_where_it_belongs) {
