@@ -32,6 +32,11 @@ if(NOT COUPLER_WITH_GPIOD)
                  "(no libgpiod 1.6 or 2, or COUPLER_GPIOD=OFF; apt install libgpiod-dev)")
 endif()
 
+find_package(pugixml QUIET)
+if(NOT pugixml_FOUND)
+  message(STATUS "Left out: coupler import modbuspal (no pugixml; apt install libpugixml-dev)")
+endif()
+
 if(BUILD_TESTING)
   find_package(GTest REQUIRED)
 endif()

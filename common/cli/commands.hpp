@@ -12,7 +12,9 @@ class App;
 namespace coupler::cli {
 
 void add_check(CLI::App& program, Exit& exit);
+void add_export(CLI::App& program, Exit& exit);
 void add_generate(CLI::App& program, Exit& exit);
+void add_import(CLI::App& program, Exit& exit);
 void add_plan(CLI::App& program, Exit& exit);
 
 }  // namespace coupler::cli

@@ -39,7 +39,9 @@ int main(int argc, char** argv) {
 
   auto exit = coupler::cli::ok;
   coupler::cli::add_check(program, exit);
+  coupler::cli::add_export(program, exit);
   coupler::cli::add_generate(program, exit);
+  coupler::cli::add_import(program, exit);
   coupler::cli::add_plan(program, exit);
   try {
     refuse_unknown_command(program, argc, argv);

@@ -60,7 +60,7 @@ class TheCall(Cli):
         self.assertIn("--out", self.refused("generate", self.file("cell.yaml", GOOD)))
 
     def test_for_help_shows_an_example(self):
-        for command in ([], ["check"], ["generate"], ["plan"]):
+        for command in ([], ["check"], ["export"], ["generate"], ["import"], ["plan"]):
             done = self.coupler(*command, "--help")
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             self.assertIn("Example:\n  coupler " + "".join(command), done.stdout)

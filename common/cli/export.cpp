@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "common/cli/commands.hpp"
+#include "common/cli/report.hpp"
+#include "common/formats/exporter.hpp"
+#include "common/generate/output.hpp"
+#include "common/map/loader/load.hpp"
+
+namespace coupler::cli {
+namespace {
+
+struct Arguments {
+  std::string map;
+  std::string to;
+  std::string out;
+  bool list = false;
+};
+
+Exit complain(std::string_view what, std::string_view remedy) {
+  fmt::print(stderr, "coupler export: error: {}; {}\n", what, remedy);
+  return bad_call;
+}
+
+std::string names_of_formats() {
+  std::string names;
+  for (const formats::Exporter& exporter : formats::exporters())
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", exporter.name);
+  return names;
+}
+
+Exit run(const Arguments& arguments) {
+  if (arguments.list) {
+    for (const formats::Exporter& exporter : formats::exporters())
+      fmt::print("{:<15}  {}\n", exporter.name, exporter.summary);
+    return ok;
+  }
+  if (arguments.map.empty() || arguments.to.empty())
+    return complain("MAP and --to FORMAT are required", "see `coupler export --help`");
+  const formats::Exporter* exporter = formats::find_exporter(arguments.to);
+  if (exporter == nullptr)
+    return complain(fmt::format("'{}' is not a format that can be written", arguments.to),
+                    "give one of " + names_of_formats());
+  const LoadResult loaded = load_map_file(arguments.map);
+  print(loaded.diagnostics);
+  if (!loaded.map) return bad_input;
+  const formats::Export exported = exporter->write(loaded.map->map());
+  print(exported.losses.diagnostics(arguments.map));
+  if (arguments.out.empty()) {
+    std::fputs(exported.text.c_str(), stdout);
+    return ok;
+  }
+  if (const auto outcome = generate::write_if_changed(arguments.out, exported.text); !outcome)
+    return complain(outcome.error(), "give a file that you may write with --out");
+  return ok;
+}
+
+}  // namespace
+
+void add_export(CLI::App& program, Exit& exit) {
+  auto* command = program.add_subcommand("export", "Write a map as a file of another program.");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("MAP", arguments->map, "YAML or JSON file; - is standard input")->type_name("");
+  command->add_option("--to", arguments->to, "What to write: see --list")->type_name("FORMAT");
+  command->add_option("--out", arguments->out, "Where to write it; default: standard output")
+      ->type_name("FILE");
+  command->add_flag("--list", arguments->list, "Print the formats");
+  command->footer(
+      "Example:\n  coupler export device.yaml --to csv --out device.csv\n"
+      "What the format cannot say is on standard error.");
+  command->callback([arguments, &exit] { exit = run(*arguments); });
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/formats/csv_export.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "common/codec/text.hpp"
+#include "common/formats/csv.hpp"
+#include "common/formats/entries.hpp"
+#include "common/formats/map_writer.hpp"
+#include "common/map/loader/document.hpp"
+#include "common/map/loader/keys.hpp"
+
+namespace coupler::formats {
+namespace {
+
+using loader::Entry;
+using Cells = std::map<std::string, std::string, std::less<>>;  // by column
+
+/// Columns that every table has, and all that follow from what both sides must agree on.
+constexpr std::string_view always[] = {"table", "name",   "address", "type",
+                                       "order", "access", "units",   "description"};
+
+std::string scale_text(const codec::Scale& scale) {
+  return scale.offset == 0 ? fmt::to_string(scale.gain)
+                           : fmt::format("{{gain: {}, offset: {}}}", scale.gain, scale.offset);
+}
+
+void add_format(const Point& point, Cells& cells) {
+  const codec::Format& format = point.format;
+  cells["type"] = to_string(format.type);
+  if (format.type == codec::Type::STRING) {
+    cells["length"] = fmt::to_string(format.length);
+    if (format.encoding != codec::Encoding::utf8) cells["encoding"] = codec::to_string(format.encoding);
+    if (codec::ignores_byte_order(format)) cells["ignore_byteorder"] = "true";
+    return;
+  }
+  const unsigned width = codec::width(format.type);
+  if (format.type == codec::Type::BOOL) cells["bit"] = fmt::to_string(format.bit);
+  if (width == 8) cells["offset"] = format.half == codec::Half::high ? "high" : "low";
+  if (width > 16 || codec::bytes_swapped(format.order))
+    cells["order"] = codec::to_string(format.order, width <= 16);
+  if (point.scale.present()) cells["scale"] = scale_text(point.scale);
+}
+
+/// From the model: the map's own keys (addressing, orders, preset) are worked in.
+Cells cells_of(const Point& point) {
+  Cells cells;
+  cells["table"] = to_string(point.table);
+  cells["name"] = point.name;
+  cells["address"] = fmt::to_string(point.address);
+  if (!holds_bits(point.table)) add_format(point, cells);
+  if (point.count > 1) cells["count"] = fmt::to_string(point.count);
+  const Access usual = is_writable(point.table) ? Access::read_write : Access::read;
+  if (point.access != usual) cells["access"] = point.access == Access::read ? "read" : "write";
+  if (point.read_address) cells["read_address"] = fmt::to_string(*point.read_address);
+  cells["units"] = point.units;
+  cells["description"] = point.description;
+  return cells;
+}
+
+/// From the model, too: `defaults` are worked in.
+void add_host_options(const Point& point, const Entry* defaults, Cells& cells) {
+  const HostOptions& host = point.host;
+  if (is_readable(point)) {
+    if (host.rate > 0) cells["rate"] = fmt::to_string(host.rate);
+    if (host.publish == HostOptions::Publish::on_change) {
+      cells["publish"] = "on_change";
+      if (host.deadband > 0) cells["deadband"] = fmt::to_string(host.deadband);
+      if (host.max_interval.count() > 0)
+        cells["max_interval"] = fmt::format("{}ms", host.max_interval.count());
+    }
+    if (host.latch) cells["latch"] = "true";
+  }
+  if (host.queue_size != HostOptions{}.queue_size) cells["queue_size"] = fmt::to_string(host.queue_size);
+  if (!is_writable(point)) return;
+  if (host.write_function != HostOptions::WriteFunction::automatic)
+    cells["write_function"] =
+        host.write_function == HostOptions::WriteFunction::single ? "single" : "multiple";
+  if (host.verify_write && is_readable(point)) cells["verify_write"] = "true";
+  if (host.write_queue == HostOptions::WriteQueue::every) cells["write_queue"] = "every";
+  const Entry* deadman = defaults != nullptr ? find(*defaults, "deadman") : nullptr;
+  if (host.deadman.present() && deadman != nullptr) cells["deadman"] = flow(*deadman);
+}
+
+/// The rest, and a deadman of the point's own, as it stands in the file.
+void add_file_keys(const Entry& entry, Cells& cells) {
+  const std::set<std::string_view> from_model{"address", "type", "order", "offset", "bit", "length",
+                                              "encoding", "ignore_byteorder", "count", "scale", "access",
+                                              "read_address", "units", "description",
+                                              // add_host_options()
+                                              "rate", "publish", "deadband", "max_interval", "latch",
+                                              "queue_size", "write_function", "verify_write", "write_queue"};
+  for (const Entry& option : entry.children)
+    if (from_model.count(option.key) == 0)
+      cells[option.key] = option.kind == Entry::Kind::scalar ? option.text : flow(option);
+}
+
+const Entry* entry_of(const Entry& root, const Point& point) {
+  const Entry* mapping = find(root, "mapping");
+  const Entry* table = mapping != nullptr ? find(*mapping, to_string(point.table)) : nullptr;
+  return table != nullptr ? find(*table, point.name) : nullptr;
+}
+
+/// In the order of the key table.
+std::vector<std::string> columns_of(const std::vector<Cells>& rows) {
+  std::vector<std::string> columns(std::begin(always), std::end(always));
+  for (const loader::Key& key : loader::all_keys()) {
+    const bool used =
+        std::any_of(rows.begin(), rows.end(), [&](const Cells& cells) { return cells.count(key.name) > 0; });
+    if (used && std::find(columns.begin(), columns.end(), key.name) == columns.end())
+      columns.emplace_back(key.name);
+  }
+  return columns;
+}
+
+void add_losses(const Entry& root, Losses& losses) {
+  const std::set<std::string_view> worked_in{"mapping", "defaults", "addressing", "byteorder_reverse",
+                                             "wordorder_reverse"};
+  for (const Entry& entry : root.children)
+    if (worked_in.count(entry.key) == 0)
+      losses.add("the table has points only, the device's keys are left out",
+                 "write them into the map that is made from it; `coupler import` takes --name and --unit",
+                 entry.key);
+}
+
+}  // namespace
+
+Export write_csv(const Map& map) {
+  Export out;
+  loader::Problems unheard("");  // the loader has read the text before
+  const auto root = loader::parse_document(map.text, unheard);
+  std::vector<Cells> rows;
+  for (const Point& point : map.points) {
+    rows.push_back(cells_of(point));
+    add_host_options(point, root ? find(*root, "defaults") : nullptr, rows.back());
+    const Entry* entry = root ? entry_of(*root, point) : nullptr;
+    if (entry != nullptr) add_file_keys(*entry, rows.back());
+  }
+  if (root) add_losses(*root, out.losses);
+  const std::vector<std::string> columns = columns_of(rows);
+  out.text = fmt::format("{}\r\n", fmt::join(columns, ","));
+  for (const Cells& cells : rows) {
+    std::string line;
+    for (const std::string& column : columns) {
+      const auto found = cells.find(column);
+      line += (line.empty() ? "" : ",") + (found == cells.end() ? std::string() : csv_cell(found->second));
+    }
+    out.text += line + "\r\n";
+  }
+  return out;
+}
+
+}  // namespace coupler::formats

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
+
+#include "common/formats/csv_export.hpp"
+#include "common/formats/exporter.hpp"
+
+namespace coupler::formats {
+namespace {
+
+constexpr Exporter table[] = {
+    {"csv", "a table of points, for spreadsheets and for `coupler import csv`", write_csv},
+};
+
+}  // namespace
+
+Span<const Exporter> exporters() { return table; }
+
+const Exporter* find_exporter(std::string_view name) {
+  const auto* found = std::find_if(std::begin(table), std::end(table),
+                                   [name](const Exporter& exporter) { return exporter.name == name; });
+  return found == std::end(table) ? nullptr : found;
+}
+
+}  // namespace coupler::formats

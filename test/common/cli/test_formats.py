@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`coupler import` and `coupler export` as a script sees them. COUPLER is the program."""
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+CSV = "unit,table,name,address,type\n1,coils,lamp,0,\n2,holding_registers,speed,1,INT\n"
+ONE = "table,name,address\ncoils,lamp one,0\n"
+MAP = "name: cell\nport: 1502\nmapping:\n  coils: {lamp: 0}\n  holding_registers:\n    speed: {address: 0, type: REAL}\n"
+
+
+class Formats(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def file(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+        return name
+
+    def coupler(self, *arguments, stdin=""):
+        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, input=stdin, timeout=60,
+                              capture_output=True, text=True, encoding="utf-8", check=False)
+
+
+class Import(Formats):
+    def test_writes_the_map_to_standard_output_and_the_report_to_standard_error(self):
+        done = self.coupler("import", "csv", "-", "--name", "press", stdin=ONE)
+        self.assertEqual(done.returncode, 0)
+        self.assertEqual(done.stdout, "# Imported from <stdin> by `coupler import csv`.\nname: press\nmapping:\n"
+                                      "  coils:\n    lamp_one: 0\n")
+        self.assertIn("<stdin>:2:7: warning: 'lamp one' cannot name a point", done.stderr)
+
+    def test_writes_a_file_that_check_takes(self):
+        done = self.coupler("import", "csv", self.file("a.csv", ONE), "--out", "a.yaml")
+        self.assertRegex(done.stdout, r"^a\.yaml: ok: a, 1 point \(1 coil\), fingerprint [0-9a-f]{16}\n$")
+        self.assertEqual(self.coupler("check", "a.yaml").returncode, 0)
+
+    def test_gives_every_unit_a_file_or_the_one_that_was_chosen(self):
+        name = self.file("bus.csv", CSV)
+        done = self.coupler("import", "csv", name)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("bus.csv has several units: 1, 2; choose one with --unit", done.stderr)
+        self.assertEqual(self.coupler("import", "csv", name, "--out", "bus.yaml").returncode, 0)
+        self.assertEqual(sorted(p.name for p in self.folder.glob("*.yaml")), ["bus_1.yaml", "bus_2.yaml"])
+        self.assertIn("name: bus_2\nunit: 2\n", self.coupler("import", "csv", name, "--unit", "2").stdout)
+
+    def test_refuses_what_it_cannot_read_and_writes_nothing(self):
+        done = self.coupler("import", "unslave", self.file("a.json", "{"), "--out", "a.yaml")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("a.json:1:1: error: ", done.stderr)
+        self.assertFalse((self.folder / "a.yaml").exists())
+        for file in ("none.csv", "."):
+            done = self.coupler("import", "csv", file)
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertIn(f"{file}: error: the file cannot be read: ", done.stderr)
+
+    def test_refuses_an_unknown_format_with_those_that_there_are(self):
+        done = self.coupler("import", "winmodbus", self.file("a.csv", ONE))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'winmodbus' is not a format that can be read; give one of csv, origin, unslave", done.stderr)
+        self.assertIn("FORMAT and FILE are required", self.coupler("import").stderr)
+
+    def test_refuses_a_file_that_is_too_large(self):
+        (self.folder / "big.csv").write_bytes(b"x" * (20 << 20))
+        done = self.coupler("import", "csv", "big.csv")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("big.csv: error: the file has 16777217 bytes, a map at most 16777216", done.stderr)
+
+    def test_lists_its_formats(self):
+        done = self.coupler("import", "--list")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("unslave", done.stdout)
+
+
+class Export(Formats):
+    def test_and_import_again_is_the_same_map(self):
+        name = self.file("cell.yaml", MAP)
+        done = self.coupler("export", name, "--to", "csv", "--out", "cell.csv")
+        self.assertEqual((done.returncode, done.stdout), (0, ""))
+        self.assertIn("cell.yaml: warning: the table has points only, the device's keys are left out: name, port", done.stderr)
+        self.coupler("import", "csv", "cell.csv", "--out", "again.yaml")
+        fingerprints = {self.coupler("check", file).stdout.split()[-1] for file in (name, "again.yaml")}
+        self.assertEqual(len(fingerprints), 1, fingerprints)
+
+    def test_refuses_a_wrong_map_an_unknown_format_and_a_place_where_it_may_not_write(self):
+        self.assertEqual(self.coupler("export", self.file("bad.yaml", "x"), "--to", "csv").returncode, 1)
+        name = self.file("cell.yaml", MAP)
+        done = self.coupler("export", name, "--to", "excel")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'excel' is not a format that can be written; give one of csv", done.stderr)
+        self.assertEqual(self.coupler("export", name, "--to", "csv", "--out", "no/where.csv").returncode, 2)
+        self.assertIn("MAP and --to FORMAT are required", self.coupler("export", name).stderr)
+
+    def test_lists_its_formats(self):
+        self.assertIn("csv ", self.coupler("export", "--list").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/formats/csv_export.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "test/common/formats/imported.hpp"
+
+namespace coupler::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> maps_of_the_tree() {
+  std::vector<fs::path> files;
+  const fs::path root = COUPLER_SOURCE_DIR;
+  for (const auto* folder : {"config", "config/presets", "test/maps", "test/maps/origin", "test/generate",
+                             "test/peers", "test/kernel", "test/attack"})
+    for (const auto& entry : fs::directory_iterator(root / folder))
+      if (entry.path().extension() == ".yaml" || entry.path().extension() == ".json")
+        files.push_back(entry.path());
+  return files;
+}
+
+TEST(CsvExport, A_map_that_goes_through_a_table_and_back_has_the_same_fingerprint) {
+  int maps = 0;
+  for (const fs::path& file : maps_of_the_tree()) {
+    const LoadResult loaded = load_map_file(file.string());
+    if (!loaded.map) continue;  // presets are half a map
+    const Map& map = loaded.map->map();
+    const formats::Export out = formats::write_csv(map);
+    const Imported back("csv", out.text, {std::string(map.name), {}});
+    ASSERT_EQ(back.result.maps.size(), 1U) << file << '\n' << back.said << out.text;
+    EXPECT_EQ(back.result.maps[0].map->map().fingerprint, map.fingerprint) << file << '\n' << out.text;
+    const Map& again = back.result.maps[0].map->map();
+    for (std::size_t i = 0; i < map.points.size(); ++i) {
+      const Point& a = map.points[i];
+      const Point& b = again.points[i];
+      EXPECT_TRUE(std::equal(a.initial.begin(), a.initial.end(), b.initial.begin(), b.initial.end()))
+          << a.name;
+      if (is_readable(a)) {
+        EXPECT_EQ(a.host.rate, b.host.rate) << a.name;
+      }
+      EXPECT_EQ(a.host.deadman.timeout, b.host.deadman.timeout) << a.name;
+      EXPECT_EQ(a.line.name, b.line.name) << a.name;
+      EXPECT_EQ(a.line.chip, b.line.chip) << a.name;
+      EXPECT_EQ(a.description, b.description);
+    }
+    ++maps;
+  }
+  EXPECT_GE(maps, 10);
+}
+
+TEST(CsvExport, Orders_and_addresses_are_written_out_whatever_the_map_counts_in) {
+  const LoadResult loaded = load_map(
+      "{name: m, addressing: modicon, wordorder_reverse: true, mapping: {holding_registers: {\n"
+      "  a: {address: 40011, type: REAL}, b: {address: 40013, type: SINT, offset: low}}}}",
+      "m");
+  ASSERT_NE(loaded.map, nullptr);
+  EXPECT_EQ(formats::write_csv(loaded.map->map()).text,
+            "table,name,address,type,order,access,units,description,offset\r\n"
+            "holding_registers,a,10,REAL,ABCD,,,,\r\n"
+            "holding_registers,b,12,SINT,,,,,low\r\n");
+}
+
+TEST(CsvExport, The_devices_own_keys_are_told) {
+  const LoadResult loaded = load_map("{name: m, port: 503, mapping: {coils: {a: 0}}}", "m");
+  ASSERT_NE(loaded.map, nullptr);
+  EXPECT_THAT(lines_of(formats::write_csv(loaded.map->map()).losses.diagnostics("m.yaml")),
+              testing::HasSubstr(
+                  "m.yaml: warning: the table has points only, the device's keys are left out: name, port;"));
+}
+
+}  // namespace
+}  // namespace coupler::test

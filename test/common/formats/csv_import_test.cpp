@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "test/common/formats/imported.hpp"
+
+namespace coupler::test {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(CsvImport, A_row_is_a_point_and_a_column_a_key_in_any_order) {
+  const Imported csv("csv",
+                     "Units,Type,Name,Address,Table,Scale\n"
+                     "rpm,INT,speed,7,holding_register,0.5\n"
+                     ",,lamp,2,coils,\n");
+  EXPECT_EQ(csv.said, "");
+  EXPECT_EQ(csv.text(),
+            "name: given\n"
+            "mapping:\n"
+            "  coils:\n"
+            "    lamp: 2\n"
+            "  holding_registers:\n"
+            "    speed: {units: rpm, type: INT, address: 7, scale: 0.5}\n");
+}
+
+TEST(CsvImport, A_byte_order_mark_semicolons_and_decimal_commas_are_a_German_spreadsheet) {
+  const Imported csv("csv",
+                     "\xEF\xBB\xBFtable;name;address;type;scale\r\ninput_registers;level;0;INT;0,25\r\n");
+  EXPECT_EQ(csv.said, "given:2:29: warning: '0,25' is read as 0.25; write a decimal point\n");
+  ASSERT_EQ(csv.result.maps.size(), 1U);
+  EXPECT_EQ(csv.result.maps[0].map->map().points[0].scale.gain, 0.25);
+}
+
+TEST(CsvImport, A_comma_in_a_text_is_no_decimal_comma) {
+  const Imported csv(
+      "csv", "table;name;address;type;length;initial;description\nholding_registers;s;0;STRING;8;1,5;2,5\n");
+  EXPECT_EQ(csv.said, "");
+  EXPECT_THAT(csv.text(), HasSubstr("initial: \"1,5\", description: \"2,5\""));
+}
+
+TEST(CsvImport, A_cell_may_hold_a_list_or_a_section_as_in_a_map) {
+  const Imported csv("csv",
+                     "table,name,address,type,scale,counter,line\n"
+                     "discrete_inputs,pulse,0,,,,\"{chip: gpiochip0, offset: 4}\"\n"
+                     "input_registers,parts,0,UINT,,{of: pulse},\n"
+                     "input_registers,temp,1,INT,\"{gain: 0.1, offset: -40}\",,\n");
+  EXPECT_EQ(csv.said, "");
+  EXPECT_THAT(csv.text(), HasSubstr("parts: {address: 0, type: UINT, counter: {of: pulse}}"));
+  EXPECT_THAT(csv.text(), HasSubstr("scale: {gain: 0.1, offset: -40}"));
+}
+
+TEST(CsvImport, The_column_unit_makes_a_map_of_each) {
+  const std::string text = "unit,table,name,address\n1,coils,a,0\n2,coils,a,0\n1,coils,b,1\n";
+  const Imported both("csv", text, {"bus", {}});
+  ASSERT_EQ(both.result.maps.size(), 2U);
+  EXPECT_EQ(both.text(0), "name: bus_1\nunit: 1\nmapping:\n  coils:\n    a: 0\n    b: 1\n");
+  EXPECT_EQ(both.text(1), "name: bus_2\nunit: 2\nmapping:\n  coils:\n    a: 0\n");
+  EXPECT_EQ(Imported("csv", text, {"bus", 2}).text(), both.text(1));
+  EXPECT_THAT(Imported("csv", text, {"bus", 3}).said,
+              HasSubstr("error: there is no unit 3 in the file; give one of 1, 2 with --unit"));
+}
+
+TEST(CsvImport, What_is_wrong_is_told_at_its_cell) {
+  const Imported csv("csv",
+                     "table,name,address,type\n"
+                     "coils,a,0,\n"
+                     "coil,b,zero,\n"
+                     "holding_registers,c,1,INTT\n"
+                     "holding,d,1,INT\n"
+                     "input_registers,e,70000,INT\n"
+                     "input_registers,f,9,INT,extra\n");
+  EXPECT_TRUE(csv.result.maps.empty());
+  for (const auto* place :
+       {"given:3:8: error:", "given:4:23: error:", "given:5:1: error: 'holding' is no table",
+        "given:6:19: error:", "given:7:25: error: the row has 5 cells"})
+    EXPECT_THAT(csv.said, HasSubstr(place));
+}
+
+TEST(CsvImport, Names_that_are_no_ROS_names_or_taken_are_mended_and_told) {
+  const Imported csv(
+      "csv", "table,name,address\ncoils,1st lamp,0\ncoils,lamp,1\ncoils,lamp,2\ncoils,status,3\ncoils,,4\n");
+  EXPECT_THAT(
+      csv.text(),
+      HasSubstr("    point_1st_lamp: 0\n    lamp: 1\n    lamp_2: 2\n    status_point: 3\n    point: 4\n"));
+  EXPECT_THAT(csv.said,
+              HasSubstr("given:2:7: warning: '1st lamp' cannot name a point, it is now 'point_1st_lamp'"));
+  EXPECT_THAT(
+      csv.said,
+      HasSubstr(
+          "given:4:7: warning: 'lamp' is already the name of a point, in line 3; this one is now 'lamp_2'"));
+}
+
+TEST(CsvImport, Two_points_at_one_place_are_told_with_both_lines) {
+  EXPECT_THAT(Imported("csv", "table,name,address\ncoils,a,5\ncoils,b,5\n").said,
+              HasSubstr("given:3:9: error: 'b' (coils 5) overlaps 'a' (coils 5, line 2)"));
+}
+
+TEST(CsvImport, A_column_that_no_point_has_is_told_with_the_nearest) {
+  const Imported csv("csv", "table,name,address,Unitz,\ncoils,a,0,V,\n");
+  EXPECT_EQ(csv.said,
+            "given:1:20: warning: the column 'Unitz' is not carried over: a point has no such key; did you "
+            "mean 'units'?\n");
+  EXPECT_EQ(csv.result.maps.size(), 1U);
+}
+
+TEST(CsvImport, A_table_without_headings_or_without_points_is_refused) {
+  EXPECT_THAT(Imported("csv", "coils,a,0\ncoils,b,1\n").said, HasSubstr("error: there is no column 'table'"));
+  EXPECT_THAT(Imported("csv", "table,name,address\n").said,
+              HasSubstr("error: there are no points in the file"));
+  EXPECT_THAT(Imported("csv", "").said, HasSubstr("error: there are no points in the file"));
+  EXPECT_THAT(Imported("csv", "table,table,name,address\ncoils,coils,a,0\n").said,
+              HasSubstr("error: the column 'table' is there twice"));
+}
+
+}  // namespace
+}  // namespace coupler::test
