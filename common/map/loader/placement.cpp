@@ -95,6 +95,7 @@ void place_points(DraftPoints& points, const lock::Ground& ground, Placement& pl
     drafts.push_back(&draft);
     requests.push_back(request_of(draft));
   }
+  if (requests.empty() && placement.known.empty()) return;
   const bool may_grow = placement.file.use == LockUse::renew && !placement.file.path.empty();
   const lock::Allocation allocation = lock::allocate(
       requests, ground, placement.known, may_grow ? lock::Unknown::allocated : lock::Unknown::refused);

@@ -47,14 +47,15 @@ std::string to_string(const Place& place) {
 }
 
 bool Occupancy::is_free(const Place& place) const {
-  const std::uint16_t* cells = &taken_[index(place.table) * addresses];
-  return std::all_of(cells + place.range.start(), cells + place.range.end(),
-                     [&](std::uint16_t cell) { return (cell & place.mask) == 0; });
+  const auto& cells = taken_[index(place.table)];
+  return cells.empty() || std::all_of(cells.data() + place.range.start(), cells.data() + place.range.end(),
+                                      [&](std::uint16_t cell) { return (cell & place.mask) == 0; });
 }
 
 void Occupancy::take(const Place& place) {
-  std::uint16_t* cells = &taken_[index(place.table) * addresses];
-  std::for_each(cells + place.range.start(), cells + place.range.end(),
+  auto& cells = taken_[index(place.table)];
+  cells.resize(0x10000);
+  std::for_each(cells.data() + place.range.start(), cells.data() + place.range.end(),
                 [&](std::uint16_t& cell) { cell = static_cast<std::uint16_t>(cell | place.mask); });
 }
 

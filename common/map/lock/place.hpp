@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -44,8 +45,7 @@ class Occupancy {
   void take(const Place& place);
 
  private:
-  static constexpr std::size_t addresses = 0x10000;
-  std::vector<std::uint16_t> taken_ = std::vector<std::uint16_t>(tables.size() * addresses);
+  std::array<std::vector<std::uint16_t>, tables.size()> taken_;  ///< empty: nothing is
 };
 
 }  // namespace coupler::lock

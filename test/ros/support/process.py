@@ -86,6 +86,9 @@ class Node(Process):
     def __init__(self, map_path, port):
         super().__init__("coupler-node", map_path, "--sim", "--listen", "127.0.0.1", "--port", port)
 
+    def reload(self):
+        self._child.send_signal(signal.SIGHUP)
+
 
 def has_node():
     return (BUILD / "bin" / "coupler-node").exists()

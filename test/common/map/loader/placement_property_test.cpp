@@ -182,8 +182,8 @@ int run(unsigned seed) {
 
 TEST(PlacementProperty, No_edit_moves_an_address_or_gives_it_to_another_point) {
   int good = 0;
-  for (unsigned seed = 1; seed <= 20; ++seed) good += run(seed);
-  EXPECT_GT(good, 2000);
+  for (unsigned seed = 1; seed <= 10; ++seed) good += run(seed);
+  EXPECT_GT(good, 1000);
 }
 
 TEST(PlacementProperty, Ten_thousand_points_get_their_addresses_fast) {
