@@ -4,12 +4,18 @@
 
 #include "common/formats/csv_export.hpp"
 #include "common/formats/exporter.hpp"
+#include "common/formats/home_assistant_export.hpp"
+#include "common/formats/telegraf_export.hpp"
+#include "common/formats/wireshark_export.hpp"
 
 namespace coupler::formats {
 namespace {
 
 constexpr Exporter table[] = {
     {"csv", "a table of points, for spreadsheets and for `coupler import csv`", write_csv},
+    {"home-assistant", "the modbus integration's part of configuration.yaml", write_home_assistant},
+    {"telegraf", "a section [[inputs.modbus]] of telegraf.conf", write_telegraf},
+    {"wireshark", "a dissector (Lua) that names the points in captures", write_wireshark},
 };
 
 }  // namespace

@@ -36,7 +36,8 @@ void Losses::add(std::string_view what, std::string_view remedy, std::string_vie
   auto found =
       std::find_if(losses_.begin(), losses_.end(), [what](const Loss& loss) { return loss.what == what; });
   if (found == losses_.end()) found = losses_.insert(found, {std::string(what), std::string(remedy), {}});
-  if (!point.empty()) found->points.emplace_back(point);
+  if (point.empty() || (!found->points.empty() && found->points.back() == point)) return;
+  found->points.emplace_back(point);
 }
 
 Diagnostics Losses::diagnostics(std::string_view file) const {

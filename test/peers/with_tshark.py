@@ -110,4 +110,5 @@ def main():
     checks.done(f"tshark dissects {2 * len(transactions)} packets of {pathlib.Path(command[0]).name}, none malformed")
 
 
-main()
+if __name__ == "__main__":
+    main()
