@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 namespace coupler::modbus {
@@ -33,5 +34,11 @@ constexpr std::string_view to_string(Exception code) {
   }
   return "unknown exception";
 }
+
+/// Why a reply does not do what the request asked for: the server's exception, or (empty) it does not answer
+/// the request.
+struct Refused {
+  std::optional<Exception> exception;
+};
 
 }  // namespace coupler::modbus

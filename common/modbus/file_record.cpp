@@ -30,15 +30,15 @@ std::size_t build_file_request(FileRecord wanted, Span<std::uint8_t> pdu) {
   return file_request_size;
 }
 
-tl::expected<void, FileRefusal> parse_file_reply(Bytes pdu, Span<std::uint16_t> registers) {
+tl::expected<void, Refused> parse_file_reply(Bytes pdu, Span<std::uint16_t> registers) {
   if (pdu.size() == 2 && pdu[0] == (function | exception_bit))
-    return tl::unexpected(FileRefusal{static_cast<Exception>(pdu[1])});
+    return tl::unexpected(Refused{static_cast<Exception>(pdu[1])});
 
   // function, data length, then the group: its length, reference type, registers
   const std::size_t data = 2 * registers.size();
   if (pdu.size() != 4 + data || pdu[0] != function || pdu[1] != 2 + data || pdu[2] != 1 + data ||
       pdu[3] != reference_type)
-    return tl::unexpected(FileRefusal{});
+    return tl::unexpected(Refused{});
   for (std::size_t i = 0; i < registers.size(); ++i) registers[i] = get_u16(&pdu[4 + 2 * i]);
   return {};
 }

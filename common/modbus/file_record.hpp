@@ -28,13 +28,8 @@ constexpr std::size_t file_request_size = 9;
 /// size.
 std::size_t build_file_request(FileRecord wanted, Span<std::uint8_t> pdu);
 
-/// Why a reply brought no data: the server's exception, or (empty) it does not answer the request.
-struct FileRefusal {
-  std::optional<Exception> exception;
-};
-
 /// Takes the registers of the one group out of a reply PDU; it must hold exactly `registers.size()` of them.
-tl::expected<void, FileRefusal> parse_file_reply(Bytes pdu, Span<std::uint16_t> registers);
+tl::expected<void, Refused> parse_file_reply(Bytes pdu, Span<std::uint16_t> registers);
 
 // The server's side.
 

@@ -49,15 +49,15 @@ WriteRequest WriteRequest::mask(std::uint16_t address, std::uint16_t and_mask, s
   return request;
 }
 
-tl::expected<void, WriteRefusal> check_reply(const WriteRequest& request, Bytes reply) {
+tl::expected<void, Refused> check_reply(const WriteRequest& request, Bytes reply) {
   const Bytes asked = request.pdu();
   if (reply.size() == 2 && reply[0] == (asked[0] | exception_bit))
-    return tl::unexpected(WriteRefusal{static_cast<Exception>(reply[1])});
+    return tl::unexpected(Refused{static_cast<Exception>(reply[1])});
   const bool several = request.function() == Function::write_multiple_coils ||
                        request.function() == Function::write_multiple_registers;
   const std::size_t same = several ? 5 : 3;
   if (reply.size() != (several ? 5 : asked.size()) || !std::equal(&reply[0], &reply[0] + same, asked.begin()))
-    return tl::unexpected(WriteRefusal{});
+    return tl::unexpected(Refused{});
   return {};
 }
 

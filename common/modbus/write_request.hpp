@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <tl/expected.hpp>
 
 #include "common/base/span.hpp"
@@ -38,14 +37,8 @@ class WriteRequest {
   std::size_t size_ = 5;
 };
 
-/// Why a reply does not say that the value was written: the server's exception, or (empty) it does not answer
-/// the request.
-struct WriteRefusal {
-  std::optional<Exception> exception;
-};
-
 /// The value that a reply to FC 5, 6 or 22 repeats is not compared: some devices answer with what they made
 /// of it.
-tl::expected<void, WriteRefusal> check_reply(const WriteRequest& request, Bytes reply);
+tl::expected<void, Refused> check_reply(const WriteRequest& request, Bytes reply);
 
 }  // namespace coupler::modbus

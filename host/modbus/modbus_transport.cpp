@@ -9,13 +9,50 @@
 
 #include <fmt/format.h>
 
-#include "host/modbus/exception_code.hpp"
 #include "host/modbus/file_exchange.hpp"
 #include "host/modbus/open_socket.hpp"
 #include "host/modbus/raw_exchange.hpp"
 #include "host/modbus/wait_for.hpp"
 
 namespace coupler::driver {
+namespace {
+
+modbus::Function function_that_reads(Table table) {
+  switch (table) {
+    case Table::coils: return modbus::Function::read_coils;
+    case Table::discrete_inputs: return modbus::Function::read_discrete_inputs;
+    case Table::input_registers: return modbus::Function::read_input_registers;
+    case Table::holding_registers: break;
+  }
+  return modbus::Function::read_holding_registers;
+}
+
+Error receive_error(int error, std::chrono::milliseconds timeout) {
+  switch (error) {
+    case ETIMEDOUT: return Timeout{timeout};
+    case EMBBADDATA: return BadFrame{"not Modbus/TCP"};  // longer than an ADU can be
+    default: return TransportFailure{modbus_strerror(error)};
+  }
+}
+
+/// libmodbus looks at the function code to find a reply's end, and at nothing else of its header.
+Result<> check_adu(Span<const std::uint8_t> adu, const modbus::Frame& request) {
+  const bool is_modbus = adu.size() > modbus::mbap_size && modbus::get_u16(&adu[2]) == 0 &&
+                         modbus::get_u16(&adu[4]) == adu.size() - modbus::mbap_size + 1;
+  if (!is_modbus) return fail(BadFrame{"not Modbus/TCP"});
+  modbus::Frame header;
+  header.transaction = modbus::get_u16(&adu[0]);
+  header.unit = adu[6];
+  return check_header(header, request);
+}
+
+Result<> result(const tl::expected<void, modbus::Refused>& taken) {
+  if (taken) return {};
+  if (taken.error().exception) return fail(ExceptionReply{*taken.error().exception});
+  return fail(BadFrame{"not the answer to what was asked"});
+}
+
+}  // namespace
 
 ModbusTransport::ModbusTransport(const Connection& connection)
     : host_(connection.address),
@@ -72,43 +109,29 @@ void ModbusTransport::hang_up() {
   if (socket_ >= 0) ::shutdown(socket_, SHUT_RDWR);
 }
 
-Result<> ModbusTransport::result(int returned, std::uint32_t expected) const {
-  if (returned == static_cast<int>(expected)) return {};
-  if (returned >= 0) return fail(BadFrame{fmt::format("{} values instead of {}", returned, expected)});
-  const int error = errno;
-  if (error > MODBUS_ENOBASE && error <= EMBXGTAR)
-    return fail(ExceptionReply{static_cast<modbus::Exception>(error - MODBUS_ENOBASE)});
-  switch (error) {
-    case EMBBADEXC:  // a code above 0B, which libmodbus keeps to itself
-      return fail(ExceptionReply{modbus::Exception{}});
-    case ETIMEDOUT: return fail(Timeout{timeout_});
-    case EMBBADCRC:
-    case EMBBADDATA:
-    case EMBBADSLAVE:
-    case EMBMDATA:
-    case EMBUNKEXC: return fail(BadFrame{modbus_strerror(error)});
-    default: return fail(TransportFailure{modbus_strerror(error)});
-  }
-}
-
-Result<> ModbusTransport::with_code(Result<> answer, Table table, modbus::Range range) {
-  const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
-  if (exception == nullptr || exception->code != modbus::Exception{}) return answer;
-  const auto code = ask_for_exception(socket_, next_header(), timeout_, table, range);
-  if (!code) return tl::make_unexpected(code.error());
-  return fail(ExceptionReply{*code});
+Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
+  if (socket_ < 0) return fail(NotConnected{"not connected"});
+  if (auto sent = send_request(socket_, next_header(), request.pdu()); !sent)
+    return tl::make_unexpected(sent.error());
+  const int size = modbus_receive_confirmation(context_.get(), reply_.data());
+  if (size < 0) return tl::make_unexpected(receive_error(errno, timeout_));
+  const Span<const std::uint8_t> adu(reply_.data(), static_cast<std::size_t>(size));
+  if (auto ours = check_adu(adu, sent_); !ours) return tl::make_unexpected(ours.error());
+  return modbus::Bytes(adu.data() + modbus::mbap_size, adu.size() - modbus::mbap_size);
 }
 
 Result<> ModbusTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
-  auto* read = table == Table::coils ? modbus_read_bits : modbus_read_input_bits;
-  const int returned = read(context_.get(), range.start(), static_cast<int>(range.count()), bits);
-  return with_code(result(returned, range.count()), table, range);
+  const modbus::ReadRequest request(function_that_reads(table), range);
+  const auto reply = ask(request);
+  if (!reply) return tl::make_unexpected(reply.error());
+  return result(modbus::take_bits(request, *reply, bits));
 }
 
 Result<> ModbusTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
-  auto* read = table == Table::holding_registers ? modbus_read_registers : modbus_read_input_registers;
-  const int returned = read(context_.get(), range.start(), static_cast<int>(range.count()), registers);
-  return with_code(result(returned, range.count()), table, range);
+  const modbus::ReadRequest request(function_that_reads(table), range);
+  const auto reply = ask(request);
+  if (!reply) return tl::make_unexpected(reply.error());
+  return result(modbus::take_registers(request, *reply, registers));
 }
 
 modbus::Frame ModbusTransport::next_header() {
@@ -134,10 +157,7 @@ Result<> ModbusTransport::receive(const modbus::WriteRequest& request) {
   modbus::Framer framer;
   const auto reply = receive_reply(socket_, sent_, timeout_, answer_by_, framer);
   if (!reply) return tl::make_unexpected(reply.error());
-  const auto checked = modbus::check_reply(request, *reply);
-  if (checked) return {};
-  if (checked.error().exception) return fail(ExceptionReply{*checked.error().exception});
-  return fail(BadFrame{"not the answer to what was written"});
+  return result(modbus::check_reply(request, *reply));
 }
 
 Transport::Woken ModbusTransport::wait_until(Time time) {

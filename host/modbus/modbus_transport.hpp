@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <string>
 
 #include "common/map/map.hpp"
 #include "common/modbus/frame.hpp"
+#include "common/modbus/read_request.hpp"
 #include "host/core/transport.hpp"
 #include "host/modbus/deadline.hpp"
 #include "host/modbus/event.hpp"
@@ -16,8 +18,9 @@ struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for i
 
 namespace coupler::driver {
 
-/// One unit of a Modbus/TCP device. libmodbus reads. It cannot be asked to send a write and to receive the
-/// answer later, in another thread: those are ADUs of ours on the same socket. Connecting is ours too, since
+/// One unit of a Modbus/TCP device. libmodbus holds the connection and receives what is read. Requests are
+/// ADUs of ours, since it compares no unit id and keeps exception codes above 0B to itself, and cannot be
+/// asked to send a write and to receive the answer later, in another thread. Connecting is ours too:
 /// libmodbus's connect can be neither interrupted nor made to resolve names in the background.
 class ModbusTransport : public Transport {
  public:
@@ -47,11 +50,8 @@ class ModbusTransport : public Transport {
   void hang_up();
 
  private:
-  /// What a libmodbus call that should return `expected` came to.
-  Result<> result(int returned, std::uint32_t expected) const;
-  /// The answer to a read, with the exception code that libmodbus did not tell.
-  Result<> with_code(Result<> answer, Table table, modbus::Range range);
-  /// The header of the next request that is not libmodbus's.
+  /// The PDU that answers; valid until the next request.
+  Result<modbus::Bytes> ask(const modbus::ReadRequest& request);
   modbus::Frame next_header();
 
   std::string host_;
@@ -61,7 +61,8 @@ class ModbusTransport : public Transport {
   std::unique_ptr<_modbus, void (*)(_modbus*)> context_;
   Event interrupted_;
   Wakeup wakeup_;
-  modbus::Frame sent_;  ///< the header of the request that receive() awaits the answer to
+  modbus::Frame sent_;  ///< the header of the request whose answer is awaited
+  std::array<std::uint8_t, modbus::max_adu_size> reply_{};
   Deadline answer_by_{std::chrono::milliseconds(0)};
   std::mutex socket_mutex_;  ///< between closing the socket and interrupt(); never held during a request
   int socket_ = -1;

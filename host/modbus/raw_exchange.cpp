@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include <fmt/format.h>
+
 namespace coupler::driver {
 namespace {
 
@@ -32,6 +34,16 @@ Result<> receive_frame(int socket, std::chrono::milliseconds timeout, const Dead
 
 }  // namespace
 
+Result<> check_header(const modbus::Frame& reply, const modbus::Frame& request) {
+  if (reply.transaction != request.transaction) return fail(BadFrame{"the answer to another request"});
+  if (reply.unit != request.unit)
+    return fail(
+        BadFrame{fmt::format("unit {0} answered what unit {1} was asked; if the device is unit {0}, "
+                             "set `unit: {0}`",
+                             reply.unit, request.unit)});
+  return {};
+}
+
 Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu) {
   std::array<std::uint8_t, modbus::max_adu_size> adu{};
   modbus::put_header(to, pdu.size(), adu.data());
@@ -47,8 +59,7 @@ Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::ch
   if (auto received = receive_frame(socket, timeout, deadline, framer); !received)
     return tl::make_unexpected(received.error());
   const modbus::Frame& reply = framer.frame();
-  if (reply.transaction != to.transaction || reply.unit != to.unit)
-    return fail(BadFrame{"the answer to another request"});
+  if (auto answers = check_header(reply, to); !answers) return tl::make_unexpected(answers.error());
   if (framer.is_partial()) return fail(BadFrame{"more than one answer"});
   return reply.pdu;
 }

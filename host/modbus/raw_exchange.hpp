@@ -10,6 +10,9 @@
 
 namespace coupler::driver {
 
+/// BadFrame unless `reply` has the transaction and the unit of `request`.
+Result<> check_header(const modbus::Frame& reply, const modbus::Frame& request);
+
 /// Sends `pdu` with the header `to` on a connected, non-blocking socket. It never waits: what does not go out
 /// at once is an error.
 Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu);

@@ -84,8 +84,7 @@ TEST_F(ModbusTransportTest, An_exception_is_told_with_its_code_and_the_connectio
 TEST_F(ModbusTransportTest, Without_a_connection_a_request_fails) {
   transport.close();
   std::uint16_t word = 0;
-  EXPECT_TRUE(
-      is<TransportFailure>(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+  EXPECT_TRUE(is<NotConnected>(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
   EXPECT_TRUE(is<NotConnected>(transport.read_file_record(1, 0, {&word, 1})));
 }
 
@@ -141,7 +140,7 @@ TEST(ModbusTransport, An_exception_code_that_no_specification_has_is_told) {
   EXPECT_EQ(exception_in(transport.receive(request).error())->code, static_cast<modbus::Exception>(0x60));
 }
 
-TEST(ModbusTransport, A_code_that_libmodbus_keeps_to_itself_is_asked_for) {
+TEST(ModbusTransport, A_code_that_libmodbus_keeps_to_itself_is_told) {
   test::LoopbackServer odd([](int fd) {
     std::uint8_t query[12];
     if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
@@ -200,6 +199,30 @@ TEST(ModbusTransport, A_reply_to_another_request_is_a_bad_frame) {
   ASSERT_TRUE(transport.connect());
   std::uint16_t word = 0;
   EXPECT_TRUE(is<BadFrame>(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+}
+
+TEST(ModbusTransport, A_reply_whose_header_does_not_fit_is_a_bad_frame) {
+  struct Case {
+    const char* what;
+    std::size_t at;  // of the header
+    std::uint8_t value;
+  };
+  for (const Case& wrong : {Case{"protocol", 3, 1}, Case{"length", 5, 6}, Case{"unit", 6, 9}}) {
+    SCOPED_TRACE(wrong.what);
+    test::LoopbackServer sloppy([&wrong](int fd) {
+      std::uint8_t query[12];
+      if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+      std::uint8_t reply[] = {query[0], query[1], 0, 0, 0, 5, query[6], 3, 2, 0, 7};
+      reply[wrong.at] = wrong.value;
+      return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
+    });
+    ModbusTransport transport(connection_to(sloppy.port()));
+    ASSERT_TRUE(transport.connect());
+    std::uint16_t word = 0;
+    const auto read = transport.read_registers(Table::holding_registers, Range::of(1, 1), &word);
+    EXPECT_TRUE(is<BadFrame>(read));
+    EXPECT_EQ(word, 0);
+  }
 }
 
 TEST(ModbusTransport, A_device_that_hangs_up_is_a_transport_failure) {

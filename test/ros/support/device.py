@@ -40,20 +40,22 @@ class Device:
     """Serves four tables of 65536 elements. Replace `answer` by what is to happen instead; `requests` are those that
     came, but for the question for the identity, which it refuses as foreign couplers do."""
 
-    def __init__(self, port=0, connections=None):
+    def __init__(self, port=0, connections=None, address="127.0.0.1"):
         self.tables = {name: [0] * 65536 for name in READS.values()}
         self.requests = []
         self.accepted = 0
         self.answer = self.serve
         self.silent = False  # as a device that hangs: accepts everything and answers nothing
+        self.answers_per_connection = None  # then it hangs up
         self._limit = connections
         self._connections = []
         self._lock = threading.Lock()
         self._listener = None
         self.port = port
+        self.address = address
 
     def start(self):
-        self._listener = socket.create_server(("127.0.0.1", self.port))
+        self._listener = socket.create_server((self.address, self.port))
         self.port = self._listener.getsockname()[1]
         threading.Thread(target=self._accept, args=(self._listener,), daemon=True).start()
         return self
@@ -77,6 +79,9 @@ class Device:
             except OSError:
                 pass
             connection.close()
+
+    def allow(self, connections):
+        self._limit = connections
 
     def __enter__(self):
         return self.start()
@@ -133,9 +138,10 @@ class Device:
 
     def _talk(self, connection):
         try:
+            answered = 0
             with connection.makefile("rb") as stream:
-                while self._exchange(connection, stream):
-                    pass
+                while answered != self.answers_per_connection and self._exchange(connection, stream):
+                    answered += 1
         except OSError:
             pass
         with self._lock:
