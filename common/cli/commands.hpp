@@ -16,5 +16,6 @@ void add_export(CLI::App& program, Exit& exit);
 void add_generate(CLI::App& program, Exit& exit);
 void add_import(CLI::App& program, Exit& exit);
 void add_plan(CLI::App& program, Exit& exit);
+void add_schema(CLI::App& program, Exit& exit);
 
 }  // namespace coupler::cli

@@ -22,8 +22,8 @@ constexpr double most_double = std::numeric_limits<double>::max();
 
 constexpr Key keys[] = {
     // The map: the origin's keys.
-    origin("name", S::map, K::text, "press", "namespace of the topics").needed(),
-    origin("address", S::map, K::text, "192.168.0.10", "host name or IP address of the coupler"),
+    origin("name", S::map, K::ros_name, "press", "namespace of the topics").needed(),
+    origin("address", S::map, K::host, "192.168.0.10", "host name or IP address of the coupler"),
     origin("port", S::map, K::integer, "502", "TCP port").otherwise("502").within(1, 65535),
     origin("unit", S::map, K::integer, "1", "unit id").otherwise("1").within(0, 255),
     origin("timeout", S::map, K::seconds, "3", "longest wait for a reply")
@@ -65,7 +65,7 @@ constexpr Key keys[] = {
         .lists(S::wire),
     project("reserve", S::map, K::section, "[{table: coils, from: 8, to: 15}]", "addresses kept free")
         .lists(S::area),
-    project("listen", S::map, K::text, "127.0.0.1", "interface of the node"),
+    project("listen", S::map, K::host, "127.0.0.1", "interface of the node"),
     project("allow", S::map, K::list, "[192.168.0.0/24, 10.0.0.7]", "who may connect to the node"),
     project("watchdog", S::map, K::section, "{timeout: 500ms}", "safe state when the master is silent")
         .holds(S::watchdog),
@@ -131,7 +131,6 @@ constexpr Key keys[] = {
         .one_of("off|on|hold"),
     project("active_low", bits | line, K::boolean, "true", "on is the low level").otherwise("false"),
     project("bias", bits | line, K::choice, "pull_up", "the line's resistor")
-        .otherwise("none")
         .one_of("none|pull_up|pull_down"),
     project("drive", S::coil | S::coil_line, K::choice, "open_drain", "how the line is driven")
         .otherwise("push_pull")

@@ -54,6 +54,8 @@ enum class ValueKind : std::uint8_t {
   number,
   boolean,
   text,
+  ros_name,  ///< text: a relative ROS name
+  host,      ///< text without blanks
   choice,
   preset,    ///< the name of one
   duration,  ///< with a unit

@@ -60,7 +60,7 @@ class TheCall(Cli):
         self.assertIn("--out", self.refused("generate", self.file("cell.yaml", GOOD)))
 
     def test_for_help_shows_an_example(self):
-        for command in ([], ["check"], ["export"], ["generate"], ["import"], ["plan"]):
+        for command in ([], ["check"], ["export"], ["generate"], ["import"], ["plan"], ["schema"]):
             done = self.coupler(*command, "--help")
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             self.assertIn("Example:\n  coupler " + "".join(command), done.stdout)
@@ -69,6 +69,20 @@ class TheCall(Cli):
         done = self.coupler("--version")
         self.assertEqual(done.returncode, 0)
         self.assertRegex(done.stdout, r"^coupler \d+\.\d+\.\d+\n$")
+
+
+class Schema(Cli):
+    def test_it_is_printed_or_written(self):
+        done = self.coupler("schema")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(json.loads(done.stdout)["$schema"], "http://json-schema.org/draft-07/schema#")
+        self.assertEqual(self.coupler("schema", "--out", "s.json").returncode, 0)
+        self.assertEqual((self.folder / "s.json").read_text(encoding="utf-8"), done.stdout)
+
+    def test_a_file_that_cannot_be_written_is_told(self):
+        done = self.coupler("schema", "--out", "nowhere/s.json")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("nowhere/s.json", done.stderr)
 
 
 class Check(Cli):

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The patterns are those of ECMAScript, which std::regex knows.
+#include "common/schema/pattern.hpp"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "common/map/loader/names.hpp"
+#include "common/map/loader/scalar.hpp"
+
+namespace coupler::schema {
+namespace {
+
+bool matches(const std::string& text, std::string_view pattern) {
+  return std::regex_match(text, std::regex(std::string(pattern)));
+}
+
+TEST(Pattern, Of_names_takes_what_the_loader_takes) {
+  for (const char* name : {"a", "A9_", "a/b", "a/9", "a/_", "", "9", "_a", "/a", "a/", "a//b", "a b", "ä"})
+    EXPECT_EQ(matches(name, ros_name), loader::is_relative_ros_name(name)) << name;
+}
+
+TEST(Pattern, Of_durations_takes_what_the_loader_takes) {
+  for (const char* text :
+       {"1s", "500ms", "2.5min", "40us", ".5s", "1.s", "1", "s", "1 s", "-1s", "1h", "1..5s", ""})
+    EXPECT_EQ(matches(text, duration), loader::parse_duration(text).has_value()) << text;
+}
+
+TEST(Pattern, Of_words_takes_them_in_any_case) {
+  const std::string pattern = any_case({"utf-8", "ascii"});
+  for (const char* good : {"utf-8", "UTF_8", "utf8", "Ascii"}) EXPECT_TRUE(matches(good, pattern)) << good;
+  for (const char* bad : {"utf", "utf-88", "asci", ""}) EXPECT_FALSE(matches(bad, pattern)) << bad;
+}
+
+}  // namespace
+}  // namespace coupler::schema
