@@ -40,7 +40,10 @@ Result<> Device::do_what_is_due(Time now) {
     answer = reader_.probe();
   else
     return {};
-  if (answer) came_online();
+  if (answer && transport_.replies() > replies_at_connect_) {
+    identity_suffices_ = true;
+    came_online();
+  }
   return answer;
 }
 
@@ -75,7 +78,8 @@ Time Device::connect() {
   }
   connected_ = true;
   reader_.start();
-  if (verify_ != Verify::off) came_online();
+  replies_at_connect_ = transport_.replies();
+  if (verify_ != Verify::off && identity_suffices_) came_online();
   return due();
 }
 
@@ -143,6 +147,7 @@ void Device::lost(const Error& error) {
   statistics_.offline(why);
   qualities_.online(false);
   if (std::exchange(online_, false)) {
+    identity_suffices_ = transport_.replies() > replies_at_connect_;
     sink_.on_online(false);
     sink_.on_report(Level::warning, fmt::format("connection lost: {}; connecting again", why));
   } else if (why != last_trouble_) {

@@ -76,6 +76,10 @@ class Device {
   bool linked_ = false;     ///< there is a connection, to the device or to its gateway
   bool connected_ = false;  ///< proven equal; reads and writes may go out
   bool online_ = false;     ///< connected, and the device has answered
+  /// Of PacedTransport, when the connection had been proven equal.
+  std::uint64_t replies_at_connect_ = 0;
+  /// To be online; not of a device that the last time answered nothing after it: its online would flicker.
+  bool identity_suffices_ = true;
   Time retry_at_ = Time::min();
   std::string last_trouble_;               ///< why the last attempt failed, so that it is told once
   bool silence_told_ = false;              ///< that the identity was not answered, and the remedy

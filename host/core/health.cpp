@@ -13,7 +13,8 @@ constexpr std::size_t names_at_most = 5;
 
 /// Whether a point's value is missing, and not because nobody could read it.
 bool is_missing(const Point& point, State state) {
-  return is_readable(point) && state != State::good && state != State::never_read;
+  return is_readable(point) && state != State::good && state != State::never_read &&
+         state != State::not_wanted;
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ Result<> PacedTransport::answered(Result<> result) {
   answered_ = clock_.now();
   ready_ = gap_ > Duration::zero() ? answered_ + gap_ : Time::min();
   statistics_.answered(answered_ - begun_, result);
+  if (result || exception_in(result.error()) != nullptr) ++replies_;
   return result;
 }
 

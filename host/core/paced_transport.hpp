@@ -35,6 +35,8 @@ class PacedTransport : public Transport {
   bool is_ready() const { return clock_.now() >= ready_; }
   /// When the last request was answered, well or not.
   Time last_answer() const { return answered_; }
+  /// How many requests have been answered, be it by an exception.
+  std::uint64_t replies() const { return replies_; }
 
  private:
   void pause();
@@ -53,6 +55,7 @@ class PacedTransport : public Transport {
   Time ready_ = Time::min();  ///< no request before
   Time begun_{};              ///< the request in flight
   Time answered_{};
+  std::uint64_t replies_ = 0;
 };
 
 }  // namespace coupler::driver

@@ -16,6 +16,7 @@ std::string_view to_string(State state) {
     case State::exception: return "exception";
     case State::rejected: return "rejected";
     case State::offline: return "offline";
+    case State::not_wanted: return "not wanted";
   }
   return "?";
 }

@@ -21,7 +21,8 @@ struct PointQuality {
     never_read,  ///< since the program began
     exception,   ///< the last question was answered with an exception
     rejected,    ///< the device does not have it: not asked for again while the connection lasts
-    offline      ///< the device does not answer
+    offline,     ///< the device does not answer
+    not_wanted   ///< nobody listens to it, so that it is not read
   };
   State state = State::never_read;
   std::optional<Time> last_good{};                    ///< of the last value

@@ -14,6 +14,8 @@
 namespace coupler::driver {
 namespace {
 
+using State = PointQuality::State;
+
 constexpr auto diagnostics_interval = std::chrono::seconds(1);
 
 std::string topic(const Map& map, std::string_view point) { return fmt::format("{}/{}", map.name, point); }
@@ -60,9 +62,10 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, std::unique_
 void DeviceTopics::report(Time now) {
   const DeviceSnapshot device = thread_.statistics();
   std::vector<PointQuality> points = thread_.qualities();
-  for (std::uint32_t i = 0; i < points.size(); ++i)  // not old, but not asked for
-    if (points[i].state == PointQuality::State::stale && listeners_.is_unwanted(i))
-      points[i].state = PointQuality::State::never_read;
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (const auto state = points[i].state; is_readable(map_.points[i]) && listeners_.is_unwanted(i) &&
+                                            (state == State::stale || state == State::never_read))
+      points[i].state = State::not_wanted;
   status_.update(device, points, now);
   if (diagnosed_ != Time::min() && now - diagnosed_ < diagnostics_interval) return;
   diagnosed_ = now;

@@ -18,7 +18,8 @@ static_assert(static_cast<int>(State::good) == PointStatus::GOOD &&
               static_cast<int>(State::never_read) == PointStatus::NEVER_READ &&
               static_cast<int>(State::exception) == PointStatus::EXCEPTION &&
               static_cast<int>(State::rejected) == PointStatus::REJECTED &&
-              static_cast<int>(State::offline) == PointStatus::OFFLINE);
+              static_cast<int>(State::offline) == PointStatus::OFFLINE &&
+              static_cast<int>(State::not_wanted) == PointStatus::NOT_WANTED);
 
 template <class T, class U>
 bool assign(T& field, const U& value) {

@@ -3,11 +3,13 @@
 import time
 
 import rospy
+from coupler_driver.msg import PointStatus
 from coupler_driver.srv import Read
 from std_msgs.msg import Int16
 
 from support import process, testing
 from support.device import Device
+from support.latest import LatestStatus
 from support.topics import wait_until
 
 MAP = """
@@ -51,6 +53,15 @@ class Subscribed(testing.RosTest):
         self.assertEqual(self.asked(), {0, 100})
         far.close()
         wait_until(lambda: self.asked() == {0}, "the last one to leave to be noticed")
+
+    def test_status_says_which_points_nobody_wants(self):
+        status = LatestStatus("quiet")
+        self.addCleanup(status.close)
+        status.quality("far", PointStatus.NOT_WANTED)
+        far = self.topic("/quiet/far", Int16)
+        status.quality("far", PointStatus.GOOD)
+        far.close()
+        status.quality("far", PointStatus.NOT_WANTED)
 
     def test_a_read_asks_for_its_point_once(self):
         rospy.wait_for_service("/quiet/read", 20)

@@ -19,9 +19,14 @@ class TimedDevice : public FakeDevice {
  public:
   explicit TimedDevice(FakeClock& clock) : clock_(clock) {}
   Duration reply_time{0};
+  bool is_mute = false;  ///< answers the question for its identity only
 
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override {
     clock_.advance(reply_time);
+    if (is_mute && range.start() < identity::reserved.start()) {
+      requests.emplace_back("unanswered");
+      return fail(Timeout{std::chrono::milliseconds(3000)});
+    }
     return FakeDevice::read_registers(table, range, registers);
   }
 

@@ -44,6 +44,17 @@ TEST_F(DeviceTest, Without_an_identity_check_it_is_online_after_the_first_reply)
   EXPECT_EQ(device.count("read input_registers 65280+13"), 0U);
 }
 
+TEST_F(DeviceTest, A_device_that_answers_nothing_but_the_question_for_its_identity_does_not_flicker) {
+  device.is_mute = true;
+  start(MapBuilder().holding("a", 5));
+  run_for(std::chrono::seconds(20));
+  EXPECT_THAT(sink->online, ElementsAre(true, false));
+  EXPECT_LE(device.count("connect"), 10U) << "it is asked less and less often";
+  device.is_mute = false;
+  run_for(std::chrono::seconds(6));
+  EXPECT_THAT(sink->online, ElementsAre(true, false, true));
+}
+
 TEST_F(DeviceTest, A_refused_connection_is_tried_again_with_growing_waits_and_reported_once) {
   device.refuse_connect = NotConnected{"refused"};
   start(MapBuilder().holding("a", 5));

@@ -51,8 +51,8 @@ TEST_F(HealthTest, No_value_at_all_is_an_error) {
   EXPECT_EQ(polling({State::exception, State::rejected, State::stale}).level, Level::error);
 }
 
-TEST_F(HealthTest, What_nobody_has_read_yet_is_no_trouble) {
-  EXPECT_EQ(polling({State::good, State::never_read, State::never_read}).level, Level::info);
+TEST_F(HealthTest, What_nobody_has_read_yet_or_wants_to_is_no_trouble) {
+  EXPECT_EQ(polling({State::good, State::never_read, State::not_wanted}).level, Level::info);
 }
 
 TEST_F(HealthTest, Cycles_that_were_left_out_are_a_warning_while_they_happen) {
