@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "common/map/diagnostic.hpp"
-
 namespace coupler {
 
 /// What the lock of a map is read for.
