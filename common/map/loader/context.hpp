@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "common/map/loader/problems.hpp"
 #include "common/map/owned_map.hpp"
 
@@ -9,7 +11,8 @@ namespace coupler::loader {
 /// What all readers of one file share.
 struct Context {
   Problems& problems;
-  OwnedMap& map;  ///< keeps the texts that points refer to
+  OwnedMap& map;                   ///< keeps the texts that points refer to
+  std::vector<int> point_lines{};  ///< LoadResult::point_lines
   bool only_origin =
       false;  ///< the file uses no key of this project: what the origin would ignore is a warning
 

@@ -59,6 +59,7 @@ LoadResult load_map_with_lock(std::string_view text, std::string_view file, Lock
   LoadResult result{nullptr, std::move(placement.problems)};
   if (!problems.has_errors() && !has_errors(result.diagnostics)) {
     result.map = map;
+    result.point_lines = std::move(context.point_lines);
     result.lock = std::move(placement.renewed);
   }
   for (Diagnostic& diagnostic : std::move(problems).sorted())

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/map/diagnostic.hpp"
 #include "common/map/loader/lock_file.hpp"
@@ -14,6 +15,9 @@ struct LoadResult {
   MapPtr map;               ///< null if there are errors
   Diagnostics diagnostics;  ///< those of the lock, then in the order of the file
   NewLock lock{};           ///< what has to be written if there are no errors
+  /// Where Map::points[i] stands in the file, from 1. Beside the model: how a file is laid out is not what a
+  /// map means.
+  std::vector<int> point_lines{};
 };
 
 /// Reads a map from YAML or JSON text; `file` names it in the diagnostics. Every problem is reported, not the

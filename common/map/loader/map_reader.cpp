@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -104,6 +105,16 @@ void check_points(const DraftPoints& points, const Limits& limits, bool addressi
   if (!addressing_given) warn_of_modicon_numbers(points, context);
 }
 
+/// For the points in the map's order; their names are unique.
+std::vector<int> lines_of(Span<const Point> points, const DraftPoints& drafts) {
+  std::unordered_map<std::string_view, int> line_of;
+  for (const DraftPoint& draft : drafts) line_of.emplace(draft.point.name, draft.name_at.line);
+  std::vector<int> lines;
+  lines.reserve(points.size());
+  for (const Point& point : points) lines.push_back(line_of.at(point.name));
+  return lines;
+}
+
 }  // namespace
 
 void read_map(const Entry& file, std::string_view text, Placement& placement, Context& context) {
@@ -148,6 +159,7 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   finished.reserve(drafts.size());
   for (const DraftPoint& draft : drafts) finished.push_back(draft.point);
   context.map.finish(head, std::move(finished), std::move(sim));
+  context.point_lines = lines_of(context.map.map().points, drafts);
 }
 
 }  // namespace coupler::loader

@@ -30,6 +30,21 @@ TEST(Load, Points_are_in_the_order_of_the_fingerprint) {
   EXPECT_EQ(owned->map().fingerprint, fingerprint(points));
 }
 
+TEST(Load, The_line_of_a_point_is_where_its_name_stands) {
+  const LoadResult result = load_map(
+      "name: press\n"
+      "mapping:\n"
+      "  holding_registers:\n"
+      "    speed: {address: 0, type: INT}\n"
+      "  coils:\n"
+      "    lamp: 7\n"
+      "    valve:\n"
+      "      address: 3\n",
+      "map.yaml");
+  EXPECT_EQ(result.point_lines, (std::vector<int>{7, 6, 4})) << "as the points: valve, lamp, speed";
+  EXPECT_TRUE(load_map("name: press\nmapping: {coils: {a: -1}}\n", "map.yaml").point_lines.empty());
+}
+
 TEST(Load, Empty_tables_and_an_empty_mapping_are_no_mistake) {
   EXPECT_EQ(test::load_clean("name: press\nmapping:\n  coils:\n  discrete_inputs: {}\n")->map().points.size(),
             0U);
