@@ -32,10 +32,12 @@ constexpr std::string_view style = R"(
 .coupler-plan .column { fill: #999; font-size: 9px; text-anchor: middle }
 .coupler-plan .name { fill: #fff; font-size: 10px; text-anchor: middle }
 .coupler-plan .name.unread { fill: #444 }
+.coupler-plan .none { fill: #666 }
 .coupler-plan .row { fill: #f3f3f3 }
 .coupler-plan .request { fill-opacity: .18; stroke-width: 1.5 }
 .coupler-plan .point { stroke: #fff; stroke-width: .7 }
 .coupler-plan .unread-point { fill: #fff; stroke: #666; stroke-dasharray: 3 2 }
+.coupler-plan .paper { fill: #fff }
 .coupler-plan .hole { fill: url(#coupler-plan-hole) }
 .coupler-plan .unreadable { fill: url(#coupler-plan-unreadable) }
 )";
@@ -71,7 +73,8 @@ std::string heading(Table table) {
 
 class Picture {
  public:
-  Picture(const Map& map, const std::vector<GroupPlan>& plan) : map_(map), plan_(plan) {
+  Picture(const Map& map, const std::vector<GroupPlan>& plan, const PictureOptions& options)
+      : map_(map), plan_(plan), options_(options) {
     std::size_t rows = 0;
     for (const Table table : tables) rows += TableLayout(shown(table), large, 0).rows().size();
     scale_ = rows <= 40 ? large : small;
@@ -87,7 +90,7 @@ class Picture {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" "
         "height=\"{1:g}\" "
         "role=\"img\" class=\"coupler-plan\">\n<title>{2}: how it is read</title>\n<style>{3}</style>\n{4}"
-        "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{5}</svg>\n",
+        "<rect width=\"100%\" height=\"100%\" class=\"paper\"/>\n{5}</svg>\n",
         width, y_ + margin, escaped(map_.name), style, patterns, out_);
   }
 
@@ -113,9 +116,13 @@ class Picture {
 
   void draw(Table table) {
     const auto ranges = shown(table);
-    if (ranges.empty()) return;
+    if (ranges.empty() && !options_.every_table) return;
     y_ += 34;
     text(margin, y_, "table", heading(table));
+    if (ranges.empty()) {
+      text(TableLayout::left, y_, "none", "no points");
+      return;
+    }
     const TableLayout layout(ranges, scale_, y_ + 18);
     for (std::uint32_t i = 0; i < scale_.columns; i += scale_.names ? 1 : 8)
       text(TableLayout::left + scale_.cell * (i + 0.5), y_ + 13, "column", fmt::format("+{}", i));
@@ -180,6 +187,8 @@ class Picture {
         read ? fmt::format(", {:g} Hz", rate_of(map_, point))
              : fmt::format(", not read: {}", to_string(*why_not_read(map_, point))),
         point.description.empty() ? "" : fmt::format("; {}", point.description));
+    if (!options_.link.empty())
+      out_ += fmt::format("<a href=\"{}{}\">\n", escaped(options_.link), point.name);
     bool named = false;
     for (const Box& whole : layout.boxes(place_of)) {
       const Box cell = whole.inset(scale_.names ? 4 : 2.5).part(i, count);
@@ -191,6 +200,7 @@ class Picture {
                                           : std::string(point.name.substr(0, fitting - 1)) + "…");
       named = true;
     }
+    if (!options_.link.empty()) out_ += "</a>\n";
   }
 
   void legend() {
@@ -229,6 +239,7 @@ class Picture {
 
   const Map& map_;
   const std::vector<GroupPlan>& plan_;
+  const PictureOptions& options_;
   Scale scale_ = large;
   double y_ = 0;
   std::string out_;
@@ -236,6 +247,8 @@ class Picture {
 
 }  // namespace
 
-std::string picture(const Map& map, const std::vector<GroupPlan>& plan) { return Picture(map, plan).draw(); }
+std::string picture(const Map& map, const std::vector<GroupPlan>& plan, const PictureOptions& options) {
+  return Picture(map, plan, options).draw();
+}
 
 }  // namespace coupler::plan

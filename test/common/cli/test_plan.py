@@ -86,6 +86,13 @@ class Plan(Cli):
         titles = [title.text for title in root.iter("{http://www.w3.org/2000/svg}title")]
         self.assertIn("level: REAL, 0 to 1, 100 Hz", titles)
 
+    def test_draws_the_picture_that_the_documentation_shows(self):
+        source = pathlib.Path(os.environ["SOURCE_DIR"])
+        drawn = self.coupler("plan", str(source / "config/foreign-coupler.yaml"), "--svg", "plan.svg")
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.assertEqual((self.folder / "plan.svg").read_text("utf-8"), (source / "docs/plan.svg").read_text("utf-8"),
+                         "coupler plan config/foreign-coupler.yaml --svg docs/plan.svg makes it anew")
+
     def test_of_a_picture_that_cannot_be_written_says_so(self):
         done = self.plan("--svg", "no/such/folder.svg")
         self.assertEqual((done.returncode, done.stdout), (2, ""))

@@ -56,6 +56,15 @@ TEST(Picture, It_shows_points_requests_and_holes) {
   EXPECT_THAT(svg, Not(HasSubstr("discrete inputs"))) << "a table without points";
 }
 
+TEST(Picture, On_request_it_shows_every_table_and_links_the_points) {
+  const auto owned = MapBuilder().many(hr, 0, 2).build();
+  const std::string svg = picture(owned->map(), make_read_plan(owned->map()), {true, "#point-"});
+  EXPECT_THAT(svg, HasSubstr(">discrete inputs<"));
+  EXPECT_THAT(svg, HasSubstr(">no points<"));
+  EXPECT_THAT(svg, HasSubstr("<a href=\"#point-holding_registers_1\">"));
+  EXPECT_THAT(drawn(MapBuilder().many(hr, 0, 2)), Not(HasSubstr("<a ")));
+}
+
 TEST(Picture, What_is_not_read_is_shown_as_such) {
   static const Unreadable area[] = {{hr, Range::of(3, 2)}};
   auto builder = MapBuilder().many(hr, 0, 1).add(hr, "command", 1, codec::Type::UINT,
