@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 
-# coupler_add_map(NAME map.yaml): both sides of a coupler from one map.
+# coupler_add_map(NAME map.yaml [DOCS]): both sides of a coupler from one map.
 #   NAME_map     library: the map as constant data, coupler::maps::NAME::map in "NAME_map.hpp"
 #   NAME_node    program: the node that serves it (links no YAML parser)
 #   NAME_driver  program: the ROS driver for it, where the ROS driver itself is built
+#   NAME_docs    with DOCS: its register map for people, NAME.md and NAME.html in NAME_generated
 # The map's lock, map.yaml.lock, must be up to date if the map leaves addresses out (`coupler check map.yaml`).
 # Both programs link the same NAME_map, so they cannot disagree. Works in this tree and in a project that adds this
 # tree by add_subdirectory(). A cross build cannot run the `coupler` that it makes; it is given one that runs here.
@@ -14,6 +15,10 @@ if(CMAKE_CROSSCOMPILING AND NOT COUPLER_HOST_COUPLER)
 endif()
 
 function(coupler_add_map name map)
+  cmake_parse_arguments(PARSE_ARGV 2 add "DOCS" "" "")
+  if(add_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "coupler_add_map(${name}): '${add_UNPARSED_ARGUMENTS}' is no option of it; it knows DOCS")
+  endif()
   get_filename_component(map ${map} ABSOLUTE BASE_DIR ${CMAKE_CURRENT_SOURCE_DIR})
   set(out ${CMAKE_CURRENT_BINARY_DIR}/${name}_generated)
   set(stamp ${out}/${name}.stamp)
@@ -51,5 +56,15 @@ function(coupler_add_map name map)
     add_executable(${name}_driver ${out}/${name}_driver.cpp)
     target_link_libraries(${name}_driver PRIVATE ${name}_map coupler_driver_program)
     add_dependencies(${name}_driver ${name}_generate)
+  endif()
+
+  if(add_DOCS)
+    set(docs_stamp ${out}/${name}_docs.stamp)
+    add_custom_command(OUTPUT ${docs_stamp} BYPRODUCTS ${out}/${name}.html ${out}/${name}.md
+      COMMAND ${generator} generate ${map} --docs --out ${out} --name ${name} --quiet --locked
+      COMMAND ${CMAKE_COMMAND} -E touch ${docs_stamp}
+      DEPENDS ${map} ${lock} ${out}/${name}.lock_found ${generator}
+      COMMENT "Documenting ${name}" VERBATIM)
+    add_custom_target(${name}_docs ALL DEPENDS ${docs_stamp})
   endif()
 endfunction()

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/App.hpp>
@@ -13,6 +14,7 @@
 
 #include "common/cli/commands.hpp"
 #include "common/cli/locked_map.hpp"
+#include "common/cli/map_pages.hpp"
 #include "common/cli/report.hpp"
 #include "common/generate/identifier.hpp"
 #include "common/generate/output.hpp"
@@ -26,6 +28,8 @@ struct Arguments {
   std::string map;
   std::string out;
   std::string name;
+  std::string source_url;
+  bool docs = false;
   bool quiet = false;
   bool locked = false;
 };
@@ -35,15 +39,17 @@ Exit complain(Exit exit, std::string_view what, std::string_view remedy) {
   return exit;
 }
 
-Exit write(const Arguments& arguments, const Map& map, const generate::Stamp& stamp) {
+fs::path folder_of(const Arguments& arguments) { return arguments.out.empty() ? "." : arguments.out; }
+
+Exit write(const Arguments& arguments, const std::vector<generate::File>& files) {
   constexpr auto remedy = "give a folder that you may write to with --out";
   std::error_code failed;
-  fs::create_directories(arguments.out, failed);
+  fs::create_directories(folder_of(arguments), failed);
   if (failed)
     return complain(bad_call, fmt::format("cannot make the folder {}: {}", arguments.out, failed.message()),
                     remedy);
-  for (const generate::File& file : generate::generate(map, stamp)) {
-    const fs::path path = fs::path(arguments.out) / file.name;
+  for (const generate::File& file : files) {
+    const fs::path path = (folder_of(arguments) / file.name).lexically_normal();
     const auto outcome = generate::write_if_changed(path, file.content);
     if (!outcome) return complain(bad_call, outcome.error(), remedy);
     if (!arguments.quiet)
@@ -53,16 +59,23 @@ Exit write(const Arguments& arguments, const Map& map, const generate::Stamp& st
 }
 
 Exit run(const Arguments& arguments) {
+  if (!is_url_part(arguments.source_url))
+    return complain(bad_call, fmt::format("'{}' is no part of a URL", arguments.source_url),
+                    "write what a URL cannot hold as %XX");
   const LoadResult loaded = load_and_lock(arguments.map, arguments.locked);
   print(loaded.diagnostics);
   std::fputs(lock_report(loaded.lock).c_str(), stdout);
   if (!loaded.map) return bad_input;
-  const Map& map = loaded.map->map();
   const std::string source =
       arguments.map == "-" ? "standard input" : fs::path(arguments.map).filename().string();
-  const generate::Stamp stamp{arguments.name.empty() ? std::string(map.name) : arguments.name, source,
-                              COUPLER_VERSION};
-  if (generate::is_identifier(stamp.name)) return write(arguments, map, stamp);
+  const Map& map = loaded.map->map();
+  const std::string name = arguments.name.empty() ? std::string(map.name) : arguments.name;
+  if (arguments.docs)
+    return write(
+        arguments,
+        map_pages({arguments.map, folder_of(arguments), name, source, arguments.source_url}, loaded));
+  const generate::Stamp stamp{name, source, COUPLER_VERSION};
+  if (generate::is_identifier(stamp.name)) return write(arguments, generate::generate(map, stamp));
   const auto remedy = "give one with --name: letters, digits and underscores, a letter first, no word of C++";
   if (!arguments.name.empty())
     return complain(bad_call, fmt::format("'{}' cannot name C++ code", stamp.name), remedy);
@@ -78,13 +91,22 @@ void add_generate(CLI::App& program, Exit& exit) {
   command->add_option("MAP", arguments->map, "YAML or JSON file; - is standard input")
       ->required()
       ->type_name("");
-  command->add_option("--out", arguments->out, "Folder for the files; made if it is not there")
-      ->required()
-      ->type_name("DIR");
+  auto* out =
+      command
+          ->add_option("--out", arguments->out,
+                       "Folder for the files; made if it is not there. With --docs, if not given: this one")
+          ->type_name("DIR");
   command
       ->add_option("--name", arguments->name,
                    "What the files and the C++ namespace are called; default: the map's name")
       ->type_name("NAME");
+  auto* docs = command->add_flag("--docs", arguments->docs,
+                                 "Instead: NAME.md and NAME.html, the register map for people");
+  command
+      ->add_option("--source-url", arguments->source_url,
+                   "With --docs: where the map is on a forge; links go to this, its name and #L12")
+      ->needs(docs)
+      ->type_name("PREFIX");
   command->add_flag("--locked", arguments->locked,
                     "Do not write the map's lock; one that is missing or not up to date is an error");
   command->add_flag("--quiet", arguments->quiet, "Say nothing of files when all is well");
@@ -92,9 +114,13 @@ void add_generate(CLI::App& program, Exit& exit) {
       "Example:\n  coupler generate device.yaml --out generated\n"
       "makes device_map.hpp, device_map.cpp, device_node.cpp and device_driver.cpp. Files that would not "
       "change are "
-      "not touched.\nIn a CMake build, coupler_add_map(device device.yaml) does this and builds the "
+      "not touched.\n  coupler generate device.yaml --docs\nmakes device.md and device.html.\nIn a CMake "
+      "build, coupler_add_map(device device.yaml) does this and builds the "
       "programs.");
-  command->callback([arguments, &exit] { exit = run(*arguments); });
+  command->callback([arguments, out, &exit] {
+    if (out->empty() && !arguments->docs) throw CLI::RequiredError(out->get_name());
+    exit = run(*arguments);
+  });
 }
 
 }  // namespace coupler::cli

@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "common/pages/ros_message.hpp"
+
 namespace coupler::driver {
 namespace {
 
@@ -34,6 +36,23 @@ TEST(Message, Arrays_have_the_array_message_of_their_type) {
   EXPECT_TRUE(is_carried_by<std_msgs::Float32MultiArray>(point_of(codec::Type::REAL, 2)));
   EXPECT_TRUE(is_carried_by<coupler_driver::BoolArray>(point_of(codec::Type::WORD, 2)));
   EXPECT_TRUE(is_carried_by<coupler_driver::BoolArray>(point_of(codec::Type::BOOL, 2, Table::coils)));
+}
+
+TEST(Message, The_pages_of_a_map_name_the_type_of_every_message) {
+  using codec::Type;
+  for (const Type type : {Type::BOOL, Type::BYTE, Type::WORD, Type::DWORD, Type::LWORD, Type::SINT, Type::INT,
+                          Type::DINT, Type::LINT, Type::USINT, Type::UINT, Type::UDINT, Type::ULINT,
+                          Type::REAL, Type::LREAL, Type::CHAR, Type::STRING})
+    for (const std::uint16_t count : {std::uint16_t{1}, std::uint16_t{3}})
+      for (const double gain : {1.0, 0.1}) {
+        if (count > 1 && (codec::width(type) <= 8) && type != Type::BOOL) continue;  // no arrays of these
+        Point point = point_of(type, count, type == Type::BOOL ? Table::coils : Table::holding_registers);
+        if (codec::is_scalable(type)) point.scale.gain = gain;
+        const std::string carried = with_message(point, [](auto kind) {
+          return std::string(ros::message_traits::DataType<typename decltype(kind)::Message>::value());
+        });
+        EXPECT_EQ(pages::ros_message(point), carried) << codec::to_string(type) << " × " << count;
+      }
 }
 
 TEST(Message, An_array_has_one_dimension_with_the_points_name) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/cli/map_pages.hpp"
+
+#include <algorithm>
+
+#include "common/pages/escape.hpp"
+#include "common/pages/html.hpp"
+#include "common/pages/markdown.hpp"
+
+namespace coupler::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string url_of_map(const PagesRequest& request) {
+  if (request.map == "-") return {};
+  const fs::path map = fs::absolute(request.map).lexically_normal();
+  if (request.source_url.empty())
+    return pages::url_path(map.lexically_relative(fs::absolute(request.out).lexically_normal()).string());
+  const bool ended = request.source_url.back() == '/';
+  return request.source_url + (ended ? "" : "/") + pages::url_path(map.filename().string());
+}
+
+}  // namespace
+
+std::vector<generate::File> map_pages(const PagesRequest& request, const LoadResult& loaded) {
+  const auto document = pages::make_document(loaded.map->map(), loaded.point_lines,
+                                             {request.source, url_of_map(request), COUPLER_VERSION});
+  std::string name = request.name;
+  std::replace(name.begin(), name.end(), '/', '_');  // maps may be called hall/press
+  return {{name + ".html", pages::html_page(document)}, {name + ".md", pages::markdown_page(document)}};
+}
+
+bool is_url_part(std::string_view text) {
+  constexpr std::string_view refused = "<>\"\\^`{|}";
+  return std::none_of(text.begin(), text.end(), [&](char c) {
+    return (static_cast<unsigned char>(c) <= ' ') || refused.find(c) != std::string_view::npos;
+  });
+}
+
+}  // namespace coupler::cli

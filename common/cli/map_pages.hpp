@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/generate/generate.hpp"
+#include "common/map/loader/load.hpp"
+
+namespace coupler::cli {
+
+struct PagesRequest {
+  std::string map;            ///< as the user named it; "-": standard input, to which there are no links
+  std::filesystem::path out;  ///< folder of the pages
+  std::string name;           ///< of the files; its slashes become underscores
+  std::string source;         ///< the map's file name, without its folder
+  std::string source_url;     ///< folder of the map on a forge; empty: links are relative to `out`
+};
+
+/// NAME.html and NAME.md of a map that was loaded.
+std::vector<generate::File> map_pages(const PagesRequest& request, const LoadResult& loaded);
+
+/// Nothing in it ends a URL in HTML or Markdown.
+bool is_url_part(std::string_view text);
+
+}  // namespace coupler::cli

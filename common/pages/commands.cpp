@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/pages/commands.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "common/pages/ros_message.hpp"
+#include "common/pages/words.hpp"
+
+namespace coupler::pages {
+namespace {
+
+using codec::Order;
+using codec::Type;
+
+/// As one word of a POSIX shell: the map's address and file name are any text.
+std::string quoted(std::string_view text) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+  if (!text.empty() && text.find_first_not_of(plain) == std::string_view::npos) return std::string(text);
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+/// mbpoll's type, "4:float -B", and how many of it; registers in hexadecimal if it has none that fits.
+std::string mbpoll_type(const Point& point) {
+  constexpr std::array<int, tables.size()> number{0, 1, 3, 4};  // in the order of Table
+  const int table = number[index(point.table)];
+  if (holds_bits(point.table)) return fmt::format("{} -c {}", table, point.count);
+  const Type type = point.format.type;
+  const Order order = point.format.order;
+  const bool wide = type == Type::DINT || type == Type::UDINT || type == Type::REAL;
+  if (wide && !codec::bytes_swapped(order))
+    return fmt::format("{}:{}{} -c {}", table, type == Type::REAL ? "float" : "int",
+                       order == Order::ABCD ? " -B" : "", point.count);
+  if ((type == Type::INT || type == Type::UINT) && order == Order::ABCD)
+    return fmt::format("{} -c {}", table, point.count);
+  return fmt::format("{}:hex -c {}", table, range(point).count());
+}
+
+std::string example_value(const Point& point) {
+  if (point.format.type == Type::STRING) return "text";
+  return point.format.type == Type::BOOL ? "true" : "1";
+}
+
+template <class Rule>
+const Point* first(const Map& map, Rule&& rule) {
+  const auto found = std::find_if(map.points.begin(), map.points.end(), rule);
+  return found == map.points.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::vector<Command> mbpoll_commands(const Map& map) {
+  const Connection& at = map.connection;
+  const std::string host = at.address.empty() ? "HOST" : quoted(at.address);
+  std::vector<Command> commands;
+  for (const Table table : tables) {
+    const Point* point = first(map, [&](const Point& p) { return p.table == table && is_readable(p); });
+    if (point == nullptr) continue;
+    commands.push_back({fmt::format("{} of the {}", point->name, words(table)),
+                        fmt::format("mbpoll -m tcp -1 -0 -a {} -p {} -t {} -r {} {}", at.unit, at.port,
+                                    mbpoll_type(*point), read_range(*point).start(), host)});
+  }
+  return commands;
+}
+
+std::vector<Command> ros_commands(const Map& map, const std::string& file) {
+  std::vector<Command> commands{
+      {"every point as a topic", fmt::format("coupler_driver _map:={}", quoted(file))}};
+  if (const Point* point = first(map, [](const Point& p) { return is_readable(p); }))
+    commands.push_back(
+        {"one point as it is read", fmt::format("rostopic echo /{}/{}", map.name, point->name)});
+  // Messages of several values need a layout or a list of the right length: no line to begin with.
+  const auto single = [](const Point& p) {
+    return is_writable(p) && p.count == 1 && ros_message(p).rfind("std_msgs/", 0) == 0;
+  };
+  if (const Point* point = first(map, single))
+    commands.push_back(
+        {"one point is written", fmt::format("rostopic pub --once /{}/{}/write {} {}", map.name, point->name,
+                                             ros_message(*point), example_value(*point))});
+  return commands;
+}
+
+}  // namespace coupler::pages
