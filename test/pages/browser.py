@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A page in Chromium without a screen: what it shows, what it asks of the network, what it complains about."""
+import base64
+import json
+import pathlib
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+
+DESKTOP = (1440, 1000)
+PHONE = (390, 844)
+
+# The visible points, top to bottom.
+SHOWN = """return Array.from(document.querySelectorAll("#points tbody tr"))
+  .filter(row => row.offsetParent !== null || row.getClientRects().length)
+  .map(row => row.id.replace("point-", ""))"""
+
+
+class Browser:
+    def __init__(self):
+        options = Options()
+        # A container has neither the sandbox's privileges nor a large /dev/shm.
+        for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-scrollbars"):
+            options.add_argument(argument)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+        self.driver.set_page_load_timeout(60)
+
+    def close(self):
+        self.driver.quit()
+
+    def command(self, name, **parameters):
+        return self.driver.execute_cdp_cmd(name, parameters)
+
+    def run(self, script, *arguments):
+        return self.driver.execute_script(script, *arguments)
+
+    def open(self, path, size=DESKTOP, dark=False, scripts=True):
+        self.command("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1,
+                     mobile=size == PHONE)
+        self.command("Emulation.setEmulatedMedia", media="",
+                     features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        self.command("Emulation.setScriptExecutionDisabled", value=not scripts)
+        self.driver.get("about:blank")  # otherwise another #hash would not load the page again
+        self.complaints()
+        self.requests()
+        self.driver.get(pathlib.Path(path).absolute().as_uri())
+
+    def complaints(self):
+        """What is in the console since the last call."""
+        return [entry["message"] for entry in self.driver.get_log("browser")]
+
+    def requests(self):
+        """The URLs asked for since the last call."""
+        messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
+        return [message["params"]["request"]["url"] for message in messages
+                if message["method"] == "Network.requestWillBeSent"]
+
+    def shown(self):
+        return self.run(SHOWN)
+
+    def screenshot(self, path):
+        picture = self.command("Page.captureScreenshot", format="png")
+        pathlib.Path(path).write_bytes(base64.b64decode(picture["data"]))
