@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "common/cli/commands.hpp"
 #include "common/cli/locked_map.hpp"
+#include "common/cli/map_argument.hpp"
 #include "common/cli/report.hpp"
 
 namespace coupler::cli {
@@ -24,8 +26,9 @@ struct Arguments {
 Exit check(const Arguments& arguments) {
   Exit exit = ok;
   for (const std::string& file : arguments.maps) {
-    const LoadResult loaded = load_and_lock(file, arguments.locked);
-    if (!loaded.map) exit = bad_input;
+    const MapArgument argument = get_map(file, arguments.locked ? LockUse::exact : LockUse::renew);
+    const LoadResult& loaded = argument.loaded;
+    exit = std::max(exit, argument.exit);
     if (arguments.json) {
       std::puts(json_report(file, loaded).c_str());
     } else {
@@ -43,7 +46,9 @@ void add_check(CLI::App& program, Exit& exit) {
   auto* command =
       program.add_subcommand("check", "Say what is wrong with a map, where, and what to do about it.");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("MAP", arguments->maps, "YAML or JSON files; - is standard input")
+  command
+      ->add_option("MAP", arguments->maps,
+                   "YAML or JSON files; - is standard input; tcp://HOST[:PORT][/UNIT] is a node")
       ->required()
       ->type_name("");
   command->add_flag("--json", arguments->json,

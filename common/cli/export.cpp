@@ -9,10 +9,10 @@
 #include <CLI/Formatter.hpp>
 
 #include "common/cli/commands.hpp"
+#include "common/cli/map_argument.hpp"
 #include "common/cli/report.hpp"
 #include "common/formats/exporter.hpp"
 #include "common/generate/output.hpp"
-#include "common/map/loader/load.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -48,10 +48,10 @@ Exit run(const Arguments& arguments) {
   if (exporter == nullptr)
     return complain(fmt::format("'{}' is not a format that can be written", arguments.to),
                     "give one of " + names_of_formats());
-  const LoadResult loaded = load_map_file(arguments.map);
-  print(loaded.diagnostics);
-  if (!loaded.map) return bad_input;
-  const formats::Export exported = exporter->write(loaded.map->map());
+  const MapArgument argument = get_map(arguments.map);
+  print(argument.loaded.diagnostics);
+  if (!argument.loaded.map) return argument.exit;
+  const formats::Export exported = exporter->write(argument.map());
   print(exported.losses.diagnostics(arguments.map));
   if (arguments.out.empty()) {
     std::fputs(exported.text.c_str(), stdout);
@@ -67,7 +67,7 @@ Exit run(const Arguments& arguments) {
 void add_export(CLI::App& program, Exit& exit) {
   auto* command = program.add_subcommand("export", "Write a map as a file of another program.");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("MAP", arguments->map, "YAML or JSON file; - is standard input")->type_name("");
+  command->add_option("MAP", arguments->map, map_help)->type_name("");
   command->add_option("--to", arguments->to, "What to write: see --list")->type_name("FORMAT");
   command->add_option("--out", arguments->out, "Where to write it; default: standard output")
       ->type_name("FILE");

@@ -14,6 +14,7 @@
 
 #include "common/cli/commands.hpp"
 #include "common/cli/locked_map.hpp"
+#include "common/cli/map_argument.hpp"
 #include "common/cli/map_pages.hpp"
 #include "common/cli/report.hpp"
 #include "common/generate/identifier.hpp"
@@ -62,13 +63,14 @@ Exit run(const Arguments& arguments) {
   if (!is_url_part(arguments.source_url))
     return complain(bad_call, fmt::format("'{}' is no part of a URL", arguments.source_url),
                     "write what a URL cannot hold as %XX");
-  const LoadResult loaded = load_and_lock(arguments.map, arguments.locked);
+  const MapArgument argument = get_map(arguments.map, arguments.locked ? LockUse::exact : LockUse::renew);
+  const LoadResult& loaded = argument.loaded;
   print(loaded.diagnostics);
   std::fputs(lock_report(loaded.lock).c_str(), stdout);
-  if (!loaded.map) return bad_input;
+  if (!loaded.map) return argument.exit;
   const std::string source =
       arguments.map == "-" ? "standard input" : fs::path(arguments.map).filename().string();
-  const Map& map = loaded.map->map();
+  const Map map = argument.map();
   const std::string name = arguments.name.empty() ? std::string(map.name) : arguments.name;
   if (arguments.docs)
     return write(
@@ -88,9 +90,7 @@ void add_generate(CLI::App& program, Exit& exit) {
   auto* command =
       program.add_subcommand("generate", "Make C++ from a map: a constant table, a node and a driver.");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("MAP", arguments->map, "YAML or JSON file; - is standard input")
-      ->required()
-      ->type_name("");
+  command->add_option("MAP", arguments->map, map_help)->required()->type_name("");
   auto* out =
       command
           ->add_option("--out", arguments->out,

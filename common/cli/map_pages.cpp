@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/map/node_address.hpp"
 #include "common/pages/escape.hpp"
 #include "common/pages/html.hpp"
 #include "common/pages/markdown.hpp"
@@ -13,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string url_of_map(const PagesRequest& request) {
-  if (request.map == "-") return {};
+  if (request.map == "-" || names_a_node(request.map)) return {};
   const fs::path map = fs::absolute(request.map).lexically_normal();
   if (request.source_url.empty())
     return pages::url_path(map.lexically_relative(fs::absolute(request.out).lexically_normal()).string());

@@ -12,7 +12,7 @@
 namespace coupler::cli {
 
 struct PagesRequest {
-  std::string map;            ///< as the user named it; "-": standard input, to which there are no links
+  std::string map;  ///< as the user named it; to "-", standard input, and to a node there are no links
   std::filesystem::path out;  ///< folder of the pages
   std::string name;           ///< of the files; its slashes become underscores
   std::string source;         ///< the map's file name, without its folder

@@ -10,9 +10,9 @@
 #include <CLI/Formatter.hpp>
 
 #include "common/cli/commands.hpp"
+#include "common/cli/map_argument.hpp"
 #include "common/cli/plan_report.hpp"
 #include "common/cli/report.hpp"
-#include "common/map/loader/load.hpp"
 #include "common/plan/picture.hpp"
 
 namespace coupler::cli {
@@ -43,10 +43,10 @@ void warn_if_too_much(const std::string& file, const Map& map, const plan::Link&
 }
 
 Exit run(const Arguments& arguments) {
-  const LoadResult loaded = load_map_file(arguments.map);
-  print(loaded.diagnostics);
-  if (!loaded.map) return bad_input;
-  const Map& map = loaded.map->map();
+  const MapArgument argument = get_map(arguments.map);
+  print(argument.loaded.diagnostics);
+  if (!argument.loaded.map) return argument.exit;
+  const Map map = argument.map();
   plan::Link link;
   link.round_trip = std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double, std::milli>(arguments.rtt));
@@ -70,9 +70,7 @@ void add_plan(CLI::App& program, Exit& exit) {
   auto* command = program.add_subcommand(
       "plan", "Show the requests that read a map, why each ends where it does, and how long they take.");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("MAP", arguments->map, "YAML or JSON file; - is standard input")
-      ->required()
-      ->type_name("");
+  command->add_option("MAP", arguments->map, map_help)->required()->type_name("");
   command
       ->add_option("--rtt", arguments->rtt,
                    "Milliseconds from a request to its reply, network and device together; default 1")

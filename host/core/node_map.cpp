@@ -14,6 +14,16 @@ namespace {
 /// No map is as large; a device that says so is not to be believed.
 constexpr std::uint32_t largest_map = 16U << 20U;
 
+Result<std::optional<ServedMap>> fetch_both(Transport& transport) {
+  if (auto connected = transport.connect(); !connected) return tl::make_unexpected(connected.error());
+  const auto head = read_identity(transport);
+  if (!head) return tl::make_unexpected(head.error());
+  if (!head->has_value()) return std::nullopt;
+  auto text = fetch_map_text(transport, (*head)->map_size);
+  if (!text) return tl::make_unexpected(text.error());
+  return ServedMap{**head, std::move(*text)};
+}
+
 }  // namespace
 
 Result<std::optional<identity::Head>> read_identity(Transport& transport) {
@@ -44,6 +54,12 @@ Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size) {
   }
   text.resize(size);
   return text;
+}
+
+Result<std::optional<ServedMap>> fetch_served_map(Transport& transport) {
+  auto served = fetch_both(transport);
+  transport.close();
+  return served;
 }
 
 tl::expected<MapPtr, std::string> load_node_map(const std::string& text, const identity::Head& head,

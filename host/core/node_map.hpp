@@ -21,6 +21,15 @@ Result<std::optional<identity::Head>> read_identity(Transport& transport);
 /// The text of the map by FC 20, unchecked.
 Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size);
 
+/// The head and the map's text as the node has them.
+struct ServedMap {
+  identity::Head head;
+  std::string text;
+};
+
+/// Both, over a connection of its own, which is closed then; nullopt: a foreign coupler.
+Result<std::optional<ServedMap>> fetch_served_map(Transport& transport);
+
 /// The map of a text that was fetched, or why it is none: a wrong checksum, errors.
 tl::expected<MapPtr, std::string> load_node_map(const std::string& text, const identity::Head& head,
                                                 const MapLoader& load);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/map/loader/load.hpp"
+#include "common/map/node_address.hpp"
 #include "host/core/backoff.hpp"
 #include "host/core/node_map.hpp"
 #include "host/modbus/modbus_transport.hpp"
@@ -28,28 +29,11 @@ Source from_file(const std::string& path) {
   return MapSource{loaded.map, loaded.map->map()};
 }
 
-/// The head and the map's text as the node has them; nullopt: a foreign coupler.
-struct Served {
-  identity::Head head;
-  std::string text;
-};
-
-Result<std::optional<Served>> ask(Transport& transport) {
-  if (auto connected = transport.connect(); !connected) return tl::make_unexpected(connected.error());
-  const auto head = read_identity(transport);
-  if (!head) return tl::make_unexpected(head.error());
-  if (!head->has_value()) return std::nullopt;
-  auto text = fetch_map_text(transport, (*head)->map_size);
-  if (!text) return tl::make_unexpected(text.error());
-  return Served{**head, std::move(*text)};
-}
-
-std::optional<Served> wait_for(Transport& transport, const std::string& where) {
+std::optional<ServedMap> wait_for(Transport& transport, const std::string& where) {
   Backoff backoff;
   std::string told;
   for (;;) {
-    auto served = ask(transport);
-    transport.close();
+    auto served = fetch_served_map(transport);
     if (served) return std::move(*served);
     const std::string why = to_string(served.error());
     if (why != told) print(fmt::format("waiting for the map of {}: {}; trying again", where, why));
@@ -58,9 +42,11 @@ std::optional<Served> wait_for(Transport& transport, const std::string& where) {
   }
 }
 
-Source from_node(const Settings& settings) {
+/// `address` stays where it is: the map will view it.
+Source from_node(const Settings& settings, std::string_view address) {
   Map asked;
   apply(settings, asked);
+  asked.connection.address = address;
   const std::string where = fmt::format("{} port {}", asked.connection.address, asked.connection.port);
   ModbusTransport transport(asked.connection);
   const auto served = wait_for(transport, where);
@@ -75,10 +61,23 @@ Source from_node(const Settings& settings) {
   }
   // Where it was found counts, not where it says it is.
   Map map = (*owner)->map();
-  map.connection.address = *settings.address;
+  map.connection.address = address;
   map.connection.port = asked.connection.port;
   map.connection.unit = asked.connection.unit;
   return MapSource{*owner, map};
+}
+
+/// tcp://HOST:PORT/UNIT in place of a file; it says the same as address, port and unit, which override it.
+Source from_named_node(const std::string& argument, const Settings& settings) {
+  const auto node = parse_node_address(argument);
+  if (!node) {
+    print(fmt::format("{}: {}; {}", argument, node.error().what, node.error().remedy));
+    return tl::make_unexpected(wrong_call);
+  }
+  Settings named;
+  named.port = node->port;
+  named.unit = node->unit;
+  return from_node(overlay(named, settings), settings.address ? *settings.address : node->host);
 }
 
 Source find_one(const Map* built_in, const Settings& settings) {
@@ -89,8 +88,9 @@ Source find_one(const Map* built_in, const Settings& settings) {
     }
     return MapSource{nullptr, *built_in};
   }
+  if (settings.map && names_a_node(*settings.map)) return from_named_node(*settings.map, settings);
   if (settings.map) return from_file(*settings.map);
-  if (settings.address) return from_node(settings);
+  if (settings.address) return from_node(settings, *settings.address);
   print(
       "no map; give one by _map:=MAP, or _address:=HOST of a node that serves its map (--help shows "
       "examples)");

@@ -104,7 +104,7 @@ void prefer(std::optional<T>& field, const std::optional<T>& strong) {
 }  // namespace
 
 const std::array<SettingKey, 10> setting_keys{{
-    {"map", "mapping", "the device's map, a YAML or JSON file"},
+    {"map", "mapping", "the device's map: a YAML or JSON file, or tcp://HOST[:PORT][/UNIT] of a node"},
     {"maps", "",
      "several devices in one process: their maps, as in _maps:=[a.yaml,b.yaml] or --maps a.yaml,b.yaml"},
     {"name", "", "namespace of the topics, instead of the map's"},

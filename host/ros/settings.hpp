@@ -21,7 +21,7 @@ enum class Poll {
 /// What may be said about a device, or about all of them, outside its map. Precedence: map < ROS parameter <
 /// argument.
 struct Settings {
-  std::optional<std::string> map;  ///< path
+  std::optional<std::string> map;  ///< path, or tcp://HOST[:PORT][/UNIT]
   std::vector<std::string> maps;   ///< paths, for several devices; empty: not given
   std::optional<std::string> name;
   std::optional<std::string> address;

@@ -90,6 +90,11 @@ class Identity(testing.RosTest):
         driver = self.driver("_address:=127.0.0.1", f"_port:={port}")
         self.assert_works(driver)
 
+    def test_a_node_may_be_named_in_place_of_a_map(self):
+        port = self.start_node(press())
+        driver = self.driver("--map", f"tcp://127.0.0.1:{port}")
+        self.assert_works(driver)
+
     def test_a_driver_without_a_map_waits_for_the_node(self):
         port = free_port()
         driver = self.driver("_address:=127.0.0.1", f"_port:={port}")

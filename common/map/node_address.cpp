@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/node_address.hpp"
+
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace coupler {
+namespace {
+
+constexpr std::string_view scheme = "tcp://";
+
+tl::unexpected<NodeAddressError> wrong(std::string what) {
+  return tl::unexpected<NodeAddressError>(
+      {std::move(what), "write tcp://HOST[:PORT][/UNIT], as in tcp://192.168.1.17:502/1"});
+}
+
+std::optional<unsigned> number(std::string_view text, unsigned least, unsigned most) {
+  unsigned value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < least || value > most) return {};
+  return value;
+}
+
+/// Takes what stands behind the last `mark` off the text, if there is one.
+std::optional<std::string_view> take_behind(std::string_view& text, char mark) {
+  const auto at = text.rfind(mark);
+  if (at == std::string_view::npos) return std::nullopt;
+  const auto behind = text.substr(at + 1);
+  text = text.substr(0, at);
+  return behind;
+}
+
+/// The brackets of an IPv6 address hold colons that part no port.
+bool take_brackets(std::string_view& text, std::string_view& host) {
+  const auto end = text.find(']');
+  if (text.empty() || text.front() != '[' || end == std::string_view::npos) return false;
+  host = text.substr(1, end - 1);
+  text.remove_prefix(end + 1);
+  return true;
+}
+
+}  // namespace
+
+tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view argument) {
+  if (!names_a_node(argument)) return wrong("a node begins with tcp://");
+  NodeAddress node;
+  std::string_view rest = argument.substr(scheme.size());
+  if (const auto unit = take_behind(rest, '/'); unit && !unit->empty()) {
+    const auto value = number(*unit, 0, 255);
+    if (!value) return wrong(fmt::format("the unit id '{}' is not 0 … 255", *unit));
+    node.unit = static_cast<std::uint8_t>(*value);
+  }
+  const bool bracketed = take_brackets(rest, node.host);
+  if (const auto port = take_behind(rest, ':')) {
+    const auto value = number(*port, 1, 65535);
+    if (!value) return wrong(fmt::format("the port '{}' is not 1 … 65535", *port));
+    node.port = static_cast<std::uint16_t>(*value);
+  }
+  if (!bracketed) node.host = rest;
+  if (bracketed && !rest.empty()) return wrong("behind ']' a port follows, or nothing");
+  if (!bracketed && node.host.find(':') != std::string_view::npos)
+    return wrong("an IPv6 address stands in brackets: tcp://[fe80::1]:502");
+  if (node.host.empty()) return wrong("there is no host");
+  if (node.host.find_first_of("/[] ") != std::string_view::npos) return wrong("that is no host's name");
+  return node;
+}
+
+Map found_at(const Map& map, const NodeAddress& where) {
+  Map found = map;
+  found.connection.address = where.host;
+  found.connection.port = where.port;
+  found.connection.unit = where.unit;
+  return found;
+}
+
+}  // namespace coupler

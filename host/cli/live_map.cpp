@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/cli/live_map.hpp"
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "host/core/node_map.hpp"
+#include "host/modbus/modbus_transport.hpp"
+
+namespace coupler::cli {
+namespace {
+
+constexpr auto give_a_file = "give the file of its map instead";
+
+tl::unexpected<NoLiveMap> none(Exit exit, std::string what, std::string remedy) {
+  return tl::make_unexpected(NoLiveMap{exit, std::move(what), std::move(remedy)});
+}
+
+}  // namespace
+
+tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where) {
+  driver::ModbusTransport transport(where);
+  const auto served = driver::fetch_served_map(transport);
+  if (!served && driver::exception_in(served.error()) != nullptr)
+    return none(failed, "the node does not give its map: " + driver::to_string(served.error()), give_a_file);
+  if (!served)
+    return none(failed, "no answer of a node: " + driver::to_string(served.error()),
+                fmt::format("see that a node serves port {} there", where.port));
+  if (!*served) return none(bad_input, "a foreign coupler, which serves no map", give_a_file);
+  auto map = driver::load_node_map((*served)->text, (*served)->head, load_map);
+  if (!map) return none(bad_input, "the node's map cannot be used: " + map.error(), give_a_file);
+  return *map;
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tcp://HOST:PORT in place of a map: COUPLER asks NODE, a program that serves a map, and devices that serve none."""
+import json
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
+import served  # noqa: E402
+
+MAP = """\
+name: cell
+unit: 7
+mapping:
+  coils: {lamp: 0}
+  input_registers: {level: {address: 3, type: REAL}}
+"""
+
+
+class Foreign:
+    """Answers every request with one PDU; None: closes the connection."""
+
+    def __init__(self, pdu):
+        self._pdu = pdu
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self._listener.getsockname()[1]
+        threading.Thread(target=self._serve, daemon=True).start()
+
+    def _serve(self):
+        with self._listener:
+            connection, _ = self._listener.accept()
+            with connection:
+                while request := connection.recv(260):
+                    if self._pdu is None:
+                        return
+                    head = request[:4] + (len(self._pdu) + 1).to_bytes(2, "big") + request[6:7]
+                    connection.sendall(head + self._pdu)
+
+
+class Live(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "cell.yaml").write_text(MAP, encoding="utf-8")
+
+    def coupler(self, *arguments):
+        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, timeout=30, capture_output=True,
+                              text=True, encoding="utf-8", check=False)
+
+    def node(self):
+        node = served.Served([os.environ["NODE"], str(self.folder / "cell.yaml"), "--sim", "--port", "0"])
+        self.addCleanup(node.stop)
+        return f"tcp://127.0.0.1:{node.port}/7"
+
+    def refused(self, status, argument):
+        done = self.coupler("check", argument)
+        self.assertEqual((done.returncode, done.stdout), (status, ""))
+        self.assertTrue(done.stderr.startswith(f"{argument}: error: "), done.stderr)
+        return done.stderr
+
+
+class ANode(Live):
+    def test_is_checked_like_its_file(self):
+        node = self.node()
+        of_file = json.loads(self.coupler("check", "--json", "cell.yaml").stdout)
+        done = self.coupler("check", "--json", node)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(json.loads(done.stdout), {**of_file, "file": node})
+
+    def test_is_planned(self):
+        done = self.coupler("plan", "--json", self.node())
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["name"], "cell")
+
+    def test_generates_the_same_table_with_the_connection_that_was_given(self):
+        node = self.node()
+        self.assertEqual(self.coupler("generate", "--quiet", "cell.yaml", "--out", "of_file").returncode, 0)
+        done = self.coupler("generate", "--quiet", node, "--out", "of_node")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        table = (self.folder / "of_node/cell_map.cpp").read_text(encoding="utf-8")
+        self.assertIn('"127.0.0.1"', table)
+        self.assertIn('"level"', table)
+
+    def test_is_documented_without_links_to_a_file(self):
+        done = self.coupler("generate", "--docs", self.node(), "--out", "pages")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("](", (self.folder / "pages/cell.md").read_text(encoding="utf-8"))
+
+    def test_exports_its_own_address(self):
+        node = self.node()
+        done = self.coupler("export", node, "--to", "telegraf")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(node.removesuffix("/7"), done.stdout)
+
+
+class NoNode(Live):
+    def test_a_closed_port_is_a_failed_network(self):
+        with socket.socket() as unused:
+            unused.bind(("127.0.0.1", 0))  # not listening
+            said = self.refused(3, f"tcp://127.0.0.1:{unused.getsockname()[1]}")
+        self.assertIn("no answer of a node", said)
+
+    def test_a_foreign_coupler_has_no_map(self):
+        said = self.refused(1, f"tcp://127.0.0.1:{Foreign(bytes([0x84, 2])).port}")
+        self.assertIn("foreign coupler", said)
+
+    def test_a_device_that_hangs_up_is_a_failed_network(self):
+        self.refused(3, f"tcp://127.0.0.1:{Foreign(None).port}")
+
+    def test_a_gateway_without_the_unit_is_a_failed_network(self):
+        said = self.refused(3, f"tcp://127.0.0.1:{Foreign(bytes([0x84, 0x0B])).port}/9")
+        self.assertIn("0B", said)
+
+    def test_an_argument_that_names_no_node_is_a_wrong_call(self):
+        said = self.refused(2, "tcp://127.0.0.1:0")
+        self.assertIn("the port '0' is not 1 … 65535; write tcp://HOST[:PORT][/UNIT]", said)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/node_address.hpp"
+
+#include <gmock/gmock.h>
+
+namespace coupler {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(NodeAddress, A_host_alone_has_the_default_port_and_unit) {
+  const auto node = parse_node_address("tcp://cell.example");
+  ASSERT_TRUE(node) << node.error().what;
+  EXPECT_EQ(node->host, "cell.example");
+  EXPECT_EQ(node->port, 502);
+  EXPECT_EQ(node->unit, 1);
+}
+
+TEST(NodeAddress, Port_and_unit_are_read) {
+  const auto node = parse_node_address("tcp://10.0.0.7:1502/247");
+  ASSERT_TRUE(node) << node.error().what;
+  EXPECT_EQ(node->host, "10.0.0.7");
+  EXPECT_EQ(node->port, 1502);
+  EXPECT_EQ(node->unit, 247);
+}
+
+TEST(NodeAddress, An_ipv6_address_stands_in_brackets) {
+  const auto node = parse_node_address("tcp://[fe80::1]:1502/3");
+  ASSERT_TRUE(node) << node.error().what;
+  EXPECT_EQ(node->host, "fe80::1");
+  EXPECT_EQ(node->port, 1502);
+  EXPECT_EQ(parse_node_address("tcp://[::1]")->host, "::1");
+  EXPECT_THAT(parse_node_address("tcp://fe80::1").error().what, HasSubstr("in brackets"));
+}
+
+TEST(NodeAddress, A_slash_at_the_end_is_no_unit) { EXPECT_EQ(parse_node_address("tcp://cell/")->unit, 1); }
+
+TEST(NodeAddress, What_is_wrong_is_said_with_a_remedy) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"tcp://", "there is no host"},         {"tcp://:502", "there is no host"},
+      {"tcp://cell:0", "the port '0'"},       {"tcp://cell:65536", "the port '65536'"},
+      {"tcp://cell:", "the port ''"},         {"tcp://cell/256", "the unit id '256'"},
+      {"tcp://cell/x", "the unit id 'x'"},    {"tcp://cell/1/2", "no host's name"},
+      {"tcp://[::1]502", "behind ']'"},       {"udp://cell", "begins with tcp://"},
+      {"tcp://cell:5 02", "the port '5 02'"},
+  };
+  for (const auto& [argument, what] : cases) {
+    const auto node = parse_node_address(argument);
+    ASSERT_FALSE(node) << argument;
+    EXPECT_THAT(node.error().what, HasSubstr(what));
+    EXPECT_THAT(node.error().remedy, HasSubstr("write tcp://HOST[:PORT][/UNIT]"));
+  }
+}
+
+}  // namespace
+}  // namespace coupler
