@@ -30,7 +30,9 @@ struct Point {
   /// The value at start: range(point).count() registers as they stand on the wire, the bits of other points
   /// zero (for bit tables as many elements, 0 or 1). Empty: all zero.
   Span<const std::uint16_t> initial;
-  Safe safe = Safe::off;  ///< outputs with hardware: a coil with a line, a register with `iio` or `pwm`
+  /// Outputs with hardware (a coil with a line, a register with `iio` or `pwm`), and what the driver leaves
+  /// behind under on_shutdown: safe.
+  Safe safe = Safe::off;
   Line line;
   std::string_view description;
   std::string_view units;
@@ -40,7 +42,7 @@ struct Point {
   codec::Scale scale{};     ///< registers: what the host publishes is a Float64
   Iio iio{};
   Pwm pwm{};
-  Span<const std::uint16_t> safe_value{};  ///< with Safe::on: what `iio` or `pwm` goes to, as `initial`
+  Span<const std::uint16_t> safe_value{};  ///< with Safe::on: what a register goes to, as `initial`
   /// Holding registers and coils: where the output reads back, if not at its own address.
   std::optional<std::uint16_t> read_address{};
   HostOptions host{};

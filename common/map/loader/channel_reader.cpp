@@ -60,12 +60,13 @@ void read_safe(const Reader& reader, DraftPoint& draft, Context& context) {
   const Entry* entry = reader.find("safe");
   if (entry == nullptr) return;
   Point& point = draft.point;
-  if (!is_analogue(point)) {
+  const bool is_output = is_analogue(point);
+  if (!is_output && !context.host_makes_safe) {
     context.problems.error(entry->key_at, "'safe' is for a register with 'iio' or 'pwm', this one has none",
-                           "add one of them, or remove it");
+                           "add one of them, or 'on_shutdown: safe' to the map, or remove it");
   } else if (entry->kind == Entry::Kind::scalar && entry->text == "hold") {
     point.safe = Safe::hold;
-  } else if (draft.placed && !(entry->kind == Entry::Kind::scalar && entry->text == "off")) {
+  } else if (draft.placed && !(is_output && entry->kind == Entry::Kind::scalar && entry->text == "off")) {
     point.safe = Safe::on;
     point.safe_value = read_value("safe", *entry, point, context);
   }

@@ -16,6 +16,8 @@ struct Context {
   bool only_origin =
       false;  ///< the file uses no key of this project: what the origin would ignore is a warning
 
+  bool host_makes_safe = false;  ///< on_shutdown: safe: any output may say what is safe for it
+
   void ignored(Position at, std::string what, std::string remedy) {
     if (only_origin)
       problems.warning(at, what + ", ignored", std::move(remedy));

@@ -126,7 +126,7 @@ constexpr Key keys[] = {
     project("line", S::discrete_input, K::text, "{chip: gpiochip0, offset: 17}",
             "the GPIO line; just its name will do")
         .holds(S::input_line),
-    project("safe", S::coil, K::choice, "off", "what the line does when nobody is in command")
+    project("safe", S::coil, K::choice, "off", "what the output does when nobody is in command")
         .otherwise("off")
         .one_of("off|on|hold"),
     project("active_low", bits | line, K::boolean, "true", "on is the low level").otherwise("false"),
@@ -147,8 +147,7 @@ constexpr Key keys[] = {
     project("pwm", S::holding_register, K::section, "{chip: pwmchip0, channel: 0, period: 1ms}",
             "a PWM channel; the value is its duty in percent")
         .holds(S::pwm),
-    project("safe", S::holding_register, K::value, "0",
-            "value of 'iio' or 'pwm' when nobody is in command; or hold"),
+    project("safe", S::holding_register, K::value, "0", "value when nobody is in command; or hold"),
     // How the host treats a point: for one, or in `defaults:` for all.
     project("rate", treatment, K::number, "1", "polling rate in Hz").within(0.001, 10000),
     project("publish", treatment, K::choice, "on_change", "when a value is published")

@@ -25,13 +25,15 @@ void read_options(const Reader& reader, Table table, Line& line) {
 }
 
 void refuse_without_line(const Reader& point, Table table, Context& context) {
-  auto keys = option_keys(table);
-  if (table == Table::coils) keys.emplace_back("safe");
-  for (const std::string_view key : keys)
+  const auto refuse = [&](std::string_view key, std::string_view also) {
     if (const Entry* entry = point.find(key))
-      context.problems.error(entry->key_at,
-                             fmt::format("'{}' is for a point with a GPIO line, this one has none", key),
-                             "add 'line: {chip: gpiochip0, offset: 17}', or remove it");
+      context.problems.error(
+          entry->key_at, fmt::format("'{}' is for a point with a GPIO line, this one has none", key),
+          fmt::format("add 'line: {{chip: gpiochip0, offset: 17}}'{}, or remove it", also));
+  };
+  for (const std::string_view key : option_keys(table)) refuse(key, "");
+  if (table == Table::coils && !context.host_makes_safe)
+    refuse("safe", ", or 'on_shutdown: safe' to the map");
 }
 
 void read_place(const Reader& reader, const Entry& entry, Line& line, Context& context) {
@@ -55,11 +57,11 @@ void read_place(const Reader& reader, const Entry& entry, Line& line, Context& c
 void read_line(const Reader& point, DraftPoint& draft, Context& context) {
   const Table table = draft.point.table;
   const Entry* entry = point.find("line");
+  if (table == Table::coils) point.choice("safe", {Safe::off, Safe::on, Safe::hold}, draft.point.safe);
   if (entry == nullptr) return refuse_without_line(point, table, context);
   Line& line = draft.point.line;
   draft.line_at = entry->at;
   read_options(point, table, line);
-  if (table == Table::coils) point.choice("safe", {Safe::off, Safe::on, Safe::hold}, draft.point.safe);
   if (entry->kind == Entry::Kind::map) {
     const Reader inside(*entry, table == Table::coils ? Section::coil_line : Section::input_line, context);
     read_place(inside, *entry, line, context);

@@ -133,6 +133,8 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   head.polling = read_polling(top);
   head.limits = read_limits(top, context);
   head.service = read_service(top, context);
+  top.choice("on_shutdown", {OnShutdown::hold, OnShutdown::safe}, head.on_shutdown);
+  context.host_makes_safe = head.on_shutdown == OnShutdown::safe;
   const PointDefaults defaults = read_point_defaults(top, context);
   const Areas unreadable = read_areas(top, "unreadable", defaults.addressing, context);
   const Areas reserved = read_areas(top, "reserve", defaults.addressing, context);
@@ -148,7 +150,6 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   check_reserved(reserved, drafts, context);
   head.unreadable = context.map.keep(sorted_unreadable(unreadable));
   top.choice("on_reconnect", {OnReconnect::drop, OnReconnect::restore}, head.on_reconnect);
-  top.choice("on_shutdown", {OnShutdown::hold, OnShutdown::safe}, head.on_shutdown);
   if (context.problems.has_errors()) return;
 
   const bool complete =

@@ -134,5 +134,14 @@ TEST(Link, What_becomes_of_outputs_is_said_at_the_top) {
   EXPECT_EQ(map->map().on_shutdown, OnShutdown::safe);
 }
 
+TEST(Manners, Where_the_driver_makes_safe_any_output_may_say_what_is_safe_for_it) {
+  const MapPtr coils = load_clean(map_of("coils", "p: {address: 1, safe: on}", "on_shutdown: safe"));
+  EXPECT_EQ(coils->map().points[0].safe, Safe::on);
+  const MapPtr registers = load_clean(
+      map_of("holding_registers", "p: {address: 1, type: UINT, scale: 0.5, safe: 4}", "on_shutdown: safe"));
+  EXPECT_EQ(registers->map().points[0].safe, Safe::on);
+  EXPECT_EQ(registers->map().points[0].safe_value[0], 8);
+}
+
 }  // namespace
 }  // namespace coupler
