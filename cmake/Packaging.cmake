@@ -40,5 +40,5 @@ set(CPACK_DEBIAN_TOOLS_DESCRIPTION "Checks maps of Modbus/TCP couplers and gener
 install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-node COMPONENT node)
 install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-tools COMPONENT tools)
 install(FILES docs/node.md docs/identity.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-node COMPONENT node)
-install(FILES docs/map.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-tools COMPONENT tools)
+install(FILES docs/import-export.md docs/map.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-tools COMPONENT tools)
 include(CPack)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -99,10 +100,15 @@ void add_file_keys(const Entry& entry, Cells& cells) {
       cells[option.key] = option.kind == Entry::Kind::scalar ? option.text : flow(option);
 }
 
-const Entry* entry_of(const Entry& root, const Point& point) {
-  const Entry* mapping = find(root, "mapping");
-  const Entry* table = mapping != nullptr ? find(*mapping, to_string(point.table)) : nullptr;
-  return table != nullptr ? find(*table, point.name) : nullptr;
+using EntriesByName = std::unordered_map<std::string_view, const Entry*>;
+
+/// The points as they stand in the file.
+EntriesByName entries_of(const Entry& root) {
+  EntriesByName entries;
+  if (const Entry* mapping = find(root, "mapping"))
+    for (const Entry& table : mapping->children)
+      for (const Entry& point : table.children) entries.emplace(point.key, &point);
+  return entries;
 }
 
 /// In the order of the key table.
@@ -133,12 +139,13 @@ Export write_csv(const Map& map) {
   Export out;
   loader::Problems unheard("");  // the loader has read the text before
   const auto root = loader::parse_document(map.text, unheard);
+  const EntriesByName entries = root ? entries_of(*root) : EntriesByName{};
   std::vector<Cells> rows;
   for (const Point& point : map.points) {
     rows.push_back(cells_of(point));
     add_host_options(point, root ? find(*root, "defaults") : nullptr, rows.back());
-    const Entry* entry = root ? entry_of(*root, point) : nullptr;
-    if (entry != nullptr) add_file_keys(*entry, rows.back());
+    if (const auto entry = entries.find(point.name); entry != entries.end())
+      add_file_keys(*entry->second, rows.back());
   }
   if (root) add_losses(*root, out.losses);
   const std::vector<std::string> columns = columns_of(rows);
