@@ -5,6 +5,7 @@
 
 #include "common/cli/live_map.hpp"
 #include "common/cli/locked_map.hpp"
+#include "common/cli/revision.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -35,6 +36,13 @@ MapArgument from_file(const std::string& path, LockUse use) {
 
 MapArgument get_map(const std::string& argument, LockUse use) {
   return names_a_node(argument) ? from_node(argument) : from_file(argument, use);
+}
+
+MapArgument get_version(const std::string& argument) {
+  if (names_a_node(argument) || !names_a_revision(argument)) return get_map(argument);
+  LoadResult loaded = load_revision(argument);
+  const Exit exit = loaded.map ? ok : bad_input;
+  return {std::move(loaded), exit, std::nullopt};
 }
 
 }  // namespace coupler::cli

@@ -28,4 +28,7 @@ struct MapArgument {
 /// changes (see load_and_lock()); a node's map has none. `argument` stays where it is.
 MapArgument get_map(const std::string& argument, LockUse use = LockUse::read);
 
+/// The same, or REVISION:PATH of git, unless there is a file of that name.
+MapArgument get_version(const std::string& argument);
+
 }  // namespace coupler::cli

@@ -29,12 +29,19 @@ std::string place(const Point& point) {
   return fmt::format("{} {}, {}", to_string(point.table), point.address, to_string(point.format.type));
 }
 
-std::string changes(const Point& older, const Point& newer) {
+std::vector<FieldChange> changed_fields(const Point& older, const Point& newer) {
   const auto a = split(canonical_line(older));
   const auto b = split(canonical_line(newer));
-  std::string text;
+  std::vector<FieldChange> changes;
   for (std::size_t i = 0; i < fields.size(); ++i)
-    if (a[i] != b[i]) text += fmt::format("{}{} {} -> {}", text.empty() ? "" : ", ", fields[i], a[i], b[i]);
+    if (a[i] != b[i]) changes.push_back({fields[i], a[i], b[i]});
+  return changes;
+}
+
+std::string text_of(const std::vector<FieldChange>& changes) {
+  std::string text;
+  for (const auto& [field, older, newer] : changes)
+    text += fmt::format("{}{} {} -> {}", text.empty() ? "" : ", ", field, older, newer);
   return text;
 }
 
@@ -54,8 +61,9 @@ std::vector<Difference> diff(const Map& older, const Map& newer) {
     const auto found = new_points.find(point.name);
     if (found == new_points.end()) {
       result.push_back({Difference::Kind::missing, std::string(point.name), place(point)});
-    } else if (std::string what = changes(point, *found->second); !what.empty()) {
-      result.push_back({Difference::Kind::changed, std::string(point.name), std::move(what)});
+    } else if (auto changes = changed_fields(point, *found->second); !changes.empty()) {
+      result.push_back(
+          {Difference::Kind::changed, std::string(point.name), text_of(changes), std::move(changes)});
     }
   }
   for (const Point& point : newer.points)

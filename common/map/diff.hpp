@@ -2,11 +2,19 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/map/map.hpp"
 
 namespace coupler {
+
+/// A field of canonical_line() that is not the same: "address", "5", "7".
+struct FieldChange {
+  std::string_view field;  ///< constant text
+  std::string older;
+  std::string newer;
+};
 
 /// What happened to one point between two maps.
 struct Difference {
@@ -14,6 +22,7 @@ struct Difference {
   Kind kind;
   std::string point;
   std::string what;  ///< "address 5 -> 7, type INT -> UINT"; for missing and added the point's place and type
+  std::vector<FieldChange> fields{};  ///< of changed: those of `what`, at least one
 };
 
 /// A driver that knows the old map cannot go on with the new one: every difference but an added point. The

@@ -92,6 +92,10 @@ class ANode(Live):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("](", (self.folder / "pages/cell.md").read_text(encoding="utf-8"))
 
+    def test_is_compared_with_its_file(self):
+        done = self.coupler("diff", "cell.yaml", self.node(), "--fail-on", "documentation")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_exports_its_own_address(self):
         node = self.node()
         done = self.coupler("export", node, "--to", "telegraf")

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "common/map/map.hpp"
+
+namespace coupler::fakes {
+
+/// Valid maps as YAML, the same for the same seed on every machine: all tables, types and orders, gaps,
+/// arrays, parts of registers, texts, scales, what the host and a node do with a point.
+///   RandomMap map(7);  load_map(map.yaml(), "random.yaml")
+class RandomMap {
+ public:
+  explicit RandomMap(std::uint32_t seed, unsigned most_points_a_table = 12);
+
+  std::string yaml() const;
+
+  /// Changes one thing; what was changed, for messages of tests. The map stays valid but for points that may
+  /// now overlap or end past 65535.
+  std::string edit();
+
+ private:
+  /// A point: what the map says of it, but for its place, ready to be written.
+  struct Row {
+    std::string name;
+    Table table;
+    std::uint32_t address;
+    std::uint32_t size;   ///< addresses
+    std::string part;     ///< ", bit: 3" or ", offset: high"
+    std::string format;   ///< ", type: INT, order: BA"
+    std::string options;  ///< ", units: mm"
+  };
+
+  std::uint32_t below(std::uint32_t end);
+  bool one_in(std::uint32_t n) { return below(n) == 0; }
+  void add_bits(Table table);
+  void add_registers(Table table);
+  std::uint32_t add_shared(Table table, std::uint32_t address);
+  std::uint32_t format(std::string& text);
+  std::string options(Table table, bool scalable);
+  std::string head();
+
+  std::mt19937 random_;  // its numbers are the standard's, those of its distributions are not
+  unsigned most_points_;
+  unsigned names_ = 0;
+  std::string head_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace coupler::fakes
