@@ -193,6 +193,11 @@ std::string row(const Unreadable& area) {
                      area.range.count());
 }
 
+std::string row(const WatchdogSequences::Write& write) {
+  return fmt::format("    {{Table::{}, {}, {}, {}}},\n", to_string(write.table), write.address, write.value,
+                     write.if_different);
+}
+
 std::string row(std::string_view address) { return fmt::format("    {},\n", literal(address)); }
 
 }  // namespace coupler::generate

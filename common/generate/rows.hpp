@@ -16,6 +16,9 @@ std::string row(const SimWire& wire);
 
 std::string row(const Unreadable& area);
 
+/// What the host writes for the watchdog of a coupler.
+std::string row(const WatchdogSequences::Write& write);
+
 /// One of the addresses that may connect.
 std::string row(std::string_view address);
 

@@ -54,6 +54,7 @@ using ::coupler::SimWire;
 using ::coupler::Table;
 using ::coupler::Unreadable;
 using ::coupler::Watchdog;
+using ::coupler::WatchdogSequences;
 using ::coupler::codec::Encoding;
 using ::coupler::codec::Half;
 using ::coupler::codec::Order;
@@ -65,7 +66,7 @@ using namespace ::std::chrono_literals;
 template <::std::uint16_t... Words>
 constexpr ::std::uint16_t registers[] = {{Words...}};
 
-{points}{sim}{allow}{unreadable}// The file itself, byte by byte: the node serves it.
+{points}{sim}{allow}{unreadable}{sequences}// The file itself, byte by byte: the node serves it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 constexpr char text[] =
@@ -86,16 +87,38 @@ constexpr Map map{{
     0x{crc:08x},  // CRC-32 of the text
     {{{listen}, {allow_name}, {watchdog}, {readback}}},  // listen, allow, watchdog, readback
     OnReconnect::{on_reconnect}, OnShutdown::{on_shutdown}, {unreadable_name},
+    {coupler_watchdog},  // timeout, recovery, feed every, arm, feed, reset, how it shows that it has expired
 }};
 
 }}  // namespace coupler::maps::{name}
 )";
 
+std::string_view enumerator(Watchdog::Recovery recovery) {
+  return recovery == Watchdog::Recovery::automatic ? "Watchdog::Recovery::automatic"
+                                                   : "Watchdog::Recovery::manual";
+}
+
 std::string watchdog(const Watchdog& watchdog) {
   if (!watchdog.present()) return "{}";
-  return fmt::format("{{{}ms, Watchdog::FedBy::{}, Watchdog::Recovery::{}}}", watchdog.timeout.count(),
+  return fmt::format("{{{}ms, Watchdog::FedBy::{}, {}}}", watchdog.timeout.count(),
                      watchdog.fed_by == Watchdog::FedBy::any ? "any" : "write",
-                     watchdog.recovery == Watchdog::Recovery::automatic ? "automatic" : "manual");
+                     enumerator(watchdog.recovery));
+}
+
+std::string coupler_watchdog(const WatchdogSequences& watchdog) {
+  if (!watchdog.present()) return "{}";
+  std::string refusal = "{}";
+  if (watchdog.refusal)
+    refusal = fmt::format("::coupler::modbus::Exception{{{}}}", static_cast<unsigned>(*watchdog.refusal));
+  std::string alarm = "{}";
+  if (const auto& at = watchdog.alarm)
+    alarm = fmt::format("WatchdogSequences::Write{{Table::{}, {}, {}, {}}}", to_string(at->table),
+                        at->address, at->value, at->if_different);
+  return fmt::format("{{{}ms, {}, {}ms, {}, {}, {}, {}, {}}}", watchdog.timeout.count(),
+                     enumerator(watchdog.recovery), watchdog.feed_every.count(),
+                     watchdog.arm.empty() ? "{}" : "watchdog_arm",
+                     watchdog.feed.empty() ? "{}" : "watchdog_feed",
+                     watchdog.reset.empty() ? "{}" : "watchdog_reset", refusal, alarm);
 }
 
 /// "constexpr T name[] = { rows };", or nothing: C++ has no empty arrays.
@@ -105,6 +128,14 @@ std::string array(std::string_view declaration, std::string_view fields, Span<co
   std::string rows;
   for (const T& element : elements) rows += row(element);
   return fmt::format("// {}\nconstexpr {}[] = {{\n{}}};\n\n", fields, declaration, rows);
+}
+
+std::string sequences(const WatchdogSequences& watchdog) {
+  return array("WatchdogSequences::Write watchdog_arm",
+               "How the coupler's own watchdog is armed: table, address, value, only if different.",
+               watchdog.arm) +
+         array("WatchdogSequences::Write watchdog_feed", "How it is fed.", watchdog.feed) +
+         array("WatchdogSequences::Write watchdog_reset", "How it is reset.", watchdog.reset);
 }
 
 }  // namespace
@@ -133,6 +164,8 @@ std::string table_source(const Map& map, const Stamp& stamp) {
       arg("allow", array("::std::string_view allow", "Who may connect.", map.service.allow)),
       arg("unreadable", array("Unreadable unreadable", "What is never read.", map.unreadable)),
       arg("unreadable_name", map.unreadable.empty() ? "{}" : "unreadable"),
+      arg("sequences", sequences(map.coupler_watchdog)),
+      arg("coupler_watchdog", coupler_watchdog(map.coupler_watchdog)),
       arg("on_reconnect", map.on_reconnect == OnReconnect::drop ? "drop" : "restore"),
       arg("on_shutdown", map.on_shutdown == OnShutdown::hold ? "hold" : "safe"),
       arg("listen", literal(map.service.listen)),

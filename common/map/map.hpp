@@ -8,13 +8,14 @@
 #include "common/base/span.hpp"
 #include "common/map/point.hpp"
 #include "common/map/service.hpp"
+#include "common/map/watchdog_sequences.hpp"
 #include "common/modbus/limits.hpp"
 
 namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 3;
+constexpr int model_version = 4;
 
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {
@@ -86,6 +87,7 @@ struct Map {
   OnReconnect on_reconnect = OnReconnect::drop;
   OnShutdown on_shutdown = OnShutdown::hold;
   Span<const Unreadable> unreadable{};
+  WatchdogSequences coupler_watchdog{};
 };
 
 /// The point of that name, or nullptr.

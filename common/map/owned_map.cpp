@@ -22,6 +22,10 @@ Span<const Unreadable> OwnedMap::keep(std::vector<Unreadable> areas) {
   return areas_.emplace_back(std::move(areas));
 }
 
+Span<const WatchdogSequences::Write> OwnedMap::keep(std::vector<WatchdogSequences::Write> sequence) {
+  return sequences_.emplace_back(std::move(sequence));
+}
+
 void OwnedMap::finish(Map head, std::vector<Point> points, std::vector<SimWire> sim) {
   points_ = std::move(points);
   sim_ = std::move(sim);

@@ -25,6 +25,7 @@ class OwnedMap {
   /// Keeps a copy of the registers.
   Span<const std::uint16_t> keep(std::vector<std::uint16_t> registers);
   Span<const Unreadable> keep(std::vector<Unreadable> areas);
+  Span<const WatchdogSequences::Write> keep(std::vector<WatchdogSequences::Write> sequence);
   /// Keeps the list; what its elements view must be kept, too.
   Span<const std::string_view> keep(std::vector<std::string_view> list);
 
@@ -38,6 +39,7 @@ class OwnedMap {
   std::deque<std::vector<std::uint16_t>> registers_;
   std::deque<std::vector<std::string_view>> lists_;
   std::deque<std::vector<Unreadable>> areas_;
+  std::deque<std::vector<WatchdogSequences::Write>> sequences_;
   std::vector<Point> points_;
   std::vector<SimWire> sim_;
   Map map_;

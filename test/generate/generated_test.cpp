@@ -2,12 +2,15 @@
 #include <fstream>
 #include <iterator>
 
+#include "beckhoff_map.hpp"
 #include "common/map/loader/load.hpp"
 #include "example_map.hpp"
 #include "hard_map.hpp"
 #include "manners_map.hpp"
+#include "moxa_map.hpp"
 #include "test/generate/same_map.hpp"
 #include "unaddressed_map.hpp"
+#include "wago_map.hpp"
 
 namespace coupler {
 namespace {
@@ -48,6 +51,16 @@ TEST(Generated, Addresses_come_from_the_lock) {
   const LoadResult served = load_map(maps::unaddressed::map.text, "served");
   ASSERT_TRUE(served.map);
   EXPECT_EQ(served.map->map().fingerprint, maps::unaddressed::fingerprint);
+}
+
+TEST(Generated, The_couplers_own_watchdog_survives) {
+  for (const Map* map : {&maps::wago::map, &maps::beckhoff::map, &maps::moxa::map}) {
+    SCOPED_TRACE(map->name);
+    const MapPtr loaded = load(COUPLER_SOURCE_DIR "/test/generate/" + std::string(map->name) + ".yaml");
+    ASSERT_TRUE(loaded);
+    ASSERT_TRUE(loaded->map().coupler_watchdog.present());
+    testing::expect_same(*map, loaded->map());
+  }
 }
 
 TEST(Generated, The_text_is_the_file_byte_by_byte) {

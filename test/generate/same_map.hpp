@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 3, "Compare the new fields of the model here, too");
+static_assert(model_version == 4, "Compare the new fields of the model here, too");
 
 inline void expect_same(const Line& a, const Line& b) {
   EXPECT_EQ(a.chip, b.chip);
@@ -121,6 +121,30 @@ inline void expect_same(const Service& a, const Service& b) {
   EXPECT_EQ(a.readback, b.readback);
 }
 
+inline void expect_same(const WatchdogSequences::Write& a, const WatchdogSequences::Write& b) {
+  EXPECT_EQ(a.table, b.table);
+  EXPECT_EQ(a.address, b.address);
+  EXPECT_EQ(a.value, b.value);
+  EXPECT_EQ(a.if_different, b.if_different);
+}
+
+inline void expect_same(Span<const WatchdogSequences::Write> a, Span<const WatchdogSequences::Write> b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) expect_same(a[i], b[i]);
+}
+
+inline void expect_same(const WatchdogSequences& a, const WatchdogSequences& b) {
+  EXPECT_EQ(a.timeout, b.timeout);
+  EXPECT_EQ(a.recovery, b.recovery);
+  EXPECT_EQ(a.feed_every, b.feed_every);
+  expect_same(a.arm, b.arm);
+  expect_same(a.feed, b.feed);
+  expect_same(a.reset, b.reset);
+  EXPECT_EQ(a.refusal, b.refusal);
+  ASSERT_EQ(a.alarm.has_value(), b.alarm.has_value());
+  if (a.alarm) expect_same(*a.alarm, *b.alarm);
+}
+
 /// Every field of the model, deep.
 inline void expect_same(const Map& a, const Map& b) {
   EXPECT_EQ(a.name, b.name);
@@ -145,6 +169,7 @@ inline void expect_same(const Map& a, const Map& b) {
     EXPECT_EQ(a.unreadable[i].table, b.unreadable[i].table);
     EXPECT_EQ(a.unreadable[i].range, b.unreadable[i].range);
   }
+  expect_same(a.coupler_watchdog, b.coupler_watchdog);
 }
 
 }  // namespace coupler::testing

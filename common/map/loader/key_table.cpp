@@ -248,6 +248,7 @@ constexpr Key keys[] = {
     project("recovery", S::watchdog, K::choice, "automatic", "how outputs are freed again")
         .otherwise("automatic")
         .one_of("automatic|manual"),
+    project("heartbeat", S::watchdog, K::address, "100", "the register that a PLC's program watches"),
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "common/map/loader/addressed_text.hpp"
+#include "common/map/loader/coupler_watchdog_reader.hpp"
 #include "common/map/loader/edge_reader.hpp"
 #include "common/map/loader/names.hpp"
 #include "common/map/loader/overlap.hpp"
@@ -144,6 +145,7 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   for (std::size_t i = 0; i < drafts.size(); ++i) read_rest(points.options[i], defaults, drafts[i], context);
   if (preset) apply(*preset, drafts, context);
   check_points(drafts, head.limits, top.has("addressing"), context);
+  read_coupler_watchdog(top, preset, drafts, defaults.addressing, head, context);
   std::vector<SimWire> sim = read_sim(top, drafts, context);
   check_edges(drafts, sim, context);
   check_unreadable(unreadable, drafts, context);

@@ -7,31 +7,19 @@
 
 #include "common/map/loader/document.hpp"
 #include "common/map/loader/nearest.hpp"
-#include "common/map/loader/scalar.hpp"
+#include "common/map/loader/preset_fields.hpp"
 
 namespace coupler::loader {
 namespace {
 
-const Entry* child(const Entry& entry, std::string_view key) {
-  const auto found = std::find_if(entry.children.begin(), entry.children.end(),
-                                  [&](const Entry& e) { return e.key == key; });
-  return found == entry.children.end() ? nullptr : &*found;
-}
-
-std::optional<std::uint32_t> number(const Entry& entry, std::string_view key) {
-  const Entry* found = child(entry, key);
-  const auto value = found != nullptr ? parse_unsigned(found->text) : std::nullopt;
-  if (!value || *value > 0xFFFF) return std::nullopt;
-  return static_cast<std::uint32_t>(*value);
-}
-
 std::optional<Preset::Area> area_of(const Entry& entry) {
   const Entry* name = child(entry, "table");
-  const auto from = number(entry, "from");
-  const auto to = number(entry, "to");
+  const auto from = word(entry, "from");
+  const auto to = word(entry, "to");
   if (name == nullptr || !from || !to || *to < *from) return std::nullopt;
   for (const Table table : tables)
-    if (name->text == to_string(table)) return Preset::Area{table, modbus::Range::of(*from, *to - *from + 1)};
+    if (name->text == to_string(table))
+      return Preset::Area{table, modbus::Range::of(*from, *to - *from + 1U)};
   return std::nullopt;
 }
 
@@ -56,12 +44,18 @@ void check_area(const Preset& preset, const DraftPoint& draft, Context& context)
                            "look into its manual, or remove 'preset'");
 }
 
+std::string no_element(const PresetFile& file, Position at, std::string_view of) {
+  return fmt::format("{}: line {} is no element of '{}'", file.name, at.line, of);
+}
+
 }  // namespace
 
 tl::expected<Preset, std::string> parse_preset(const PresetFile& file) {
   Problems problems(file.name);
   const auto root = parse_document(file.text, problems);
   if (!root) return tl::make_unexpected(to_string(std::move(problems).sorted().front()));
+  if (child(*root, "watchdog") == nullptr)
+    return tl::make_unexpected(fmt::format("{}: nothing is said of a 'watchdog'", file.name));
   Preset preset;
   preset.name = file.name;
   for (const Entry& entry : root->children) {
@@ -69,14 +63,19 @@ tl::expected<Preset, std::string> parse_preset(const PresetFile& file) {
       preset.map = entry;
       continue;
     }
+    if (entry.key == "watchdog") {
+      const auto watchdog = parse_preset_watchdog(entry);
+      if (!watchdog) return tl::make_unexpected(no_element(file, watchdog.error(), entry.key));
+      preset.watchdog = *watchdog;
+      continue;
+    }
     for (const Entry& element : entry.children) {
       const auto area = area_of(element);
-      const auto offset = number(element, "offset");
+      const auto offset = word(element, "offset");
       if (!area || (entry.key != "areas" && !(entry.key == "read_back" && offset)))
-        return tl::make_unexpected(
-            fmt::format("{}: line {} is no element of '{}'", file.name, element.at.line, entry.key));
+        return tl::make_unexpected(no_element(file, element.at, entry.key));
       if (offset)
-        preset.read_back.push_back({*area, static_cast<std::uint16_t>(*offset)});
+        preset.read_back.push_back({*area, *offset});
       else
         preset.areas.push_back(*area);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/map/loader/draft_point.hpp"
+#include "common/map/loader/preset_watchdog.hpp"
 #include "common/map/loader/presets.hpp"
 #include "common/map/loader/reader.hpp"
 
@@ -27,6 +28,7 @@ struct Preset {
   Entry map;  ///< keys that hold unless the map has them
   std::vector<Area> areas;
   std::vector<ReadBack> read_back;
+  PresetWatchdog watchdog;
 };
 
 /// The error says what is wrong with the file.

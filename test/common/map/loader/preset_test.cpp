@@ -21,9 +21,9 @@ TEST(Preset, Each_one_can_be_used) {
 }
 
 TEST(Preset, What_is_no_area_is_refused_with_its_line) {
-  const auto preset = loader::parse_preset({"other", "areas:\n  - {table: coils, from: 3, to: 2}\n"});
+  const auto preset = loader::parse_preset({"other", "watchdog: {}\nareas:\n  - {table: coils, from: 3, to: 2}\n"});
   ASSERT_FALSE(preset);
-  EXPECT_EQ(preset.error(), "other: line 2 is no element of 'areas'");
+  EXPECT_EQ(preset.error(), "other: line 3 is no element of 'areas'");
 }
 
 TEST(Preset, Its_limits_hold_where_the_map_has_none_of_its_own) {
