@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/map/fingerprint.hpp"
+#include "host/core/probe.hpp"
 
 namespace coupler::driver {
 
@@ -18,12 +19,14 @@ Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transpo
       sink_(sink),
       qualities_(map),
       transport_(transport, clock, map.limits, statistics_),
+      watchdog_(map, transport_, clock, statistics_, sink),
       writer_(map, transport_, clock, statistics_, sink),
       reader_(map, transport_, clock, writer_, statistics_, qualities_, sink) {}
 
 Time Device::step() {
   if (!connected_) {
     writer_.disconnected(NotConnected{"not connected"});
+    watchdog_.disconnected("not connected");
     return clock_.now() < retry_at_ ? retry_at_ : connect();
   }
   if (const auto done = do_what_is_due(clock_.now()); !done) lost(done.error());
@@ -32,12 +35,16 @@ Time Device::step() {
 
 Result<> Device::do_what_is_due(Time now) {
   Result<> answer;
-  if (writer_.due() <= now)
+  if (writer_.awaits_answer())
+    answer = writer_.step();
+  else if (watchdog_.due() <= now)
+    answer = serve_watchdog();
+  else if (writer_.due() <= now)
     answer = writer_.step();
   else if (reader_.due() <= now)
     answer = reader_.step();
   else if (probe_due() <= now)
-    answer = reader_.probe();
+    answer = probe(map_, transport_);
   else
     return {};
   if (answer && transport_.replies() > replies_at_connect_) {
@@ -47,7 +54,13 @@ Result<> Device::do_what_is_due(Time now) {
   return answer;
 }
 
-Time Device::due() const { return std::min({writer_.due(), reader_.due(), probe_due()}); }
+Result<> Device::serve_watchdog() {
+  const Result<bool> is_back = watchdog_.step();
+  if (!is_back) return tl::make_unexpected(is_back.error());
+  return *is_back ? writer_.reconnected() : Result<>{};
+}
+
+Time Device::due() const { return std::min({writer_.due(), watchdog_.due(), reader_.due(), probe_due()}); }
 
 void Device::arrived() {
   if (writer_.awaits_answer()) return;
@@ -62,6 +75,7 @@ void Device::arrived() {
 void Device::stop() {
   if (connected_) writer_.shut_down();
   writer_.disconnected(NotConnected{"the driver ends"});
+  watchdog_.disconnected("the driver ends");
   transport_.close();
   connected_ = linked_ = false;
   if (std::exchange(online_, false)) sink_.on_online(false);
@@ -71,6 +85,7 @@ Time Device::connect() {
   Result<> result = linked_ ? Result<>{} : transport_.connect();
   linked_ = result.has_value();
   if (result && verify_ != Verify::off) result = prove_equal();
+  if (result) result = watchdog_.connected();
   if (result) result = writer_.reconnected();
   if (!result) {
     lost(result.error());
@@ -143,6 +158,7 @@ void Device::lost(const Error& error) {
   connected_ = false;
   retry_at_ = clock_.now() + backoff_.next();
   writer_.disconnected(error);
+  watchdog_.disconnected(to_string(error));
   const std::string why = to_string(error);
   statistics_.offline(why);
   qualities_.online(false);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <future>
 #include <string>
 
 #include "host/core/backoff.hpp"
+#include "host/core/coupler_watchdog.hpp"
 #include "host/core/reader.hpp"
 #include "host/core/writer.hpp"
 
@@ -20,8 +22,9 @@ namespace coupler::driver {
 /// A unit that its gateway cannot reach is offline, too, and tried again after the back-off, but the
 /// connection to the gateway stays: others may use it.
 ///
-/// push(), refuse(), statistics() and qualities() are for any thread. All others are for one at a time: the
-/// owner of the connection, or, for send_now() alone, one who has made sure that the owner only waits.
+/// push(), refuse(), reset_watchdog(), statistics() and qualities() are for any thread. All others are for
+/// one at a time: the owner of the connection, or, for send_now() alone, one who has made sure that the owner
+/// only waits.
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
@@ -31,6 +34,9 @@ class Device {
   void push(const Write& write) { writer_.push(write); }
   /// A value that is none of its point: counted, and told to the listener.
   void refuse(const Write& write, std::string_view why) { writer_.refuse(write, why); }
+
+  /// Resets the coupler's own watchdog.
+  std::future<CouplerWatchdog::Answer> reset_watchdog() { return watchdog_.ask_reset(); }
 
   /// Sends what is queued without waiting for anything, if that is possible now. If false, step() must be
   /// called.
@@ -56,6 +62,7 @@ class Device {
   Result<> judge(const Identity& identity);
   void explain_silence(const Error& error);
   Result<> do_what_is_due(Time now);
+  Result<> serve_watchdog();
   Time due() const;
   Time probe_due() const { return transport_.last_answer() + map_.connection.timeout; }
   void came_online();
@@ -69,6 +76,7 @@ class Device {
   DeviceStatistics statistics_;
   PointQualities qualities_;
   PacedTransport transport_;
+  CouplerWatchdog watchdog_;
   Writer writer_;
   Reader reader_;
   Backoff backoff_;

@@ -30,6 +30,11 @@ void DeviceStatistics::rejected() {
   ++now_.rejected_ranges;
 }
 
+void DeviceStatistics::watchdog(const WatchdogStatus& status) {
+  const std::lock_guard lock(mutex_);
+  now_.watchdog = status;
+}
+
 void DeviceStatistics::identified(Identity::Verdict verdict) {
   const std::lock_guard lock(mutex_);
   now_.identity = verdict;

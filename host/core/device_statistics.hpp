@@ -10,6 +10,7 @@
 #include "host/core/error.hpp"
 #include "host/core/histogram.hpp"
 #include "host/core/identity_check.hpp"
+#include "host/core/watchdog_status.hpp"
 #include "host/core/write_result.hpp"
 
 namespace coupler::driver {
@@ -27,6 +28,7 @@ struct DeviceSnapshot {
   std::uint64_t rejected_ranges = 0;
   std::uint64_t overruns = 0;
   std::array<std::uint64_t, WriteResult::outcomes> writes{};  ///< by outcome
+  WatchdogStatus watchdog;                                    ///< the coupler's own
   Histogram latency;                                          ///< from request to answer
   Histogram cycles;  ///< from the deadline of a polling cycle to its last answer
 
@@ -42,6 +44,7 @@ class DeviceStatistics {
   void wrote(WriteResult::Outcome outcome);
   void cycle_ended(Duration after, std::uint64_t overruns);
   void rejected();
+  void watchdog(const WatchdogStatus& status);
   void identified(Identity::Verdict verdict);
   void online();
   void offline(const std::string& trouble);

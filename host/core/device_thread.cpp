@@ -37,6 +37,12 @@ void DeviceThread::want(std::uint32_t point, bool wanted) {
   transport_.wake();
 }
 
+std::future<CouplerWatchdog::Answer> DeviceThread::reset_watchdog() {
+  auto answer = device_.reset_watchdog();
+  transport_.wake();
+  return answer;
+}
+
 Time DeviceThread::step() {
   const std::lock_guard turn(turn_);
   wishes_.take([this](std::uint32_t point, bool wanted) { device_.want(point, wanted); });

@@ -32,6 +32,8 @@ class DeviceThread {
   void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
   /// Whether somebody wants the values of a point (index into Map::points). At first all are wanted.
   void want(std::uint32_t point, bool wanted);
+  /// Resets the coupler's own watchdog. The answer comes after a few timeouts at most.
+  std::future<CouplerWatchdog::Answer> reset_watchdog();
   DeviceSnapshot statistics() const { return device_.statistics(); }
   std::vector<PointQuality> qualities() const { return device_.qualities(); }
 

@@ -70,4 +70,11 @@ Health writes_health(const DeviceSnapshot& before, const DeviceSnapshot& now) {
   return {Level::info, fmt::format("{} written", now.written(Outcome::ok))};
 }
 
+Health watchdog_health(const DeviceSnapshot& now) {
+  const WatchdogStatus& watchdog = now.watchdog;
+  if (watchdog.state == WatchdogStatus::State::fed) return {Level::info, "fed"};
+  if (watchdog.trouble.empty()) return {Level::warning, "not fed: the device is offline"};
+  return {Level::error, watchdog.trouble};
+}
+
 }  // namespace coupler::driver

@@ -28,6 +28,9 @@ Health polling_health(const Map& map, const std::vector<PointQuality>& points, c
 /// warning: a write since `before` did not do what it should.
 Health writes_health(const DeviceSnapshot& before, const DeviceSnapshot& now);
 
+/// The coupler's own watchdog. error: it has expired, or it is not fed.
+Health watchdog_health(const DeviceSnapshot& now);
+
 /// "foreign", "equal", …; "not asked".
 std::string_view to_string(const std::optional<Identity::Verdict>& verdict);
 

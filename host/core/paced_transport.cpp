@@ -13,6 +13,8 @@ void PacedTransport::pause() {
 Result<> PacedTransport::answered(Result<> result) {
   answered_ = clock_.now();
   ready_ = gap_ > Duration::zero() ? answered_ + gap_ : Time::min();
+  if (const ExceptionReply* exception = result ? nullptr : exception_in(result.error()))
+    seen_.set(static_cast<std::size_t>(exception->code));
   statistics_.answered(answered_ - begun_, result);
   if (result || exception_in(result.error()) != nullptr) ++replies_;
   return result;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bitset>
+
 #include "common/map/map.hpp"
 #include "host/core/clock.hpp"
 #include "host/core/device_statistics.hpp"
@@ -38,6 +40,10 @@ class PacedTransport : public Transport {
   /// How many requests have been answered, be it by an exception.
   std::uint64_t replies() const { return replies_; }
 
+  /// Whether a request has been answered with it since the last forget_exceptions().
+  bool has_seen(modbus::Exception code) const { return seen_[static_cast<std::size_t>(code)]; }
+  void forget_exceptions() { seen_.reset(); }
+
  private:
   void pause();
   Result<> answered(Result<> result);
@@ -56,6 +62,7 @@ class PacedTransport : public Transport {
   Time begun_{};              ///< the request in flight
   Time answered_{};
   std::uint64_t replies_ = 0;
+  std::bitset<256> seen_;  ///< exceptions
 };
 
 }  // namespace coupler::driver

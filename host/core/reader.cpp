@@ -106,15 +106,6 @@ void Reader::report_refusals() {
   for (const Refusal& refusal : cycle_.take_refusals()) sink_.on_report(Level::warning, to_string(refusal));
 }
 
-Result<> Reader::probe() {
-  const auto found = std::find_if(map_.points.begin(), map_.points.end(), is_readable);
-  const Point* const asked = found == map_.points.end() ? map_.points.begin() : found;
-  Result<> answer = map_.points.empty() ? request({Table::coils, modbus::Range::of(0, 1), {}})
-                                        : request({asked->table, read_range(*asked), {}});
-  if (answer || (exception_in(answer.error()) != nullptr && !is_unit_away(answer.error()))) return {};
-  return answer;
-}
-
 std::string Reader::describe(const ReadSpan& span) const {
   if (span.points.size() == 1) return std::string(map_.points[span.points.front()].name);
   return fmt::format("{} {} to {} ({} to {})", to_string(span.table), span.range.start(), span.range.last(),

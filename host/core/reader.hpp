@@ -31,8 +31,6 @@ class Reader {
   /// Makes the request that is due, if there is one. An error means that the connection is of no more use, or
   /// that the unit is away; any other exception is none.
   Result<> step();
-  /// Asks for something only to hear whether the device is there.
-  Result<> probe();
 
   void want(std::uint32_t point, bool wanted) { cycle_.want(point, wanted); }
 

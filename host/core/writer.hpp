@@ -38,7 +38,8 @@ class Writer {
   /// the connection is of no more use; an exception is none.
   Result<> step();
 
-  /// A new connection: under `on_reconnect: restore` the outputs get their last values.
+  /// A new connection, or a coupler whose watchdog had switched its outputs off: under
+  /// `on_reconnect: restore` they get their last values.
   Result<> reconnected();
   /// There is no connection: nobody waits for what was sent or queued.
   void disconnected(const Error& why);

@@ -43,12 +43,16 @@ void DeviceServices::advertise(ros::NodeHandle& handle, const std::string& name,
   servers_.push_back(handle.advertiseService(options));
 }
 
-void DeviceServices::offer(ros::NodeHandle& handle, std::function<void(const Write&)> accept) {
+void DeviceServices::offer(ros::NodeHandle& handle, std::function<void(const Write&)> accept, Reset reset) {
   accept_ = std::move(accept);
+  reset_ = std::move(reset);
   advertise<coupler_driver::Write>(
       handle, "write", [this](const auto& request, auto& response) { answer_write(request, response); });
   advertise<coupler_driver::Read>(
       handle, "read", [this](const auto& request, auto& response) { answer_read(request, response); });
+  if (map_.coupler_watchdog.present())
+    advertise<std_srvs::Trigger>(handle, "reset_watchdog",
+                                 [this](const auto&, auto& response) { answer_reset(response); });
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)
     if (is_writable(map_.points[i]) && is_bit(map_.points[i]))
       advertise<std_srvs::SetBool>(
@@ -64,6 +68,7 @@ void DeviceServices::withdraw() {
   next_value_.end();
   const std::lock_guard lock(mutex_);
   accept_ = nullptr;
+  reset_ = nullptr;
 }
 
 DeviceServices::~DeviceServices() {
@@ -115,6 +120,17 @@ void DeviceServices::answer_set(std::uint32_t index, bool on, std_srvs::SetBool:
   const auto outcome = write(index, {&value, 1});
   response.success = outcome.outcome == Outcome::ok;
   response.message = outcome.text;
+}
+
+void DeviceServices::answer_reset(std_srvs::Trigger::Response& response) {
+  std::future<CouplerWatchdog::Answer> asked;
+  {
+    const std::lock_guard lock(mutex_);
+    if (reset_) asked = reset_();
+  }
+  const auto answer = asked.valid() ? asked.get() : CouplerWatchdog::Answer{false, "the driver ends"};
+  response.success = answer.success;
+  response.message = answer.text;
 }
 
 void DeviceServices::answer_read(const coupler_driver::Read::Request& request,

@@ -6,12 +6,15 @@
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
 
 #include <functional>
+#include <future>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "host/core/coupler_watchdog.hpp"
 #include "host/core/write.hpp"
 #include "host/core/write_ticket.hpp"
 #include "host/ros/listeners.hpp"
@@ -19,8 +22,9 @@
 
 namespace coupler::driver {
 
-/// The services of a device: `<name>/write`, `<name>/read`, and `<name>/<point>/set` for each writable bit.
-/// They answer when the result is known, and therefore have a thread of their own.
+/// The services of a device: `<name>/write`, `<name>/read`, `<name>/<point>/set` for each writable bit, and
+/// `<name>/reset_watchdog` where the driver makes use of the coupler's own. They answer when the result is
+/// known, and therefore have a thread of their own.
 class DeviceServices {
  public:
   /// Nothing is offered yet. What `map` views, and the listeners, must outlive it.
@@ -30,9 +34,12 @@ class DeviceServices {
   DeviceServices(const DeviceServices&) = delete;
   DeviceServices& operator=(const DeviceServices&) = delete;
 
-  /// From here on each write goes to `accept`, which waits for nothing.
-  void offer(ros::NodeHandle& handle, std::function<void(const Write&)> accept);
-  /// Makes no more writes: what `accept` needs may end.
+  using Reset = std::function<std::future<CouplerWatchdog::Answer>()>;
+
+  /// From here on each write goes to `accept`, and `reset` is asked to reset the coupler's watchdog. Neither
+  /// waits for anything.
+  void offer(ros::NodeHandle& handle, std::function<void(const Write&)> accept, Reset reset);
+  /// Calls them no more: what they need may end.
   void withdraw();
 
   /// Who waits for a value that is read.
@@ -45,12 +52,14 @@ class DeviceServices {
   void answer_write(const coupler_driver::Write::Request& request, coupler_driver::Write::Response& response);
   void answer_read(const coupler_driver::Read::Request& request, coupler_driver::Read::Response& response);
   void answer_set(std::uint32_t index, bool on, std_srvs::SetBool::Response& response);
+  void answer_reset(std_srvs::Trigger::Response& response);
   const Point* find_point(const std::string& name, std::string& message) const;
 
   Map map_;
   Listeners& listeners_;
   std::mutex mutex_;
   std::function<void(const Write&)> accept_;  ///< none after withdraw()
+  Reset reset_;                               ///< none after withdraw()
   NextValue next_value_;
   ros::CallbackQueue queue_;
   std::vector<ros::ServiceServer> servers_;

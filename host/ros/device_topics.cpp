@@ -54,7 +54,7 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, std::unique_
     if (is_writable(map_.points[i]))
       subscribers_.push_back(
           subscribe(handle, topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
-  services_.offer(handle, writes_.accept);
+  services_.offer(handle, writes_.accept, [this] { return thread_.reset_watchdog(); });
   if (poll == Poll::subscribed)
     listeners_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
 }

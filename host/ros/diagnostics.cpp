@@ -33,6 +33,7 @@ Diagnostics::Diagnostics(const Map& map) : map_(map) {
   updater_.add(name + " connection", this, &Diagnostics::connection);
   updater_.add(name + " polling", this, &Diagnostics::polling);
   updater_.add(name + " writes", this, &Diagnostics::writes);
+  if (map.coupler_watchdog.present()) updater_.add(name + " watchdog", this, &Diagnostics::watchdog);
 }
 
 void Diagnostics::update(const DeviceSnapshot& device, const std::vector<PointQuality>& points) {
@@ -67,6 +68,13 @@ void Diagnostics::writes(Wrapper& status) {
   summarize(status, writes_health(before_, now_));
   for (std::size_t i = 0; i < now_.writes.size(); ++i)
     status.add(std::string(to_string(static_cast<WriteResult::Outcome>(i))), now_.writes[i]);
+}
+
+void Diagnostics::watchdog(Wrapper& status) {
+  summarize(status, watchdog_health(now_));
+  status.add("timeout ms", map_.coupler_watchdog.timeout.count());
+  status.add("fed", now_.watchdog.state == WatchdogStatus::State::fed);
+  status.add("times expired", now_.watchdog.expiries);
 }
 
 }  // namespace coupler::driver

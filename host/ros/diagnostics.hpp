@@ -12,7 +12,8 @@
 
 namespace coupler::driver {
 
-/// A device on /diagnostics (REP 107): connection, polling, writes. The hardware id is its name and address.
+/// A device on /diagnostics (REP 107): connection, polling, writes, and the
+/// coupler's own watchdog where the driver makes use of it. The hardware id is its name and address.
 class Diagnostics {
  public:
   /// What `map` views must outlive it.
@@ -26,6 +27,7 @@ class Diagnostics {
   void connection(Wrapper& status);
   void polling(Wrapper& status);
   void writes(Wrapper& status);
+  void watchdog(Wrapper& status);
 
   Map map_;
   DeviceSnapshot before_;

@@ -30,7 +30,8 @@ class FakeDevice : public Transport {
   std::vector<std::string> requests;  ///< "read coils 0+3", "write register 5" …
   std::optional<Error> refuse_connect;
   std::deque<Error> next_errors;  ///< each for one request, before it does anything
-  std::string file;               ///< what FC 20 gives
+  std::function<std::optional<modbus::Exception>(const std::string& request)> refuses;  ///< at the moment
+  std::string file;                                                                     ///< what FC 20 gives
   bool connected = false;
   std::vector<std::thread::id> senders;  ///< of writes
   std::function<void()> during_read;     ///< what happens while a read waits for its answer
@@ -110,6 +111,8 @@ class FakeDevice : public Transport {
  private:
   std::optional<Error> planned() {
     if (!connected) return Error(NotConnected{"not connected"});
+    if (const auto code = refuses ? refuses(requests.back()) : std::nullopt)
+      return Error(ExceptionReply{*code});
     if (next_errors.empty()) return std::nullopt;
     const Error error = next_errors.front();
     next_errors.pop_front();
