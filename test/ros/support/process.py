@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The programs under test, as child processes that end with the test."""
+import contextlib
 import os
 import pathlib
 import signal
@@ -33,6 +34,15 @@ class Process:
     @property
     def running(self):
         return self._child.poll() is None
+
+    @contextlib.contextmanager
+    def frozen(self):
+        """Stopped, as a machine that hangs: its connections stay, and it asks nothing."""
+        self._child.send_signal(signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            self._child.send_signal(signal.SIGCONT)
 
     def wait_for(self, text, seconds=30):
         """Until the program has printed the text."""

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the simulated couplers have in common: a device whose outputs go off when its watchdog has expired."""
+import threading
+import time
+
+from support.device import READS, WRITES, Device
+
+
+class Coupler(Device):
+    """`running()` says whether the watchdog runs and when it was last fed; a thread looks after it, as the real one
+    does without being asked. `outputs` are the coils that it switches off."""
+
+    outputs = range(0, 8)
+
+    def __init__(self, connections=None):
+        super().__init__(connections=connections)
+        self.answer = self._locked
+        self.timeout = 0     # seconds; 0: off
+        self.fed_at = None   # monotonic; None: it does not run
+        self.expired = False
+        self.expiries = 0
+        self._state = threading.RLock()
+        self._ended = threading.Event()
+
+    def start(self):
+        super().start()
+        threading.Thread(target=self._watch, daemon=True).start()
+        return self
+
+    def stop(self):
+        self._ended.set()
+        super().stop()
+
+    def feed(self):
+        self.fed_at = time.monotonic()
+
+    def coil(self, address):
+        return self.tables["coils"][address]
+
+    def register(self, address):
+        return self.tables["holding_registers"][address]
+
+    def written(self, address, function=6):
+        """The values written to a register (or, FC 5, a coil), in order."""
+        return [int.from_bytes(request.data[3:5], "big") for request in self.seen(function)
+                if request.address == address]
+
+    def _watch(self):
+        while not self._ended.wait(0.01):
+            with self._state:
+                late = self.fed_at is not None and self.timeout and time.monotonic() - self.fed_at > self.timeout
+                if late and not self.expired:
+                    self.expired, self.fed_at = True, None
+                    self.expiries += 1
+                    self.expire()
+
+    def expire(self):
+        for address in self.outputs:
+            self.tables["coils"][address] = 0
+
+    def _locked(self, request):
+        with self._state:
+            return self.respond(request)
+
+    def respond(self, request):
+        return self.serve(request)
+
+
+def is_write(request):
+    return request.function in WRITES
+
+
+def is_register(request):
+    return (READS.get(request.function) or WRITES.get(request.function)) == "holding_registers"
