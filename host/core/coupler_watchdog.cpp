@@ -66,7 +66,7 @@ Time CouplerWatchdog::due() const {
 
 Result<bool> CouplerWatchdog::step() {
   if (!is_asked_) return serve(known_.recovery == Watchdog::Recovery::automatic);
-  const auto is_back = bring_up(true);
+  auto is_back = bring_up(true);
   if (!is_back) return is_back;  // disconnected() tells them
   const bool success = status_.state == State::fed;
   answer({success, !success ? status_.trouble : *is_back ? "reset, and fed again" : "it had not expired"});
@@ -82,7 +82,7 @@ Result<bool> CouplerWatchdog::serve(bool may_reset) {
 }
 
 Result<bool> CouplerWatchdog::bring_up(bool may_reset) {
-  const auto first = is_expired();
+  auto first = is_expired();
   if (!first) return first;
   if (!*first && status_.state == State::fed) {
     next_ = clock_.now() + known_.feed_every;
@@ -92,8 +92,8 @@ Result<bool> CouplerWatchdog::bring_up(bool may_reset) {
   if (*first) {
     expired();
     if (!may_reset) return false;
-    if (const auto done = carry_out(known_.reset); !done || !*done) return done;
-    const auto still = is_expired();
+    if (auto done = carry_out(known_.reset); !done || !*done) return done;
+    auto still = is_expired();
     if (!still) return still;
     if (*still) {
       trouble(
@@ -103,7 +103,7 @@ Result<bool> CouplerWatchdog::bring_up(bool may_reset) {
       return false;
     }
   }
-  if (const auto done = carry_out(known_.arm); !done || !*done) return done;
+  if (auto done = carry_out(known_.arm); !done || !*done) return done;
   fed();
   return was_expired;
 }
@@ -152,7 +152,7 @@ void CouplerWatchdog::expired() {
                         : fmt::format("When the machine may go on, call {}/reset_watchdog", map_.name)));
 }
 
-void CouplerWatchdog::trouble(State state, std::string what) {
+void CouplerWatchdog::trouble(State state, const std::string& what) {
   next_ = clock_.now() + std::max<Duration>(known_.timeout, shortest_retry);
   status_.state = state;
   if (std::exchange(status_.trouble, what) != what) sink_.on_report(Level::error, what);

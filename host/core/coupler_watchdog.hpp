@@ -53,7 +53,7 @@ class CouplerWatchdog {
   Result<bool> is_expired();
   Result<bool> carry_out(Span<const WatchdogSequences::Write> steps);
   void expired();
-  void trouble(State state, std::string what);
+  void trouble(State state, const std::string& what);
   void fed();
   void answer(const Answer& answer);
 

@@ -35,9 +35,7 @@ Time Device::step() {
 
 Result<> Device::do_what_is_due(Time now) {
   Result<> answer;
-  if (writer_.awaits_answer())
-    answer = writer_.step();
-  else if (watchdog_.due() <= now)
+  if (watchdog_.due() <= now && !writer_.awaits_answer())
     answer = serve_watchdog();
   else if (writer_.due() <= now)
     answer = writer_.step();

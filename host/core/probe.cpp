@@ -23,8 +23,8 @@ Result<> read(Table table, modbus::Range range, Transport& transport) {
 Result<> probe(const Map& map, Transport& transport) {
   const auto found = std::find_if(map.points.begin(), map.points.end(), is_readable);
   const Point* const asked = found == map.points.end() ? map.points.begin() : found;
-  const Result<> answer = map.points.empty() ? read(Table::coils, modbus::Range::of(0, 1), transport)
-                                             : read(asked->table, read_range(*asked), transport);
+  Result<> answer = map.points.empty() ? read(Table::coils, modbus::Range::of(0, 1), transport)
+                                       : read(asked->table, read_range(*asked), transport);
   if (answer || (exception_in(answer.error()) != nullptr && !is_unit_away(answer.error()))) return {};
   return answer;
 }

@@ -307,9 +307,8 @@ TEST_F(CouplerWatchdogTest, A_map_without_one_makes_no_request_for_it) {
   known = {};
   start_with_watchdog();
   push("valve", 1);
-  EXPECT_THAT(
-      requests_of(milliseconds(500)),
-      ElementsAre("connect", "write coil 4", "read coils 4+1", "read holding_registers 5+1"));
+  EXPECT_THAT(requests_of(milliseconds(500)),
+              ElementsAre("connect", "write coil 4", "read coils 4+1", "read holding_registers 5+1"));
 }
 
 }  // namespace

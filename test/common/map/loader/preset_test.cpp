@@ -21,7 +21,8 @@ TEST(Preset, Each_one_can_be_used) {
 }
 
 TEST(Preset, What_is_no_area_is_refused_with_its_line) {
-  const auto preset = loader::parse_preset({"other", "watchdog: {}\nareas:\n  - {table: coils, from: 3, to: 2}\n"});
+  const auto preset =
+      loader::parse_preset({"other", "watchdog: {}\nareas:\n  - {table: coils, from: 3, to: 2}\n"});
   ASSERT_FALSE(preset);
   EXPECT_EQ(preset.error(), "other: line 3 is no element of 'areas'");
 }
