@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// page.css, head.js and page.js as they stand in this folder, put into the program at build time.
+// The files of style/ and script/, put into the program at build time.
 #pragma once
 
 #include <string_view>
