@@ -73,9 +73,9 @@ Exit run(const Arguments& arguments) {
   const Map map = argument.map();
   const std::string name = arguments.name.empty() ? std::string(map.name) : arguments.name;
   if (arguments.docs)
-    return write(
-        arguments,
-        map_pages({arguments.map, folder_of(arguments), name, source, arguments.source_url}, loaded));
+    return write(arguments,
+                 map_pages({arguments.map, folder_of(arguments), name, source, arguments.source_url}, map,
+                           loaded.point_lines));
   const generate::Stamp stamp{name, source, COUPLER_VERSION};
   if (generate::is_identifier(stamp.name)) return write(arguments, generate::generate(map, stamp));
   const auto remedy = "give one with --name: letters, digits and underscores, a letter first, no word of C++";

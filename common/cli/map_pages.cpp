@@ -24,9 +24,9 @@ std::string url_of_map(const PagesRequest& request) {
 
 }  // namespace
 
-std::vector<generate::File> map_pages(const PagesRequest& request, const LoadResult& loaded) {
-  const auto document = pages::make_document(loaded.map->map(), loaded.point_lines,
-                                             {request.source, url_of_map(request), COUPLER_VERSION});
+std::vector<generate::File> map_pages(const PagesRequest& request, const Map& map, Span<const int> lines) {
+  const auto document =
+      pages::make_document(map, lines, {request.source, url_of_map(request), COUPLER_VERSION});
   std::string name = request.name;
   std::replace(name.begin(), name.end(), '/', '_');  // maps may be called hall/press
   return {{name + ".html", pages::html_page(document)}, {name + ".md", pages::markdown_page(document)}};

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/generate/generate.hpp"
-#include "common/map/loader/load.hpp"
+#include "common/map/map.hpp"
 
 namespace coupler::cli {
 
@@ -19,8 +19,8 @@ struct PagesRequest {
   std::string source_url;     ///< folder of the map on a forge; empty: links are relative to `out`
 };
 
-/// NAME.html and NAME.md of a map that was loaded.
-std::vector<generate::File> map_pages(const PagesRequest& request, const LoadResult& loaded);
+/// NAME.html and NAME.md. `lines`: of the points, as LoadResult::point_lines.
+std::vector<generate::File> map_pages(const PagesRequest& request, const Map& map, Span<const int> lines);
 
 /// Nothing in it ends a URL in HTML or Markdown.
 bool is_url_part(std::string_view text);
