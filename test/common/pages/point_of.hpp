@@ -12,6 +12,7 @@ inline Point point_of(codec::Type type) {
   point.table = Table::holding_registers;
   point.address = 6;
   point.format.type = type;
+  if (type == codec::Type::STRING) point.format.length = 12;  // no point is without a register
   point.access = Access::read_write;
   return point;
 }
