@@ -39,12 +39,16 @@ std::string by_table(const Map& map) {
 }
 
 ordered_json to_json(const Diagnostic& diagnostic) {
+  ordered_json notes = ordered_json::array();
+  for (const Diagnostic::Note& note : diagnostic.notes)
+    notes.push_back({{"line", note.line}, {"column", note.column}, {"what", note.what}});
   return {{"severity", diagnostic.severity == Diagnostic::Severity::error ? "error" : "warning"},
           {"file", diagnostic.file},
           {"line", diagnostic.line},
           {"column", diagnostic.column},
           {"what", diagnostic.what},
-          {"remedy", diagnostic.remedy}};
+          {"remedy", diagnostic.remedy},
+          {"notes", std::move(notes)}};
 }
 
 }  // namespace
@@ -76,10 +80,6 @@ std::string json_report(const std::string& file, const LoadResult& loaded) {
     report["diagnostics"].push_back(to_json(diagnostic));
   // A diagnostic may quote bytes that are not UTF-8.
   return report.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
-
-void print(const Diagnostics& diagnostics) {
-  for (const Diagnostic& diagnostic : diagnostics) fmt::print(stderr, "{}\n", to_string(diagnostic));
 }
 
 }  // namespace coupler::cli

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/map/loader/load.hpp"
+#include "common/map/loader/print.hpp"
 
 namespace coupler::cli {
 
@@ -15,8 +16,5 @@ std::string summary(const std::string& file, const Map& map);
 /// what, remedy}]}. name, points and fingerprint are null if there is no map; lock is null unless it was
 /// written, then {file, allocated: [names], retired: [names]}.
 std::string json_report(const std::string& file, const LoadResult& loaded);
-
-/// All of them, one a line, on standard error.
-void print(const Diagnostics& diagnostics);
 
 }  // namespace coupler::cli

@@ -31,7 +31,10 @@ void StderrLog::fail(std::string_view line) { put(LOG_ERR, speaker, line); }
 
 void StderrLog::tell(const Diagnostic& diagnostic) {
   const bool is_error = diagnostic.severity == Diagnostic::Severity::error;
-  put(is_error ? LOG_ERR : LOG_WARNING, "", to_string(diagnostic));
+  if (to_journal_)
+    put(is_error ? LOG_ERR : LOG_WARNING, "", to_string(diagnostic));
+  else
+    (void)std::fputs(render(diagnostic, Colour::no).c_str(), stderr);
 }
 
 void StderrLog::put(int priority, std::string_view who, std::string_view line) const {

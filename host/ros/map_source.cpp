@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/map/loader/load.hpp"
+#include "common/map/loader/print.hpp"
 #include "common/map/node_address.hpp"
 #include "host/core/backoff.hpp"
 #include "host/core/node_map.hpp"
@@ -24,7 +25,7 @@ void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", t
 
 Source from_file(const std::string& path) {
   const LoadResult loaded = load_map_file(path);
-  for (const Diagnostic& diagnostic : loaded.diagnostics) fmt::print(stderr, "{}\n", to_string(diagnostic));
+  coupler::print(loaded.diagnostics);
   if (!loaded.map) return tl::make_unexpected(wrong_input);
   return MapSource{loaded.map, loaded.map->map()};
 }

@@ -66,7 +66,8 @@ void check_unreadable(const Areas& areas, const DraftPoints& points, Context& co
       context.problems.error(draft.address_at,
                              fmt::format("{} is read from an area that is 'unreadable' (line {})",
                                          shown(point.name), area.at.line),
-                             "give it 'access: write', or make the area smaller");
+                             "give it 'access: write', or make the area smaller",
+                             {{area.at, "the area is here"}});
     }
   }
 }
@@ -82,7 +83,8 @@ void check_reserved(const Areas& areas, const DraftPoints& points, Context& cont
                                          area.range.start(), area.range.last(), area.at.line),
                              draft.addressless
                                  ? "make the area smaller: the lock has given the address before"
-                                 : "give it an address outside, or make the area smaller");
+                                 : "give it an address outside, or make the area smaller",
+                             {{area.at, "the area is here"}});
     }
   }
 }

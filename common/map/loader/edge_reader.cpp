@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/map/loader/edge_reader.hpp"
 
+#include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
 
 #include <fmt/format.h>
+
+#include "common/map/loader/nearest.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -84,7 +87,7 @@ class Inputs {
     const auto found = points_.find(name);
     if (found == points_.end())
       return Complaint(fmt::format("no point is called {}", shown(name)),
-                       "write the name of a discrete input");
+                       nearest_or(name, names(), "write the name of a discrete input"));
     const Point& point = *found->second;
     if (point.table != Table::discrete_inputs)
       return Complaint(fmt::format("{} is in {}, not a discrete input", shown(name), to_string(point.table)),
@@ -96,6 +99,14 @@ class Inputs {
   }
 
  private:
+  std::vector<std::string_view> names() const {
+    std::vector<std::string_view> found;
+    for (const auto& [name, point] : points_)
+      if (point->table == Table::discrete_inputs) found.push_back(name);
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
   std::unordered_map<std::string_view, const Point*> points_;
   std::unordered_set<std::string_view> wired_;
 };

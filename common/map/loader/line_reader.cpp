@@ -71,7 +71,7 @@ void read_line(const Reader& point, DraftPoint& draft, Context& context) {
         context.problems.error(
             inside.find(key)->key_at,
             fmt::format("'{}' is given twice, also in line {}", key, point.find(key)->key_at.line),
-            "keep one of the two");
+            "keep one of the two", {{point.find(key)->key_at, "the other is here"}});
   } else if (entry->kind == Entry::Kind::scalar && !entry->text.empty() && !parse_unsigned(entry->text)) {
     line.name = context.map.keep(entry->text);
   } else {

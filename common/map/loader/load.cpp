@@ -12,6 +12,7 @@
 
 #include "common/map/loader/document.hpp"
 #include "common/map/loader/map_reader.hpp"
+#include "common/map/loader/source_text.hpp"
 #include "common/map/lock/lock.hpp"
 
 namespace coupler {
@@ -45,6 +46,7 @@ LoadResult load_map(std::string_view text, std::string_view file) {
 
 LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock) {
   lock::Parsed known;
+  const std::string lock_text = lock.text.value_or("");
   if (lock.text) known = lock::parse(*lock.text, lock.path);
   // The map's own problems are told too; what its points would get beside a broken lock does not matter.
   if (!known.diagnostics.empty()) lock.use = LockUse::renew;
@@ -57,13 +59,15 @@ LoadResult load_map_with_lock(std::string_view text, std::string_view file, Lock
   if (const auto root = loader::parse_document(text, problems))
     loader::read_map(*root, text, placement, context);
   LoadResult result{nullptr, std::move(placement.problems)};
+  quote(result.diagnostics, lock_text);
   if (!problems.has_errors() && !has_errors(result.diagnostics)) {
     result.map = map;
     result.point_lines = std::move(context.point_lines);
     result.lock = std::move(placement.renewed);
   }
-  for (Diagnostic& diagnostic : std::move(problems).sorted())
-    result.diagnostics.push_back(std::move(diagnostic));
+  Diagnostics of_map = std::move(problems).sorted();
+  quote(of_map, loader::without_byte_order_mark(text));
+  for (Diagnostic& diagnostic : of_map) result.diagnostics.push_back(std::move(diagnostic));
   return result;
 }
 

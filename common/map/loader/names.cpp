@@ -36,7 +36,7 @@ void check_topic(const DraftPoint& draft, const FirstOfName& first, Context& con
     context.problems.error(draft.name_at,
                            fmt::format("{} is the topic that writes {} (line {})", shown(name),
                                        shown(other->point.name), other->name_at.line),
-                           "give the point another name");
+                           "give the point another name", {{other->name_at, "it is here"}});
   }
 }
 
@@ -62,7 +62,8 @@ void check_point_names(const DraftPoints& points, Context& context) {
       context.problems.error(draft.name_at,
                              fmt::format("{} is already the name of a point, in line {}",
                                          shown(draft.point.name), found->second->name_at.line),
-                             "give every point of the map a name of its own");
+                             "give every point of the map a name of its own",
+                             {{found->second->name_at, "the other is here"}});
   }
   for (const DraftPoint& draft : points) check_topic(draft, first, context);
 }

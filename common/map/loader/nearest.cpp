@@ -42,10 +42,14 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
   return best;
 }
 
-std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates) {
+std::string nearest_or(std::string_view word, const std::vector<std::string_view>& candidates,
+                       std::string otherwise) {
   const std::string_view near = nearest(word, candidates);
-  if (!near.empty()) return fmt::format("did you mean '{}'?", near);
-  return fmt::format("write one of {}", fmt::join(candidates, ", "));
+  return near.empty() ? std::move(otherwise) : fmt::format("did you mean '{}'?", near);
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates) {
+  return nearest_or(word, candidates, fmt::format("write one of {}", fmt::join(candidates, ", ")));
 }
 
 }  // namespace coupler::loader

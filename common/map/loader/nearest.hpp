@@ -16,4 +16,8 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
 /// "did you mean 'x'?", or "write one of a, b, c" when nothing is near.
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates);
 
+/// "did you mean 'x'?", or `otherwise` when nothing is near.
+std::string nearest_or(std::string_view word, const std::vector<std::string_view>& candidates,
+                       std::string otherwise);
+
 }  // namespace coupler::loader

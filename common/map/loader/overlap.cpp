@@ -32,10 +32,12 @@ void report(const DraftPoint& draft, const DraftPoint& other, Context& context) 
   std::string what =
       fmt::format("{} ({}) overlaps {} ({}, line {})", shown(draft.point.name), place(draft.point),
                   shown(other.point.name), place(other.point), other.address_at.line);
+  const Problems::Notes notes{{other.address_at, "the other is here"}};
   if (tolerable(draft.point, other.point))
-    context.problems.warning(draft.address_at, std::move(what), "remove one of the two if that is not meant");
+    context.problems.warning(draft.address_at, std::move(what), "remove one of the two if that is not meant",
+                             notes);
   else
-    context.problems.error(draft.address_at, std::move(what), "give one of the two another address");
+    context.problems.error(draft.address_at, std::move(what), "give one of the two another address", notes);
 }
 
 /// The claims on every address so far, those of writers once more: a reader may have been there before them.

@@ -6,17 +6,19 @@
 
 namespace coupler::loader {
 
-void Problems::error(Position at, std::string what, std::string remedy) {
-  add(Diagnostic::Severity::error, at, std::move(what), std::move(remedy));
+void Problems::error(Position at, std::string what, std::string remedy, const Notes& related) {
+  add(Diagnostic::Severity::error, at, std::move(what), std::move(remedy), related);
 }
 
-void Problems::warning(Position at, std::string what, std::string remedy) {
-  add(Diagnostic::Severity::warning, at, std::move(what), std::move(remedy));
+void Problems::warning(Position at, std::string what, std::string remedy, const Notes& related) {
+  add(Diagnostic::Severity::warning, at, std::move(what), std::move(remedy), related);
 }
 
-void Problems::add(Diagnostic::Severity severity, Position at, std::string what, std::string remedy) {
+void Problems::add(Diagnostic::Severity severity, Position at, std::string what, std::string remedy,
+                   const Notes& related) {
   if (severity == Diagnostic::Severity::error) ++errors_;
   found_.push_back({severity, file_, at.line, at.column, std::move(what), std::move(remedy)});
+  for (const Note& note : related) found_.back().notes.push_back({note.at.line, note.at.column, note.what});
 }
 
 Diagnostics Problems::sorted() && {

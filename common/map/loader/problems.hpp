@@ -4,19 +4,29 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/map/diagnostic.hpp"
 #include "common/map/loader/entry.hpp"
 
 namespace coupler::loader {
 
+/// Another place of the file, and what is there.
+struct Note {
+  Position at;
+  std::string what;
+};
+
 /// Collects what is wrong with one file.
 class Problems {
  public:
   explicit Problems(std::string_view file) : file_(file) {}
 
-  void error(Position at, std::string what, std::string remedy);
-  void warning(Position at, std::string what, std::string remedy);
+  /// `related`: other places of the file that have to do with it.
+  using Notes = std::vector<Note>;
+
+  void error(Position at, std::string what, std::string remedy, const Notes& related = {});
+  void warning(Position at, std::string what, std::string remedy, const Notes& related = {});
 
   bool has_errors() const { return errors_ > 0; }
   std::size_t errors() const { return errors_; }
@@ -24,7 +34,8 @@ class Problems {
   Diagnostics sorted() &&;
 
  private:
-  void add(Diagnostic::Severity severity, Position at, std::string what, std::string remedy);
+  void add(Diagnostic::Severity severity, Position at, std::string what, std::string remedy,
+           const Notes& related);
 
   std::string file_;
   Diagnostics found_;

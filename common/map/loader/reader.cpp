@@ -52,7 +52,7 @@ void Reader::check_key(const Entry& entry) {
     return context_.problems.error(
         entry.key_at,
         fmt::format("'{}' is given twice, first in line {}", key->name, first->value->key_at.line),
-        "keep one of the two");
+        "keep one of the two", {{first->value->key_at, "the first is here"}});
   fields_.push_back({key, &entry});
 }
 
@@ -167,12 +167,10 @@ std::optional<std::size_t> Reader::choice_index(std::string_view key) const {
       entry->kind == Entry::Kind::scalar ? folded(entry->text, known.owner) : std::string();
   for (std::size_t i = 0; i < choices.size(); ++i)
     if (given == folded(choices[i], known.owner)) return i;
-  const std::string_view near = nearest(given, choices);
   context_.problems.error(
       entry->at,
       fmt::format("'{}' is one of {}, not {}", known.name, fmt::join(choices, ", "), shown(*entry)),
-      near.empty() ? fmt::format("write it as in '{}: {}'", known.name, known.example)
-                   : fmt::format("did you mean '{}'?", near));
+      nearest_or(given, choices, fmt::format("write it as in '{}: {}'", known.name, known.example)));
   return std::nullopt;
 }
 

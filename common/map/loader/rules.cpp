@@ -48,7 +48,8 @@ void check_lines(const DraftPoints& points, Context& context) {
           draft.line_at,
           fmt::format("the {}{} of {} is already that of {} (line {})", kind == "line" ? "GPIO " : "", kind,
                       shown(draft.point.name), shown(found->second->point.name), found->second->line_at.line),
-          fmt::format("give each point a {} of its own", kind));
+          fmt::format("give each point a {} of its own", kind),
+          {{found->second->line_at, "the other is here"}});
   }
 }
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/map/loader/sim_reader.hpp"
 
+#include <algorithm>
 #include <unordered_map>
 
 #include <fmt/format.h>
+
+#include "common/map/loader/nearest.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -45,11 +48,11 @@ class SimReader {
 
   void check_input(const Entry& to) {
     check_end(to, Table::discrete_inputs);
-    const auto [first, is_new] = sources_.emplace(to.text, to.at.line);
+    const auto [first, is_new] = sources_.emplace(to.text, to.at);
     if (!is_new && to.kind == Entry::Kind::scalar)
-      context_.problems.error(to.at,
-                              fmt::format("{} already has a wire, in line {}", shown(to.text), first->second),
-                              "keep one wire for each input");
+      context_.problems.error(
+          to.at, fmt::format("{} already has a wire, in line {}", shown(to.text), first->second.line),
+          "keep one wire for each input", {{first->second, "it is here"}});
   }
 
   void check_end(const Entry& end, Table table) {
@@ -59,16 +62,24 @@ class SimReader {
     const std::string_view expected = table == Table::coils ? "a coil" : "a discrete input";
     if (found == tables_.end())
       context_.problems.error(end.at, fmt::format("no point is called {}", shown(end.text)),
-                              fmt::format("write the name of {}", expected));
+                              meant(end.text, table, expected));
     else
       context_.problems.error(
           end.at, fmt::format("{} is in {}, not {}", shown(end.text), to_string(found->second), expected),
           "a wire goes from a coil to a discrete input");
   }
 
+  std::string meant(std::string_view name, Table table, std::string_view expected) const {
+    std::vector<std::string_view> names;
+    for (const auto& [point, its_table] : tables_)
+      if (its_table == table) names.push_back(point);
+    std::sort(names.begin(), names.end());
+    return nearest_or(name, names, fmt::format("write the name of {}", expected));
+  }
+
   Context& context_;
   std::unordered_map<std::string_view, Table> tables_;
-  std::unordered_map<std::string, int> sources_;  ///< input -> line in the file
+  std::unordered_map<std::string, Position> sources_;  ///< input -> its wire's end in the file
 };
 
 }  // namespace

@@ -95,12 +95,25 @@ class Check(Cli):
     def test_a_bad_map_is_told_with_its_place(self):
         done = self.coupler("check", self.file("cell.yaml", BAD))
         self.assertEqual((done.returncode, done.stdout), (1, ""))
-        self.assertRegex(done.stderr, r"^cell\.yaml:6:\d+: error: .*REEL.*; .+\n$")
+        self.assertRegex(done.stderr, r"^cell\.yaml:6:\d+: error: .*REEL.*; .+\n")
+
+    def test_standard_input_is_quoted_with_both_places(self):
+        done = self.coupler("check", "-", stdin="name: a\nmapping:\n  coils: {lamp: 0, horn: 0}\n")
+        self.assertEqual(done.returncode, 1)
+        lines = done.stderr.splitlines()
+        self.assertEqual(lines[1:3], ["    3 |   coils: {lamp: 0, horn: 0}", "      |                          ^"])
+        self.assertEqual(lines[3], "<stdin>:3:17: note: the other is here")
+        self.assertNotIn("\033", done.stderr)
+
+    def test_json_has_the_other_place_too(self):
+        done = self.coupler("check", "--json", "-", stdin="name: a\nmapping:\n  coils: {lamp: 0, horn: 0}\n")
+        self.assertEqual(json.loads(done.stdout)["diagnostics"][0]["notes"],
+                         [{"line": 3, "column": 17, "what": "the other is here"}])
 
     def test_a_warning_leaves_the_map_good(self):
         done = self.coupler("check", self.file("cell.yaml", WARNED))
         self.assertEqual(done.returncode, 0)
-        self.assertRegex(done.stderr, r"^cell\.yaml:7:1: warning: .*nobody_knows_this.*; .+\n$")
+        self.assertRegex(done.stderr, r"^cell\.yaml:7:1: warning: .*nobody_knows_this.*; .+\n")
         self.assertIn("cell.yaml: ok: ", done.stdout)
 
     def test_a_missing_file_is_wrong_input(self):
@@ -134,7 +147,7 @@ class Check(Cli):
                          (False, None, None, None))
         (found,) = report["diagnostics"]
         self.assertEqual((found["severity"], found["file"], found["line"]), ("error", "cell.yaml", 6))
-        self.assertEqual(sorted(found), ["column", "file", "line", "remedy", "severity", "what"])
+        self.assertEqual(sorted(found), ["column", "file", "line", "notes", "remedy", "severity", "what"])
 
     def test_json_of_several_maps_is_one_line_each(self):
         done = self.coupler("check", "--json", self.file("bad.yaml", BAD), self.file("cell.yaml", GOOD))
@@ -192,7 +205,7 @@ class Lock(Cli):
         done = self.coupler("check", "--locked", self.file("cell.yaml", OPEN))
         self.assertEqual((done.returncode, done.stdout), (1, ""))
         self.assertRegex(done.stderr, r"^cell\.yaml:4:5: error: 'lamp' and 'horn' have no address, and there is no "
-                                      r"cell\.yaml\.lock; run `coupler check cell\.yaml`.*\n$")
+                                      r"cell\.yaml\.lock; run `coupler check cell\.yaml`.*\n")
         self.assertFalse((self.folder / "cell.yaml.lock").exists())
 
     def test_locked_fails_when_the_lock_is_stale(self):
@@ -201,7 +214,7 @@ class Lock(Cli):
         before = self.lock()
         done = self.coupler("check", "--locked", self.file("cell.yaml", OPEN.replace("    horn:\n", "")))
         self.assertEqual((done.returncode, done.stdout), (1, ""))
-        self.assertRegex(done.stderr, r"^cell\.yaml\.lock:6:1: error: .*'horn'.*; .+\n$")
+        self.assertRegex(done.stderr, r"^cell\.yaml\.lock:6:1: error: .*'horn'.*; .+\n")
         self.assertEqual(self.lock(), before)
 
     def test_in_json_is_what_was_written(self):

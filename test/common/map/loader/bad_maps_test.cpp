@@ -53,6 +53,20 @@ TEST_P(BadMap, Is_answered_with_exactly_the_lines_that_it_expects) {
   EXPECT_EQ(result.map == nullptr, has_errors(result.diagnostics));
 }
 
+TEST(Notes, Both_places_of_an_overlap_are_quoted) {
+  const LoadResult result = load_map("name: a\nmapping:\n  coils:\n    lamp: 0\n    valve: 0\n", "a.yaml");
+  ASSERT_EQ(result.diagnostics.size(), 1U);
+  EXPECT_EQ(
+      render(result.diagnostics[0], Colour::no),
+      "a.yaml:5:12: error: 'valve' (coils 0) overlaps 'lamp' (coils 0, line 4); give one of the two another "
+      "address\n"
+      "    5 |     valve: 0\n"
+      "      |            ^\n"
+      "a.yaml:4:11: note: the other is here\n"
+      "    4 |     lamp: 0\n"
+      "      |           ^\n");
+}
+
 std::string test_name(const testing::TestParamInfo<std::string>& map) {
   std::string name = map.param;
   std::replace(name.begin(), name.end(), '.', '_');
