@@ -5,6 +5,9 @@
 #   NAME_node    program: the node that serves it (links no YAML parser)
 #   NAME_driver  program: the ROS driver for it, where the ROS driver itself is built
 #   NAME_docs    with DOCS: its register map for people, NAME.md and NAME.html in NAME_generated
+#   NAME_client  library: a typed C++ client without ROS, coupler::maps::NAME::Client in "NAME_client.hpp", where
+#                libmodbus is
+#   NAME_hooks   library: for a node with code of its own, coupler::maps::NAME::NodeHooks in "NAME_hooks.hpp"
 # The map's lock, map.yaml.lock, must be up to date if the map leaves addresses out (`coupler check map.yaml`).
 # Both programs link the same NAME_map, so they cannot disagree. Works in this tree and in a project that adds this
 # tree by add_subdirectory(). A cross build cannot run the `coupler` that it makes; it is given one that runs here.
@@ -26,7 +29,8 @@ function(coupler_add_map name map)
   if(COUPLER_HOST_COUPLER)
     set(generator ${COUPLER_HOST_COUPLER})
   endif()
-  set(files ${out}/${name}_driver.cpp ${out}/${name}_map.cpp ${out}/${name}_map.hpp ${out}/${name}_node.cpp)
+  set(files ${out}/${name}_client.cpp ${out}/${name}_client.hpp ${out}/${name}_driver.cpp ${out}/${name}_hooks.hpp
+            ${out}/${name}_map.cpp ${out}/${name}_map.hpp ${out}/${name}_node.cpp)
 
   # A build does not write into the sources: a lock that is missing or not up to date stops it. Whether there is one is
   # in a file, for a lock that is gone makes nothing newer.
@@ -51,6 +55,15 @@ function(coupler_add_map name map)
   add_executable(${name}_node ${out}/${name}_node.cpp)
   target_link_libraries(${name}_node PRIVATE ${name}_map coupler_node_program)
   add_dependencies(${name}_node ${name}_generate)
+
+  add_library(${name}_hooks INTERFACE)
+  target_link_libraries(${name}_hooks INTERFACE ${name}_map coupler_node_program)
+
+  if(TARGET coupler_client)
+    add_library(${name}_client STATIC ${out}/${name}_client.cpp)
+    target_link_libraries(${name}_client PUBLIC ${name}_map coupler_client)
+    add_dependencies(${name}_client ${name}_generate)
+  endif()
 
   if(TARGET coupler_driver_program)
     add_executable(${name}_driver ${out}/${name}_driver.cpp)

@@ -28,6 +28,7 @@ add_library(coupler_flags INTERFACE)
 target_include_directories(coupler_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_options(coupler_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+  -ffp-contract=off  # no fused multiply-add: a scaled value has the same last bit on every machine
   $<$<BOOL:${COUPLER_WERROR}>:-Werror>)
 if(COUPLER_SANITIZE)
   target_compile_options(coupler_flags INTERFACE

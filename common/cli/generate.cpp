@@ -87,8 +87,9 @@ Exit run(const Arguments& arguments) {
 }  // namespace
 
 void add_generate(CLI::App& program, Exit& exit) {
-  auto* command =
-      program.add_subcommand("generate", "Make C++ from a map: a constant table, a node and a driver.");
+  auto* command = program.add_subcommand(
+      "generate",
+      "Make C++ from a map: a constant table, a node, a driver, a typed client, hooks for a firmware.");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("MAP", arguments->map, map_help)->required()->type_name("");
   auto* out =
@@ -112,10 +113,10 @@ void add_generate(CLI::App& program, Exit& exit) {
   command->add_flag("--quiet", arguments->quiet, "Say nothing of files when all is well");
   command->footer(
       "Example:\n  coupler generate device.yaml --out generated\n"
-      "makes device_map.hpp, device_map.cpp, device_node.cpp and device_driver.cpp. Files that would not "
-      "change are "
-      "not touched.\n  coupler generate device.yaml --docs\nmakes device.md and device.html.\nIn a CMake "
-      "build, coupler_add_map(device device.yaml) does this and builds the "
+      "makes device_map.hpp and .cpp, device_client.hpp and .cpp, device_hooks.hpp, device_node.cpp and "
+      "device_driver.cpp. Files that would not change are not touched.\n"
+      "  coupler generate device.yaml --docs\nmakes device.md and device.html.\n"
+      "In a CMake build, coupler_add_map(device device.yaml) does this and builds the "
       "programs.");
   command->callback([arguments, out, &exit] {
     if (out->empty() && !arguments->docs) throw CLI::RequiredError(out->get_name());

@@ -161,6 +161,8 @@ std::string extras(const Point& point) {
   return point.counter.present() || point.latched.present() ? edges : std::string();
 }
 
+}  // namespace
+
 std::string place(const Point& point) {
   std::string out = fmt::format("{} {}", to_string(point.table), point.address);
   if (range(point).count() > 1) out += fmt::format("-{}", range(point).last());
@@ -168,8 +170,6 @@ std::string place(const Point& point) {
   if (point.format.type == Type::BOOL) return out + fmt::format(", bit {}", point.format.bit);
   return out + (point.format.half == Half::high ? ", high byte" : ", low byte");
 }
-
-}  // namespace
 
 std::string row(const Point& point) {
   const std::string what = point.description.empty() ? "" : comment(point.description) + ": ";

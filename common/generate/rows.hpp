@@ -8,6 +8,9 @@
 
 namespace coupler::generate {
 
+/// Where it is: "holding_registers 3-4", "coils 0", "holding_registers 7, bit 3".
+std::string place(const Point& point);
+
 /// The point as an aggregate, `{"lamp", Table::coils, 0, …}`, under a comment that says what it is and where.
 /// Fields that a reader expects at their default are left to it.
 std::string row(const Point& point);

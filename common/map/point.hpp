@@ -64,6 +64,17 @@ constexpr bool is_analogue(const Point& point) { return point.iio.present() || p
 constexpr bool is_readable(const Point& point) { return point.access != Access::write; }
 constexpr bool is_writable(const Point& point) { return point.access != Access::read; }
 
+/// The node has something behind it: a line, a channel, or an input whose edges it shows.
+constexpr bool has_hardware(const Point& point) {
+  return point.line.present() || is_analogue(point) || point.counter.present() || point.latched.present();
+}
+
+/// What a master writes goes to the code of the firmware, where there is some; otherwise it is memory.
+constexpr bool is_hooked_output(const Point& point) { return is_writable(point) && !has_hardware(point); }
+
+/// Its value may come from there.
+constexpr bool is_set_by_firmware(const Point& point) { return is_readable(point) && !has_hardware(point); }
+
 /// Shares its register with others. Bits of the bit tables share nothing.
 constexpr bool is_partial(const Point& point) {
   return !holds_bits(point.table) && codec::is_partial(point.format);

@@ -53,7 +53,7 @@ Handler::Handler(const Map& map, Image& image, Hardware hardware, Statistics& st
 
 std::size_t Handler::handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply) {
   tick(now);
-  hardware_.take_edges(now, edge_points_);
+  hardware_.take_news(now, edge_points_);
   ++statistics_.requests;
   const Answer done = answer({request, now, reply});
   watchdog_.request(peer, done && is_write(static_cast<Function>(request[0])), now);

@@ -25,6 +25,7 @@ struct Duty {
   std::unique_ptr<Memory> memory;
   std::unique_ptr<SysfsChannels> channels;   ///< null: no register has one
   std::unique_ptr<AnaloguePoints> analogue;  ///< the points that have them; null as well
+  std::unique_ptr<HookedPoints> hooked;      ///< null: no firmware's code is behind points
 
   /// Channels whose device is back are used again, outputs driven as they were before, or safe if `safe`.
   /// True: there are some.
@@ -37,7 +38,7 @@ struct Duty {
   }
 
   /// Once it is in force.
-  Hardware hardware() const { return {wiring->lines(), analogue.get()}; }
+  Hardware hardware() const { return {wiring->lines(), analogue.get(), hooked.get()}; }
 };
 
 }  // namespace coupler::node

@@ -5,10 +5,18 @@
 
 namespace coupler::node {
 
-int main_with(const Map& map, int argc, char** argv) {
+namespace {
+
+int run(const Map& map, Hooks* hooks, int argc, char** argv) {
   const auto options = parse_options(argc, argv, MapSource::built_in);
   if (const int* status = std::get_if<int>(&options)) return *status;
-  return serve(map, std::get<Options>(options));
+  return serve(map, std::get<Options>(options), {}, hooks);
 }
+
+}  // namespace
+
+int main_with(const Map& map, int argc, char** argv) { return run(map, nullptr, argc, argv); }
+
+int main_with(const Map& map, Hooks& hooks, int argc, char** argv) { return run(map, &hooks, argc, argv); }
 
 }  // namespace coupler::node

@@ -10,7 +10,7 @@
 
 namespace coupler::node {
 
-int serve(const Map& map, const Options& options, const ReadAgain& read_again) {
+int serve(const Map& map, const Options& options, const ReadAgain& read_again, Hooks* hooks) {
   StderrLog log(std::getenv("JOURNAL_STREAM"));
   const auto refused = [&](const Refusal& refusal) {
     tell(log, refusal);
@@ -20,7 +20,7 @@ int serve(const Map& map, const Options& options, const ReadAgain& read_again) {
   if (!loop.is_open()) return refused({Refusal::device_failed, std::strerror(errno)});
   Signals signals(loop);
   ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"));
-  Station station(options, read_again, manager, log);
+  Station station(options, read_again, manager, log, hooks);
   if (const auto started = station.start(map); !started) return refused(started.error());
   if (station.serve_alone(loop, signals))
     Keeper(loop, signals, station, log, manager.is_there() ? &manager : nullptr).run();

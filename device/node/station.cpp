@@ -72,6 +72,7 @@ tl::expected<std::unique_ptr<Duty>, Refusal> Station::prepare(const Map& map, Ma
   }
   if (duty->channels)
     duty->analogue = std::make_unique<AnaloguePoints>(map, duty->memory->image(), *duty->channels);
+  if (hooks_ != nullptr) duty->hooked = std::make_unique<HookedPoints>(map, duty->memory->image(), *hooks_);
   auto wiring = prepare_wiring(map, options_.simulated, duty_ ? duty_->wiring.get() : nullptr, log_);
   if (!wiring) return tl::unexpected(Refusal{Refusal::device_failed, std::move(wiring).error()});
   duty->prepared = *std::move(wiring);
@@ -102,6 +103,7 @@ bool Station::needs_keeper() const {
 
 bool Station::serve_alone(Loop& loop, Signals& signals) {
   Pulse* const managed = manager_.is_there() ? &manager_ : nullptr;
+  if (hooks_ != nullptr && !needs_keeper()) hooks_->serving_began();
   for (std::vector<OpenConnection> clients; !needs_keeper(); change(clients)) {
     IoService service(*duty_, loop, log_);
     service.adopt(std::move(clients));
@@ -129,6 +131,7 @@ int Station::serve(Superior& superior, std::vector<OpenConnection> clients) {
   }
   const Signals signals(loop);
   superior.watch(loop);
+  if (hooks_ != nullptr) hooks_->serving_began();
   std::optional<Sampler> sampler;
   if (duty_->channels) sampler.emplace(*duty_->channels, Sampler::period_for(duty_->map->polling.rate));
   IoService service(*duty_, loop, log_);

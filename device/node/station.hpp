@@ -31,9 +31,11 @@ void tell(Log& log, const Refusal& refusal);
 /// A node with the map in force, which may be replaced by another one while masters are served.
 class Station final : public Charge {
  public:
-  /// `read_again` is empty if the map is built in. All of them outlive it.
-  Station(const Options& options, ReadAgain read_again, ServiceManager& manager, Log& log)
-      : options_(options), read_again_(std::move(read_again)), manager_(manager), log_(log) {}
+  /// `read_again` is empty if the map is built in, `hooks` null if no code is bound to its points. All of
+  /// them outlive it.
+  Station(const Options& options, ReadAgain read_again, ServiceManager& manager, Log& log,
+          Hooks* hooks = nullptr)
+      : options_(options), read_again_(std::move(read_again)), manager_(manager), log_(log), hooks_(hooks) {}
 
   /// Puts the first map in force; it outlives the station.
   tl::expected<void, Refusal> start(const Map& map);
@@ -58,6 +60,7 @@ class Station final : public Charge {
   ReadAgain read_again_;
   ServiceManager& manager_;
   Log& log_;
+  Hooks* hooks_;
   std::unique_ptr<Duty> duty_;
   std::unique_ptr<Duty> next_;  ///< waits for change()
 };

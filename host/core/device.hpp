@@ -55,6 +55,7 @@ class Device {
 
   DeviceSnapshot statistics() const { return statistics_.snapshot(); }
   std::vector<PointQuality> qualities() const { return qualities_.snapshot(clock_.now()); }
+  PointQuality quality(std::uint32_t point) const { return qualities_.of(point, clock_.now()); }
 
  private:
   Time connect();

@@ -28,6 +28,7 @@ DeviceThread::~DeviceThread() {
 
 void DeviceThread::write(const Write& write) {
   device_.push(write);
+  if (owner_ == std::this_thread::get_id()) return;  // the step that is being made sees it at its end
   const std::unique_lock turn(turn_, std::try_to_lock);
   if (!turn || !device_.send_now()) transport_.wake();
 }
@@ -50,6 +51,7 @@ Time DeviceThread::step() {
 }
 
 void DeviceThread::run() {
+  owner_ = std::this_thread::get_id();
   while (!stopping_) {
     if (transport_.wait_until(step()) != Transport::Woken::by_bytes) continue;
     const std::lock_guard turn(turn_);

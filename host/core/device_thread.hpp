@@ -26,7 +26,8 @@ class DeviceThread {
 
   // From any thread; none of them waits for a request.
 
-  /// Takes a write on its way: sends it at once if the connection is idle, otherwise queues it.
+  /// Takes a write on its way: sends it at once if the connection is idle, otherwise queues it. The sink may
+  /// call it.
   void write(const Write& write);
   /// Counts a value that is none of its point, and tells the listener.
   void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
@@ -36,6 +37,7 @@ class DeviceThread {
   std::future<CouplerWatchdog::Answer> reset_watchdog();
   DeviceSnapshot statistics() const { return device_.statistics(); }
   std::vector<PointQuality> qualities() const { return device_.qualities(); }
+  PointQuality quality(std::uint32_t point) const { return device_.quality(point); }
 
  private:
   void run();
@@ -48,6 +50,7 @@ class DeviceThread {
   bool ends_safely_;  ///< writes safe values at the end
   std::mutex turn_;   ///< held by the one who uses the connection; others than the owner only try
   std::atomic<bool> stopping_{false};
+  std::atomic<std::thread::id> owner_{};  ///< has its turn while it calls the sink
   std::promise<void> stopped_;
   std::thread thread_;  // last: it uses the others
 };

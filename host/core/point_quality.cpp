@@ -71,4 +71,10 @@ std::vector<PointQuality> PointQualities::snapshot(Time now) const {
   return result;
 }
 
+PointQuality PointQualities::of(std::uint32_t point, Time now) const {
+  const std::lock_guard lock(mutex_);
+  const Entry& entry = points_[point];
+  return {state_of(entry, map_.points[point], now), entry.last_good, entry.last_exception};
+}
+
 }  // namespace coupler::driver

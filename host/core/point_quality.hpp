@@ -47,6 +47,7 @@ class PointQualities {
 
   /// By point, as of `now`. Points that can only be written stay never_read.
   std::vector<PointQuality> snapshot(Time now) const;
+  PointQuality of(std::uint32_t point, Time now) const;
 
  private:
   struct Entry {

@@ -12,6 +12,7 @@
 
 #include "common/codec/scale.hpp"
 #include "common/codec/value.hpp"
+#include "common/map/typed_value.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -91,19 +92,6 @@ std::vector<std::string_view> elements(std::string_view text) {
 }
 
 }  // namespace
-
-std::string encode_scaled(double value, const Point& point, std::uint16_t* registers) {
-  const auto [least, most] = codec::published_range(point.format.type, point.scale);
-  const std::string units = point.units.empty() ? "" : fmt::format(" {}", point.units);
-  switch (codec::encode_published(value, point.format, point.scale, registers)) {
-    case codec::ScaleError::not_a_number:
-      return fmt::format("not a number; send {:g} … {:g}{}", least, most, units);
-    case codec::ScaleError::out_of_range:
-      return fmt::format("{:g}{} is out of range; send {:g} … {:g}{}", value, units, least, most, units);
-    case codec::ScaleError::none: break;
-  }
-  return {};
-}
 
 Outcome parse_value(std::string_view text, const Point& point, std::uint16_t* registers) {
   if (point.count == 1) return parse_element(text, point, registers);

@@ -18,10 +18,6 @@ namespace coupler::driver {
 tl::expected<void, std::string> parse_value(std::string_view text, const Point& point,
                                             std::uint16_t* registers);
 
-/// One published value of a scaled point, into its registers. Returns what is wrong and what would be right,
-/// in published units, or an empty text.
-std::string encode_scaled(double value, const Point& point, std::uint16_t* registers);
-
 /// The value in those registers, as parse_value() takes it.
 std::string format_value(const std::uint16_t* registers, const Point& point);
 

@@ -6,7 +6,7 @@
 #include <std_msgs/Float64MultiArray.h>
 
 #include "common/codec/scale.hpp"
-#include "host/core/value_text.hpp"
+#include "common/map/typed_value.hpp"
 #include "host/ros/array_message.hpp"
 
 namespace coupler::driver {

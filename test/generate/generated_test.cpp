@@ -5,6 +5,7 @@
 #include "beckhoff_map.hpp"
 #include "common/map/loader/load.hpp"
 #include "example_map.hpp"
+#include "hard_hooks.hpp"
 #include "hard_map.hpp"
 #include "manners_map.hpp"
 #include "moxa_map.hpp"
@@ -72,6 +73,14 @@ TEST(Generated, The_text_is_the_file_byte_by_byte) {
 TEST(Generated, The_header_knows_the_fingerprint_at_compile_time) {
   static_assert(maps::example::fingerprint != maps::hard::fingerprint);
   EXPECT_EQ(maps::example::fingerprint, maps::example::map.fingerprint);
+}
+
+TEST(Generated, Hooks_of_everything_that_is_hard_to_write_in_cpp_compile) {
+  maps::hard::NodeHooks hooks;
+  node::Hooks& port = hooks;
+  const std::vector<std::uint16_t> zero(2000);
+  for (std::uint32_t i = 0; i < maps::hard::map.points.size(); ++i)
+    EXPECT_TRUE(port.accept(i, zero.data())) << maps::hard::map.points[i].name;
 }
 
 }  // namespace

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <mutex>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "common/map/map.hpp"
+#include "common/map/typed_value.hpp"
+#include "common/modbus/limits.hpp"
+#include "device/core/hooks.hpp"
+
+namespace coupler::node {
+
+/// What the generated hooks of every map have in common: values <-> registers, and values that any thread
+/// sets.
+class PointHooks : public Hooks {
+ public:
+  void put_new_values(Image& image) final;
+  [[nodiscard]] bool accept(std::uint32_t, const std::uint16_t*) override { return true; }
+
+ protected:
+  /// The map outlives it.
+  explicit PointHooks(const Map& map) : map_(map), set_(map.points.size()) {}
+
+  template <class T>
+  T decode(std::uint32_t point, const std::uint16_t* registers) const {
+    return TypedValue<T>::decode(registers, map_.points[point]);
+  }
+
+  /// From any thread: masters read the value from their next request on. The error says what is wrong with
+  /// it.
+  template <class T>
+  tl::expected<void, std::string> set(std::uint32_t point, const T& value) {
+    std::array<std::uint16_t, modbus::max_read_bits> registers{};
+    std::string wrong = TypedValue<T>::encode(value, map_.points[point], registers.data());
+    if (!wrong.empty()) return tl::unexpected(std::move(wrong));
+    keep(point, registers.data());
+    return {};
+  }
+
+ private:
+  void keep(std::uint32_t point, const std::uint16_t* registers);
+
+  const Map& map_;
+  std::mutex mutex_;
+  std::vector<std::vector<std::uint16_t>> set_;  ///< by point; empty: not set since it was put into the image
+  std::vector<std::uint32_t> points_;            ///< those that are not empty
+};
+
+}  // namespace coupler::node

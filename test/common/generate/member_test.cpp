@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/generate/member.hpp"
+
+#include <gmock/gmock.h>
+
+#include "test/fakes/map_builder.hpp"
+
+namespace coupler::generate {
+namespace {
+
+using codec::Type;
+using ::testing::ElementsAre;
+
+TEST(Member, A_name_that_cannot_be_a_member_gets_one_that_can) {
+  const MapPtr map = fakes::MapBuilder()
+                         .add(Table::coils, "arm/left", 0, Type::BOOL)
+                         .add(Table::coils, "arm_left", 1, Type::BOOL)
+                         .add(Table::coils, "register", 2, Type::BOOL)
+                         .add(Table::coils, "online", 3, Type::BOOL)
+                         .add(Table::coils, "online_", 4, Type::BOOL)
+                         .build();
+  EXPECT_THAT(members(map->map()), ElementsAre("arm_left", "arm_left_", "register_", "online_", "online__"));
+}
+
+TEST(Member, The_type_is_that_of_the_value) {
+  Point point;
+  point.format.type = Type::CHAR;
+  EXPECT_EQ(cpp_type(point), "char");
+  point.format.type = Type::DWORD;
+  EXPECT_EQ(cpp_type(point), "::std::uint32_t");
+  point.count = 3;
+  EXPECT_EQ(cpp_type(point), "::std::array<::std::uint32_t, 3>");
+  point.format.type = Type::INT;
+  point.scale.gain = 0.1;
+  EXPECT_EQ(cpp_type(point), "::std::array<double, 3>");
+}
+
+TEST(Member, The_documentation_has_range_units_and_place_and_stays_one_line) {
+  Point point;
+  point.table = Table::holding_registers;
+  point.address = 7;
+  point.format.type = Type::INT;
+  point.scale.gain = 0.1;
+  point.units = "°C";
+  point.description = "Of the oil\nin the pan \\";
+  EXPECT_EQ(documentation(point), "Of the oil in the pan \\: INT, -3276.8 … 3276.7 °C; holding_registers 7.");
+}
+
+}  // namespace
+}  // namespace coupler::generate

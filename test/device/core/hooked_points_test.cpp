@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/core/hooked_points.hpp"
+
+#include <gmock/gmock.h>
+
+#include "test/device/core/node_under_test.hpp"
+
+namespace coupler::node {
+namespace {
+
+using codec::Type;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// Code that refuses one value of one point.
+struct FakeHooks : Hooks {
+  void put_new_values(Image& image) override {
+    if (set) image.find(Table::input_registers, modbus::Range::of(0, 1))[0] = *std::exchange(set, {});
+  }
+  bool accept(std::uint32_t point, const std::uint16_t* registers) override {
+    calls.emplace_back(point, registers[0]);
+    return calls.back() != refused;
+  }
+  void make_safe() override { ++safe; }
+
+  std::optional<std::uint16_t> set;
+  std::vector<std::pair<std::uint32_t, std::uint16_t>> calls;
+  std::pair<std::uint32_t, std::uint16_t> refused{99, 0};
+  int safe = 0;
+};
+
+// Points: 0 input a; holding: 1 b, 2 c (two registers), 3 flag (bit 0) and 4 alarm (bit 1) of one register.
+struct HookedNode : ::testing::Test {
+  Pdu ask(const Pdu& request) {
+    std::array<std::uint8_t, modbus::max_pdu_size> reply{};
+    const std::size_t size = handler.handle(request, peer, now, reply);
+    return Pdu(reply.data(), reply.data() + size);
+  }
+  Pdu write(int address, std::initializer_list<int> values) {
+    Pdu bytes{static_cast<std::uint8_t>(2 * values.size())};
+    for (const int value : values) {
+      bytes.push_back(static_cast<std::uint8_t>(value >> 8));
+      bytes.push_back(static_cast<std::uint8_t>(value));
+    }
+    return ask(pdu(16, {address, static_cast<int>(values.size())}, bytes));
+  }
+
+  MapPtr owner =
+      fakes::MapBuilder()
+          .add(Table::input_registers, "a", 0, Type::UINT)
+          .add(Table::holding_registers, "b", 0, Type::UINT)
+          .add(Table::holding_registers, "c", 1, Type::UDINT)
+          .add(Table::holding_registers, "flag", 3, Type::BOOL)
+          .add(Table::holding_registers, "alarm", 3, Type::BOOL, [](Point& point) { point.format.bit = 1; })
+          .build();
+  const Map& map = owner->map();
+  OwnedImage memory{map};
+  FakeLines lines;
+  FakeHooks hooks;
+  HookedPoints hooked{map, memory.image, hooks};
+  Peer peer;
+  Statistics statistics;
+  TimePoint now{};
+  OutputWatchdog watchdog{map.service.watchdog};
+  std::vector<EdgePoints::Link> links{EdgePoints::links_for(map)};
+  Handler handler{map, memory.image, Hardware(lines, nullptr, &hooked), statistics, watchdog, links};
+};
+
+const Pdu failure{0x90, 4};
+
+TEST_F(HookedNode, A_write_is_acknowledged_after_the_code_accepted_it) {
+  EXPECT_EQ(write(0, {7}), (Pdu{16, 0, 0, 0, 1}));
+  EXPECT_THAT(hooks.calls, ElementsAre(std::pair(1U, 7)));
+  EXPECT_EQ(ask(pdu(3, {0, 1})), (Pdu{3, 2, 0, 7}));
+}
+
+TEST_F(HookedNode, A_refused_value_is_exception_04_and_changes_nothing) {
+  hooks.refused = {1, 7};
+  EXPECT_EQ(write(0, {7}), failure);
+  EXPECT_EQ(ask(pdu(3, {0, 1})), (Pdu{3, 2, 0, 0}));
+}
+
+TEST_F(HookedNode, What_was_accepted_before_a_refusal_is_called_again_with_its_old_value) {
+  ASSERT_NE(write(0, {1, 2, 3}), failure);
+  hooks.calls.clear();
+  hooks.refused = {2, 8};
+  EXPECT_EQ(write(0, {7, 8, 9}), failure);
+  EXPECT_THAT(hooks.calls, ElementsAre(std::pair(1U, 7), std::pair(2U, 8), std::pair(1U, 1)));
+  EXPECT_EQ(ask(pdu(3, {0, 3})), (Pdu{3, 6, 0, 1, 0, 2, 0, 3}));
+}
+
+TEST_F(HookedNode, A_point_that_is_written_in_part_is_asked_about_as_a_whole) {
+  ASSERT_NE(write(1, {5, 6}), failure);
+  hooks.calls.clear();
+  EXPECT_NE(write(2, {9}), failure);
+  EXPECT_THAT(hooks.calls, ElementsAre(std::pair(2U, 5)));
+  EXPECT_EQ(ask(pdu(3, {1, 2})), (Pdu{3, 4, 0, 5, 0, 9}));
+}
+
+TEST_F(HookedNode, Of_a_shared_register_only_the_points_that_change_are_asked_about) {
+  EXPECT_NE(write(3, {2}), failure);
+  EXPECT_THAT(hooks.calls, ElementsAre(std::pair(4U, 2)));
+  hooks.calls.clear();
+  EXPECT_NE(write(3, {2}), failure);
+  EXPECT_THAT(hooks.calls, IsEmpty());
+}
+
+TEST_F(HookedNode, When_a_line_cannot_be_driven_the_code_gets_its_old_values_again) {
+  lines.broken = true;
+  const MapPtr coils = fakes::MapBuilder().add(Table::coils, "lamp", 0, Type::BOOL).build();
+  OwnedImage image(coils->map());
+  HookedPoints points(coils->map(), image.image, hooks);
+  Hardware hardware(lines, nullptr, &points);
+  const std::uint16_t on = 1;
+  EXPECT_FALSE(hardware.drive(Table::coils, modbus::Range::of(0, 1), {&on, 1}));
+  EXPECT_THAT(hooks.calls, ElementsAre(std::pair(0U, 1), std::pair(0U, 0)));
+}
+
+TEST_F(HookedNode, What_the_code_sets_is_read_from_the_next_request_on) {
+  EXPECT_EQ(ask(pdu(4, {0, 1})), (Pdu{4, 2, 0, 0}));
+  hooks.set = 0x1234;
+  EXPECT_EQ(ask(pdu(4, {0, 1})), (Pdu{4, 2, 0x12, 0x34}));
+}
+
+TEST_F(HookedNode, The_code_is_told_to_make_its_outputs_safe) {
+  (void)Hardware(lines, nullptr, &hooked).drive_safe();
+  EXPECT_EQ(hooks.safe, 1);
+}
+
+}  // namespace
+}  // namespace coupler::node

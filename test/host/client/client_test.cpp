@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// A generated client, config/examples/pump, against a server that libmodbus makes.
+#include <gmock/gmock.h>
+
+#include <atomic>
+
+#include "pump_client.hpp"
+#include "test/host/modbus/modbus_server.hpp"
+
+namespace coupler::client {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using Outcome = SetResult::Outcome;
+
+constexpr auto soon = 10s;
+
+struct PumpClient : ::testing::Test {
+  Options options() const {
+    Options options;
+    options.address = "127.0.0.1";
+    options.port = server.port();
+    return options;
+  }
+  /// Whether it comes true.
+  template <class Condition>
+  static bool becomes(Condition condition) {
+    for (const auto end = std::chrono::steady_clock::now() + soon; std::chrono::steady_clock::now() < end;) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(1ms);
+    }
+    return condition();
+  }
+
+  driver::test::ModbusServer server;
+  maps::pump::Client pump{options()};
+};
+
+TEST_F(PumpClient, Values_have_the_types_and_units_of_the_map) {
+  auto& tables = server.tables();
+  tables.tab_input_bits[0] = 1;
+  const std::uint16_t inputs[] = {0xFF38, 0, 0x3FC0, 0, 0xC000, 0x0001, 0x0000, 0x5678, 0x1234};
+  std::copy(std::begin(inputs), std::end(inputs), tables.tab_input_registers);
+  const std::uint16_t text[] = {0x6241, 0x0063};  // the low byte first
+  std::copy(std::begin(text), std::end(text), tables.tab_registers + 1);
+  pump.connect();
+  EXPECT_EQ(pump.running.wait(soon)->value, true);
+  EXPECT_DOUBLE_EQ(pump.pressure.wait(soon)->value, -2);
+  EXPECT_THAT(pump.temperatures.wait(soon)->value,
+              ElementsAre(1.5F, -2.0F, ::testing::FloatEq(1.401298e-45F)));
+  EXPECT_EQ(pump.starts.wait(soon)->value, 0x12345678U);
+  EXPECT_EQ(pump.label.wait(soon)->value, "Abc");
+  EXPECT_EQ(pump.starts.get()->quality, Quality::good);
+  EXPECT_LT(pump.starts.get()->age, soon);
+}
+
+TEST_F(PumpClient, What_is_set_arrives) {
+  pump.connect();
+  ASSERT_TRUE(pump.wait_online(soon));
+  EXPECT_TRUE(pump.valve.set(true).get());
+  EXPECT_TRUE(pump.speed.set(80.04).get());
+  EXPECT_TRUE(pump.label.set("north").get());
+  const auto& tables = server.tables();
+  EXPECT_EQ(tables.tab_bits[0], 1);
+  EXPECT_EQ(tables.tab_registers[0], 800);
+  EXPECT_EQ(tables.tab_registers[1], 0x6F6E);
+  EXPECT_EQ(tables.tab_registers[3], 0x0068);
+}
+
+TEST_F(PumpClient, A_value_that_is_none_of_its_point_is_refused_and_the_range_named) {
+  const SetResult beyond = pump.speed.set(7000).get();
+  EXPECT_EQ(beyond.outcome, Outcome::refused);
+  EXPECT_THAT(beyond.text, HasSubstr("0 … 6553.5 %"));
+  const SetResult none = pump.speed.set(std::nan("")).get();
+  EXPECT_EQ(none.outcome, Outcome::refused);
+  const SetResult longer = pump.label.set("seventeen letters").get();
+  EXPECT_EQ(longer.outcome, Outcome::refused);
+  EXPECT_THAT(longer.text, HasSubstr("at most 16 bytes"));
+}
+
+TEST_F(PumpClient, Before_connect_nothing_is_read_or_written) {
+  EXPECT_FALSE(pump.online());
+  EXPECT_FALSE(pump.wait_online(1ms));
+  const SetResult result = pump.valve.set(true).get();
+  EXPECT_EQ(result.outcome, Outcome::dropped);
+  EXPECT_THAT(result.text, HasSubstr("connect()"));
+  const auto value = pump.running.wait(1ms);
+  ASSERT_FALSE(value);
+  EXPECT_EQ(value.error().quality, Quality::offline);
+}
+
+TEST_F(PumpClient, Disconnected_it_keeps_its_last_values_as_offline_and_can_connect_again) {
+  server.tables().tab_input_bits[0] = 1;
+  pump.connect();
+  ASSERT_TRUE(pump.running.wait(soon));
+  pump.disconnect();
+  EXPECT_FALSE(pump.online());
+  EXPECT_TRUE(pump.running.get()->value);
+  EXPECT_EQ(pump.running.get()->quality, Quality::offline);
+  pump.connect();
+  EXPECT_TRUE(pump.wait_online(soon));
+  EXPECT_TRUE(pump.valve.set(true).get());
+}
+
+TEST_F(PumpClient, Changes_are_told_and_nothing_else) {
+  std::mutex mutex;
+  std::vector<double> told;
+  pump.pressure.on_change([&](double bar) {
+    const std::lock_guard lock(mutex);
+    told.push_back(bar);
+  });
+  pump.connect();
+  const auto seen = [&](std::size_t count) {
+    return becomes([&] {
+      const std::lock_guard lock(mutex);
+      return told.size() >= count;
+    });
+  };
+  ASSERT_TRUE(seen(1));
+  std::this_thread::sleep_for(200ms);  // several polls of the same value
+  server.tables().tab_input_registers[0] = 150;
+  ASSERT_TRUE(seen(2));
+  pump.disconnect();
+  EXPECT_THAT(told, ElementsAre(0, 1.5));
+}
+
+TEST_F(PumpClient, A_change_may_be_answered_by_setting_a_point) {
+  std::atomic<bool> asked{false};
+  pump.running.on_change([&](bool) {
+    pump.speed.set(12.5);
+    asked = true;
+  });
+  pump.connect();
+  ASSERT_TRUE(becomes([&] { return asked && server.tables().tab_registers[0] == 125; }));
+}
+
+TEST_F(PumpClient, Each_point_can_be_met_with_its_name_and_type) {
+  std::vector<std::string> names;
+  pump.each_point([&](std::string_view name, const auto& point) {
+    EXPECT_EQ(point.point().name, name);
+    names.emplace_back(name);
+  });
+  EXPECT_THAT(names,
+              ElementsAre("valve", "run", "running", "pressure", "temperatures", "starts", "speed", "label"));
+}
+
+}  // namespace
+}  // namespace coupler::client
