@@ -132,6 +132,15 @@ std::string watchdog_text(const Watchdog& watchdog) {
                      watchdog.recovery == Watchdog::Recovery::automatic ? "automatic" : "manual");
 }
 
+std::string watchdog_text(const WatchdogSequences& watchdog) {
+  if (!watchdog.present()) return {};
+  std::string fed_by = "any request";
+  if (!watchdog.feed.empty())
+    fed_by = fmt::format("{} {}", to_string(watchdog.feed[0].table), watchdog.feed[0].address);
+  return fmt::format("{}, fed by {}, {} recovery", watchdog.timeout, fed_by,
+                     watchdog.recovery == Watchdog::Recovery::automatic ? "automatic" : "manual");
+}
+
 std::string sim_text(const Map& map) {
   std::string text;
   for (const SimWire& wire : map.sim)
@@ -183,6 +192,7 @@ std::vector<Detail> details_of(const Map& map) {
       {"allow-changed", compatible,
        fmt::format("{}", fmt::join(service.allow.begin(), service.allow.end(), ", "))},
       {"watchdog-changed", compatible, watchdog_text(service.watchdog)},
+      {"coupler-watchdog-changed", compatible, watchdog_text(map.coupler_watchdog)},
       {"readback-changed", compatible, fmt::to_string(service.readback)},
       {"sim-changed", compatible, sim_text(map)},
   };
