@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What an editor shows of a map through yaml-language-server: nothing of a good one, mistakes at their line, keys to
 complete, and what they mean.   with_yaml_language_server.py COUPLER SERVER_COMMAND…"""
+import json
 import subprocess
 import sys
 import tempfile
@@ -57,7 +58,11 @@ class AnEditor(unittest.TestCase):
     def test_explains_keys(self):
         path, _ = self.open("name: cell\nmapping:\n  coils:\n    lamp: {address: 0, line: X, safe: hold}\n")
         text = self.server.ask("hover", path, 4, 34)["contents"]["value"]
-        self.assertIn("what the line does when nobody is in command", text)
+        schema = json.loads((self.folder / "map.schema.json").read_text(encoding="utf-8"))
+        coil = schema["properties"]["mapping"]["properties"]["coils"]["additionalProperties"]["anyOf"][1]
+        summary = coil["properties"]["safe"]["description"].split(";")[0]
+        self.assertGreater(len(summary), 10)
+        self.assertIn(summary, text)
         self.assertIn("if not given: off", text)
 
 
