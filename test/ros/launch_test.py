@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 import unittest
 
+import rospy
 from std_msgs.msg import Int16
 
 from support import process, testing
@@ -58,6 +59,14 @@ class Launch(testing.RosTest):
         self.launch("coupler_driver", "devices.launch", f"maps:=[{', '.join(maps)}]")
         self.assertEqual(self.topic("/press/level", Int16).next(), 11)
         self.assertEqual(self.topic("/belt/level", Int16).next(), 22)
+
+    def test_a_launch_takes_nothing_from_the_parameters_of_an_earlier_one(self):
+        rospy.set_param("/coupler_driver/maps", ["/nowhere/earlier.yaml"])
+        rospy.set_param("/coupler_driver/unit", 77)
+        peer = self.peer(44)
+        self.launch("coupler_driver", "device.launch", f"map:={process.write_map(MAP.format(name='later'))}",
+                    "address:=127.0.0.1", f"port:={peer.port}")
+        self.assertEqual(self.topic("/later/level", Int16).next(), 44)
 
     @unittest.skipUnless(process.has_node(), "coupler-node was not built")
     def test_the_simulated_cell_passes_its_rostest(self):
