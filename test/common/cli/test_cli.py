@@ -264,10 +264,11 @@ class Generate(Cli):
     def files(self):
         return {path.name: path.read_bytes() for path in (self.folder / "out").iterdir()}
 
-    def test_makes_a_table_and_two_programs(self):
+    def test_makes_a_table_a_client_hooks_and_two_programs(self):
         done = self.coupler("generate", self.file("cell.yaml", GOOD), "--out", "out")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertEqual(sorted(self.files()), ["cell_driver.cpp", "cell_map.cpp", "cell_map.hpp", "cell_node.cpp"])
+        self.assertEqual(sorted(self.files()), ["cell_client.cpp", "cell_client.hpp", "cell_driver.cpp",
+                                                "cell_hooks.hpp", "cell_map.cpp", "cell_map.hpp", "cell_node.cpp"])
 
     def test_gives_the_same_bytes_anywhere(self):
         self.coupler("generate", self.file("cell.yaml", GOOD), "--out", "out")
@@ -280,8 +281,8 @@ class Generate(Cli):
 
     def test_says_what_it_wrote(self):
         call = ("generate", self.file("cell.yaml", GOOD), "--out", "out")
-        self.assertEqual([line.split(": ")[1] for line in self.coupler(*call).stdout.splitlines()], ["written"] * 4)
-        self.assertEqual([line.split(": ")[1] for line in self.coupler(*call).stdout.splitlines()], ["unchanged"] * 4)
+        self.assertEqual([line.split(": ")[1] for line in self.coupler(*call).stdout.splitlines()], ["written"] * 7)
+        self.assertEqual([line.split(": ")[1] for line in self.coupler(*call).stdout.splitlines()], ["unchanged"] * 7)
         self.assertEqual(self.coupler(*call, "--quiet").stdout, "")
 
     def test_leaves_files_alone_that_would_not_change(self):
