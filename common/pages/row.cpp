@@ -54,9 +54,9 @@ void put_source(const Point& point, Row& row) {
 
 /// Only outputs with hardware have a safe state.
 std::string safe_of(const Point& point) {
-  const bool coil = point.table == Table::coils && point.line.present();
-  const bool channel = point.table == Table::holding_registers && is_analogue(point);
-  if (!coil && !channel) return {};
+  const bool coil = point.table == Table::coils;
+  const bool has_hardware = coil ? point.line.present() : is_writable(point.table) && is_analogue(point);
+  if (!has_hardware && point.safe == Safe::off) return {};  // nothing was said
   if (point.safe == Safe::hold) return "hold";
   if (coil) return point.safe == Safe::on ? "on" : "off";
   return point.safe == Safe::on ? value_words(point, point.safe_value) : "0";

@@ -72,10 +72,13 @@ TEST(Row, Counters_and_channels_are_what_stands_behind_a_register) {
   EXPECT_EQ(row_of(pressure, 0).source, "ads1015 voltage0");
 }
 
-TEST(Row, Only_outputs_with_hardware_have_a_safe_state) {
+TEST(Row, Outputs_with_hardware_have_a_safe_state_others_if_the_map_says_it) {
   Point lamp = point_of(Type::BOOL);
   lamp.table = Table::coils;
   EXPECT_EQ(row_of(lamp, 0).safe, "");
+  lamp.safe = Safe::on;
+  EXPECT_EQ(row_of(lamp, 0).safe, "on");
+  lamp.safe = Safe::off;
   lamp.line.name = "GPIO17";
   EXPECT_EQ(row_of(lamp, 0).safe, "off");
   lamp.safe = Safe::hold;
