@@ -16,6 +16,7 @@ void add_diff(CLI::App& program, Exit& exit);
 void add_export(CLI::App& program, Exit& exit);
 void add_generate(CLI::App& program, Exit& exit);
 void add_import(CLI::App& program, Exit& exit);
+void add_init(CLI::App& program, Exit& exit);
 void add_plan(CLI::App& program, Exit& exit);
 void add_schema(CLI::App& program, Exit& exit);
 

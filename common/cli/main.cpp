@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
   coupler::cli::add_export(program, exit);
   coupler::cli::add_generate(program, exit);
   coupler::cli::add_import(program, exit);
+  coupler::cli::add_init(program, exit);
   coupler::cli::add_plan(program, exit);
   coupler::cli::add_schema(program, exit);
   try {

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`coupler init`: a first map. COUPLER is the program."""
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+KINDS = ((), ("--node",), *(("--preset", name) for name in ("wago_750", "beckhoff_bk9000", "moxa_e1200", "plc")))
+
+
+class Init(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def coupler(self, *arguments):
+        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, timeout=60, capture_output=True,
+                              text=True, encoding="utf-8", check=False)
+
+    def test_writes_a_map_that_check_takes_without_a_word(self):
+        for kind in KINDS:
+            with self.subTest(kind):
+                done = self.coupler("init", "press", "--force", *kind)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                checked = self.coupler("check", "press.yaml")
+                self.assertEqual((checked.returncode, checked.stderr), (0, ""))
+                self.assertIn("press.yaml: ok: press, 4 points", checked.stdout)
+
+    def test_names_the_schema_that_it_writes_beside_it(self):
+        self.coupler("init", "press")
+        first = (self.folder / "press.yaml").read_text(encoding="utf-8").splitlines()[0]
+        self.assertEqual(first, "# yaml-language-server: $schema=map.schema.json")
+        self.assertEqual((self.folder / "map.schema.json").read_text(encoding="utf-8"), self.coupler("schema").stdout)
+
+    def test_says_what_the_map_is_told_of_the_device(self):
+        self.coupler("init", "press", "--preset", "plc", "--address", "plc-7.local")
+        text = (self.folder / "press.yaml").read_text(encoding="utf-8")
+        for line in ("name: press", "address: plc-7.local", "preset: plc"):
+            self.assertIn(line, text)
+
+    def test_replaces_a_map_only_if_told_to(self):
+        (self.folder / "press.yaml").write_text("mine")
+        done = self.coupler("init", "press")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--force", done.stderr)
+        self.assertEqual((self.folder / "press.yaml").read_text(), "mine")
+        self.assertEqual(self.coupler("init", "press", "--force").returncode, 0)
+
+    def test_refuses_what_no_map_can_say_and_writes_nothing(self):
+        for arguments, word in ((("2nd one",), "name"), (("press", "--preset", "wago"), "write one of beckhoff_bk9000")):
+            done = self.coupler("init", *arguments)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(word, done.stderr)
+        self.assertEqual(self.coupler("init", "cell", "--node", "--preset", "plc").returncode, 2)
+        self.assertEqual(self.coupler("init", "press", "--out", "no/such/press.yaml").returncode, 2)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
