@@ -36,7 +36,7 @@ tl::expected<void, Refused> take_bits(const ReadRequest& request, Bytes reply, s
 
 tl::expected<void, Refused> take_registers(const ReadRequest& request, Bytes reply,
                                            std::uint16_t* registers) {
-  const auto values = values_in(request, reply, 2U * request.count());
+  const auto values = values_in(request, reply, std::size_t{2} * request.count());
   if (!values) return tl::unexpected(values.error());
   for (std::size_t i = 0; i < request.count(); ++i) registers[i] = get_u16(*values + 2 * i);
   return {};

@@ -44,7 +44,7 @@ Json any_of(std::initializer_list<Json> schemas) {
 /// The origin takes its words in any case.
 Json choice(const Key& key) {
   const auto choices = loader::words(key.choices);
-  const Json exact{{"enum", choices}};
+  Json exact{{"enum", choices}};
   if (key.owner == Owner::project) return exact;
   return any_of({exact, text(any_case(choices), fmt::format("write one of {}", fmt::join(choices, ", ")))});
 }
