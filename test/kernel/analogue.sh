@@ -56,24 +56,24 @@ while True:
 
 echo "# a map whose channels are not there"
 status=0
-"$bin/coupler-node" analogue.yaml >/tmp/absent.log 2>&1 || status=$?
-cat /tmp/absent.log
+"$bin/coupler-node" analogue.yaml >"$check_folder/absent.log" 2>&1 || status=$?
+cat "$check_folder/absent.log"
 expect "ends the start with 3" 3 "$status"
-check "and says what is missing" grep -q "point 'volts': there is no IIO device 'adc'" /tmp/absent.log
+check "and says what is missing" grep -q "point 'volts': there is no IIO device 'adc'" "$check_folder/absent.log"
 expect "the PWM does not run" 0 "$(cat $pwm/enable)"
 plant_chip
-sed 's/^mapping:/&\n  coils:\n    lamp: {address: 0, line: {chip: plant, offset: 0}, initial: on}/' analogue.yaml >/tmp/lamp.yaml
-refuse "a map with a line ends the start too" "$bin/coupler-node" /tmp/lamp.yaml 2>/tmp/lamp.log
-check "for the same reason" grep -q "point 'volts'" /tmp/lamp.log
+sed 's/^mapping:/&\n  coils:\n    lamp: {address: 0, line: {chip: plant, offset: 0}, initial: on}/' analogue.yaml >"$check_folder/lamp.yaml"
+refuse "a map with a line ends the start too" "$bin/coupler-node" "$check_folder/lamp.yaml" 2>"$check_folder/lamp.log"
+check "for the same reason" grep -q "point 'volts'" "$check_folder/lamp.log"
 check "and the line was not driven" grep -qw input < <(gpioinfo | awk '/line +0:/')
 
 plug_adc
 echo 77 >$dac
-sed 's/voltage0/voltage9/; s/chip: fan/chip: fun/' analogue.yaml >/tmp/wrong.yaml
-refuse "a channel that the device does not have ends the start" "$bin/coupler-node" /tmp/wrong.yaml 2>/tmp/wrong.log
-cat /tmp/wrong.log
-check "with those that it has" grep -q "'voltage9'; it has .*voltage0, .*voltage1-voltage2" /tmp/wrong.log
-check "and the PWM chips that there are" grep -q "this machine has pwmchip0 (fan) with 1 channel" /tmp/wrong.log
+sed 's/voltage0/voltage9/; s/chip: fan/chip: fun/' analogue.yaml >"$check_folder/wrong.yaml"
+refuse "a channel that the device does not have ends the start" "$bin/coupler-node" "$check_folder/wrong.yaml" 2>"$check_folder/wrong.log"
+cat "$check_folder/wrong.log"
+check "with those that it has" grep -q "'voltage9'; it has .*voltage0, .*voltage1-voltage2" "$check_folder/wrong.log"
+check "and the PWM chips that there are" grep -q "this machine has pwmchip0 (fan) with 1 channel" "$check_folder/wrong.log"
 expect "outputs were not touched" "77" "$(cat $dac)"
 
 echo "# inputs"
@@ -122,25 +122,25 @@ check "the PWM works" set_registers 2 500
 echo "# the service is started anew"
 check "it ends well" stop node TERM
 expect "in its safe state" "12000 of 40000, 1" "$(shown)"
-cp analogue.yaml /tmp/live.yaml
-plant_node /tmp/live.yaml
+cp analogue.yaml "$check_folder/live.yaml"
+plant_node "$check_folder/live.yaml"
 check "and takes the PWM over, at its initial value" wait_until 5 shown_is "0 of 40000, 1"
 
 echo "# the map is read again"
 read_again() { kill -HUP "$(pid node)" && wait_until 10 says node "$1" "${2:-1}"; }
 check "outputs are written" wait_until 5 set_registers 0 0x3E80 0 250
-sed -i 's/initial: 5/initial: 6/; s/units: V/units: volt/' /tmp/live.yaml
+sed -i 's/initial: 5/initial: 6/; s/units: V/units: volt/' "$check_folder/live.yaml"
 check "another map is taken" read_again 'read the map again'
 expect "outputs that it has, too, stay" "250 10000 of 40000, 1" "$(cat $dac) $(shown)"
 check "inputs are sampled" wait_until 5 steps_are 123
-cp /tmp/live.yaml /tmp/good.yaml
-sed -i 's/device: adc, channel: steps/device: adc, channel: stops/' /tmp/live.yaml
+cp "$check_folder/live.yaml" "$check_folder/good.yaml"
+sed -i 's/device: adc, channel: steps/device: adc, channel: stops/' "$check_folder/live.yaml"
 check "one with a channel that is not there is refused" read_again 'the new map is refused'
 expect "and the old one goes on" "250 10000 of 40000, 1" "$(cat $dac) $(shown)"
-sed '/fan:/d' /tmp/good.yaml >/tmp/live.yaml
+sed '/fan:/d' "$check_folder/good.yaml" >"$check_folder/live.yaml"
 check "one without the PWM is taken" read_again 'read the map again' 2
 expect "the PWM goes to its safe state, others stay" "250 12000 of 40000, 1" "$(cat $dac) $(shown)"
-cp /tmp/good.yaml /tmp/live.yaml
+cp "$check_folder/good.yaml" "$check_folder/live.yaml"
 check "it comes back" read_again 'read the map again' 3
 expect "at its initial value" "0 of 40000, 1" "$(shown)"
 stop watch KILL || true
@@ -153,9 +153,9 @@ check "an input that is gone is an exception 04" wait_until 5 input_is_gone
 refuse "so is the output" set_real 0 1
 check "others are served" [ "$(input_register 5)" = 7 ]
 check "the PWM as well" set_registers 2 250
-cp "$(log node)" /tmp/before
+cp "$(log node)" "$check_folder/before"
 for _ in 1 2 3; do input_float 0 >/dev/null 2>&1 || true; done
-check "what happened was said once" cmp "$(log node)" /tmp/before
+check "what happened was said once" cmp "$(log node)" "$check_folder/before"
 check "for each channel that was asked for" [ "$(grep -c 'iio:device0 (adc) .* failed: No such device' "$(log node)")" = 2 ]
 echo "# plugged in again"
 plug_adc

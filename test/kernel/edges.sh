@@ -13,10 +13,10 @@ cd "$(dirname "$0")"
 plant_chip
 chip=$(sim_chip plant)
 readonly button=2 wave=3 bouncy=4 control=5
-mkfifo /tmp/never
+mkfifo "$check_folder/never"
 
 # A builtin: a process for every pause would take longer than the pulse.
-pause() { read -rt "$1" <>/tmp/never || true; }
+pause() { read -rt "$1" <>"$check_folder/never" || true; }
 
 # Sends pulses to LINES at once: COUNT times up and down, WIDTH seconds each.
 pulse() {

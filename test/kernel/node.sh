@@ -40,16 +40,16 @@ sim_pull plant 4 up
 check "one that lasts is" wait_until 2 input_is 2 1
 
 echo "# who holds a line is named"
-sed 's/chip: plant, offset: 0/chip: plant, offset: 6/' plant.yaml >/tmp/busy.yaml
+sed 's/chip: plant, offset: 0/chip: plant, offset: 6/' plant.yaml >"$check_folder/busy.yaml"
 status=0
-"$bin/coupler-node" /tmp/busy.yaml --port 1503 >/tmp/busy.log 2>&1 || status=$?
-cat /tmp/busy.log
+"$bin/coupler-node" "$check_folder/busy.yaml" --port 1503 >"$check_folder/busy.log" 2>&1 || status=$?
+cat "$check_folder/busy.log"
 expect "a busy line ends the start with 3" 3 "$status"
-check "the message names the chip" grep -q 'plant\|gpiochip' /tmp/busy.log
-check "the line" grep -qE 'line 6' /tmp/busy.log
-check "and its holder" grep -q 'hog-a' /tmp/busy.log
-sed 's/BUTTON/BOTTON/' plant.yaml >/tmp/missing.yaml
-refuse "a line that no chip has ends the start" "$bin/coupler-node" /tmp/missing.yaml --port 1503
+check "the message names the chip" grep -q 'plant\|gpiochip' "$check_folder/busy.log"
+check "the line" grep -qE 'line 6' "$check_folder/busy.log"
+check "and its holder" grep -q 'hog-a' "$check_folder/busy.log"
+sed 's/BUTTON/BOTTON/' plant.yaml >"$check_folder/missing.yaml"
+refuse "a line that no chip has ends the start" "$bin/coupler-node" "$check_folder/missing.yaml" --port 1503
 
 echo "# unplugged"
 sim_unplug plant
@@ -63,8 +63,8 @@ check "the node runs" running node
 # libgpiod 1 wants a request for each input and each polarity of outputs.
 if [[ $(gpiomon --version) == *v1.* ]]; then requests=5; else requests=2; fi
 check "and tells what happened, of each request to the kernel" wait_until 5 says node 'failed: No such device' $requests
-cp "$(log node)" /tmp/before
+cp "$(log node)" "$check_folder/before"
 for _ in 1 2 3; do input 0 >/dev/null 2>&1 || true; done
-check "once, not at each request" cmp "$(log node)" /tmp/before
+check "once, not at each request" cmp "$(log node)" "$check_folder/before"
 check "it ends well on SIGTERM" stop node TERM
 cat "$(log node)"

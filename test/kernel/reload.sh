@@ -9,7 +9,7 @@ cd "$(dirname "$0")"
 # shellcheck source=plant.sh
 . ./plant.sh
 plant_chip
-map=/tmp/map.yaml
+map="$check_folder/map.yaml"
 cp reload.yaml "$map"
 
 io_process() { pgrep -P "$(pid node)"; }
@@ -109,8 +109,8 @@ refuse "the master did not notice" says traffic lost
 
 echo "# a map with other points"
 sed 's/leaves: .*/arrives: {address: 7, line: {chip: plant, offset: 7}, active_low: true, initial: on}/; s/line: BUTTON/line: BUTTON, active_low: true/; s/offset: 3}/offset: 5}/' \
-  reload.yaml >/tmp/other.yaml
-check "it is taken" reload_with "$taken" </tmp/other.yaml
+  reload.yaml >"$check_folder/other.yaml"
+check "it is taken" reload_with "$taken" <"$check_folder/other.yaml"
 check "masters are told to look again" says node 'masters have to connect again'
 expect "the output that is not in it is in its safe state, against its pull" 1 "$(sim_value plant 4)"
 sim_pull plant 7 up
@@ -123,7 +123,7 @@ echo "# again and again"
 before=$(times "$taken")
 for _ in {1..10}; do
   check "there" reload_with "$taken" <reload.yaml
-  check "and back" reload_with "$taken" </tmp/other.yaml
+  check "and back" reload_with "$taken" <"$check_folder/other.yaml"
 done
 expect "twenty times" $((before + 20)) "$(times "$taken")"
 
