@@ -183,6 +183,7 @@ constexpr Key keys[] = {
     project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
             "addresses that the device refuses")
         .lists(S::area),
+    project("$schema", S::map, K::text, "map.schema.json", "in a JSON file: the schema, for editors"),
     project("table", S::area, K::choice, "coils", "the area's table")
         .needed()
         .one_of("coils|discrete_inputs|input_registers|holding_registers"),

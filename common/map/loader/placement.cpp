@@ -76,9 +76,11 @@ lock::Ground ground_of(const DraftPoints& points, const Areas& reserved, const A
   ground.closed.push_back({Table::holding_registers, identity::reserved});
   for (const Areas* areas : {&reserved, &unreadable})
     for (const Area& area : *areas) ground.closed.push_back({area.table, area.range});
-  for (const DraftPoint& draft : points)
-    if (draft.placed)
-      ground.closed.push_back({draft.point.table, range(draft.point), mask_of(draft, draft.point.format)});
+  for (const DraftPoint& draft : points) {
+    const Point& point = draft.point;
+    if (draft.placed) ground.closed.push_back({point.table, range(point), mask_of(draft, point.format)});
+    if (point.read_address) ground.closed.push_back({point.table, read_range(point)});
+  }
   if (!preset) return ground;
   for (const Preset::Area& area : preset->areas) ground.open.push_back({area.table, area.range});
   for (const Preset::ReadBack& back : preset->read_back)

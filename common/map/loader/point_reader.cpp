@@ -128,6 +128,8 @@ DraftPoint read_place(const Entry& entry, Table table, const Reader& options, co
   const bool good = context.problems.errors() == errors;
   draft.placed = good && !draft.addressless;
   draft.addressless = good && draft.addressless;
+  read_access(options, point, context);
+  if (good) read_read_address(options, defaults.addressing, point, context);
   return draft;
 }
 
@@ -136,8 +138,6 @@ void read_rest(const Reader& options, const PointDefaults& defaults, DraftPoint&
   if (draft.placed && !holds_bits(point.table)) read_scale(options, point, context);
   if (const Entry* initial = options.find("initial"); draft.placed && initial != nullptr)
     point.initial = read_value("initial", *initial, point, context);
-  read_access(options, point, context);
-  if (draft.placed) read_read_address(options, defaults.addressing, point, context);
   if (holds_bits(point.table))
     read_line(options, draft, context);
   else

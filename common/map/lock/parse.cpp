@@ -103,6 +103,7 @@ class Parser {
     problems_.push_back(
         {Diagnostic::Severity::error, file_, line, column, std::move(what), std::move(remedy)});
   }
+  void note(int line, std::string what) { problems_.back().notes.push_back({line, 1, std::move(what)}); }
 
   void no_lock(int line, int column) {
     error(line, column, fmt::format("a lock begins with '{}'", first_line),
@@ -166,6 +167,7 @@ class Parser {
             fmt::format("{} of {} overlaps {} of {} (line {})", to_string(second.place), shown(second.name),
                         to_string(first.place), shown(first.name), first.line),
             "delete the line of the younger point; `coupler check MAP` then gives it another address");
+      note(first.line, "the other is here");
     }
   }
 
@@ -173,12 +175,13 @@ class Parser {
     const Names names(lock_);
     for (const Entry& entry : lock_) {
       const Entry& first = *names.find(entry.place.table, entry.name);
-      if (&first != &entry)
-        error(std::max(first.line, entry.line), 1,
-              fmt::format("{} is in {} twice, in lines {} and {}", shown(entry.name),
-                          to_string(entry.place.table), std::min(first.line, entry.line),
-                          std::max(first.line, entry.line)),
-              "delete one of the two lines");
+      if (&first == &entry) continue;
+      const auto [above, below] = std::minmax(first.line, entry.line);
+      error(below, 1,
+            fmt::format("{} is in {} twice, in lines {} and {}", shown(entry.name),
+                        to_string(entry.place.table), above, below),
+            "delete one of the two lines");
+      note(above, "the other is here");
     }
   }
 

@@ -87,5 +87,12 @@ TEST(Load, A_file_that_cannot_be_read_is_a_diagnostic) {
             COUPLER_TEST_DIR ": error: the file cannot be read: Is a directory; give the path of a map\n");
 }
 
+TEST(Load, A_json_map_may_name_its_schema) {
+  const auto result =
+      load_map(R"({"$schema": "map.schema.json", "name": "m", "mapping": {"coils": {"a": 0}}})", "m.json");
+  EXPECT_TRUE(result.map);
+  EXPECT_TRUE(result.diagnostics.empty());
+}
+
 }  // namespace
 }  // namespace coupler

@@ -102,6 +102,13 @@ TEST(Placement, Reserved_and_unreadable_areas_and_those_of_a_node_are_left_out) 
             "reserved areas smaller, or remove points\n");
 }
 
+TEST(Placement, Where_an_output_reads_back_is_left_out) {
+  EXPECT_EQ(places(renewed(map_of("holding_registers",
+                                  "a: {address: 9, type: INT, read_address: 0}, "
+                                  "b: {type: DINT, read_address: 2}, c: {type: INT}"))),
+            "c 1, b 4, a 9");
+}
+
 TEST(Placement, A_reserved_area_counts_as_the_map_does) {
   EXPECT_EQ(places(renewed(map_of(
                 "holding_registers", "a: {type: INT}",

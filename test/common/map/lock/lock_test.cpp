@@ -89,6 +89,16 @@ TEST(Lock, Two_points_have_no_place_in_common) {
             "5:1: coils 0 of 'a' overlaps coils 0 of 'b' (line 4)\n");
 }
 
+TEST(Lock, A_conflict_names_both_of_its_lines) {
+  for (const std::string lines : {"coils 0-3 a\ncoils 2 b\n", "coils 3 a\ncoils 2 a\n"}) {
+    const Diagnostics told = parse(head + lines, "m.yaml.lock").diagnostics;
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told[0].line, 5);
+    ASSERT_EQ(told[0].notes.size(), 1U);
+    EXPECT_EQ(told[0].notes[0].line, 4);
+  }
+}
+
 TEST(Lock, A_name_is_once_in_a_table) {
   EXPECT_EQ(problems_of(head + "coils 3 a\ncoils 2 a\ndiscrete_inputs 0 a\n"),
             "5:1: 'a' is in coils twice, in lines 4 and 5\n");
