@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# A firmware whose hooks and lines are written in one request: both or neither, and safe whichever process dies.
+#   test/kernel/run test/kernel/hooks.sh BUILD_DIR
+set -euo pipefail
+bin=$(realpath "${1:?the build folder}")/bin
+cd "$(dirname "$0")"
+# shellcheck source=plant.sh
+. ./plant.sh
+plant_chip
+
+set_coils() { answered master -t 0 -r 0 127.0.0.1 -- "$@" >/dev/null; }
+io_process() { pgrep -P "$(pid gate)"; }
+hooks_called() { grep -E '^(motor|speed|safe) ' "$(log gate)" | cut -d' ' -f1,2 | paste -sd' '; }
+
+start gate "$bin/gate_firmware"
+check "the firmware serves" wait_until 5 says gate 'serving gate'
+check "it begins in the process that serves" says gate "^began 0 in $(io_process)$"
+check "what its thread sets is read" wait_until 5 input_is 0 1
+sim_pull plant 2 up
+check "a line is read beside it" wait_until 5 input_is 1 1
+
+echo "# one request, a hook and a line"
+sim_pull plant 0 down
+refuse "a write that the hook refuses is refused" set_coils 1 1
+expect "and its line not driven" 0 "$(sim_value plant 0)"
+expect "nor is it kept" 0 "$(coil 0)"
+check "the firmware is told a speed" answered master -t 4 -r 0 127.0.0.1 -- 5
+check "then the hook accepts" set_coils 1 1
+expect "the line is driven, against its pull" 1 "$(sim_value plant 0)"
+expect "the hooks were called in that order" "motor 1 speed 5 motor 1" "$(hooks_called)"
+
+echo "# the process that serves dies"
+check "the brake is released" set_coils 1 0
+expect "its line is low" 0 "$(sim_value plant 0)"
+before=$(io_process)
+kill -KILL "$before"
+check "the keeper makes the firmware safe, in its own process" wait_until 5 says gate "^safe 0 in $(pid gate)$"
+check "and drives the brake on, against its pull" wait_until 5 level_is 0 1
+check "another process begins" wait_until 10 says gate '^began 0 in' 2
+check "what its thread sets is read" wait_until 10 input_is 0 1
+expect "the brake has stayed" 1 "$(sim_value plant 0)"
+
+echo "# a line that cannot be driven"
+check "the firmware is told a speed" answered master -t 4 -r 0 127.0.0.1 -- 6
+check "both are written" set_coils 1 1
+sim_unplug plant
+before=$(hooks_called)
+refuse "a write to hook and line is refused" set_coils 0 1
+expect "and the hook gets its value back" "$before motor 0 motor 1" "$(hooks_called)"
+expect "masters read what it was" 1 "$(coil 0)"
+check "the hook alone goes on" set_coil 0 0
+
+echo "# it ends"
+stop gate TERM || true
+check "the firmware is made safe" says gate '^safe 0 in' 2
