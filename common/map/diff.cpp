@@ -29,12 +29,24 @@ std::string place(const Point& point) {
   return fmt::format("{} {}, {}", to_string(point.table), point.address, to_string(point.format.type));
 }
 
+/// As a map has it; the canonical line's hexadecimal floats are for machines.
+std::string scale(const Point& point) {
+  if (!point.scale.present()) return "none";
+  if (point.scale.offset == 0) return fmt::to_string(point.scale.gain);
+  return fmt::format("{{gain: {}, offset: {}}}", point.scale.gain, point.scale.offset);
+}
+
 std::vector<FieldChange> changed_fields(const Point& older, const Point& newer) {
   const auto a = split(canonical_line(older));
   const auto b = split(canonical_line(newer));
   std::vector<FieldChange> changes;
-  for (std::size_t i = 0; i < fields.size(); ++i)
-    if (a[i] != b[i]) changes.push_back({fields[i], a[i], b[i]});
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (a[i] == b[i]) continue;
+    if (fields[i] == "scale")
+      changes.push_back({fields[i], scale(older), scale(newer)});
+    else
+      changes.push_back({fields[i], a[i], b[i]});
+  }
   return changes;
 }
 

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """config/examples/pump: the firmware against pymodbus and against the client, the client against a pymodbus server.
 
-    with_pump.py FIRMWARE CLIENT
+    with_pump.py FIRMWARE CLIENT NODE MAP
 """
 import asyncio
+import pathlib
 import struct
 import subprocess
 import sys
+import tempfile
 import threading
 
 from peer import Checks, running_node, skip
@@ -69,6 +71,22 @@ def firmware_and_client(firmware, client, checks):
         checks.equal(f"the client says '{line}'", line in said, True)
 
 
+def client_and_a_node_of_another_map(node, map_file, client, checks):
+    """A scale that was changed on one side only: the same bytes, another speed."""
+    with tempfile.NamedTemporaryFile("w", suffix=".yaml") as other:
+        text = pathlib.Path(map_file).read_text(encoding="utf-8")
+        other.write(text.replace("scale: 0.1", "scale: 0.01"))
+        other.flush()
+        with running_node([node, other.name]) as port:
+            done = subprocess.run([client, "127.0.0.1", str(port)], capture_output=True, text=True, timeout=60)
+            master = ModbusTcpClient("127.0.0.1", port=port)
+            master.connect()
+            checks.equal("nothing was written", master.read_coils(0, 2, 1).bits[:2], [False, False])
+            master.close()
+    checks.equal("status of the client", done.returncode, 3)
+    checks.equal("it says what differs", "  ~ speed: scale 0.1 -> 0.01" in done.stderr.splitlines(), True)
+
+
 def client_and_a_foreign_server(client, checks):
     table = {kind: ModbusSequentialDataBlock(0, [0] * 100) for kind in ("di", "co", "ir", "hr")}
     table["ir"].setValues(0, [412])
@@ -102,10 +120,11 @@ def client_and_a_foreign_server(client, checks):
 
 
 def main():
-    firmware, client = sys.argv[1:]
+    firmware, client, node, map_file = sys.argv[1:]
     checks = Checks()
     firmware_obeys_a_foreign_master(firmware, checks)
     firmware_and_client(firmware, client, checks)
+    client_and_a_node_of_another_map(node, map_file, client, checks)
     client_and_a_foreign_server(client, checks)
     checks.done("the pump: its firmware and its client, with each other and with pymodbus")
 

@@ -43,6 +43,17 @@ TEST(Diff, A_change_names_every_field) {
                           "~ speed: address 7 -> 17, type REAL -> LREAL, order CDAB -> ABCD"));
 }
 
+TEST(Diff, A_scale_reads_as_in_a_map) {
+  auto points = test::sample_points();
+  const MapPtr older = test::map_of(points);
+  named(points, "speed").scale = {0.1, 0};
+  const MapPtr newer = test::map_of(points);
+  EXPECT_THAT(lines(older, newer), ElementsAre("~ speed: scale none -> 0.1"));
+  named(points, "speed").scale = {0.1, -40};
+  EXPECT_THAT(lines(newer, test::map_of(points)),
+              ElementsAre("~ speed: scale 0.1 -> {gain: 0.1, offset: -40}"));
+}
+
 TEST(Diff, What_only_one_map_has_is_missing_or_added) {
   auto points = test::sample_points();
   const MapPtr older = test::map_of(points);
