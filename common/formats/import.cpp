@@ -80,13 +80,19 @@ std::string comment_of(const Importer& importer, std::string_view file) {
   return fmt::format("Imported from {} by `coupler import {}`.", name, importer.name);
 }
 
+Diagnostics quoted(Problems&& problems, std::string_view text) {
+  Diagnostics diagnostics = std::move(problems).sorted();
+  quote(diagnostics, text);
+  return diagnostics;
+}
+
 }  // namespace
 
 ImportResult import_text(const Importer& importer, std::string_view text, std::string_view file,
                          const ImportOptions& options) {
   Problems problems(file);
   text = loader::without_byte_order_mark(text);
-  if (!loader::check_text(text, problems)) return {{}, std::move(problems).sorted()};
+  if (!loader::check_text(text, problems)) return {{}, quoted(std::move(problems), text)};
   std::vector<ForeignUnit> units = importer.read(text, problems);
   check_units(units, problems);
   const bool several = units.size() > 1;
@@ -99,7 +105,7 @@ ImportResult import_text(const Importer& importer, std::string_view text, std::s
     maps.push_back(finish(unit, comment_of(importer, file), problems));
   }
   if (problems.has_errors()) maps.clear();
-  return {std::move(maps), std::move(problems).sorted()};
+  return {std::move(maps), quoted(std::move(problems), text)};
 }
 
 }  // namespace coupler::formats

@@ -10,9 +10,15 @@
 
 namespace coupler::fakes {
 
+inline codec::Format half(codec::Type type, codec::Half half) {
+  codec::Format format;
+  format.type = type;
+  format.half = half;
+  return format;
+}
+
 /// A map without a file:
-///   MapBuilder().bits(Table::coils, 0, 8).add(Table::holding_registers, "level", 3,
-///   codec::Type::REAL).build()
+///   MapBuilder().coil("valve", 0).holding("level", 3, codec::Type::REAL).build()
 class MapBuilder {
  public:
   explicit MapBuilder(std::string_view name = "device") { head_.name = owned_->keep(std::string(name)); }
@@ -33,6 +39,29 @@ class MapBuilder {
   }
   MapBuilder& add(Table table, const std::string& name, std::uint16_t address, codec::Type type) {
     return add(table, name, address, type, [](Point&) {});
+  }
+
+  MapBuilder& coil(const std::string& name, std::uint16_t address) {
+    return add(Table::coils, name, address, codec::Type::BOOL);
+  }
+  /// A coil that cannot be read.
+  MapBuilder& command(const std::string& name, std::uint16_t address) {
+    return add(Table::coils, name, address, codec::Type::BOOL,
+               [](Point& point) { point.access = Access::write; });
+  }
+  MapBuilder& input(const std::string& name, std::uint16_t address) {
+    return add(Table::discrete_inputs, name, address, codec::Type::BOOL);
+  }
+  MapBuilder& input_register(const std::string& name, std::uint16_t address,
+                             codec::Type type = codec::Type::UINT) {
+    return add(Table::input_registers, name, address, type);
+  }
+  MapBuilder& holding(const std::string& name, std::uint16_t address, codec::Type type = codec::Type::UINT) {
+    return add(Table::holding_registers, name, address, type);
+  }
+  MapBuilder& holding(const std::string& name, std::uint16_t address, codec::Format format) {
+    return add(Table::holding_registers, name, address, format.type,
+               [&](Point& point) { point.format = format; });
   }
 
   /// `count` points of one address each: BOOL in the bit tables, WORD in the others. Named by table and
@@ -72,9 +101,16 @@ class MapBuilder {
     return owned_->keep(std::move(registers));
   }
 
-  MapPtr build() {
-    owned_->finish(head_, points_, wires_);
-    return owned_;
+  /// May be called again: each map is its own.
+  MapPtr build() const {
+    struct Built {
+      OwnedMap map;
+      std::shared_ptr<OwnedMap> texts;
+    };
+    const auto built = std::make_shared<Built>();
+    built->texts = owned_;
+    built->map.finish(head_, points_, wires_);
+    return {built, &built->map};
   }
 
  private:

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "host/core/device.hpp"
+#include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_clock.hpp"
 #include "test/host/core/fake_device.hpp"
-#include "test/host/core/make_map.hpp"
 #include "test/host/core/recording_sink.hpp"
 
 namespace coupler::driver::test {
@@ -36,7 +36,7 @@ class TimedDevice : public FakeDevice {
 
 /// The engine on a fake device, a fake clock and a sink that keeps everything.
 struct DeviceTest : testing::Test {
-  using MapBuilder = test::MapBuilder;
+  using MapBuilder = fakes::MapBuilder;
 
   void start(const MapBuilder& builder, Verify verify = Verify::require) {
     owned = builder.build();

@@ -6,14 +6,14 @@
 #include <future>
 
 #include "host/core/write_ticket.hpp"
+#include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_device.hpp"
-#include "test/host/core/make_map.hpp"
 
 namespace coupler::driver {
 namespace {
 
+using fakes::MapBuilder;
 using test::FakeDevice;
-using test::MapBuilder;
 
 LoadResult no_map(std::string_view, std::string_view) { return {}; }
 
@@ -47,7 +47,7 @@ TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
 }
 
 TEST(DeviceThread, A_write_to_an_idle_device_is_sent_by_the_one_who_makes_it) {
-  const auto owned = MapBuilder().point("a", Table::coils, 1, {}, Access::write).build();
+  const auto owned = MapBuilder().command("a", 1).build();
   FakeDevice device;
   WaitingSink sink;
   WriteTicket ticket;

@@ -72,7 +72,7 @@ TEST_F(DeviceWriteTest, Writes_while_offline_are_dropped_and_reported_once_with_
 
 TEST_F(DeviceWriteTest, A_map_of_outputs_that_cannot_be_read_is_online_by_its_writes) {
   MapBuilder builder;
-  builder.point("a", Table::coils, 5, {}, Access::write);
+  builder.command("a", 5);
   start(builder, Verify::off);
   run_for(milliseconds(50));
   EXPECT_TRUE(sink->online.empty());

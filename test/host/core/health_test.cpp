@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/core/health.hpp"
+#include "test/fakes/map_builder.hpp"
 
 #include <gmock/gmock.h>
-
-#include "test/host/core/make_map.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -21,7 +20,7 @@ struct HealthTest : testing::Test {
   }
   std::uint64_t& wrote(Outcome outcome) { return now.writes[static_cast<std::size_t>(outcome)]; }
 
-  MapPtr owned = test::MapBuilder().holding("a", 0).holding("b", 1).holding("c", 2).build();
+  MapPtr owned = fakes::MapBuilder().holding("a", 0).holding("b", 1).holding("c", 2).build();
   DeviceSnapshot before;
   DeviceSnapshot now;
 };

@@ -3,14 +3,14 @@
 
 #include <gmock/gmock.h>
 
+#include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_device.hpp"
-#include "test/host/core/make_map.hpp"
 
 namespace coupler::driver {
 namespace {
 
+using fakes::MapBuilder;
 using test::FakeDevice;
-using test::MapBuilder;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using Verdict = Identity::Verdict;
@@ -81,7 +81,7 @@ TEST_F(IdentityCheck, A_long_map_is_fetched_piece_by_piece_across_files) {
 }
 
 TEST_F(IdentityCheck, A_map_with_a_wrong_checksum_is_not_believed) {
-  device.serve(MapBuilder().coil("a", 1).build()->map());
+  device.serve(MapBuilder().text("a: 1").coil("a", 1).build()->map());
   device.file[0] = '?';
   const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
   EXPECT_EQ(identity->verdict, Verdict::different);
@@ -89,14 +89,14 @@ TEST_F(IdentityCheck, A_map_with_a_wrong_checksum_is_not_believed) {
 }
 
 TEST_F(IdentityCheck, A_map_that_does_not_load_is_a_difference_with_its_diagnostics) {
-  device.serve(MapBuilder().coil("a", 1).build()->map());
+  device.serve(MapBuilder().text("a: 1").coil("a", 1).build()->map());
   const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
   EXPECT_EQ(identity->verdict, Verdict::different);
   EXPECT_THAT(identity->differences, ElementsAre(HasSubstr("map:1:2: error: no name; add one")));
 }
 
 TEST_F(IdentityCheck, A_node_that_does_not_serve_its_map_cannot_be_compared) {
-  device.serve(MapBuilder().coil("a", 1).build()->map());
+  device.serve(MapBuilder().text("a: 1").coil("a", 1).build()->map());
   device.file.clear();
   const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
   EXPECT_EQ(identity->verdict, Verdict::different);

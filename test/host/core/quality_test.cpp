@@ -72,7 +72,7 @@ TEST_F(QualityTest, A_point_that_nobody_asks_for_any_more_grows_stale) {
 
 TEST_F(QualityTest, A_connection_that_has_been_idle_for_a_timeout_is_probed) {
   MapBuilder builder;
-  builder.point("a", Table::coils, 5, {}, Access::write);
+  builder.command("a", 5);
   start(builder);
   run_for(milliseconds(100));
   device.requests.clear();

@@ -3,16 +3,16 @@
 
 #include <gmock/gmock.h>
 
+#include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_device.hpp"
-#include "test/host/core/make_map.hpp"
 
 namespace coupler::driver {
 namespace {
 
 using codec::Half;
 using codec::Type;
+using fakes::MapBuilder;
 using test::FakeDevice;
-using test::MapBuilder;
 using testing::ElementsAre;
 
 struct WriteValuesTest : testing::Test {
@@ -49,14 +49,15 @@ TEST_F(WriteValuesTest, A_wide_value_is_written_by_one_request) {
 
 TEST_F(WriteValuesTest, A_byte_keeps_the_other_half_of_its_register) {
   device.values[{Table::holding_registers, 7}] = 0x1234;
-  ASSERT_TRUE(write(MapBuilder().holding("a", 7, MapBuilder::half(Type::USINT, Half::high)), {0xAB00}));
+  ASSERT_TRUE(write(MapBuilder().holding("a", 7, fakes::half(Type::USINT, Half::high)), {0xAB00}));
   EXPECT_THAT(device.requests, ElementsAre("read holding_registers 7+1", "write register 7"));
   EXPECT_EQ(holding(7), 0xAB34);
 }
 
 TEST_F(WriteValuesTest, A_bit_keeps_the_other_bits_of_its_register) {
   device.values[{Table::holding_registers, 7}] = 0x1234;
-  codec::Format bit = MapBuilder::format(Type::BOOL);
+  codec::Format bit;
+  bit.type = Type::BOOL;
   bit.bit = 2;
   ASSERT_TRUE(write(MapBuilder().holding("a", 7, bit), {0}));
   EXPECT_EQ(holding(7), 0x1230);
@@ -64,7 +65,7 @@ TEST_F(WriteValuesTest, A_bit_keeps_the_other_bits_of_its_register) {
 
 TEST_F(WriteValuesTest, A_device_with_mask_write_needs_no_read_for_a_byte) {
   device.values[{Table::holding_registers, 7}] = 0x1234;
-  auto builder = MapBuilder().holding("a", 7, MapBuilder::half(Type::USINT, Half::low));
+  auto builder = MapBuilder().holding("a", 7, fakes::half(Type::USINT, Half::low));
   builder.head().limits.mask_write = true;
   ASSERT_TRUE(write(builder, {0x00AB}));
   EXPECT_THAT(device.requests, ElementsAre("write mask 7"));
@@ -73,7 +74,7 @@ TEST_F(WriteValuesTest, A_device_with_mask_write_needs_no_read_for_a_byte) {
 
 TEST_F(WriteValuesTest, Nothing_is_written_when_the_rest_of_the_register_cannot_be_read) {
   device.missing.insert({Table::holding_registers, 7});
-  EXPECT_FALSE(write(MapBuilder().holding("a", 7, MapBuilder::half(Type::USINT, Half::low)), {1}));
+  EXPECT_FALSE(write(MapBuilder().holding("a", 7, fakes::half(Type::USINT, Half::low)), {1}));
   EXPECT_THAT(device.requests, ElementsAre("read holding_registers 7+1"));
 }
 
