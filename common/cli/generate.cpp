@@ -19,6 +19,7 @@
 #include "common/cli/report.hpp"
 #include "common/generate/identifier.hpp"
 #include "common/generate/output.hpp"
+#include "common/vectors/json.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -31,6 +32,7 @@ struct Arguments {
   std::string name;
   std::string source_url;
   bool docs = false;
+  bool vectors = false;
   bool quiet = false;
   bool locked = false;
 };
@@ -76,6 +78,9 @@ Exit run(const Arguments& arguments) {
     return write(arguments,
                  map_pages({arguments.map, folder_of(arguments), name, source, arguments.source_url}, map,
                            loaded.point_lines));
+  if (arguments.vectors)
+    return write(arguments,
+                 {{as_file_name(name) + "_vectors.json", vectors::json(map, source, COUPLER_VERSION)}});
   const generate::Stamp stamp{name, source, COUPLER_VERSION};
   if (generate::is_identifier(stamp.name)) return write(arguments, generate::generate(map, stamp));
   const auto remedy = "give one with --name: letters, digits and underscores, a letter first, no word of C++";
@@ -94,8 +99,10 @@ void add_generate(CLI::App& program, Exit& exit) {
   command->add_option("MAP", arguments->map, map_help)->required()->type_name("");
   auto* out =
       command
-          ->add_option("--out", arguments->out,
-                       "Folder for the files; made if it is not there. With --docs, if not given: this one")
+          ->add_option(
+              "--out", arguments->out,
+              "Folder for the files; made if it is not there. With --docs and --vectors, if not given: "
+              "this one")
           ->type_name("DIR");
   command
       ->add_option("--name", arguments->name,
@@ -108,6 +115,10 @@ void add_generate(CLI::App& program, Exit& exit) {
                    "With --docs: where the map is on a forge; links go to this, its name and #L12")
       ->needs(docs)
       ->type_name("PREFIX");
+  command
+      ->add_flag("--vectors", arguments->vectors,
+                 "Instead: NAME_vectors.json, values of every point and how they stand on the wire")
+      ->excludes(docs);
   command->add_flag("--locked", arguments->locked,
                     "Do not write the map's lock; one that is missing or not up to date is an error");
   command->add_flag("--quiet", arguments->quiet, "Say nothing of files when all is well");
@@ -116,10 +127,11 @@ void add_generate(CLI::App& program, Exit& exit) {
       "makes device_map.hpp and .cpp, device_client.hpp and .cpp, device_hooks.hpp, device_node.cpp and "
       "device_driver.cpp. Files that would not change are not touched.\n"
       "  coupler generate device.yaml --docs\nmakes device.md and device.html.\n"
+      "  coupler generate device.yaml --vectors\nmakes device_vectors.json.\n"
       "In a CMake build, coupler_add_map(device device.yaml) does this and builds the "
       "programs.");
   command->callback([arguments, out, &exit] {
-    if (out->empty() && !arguments->docs) throw CLI::RequiredError(out->get_name());
+    if (out->empty() && !arguments->docs && !arguments->vectors) throw CLI::RequiredError(out->get_name());
     exit = run(*arguments);
   });
 }

@@ -27,9 +27,13 @@ std::string url_of_map(const PagesRequest& request) {
 std::vector<generate::File> map_pages(const PagesRequest& request, const Map& map, Span<const int> lines) {
   const auto document =
       pages::make_document(map, lines, {request.source, url_of_map(request), COUPLER_VERSION});
-  std::string name = request.name;
-  std::replace(name.begin(), name.end(), '/', '_');  // maps may be called hall/press
+  const std::string name = as_file_name(request.name);
   return {{name + ".html", pages::html_page(document)}, {name + ".md", pages::markdown_page(document)}};
+}
+
+std::string as_file_name(std::string name) {
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
 }
 
 bool is_url_part(std::string_view text) {
