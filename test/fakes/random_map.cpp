@@ -28,7 +28,7 @@ RandomMap::RandomMap(std::uint32_t seed, unsigned most_points_a_table)
 std::uint32_t RandomMap::below(std::uint32_t end) { return static_cast<std::uint32_t>(random_() % end); }
 
 std::string RandomMap::head() {
-  std::string text = fmt::format("name: random_{}\nrate: {}\n", below(1000), 1 + below(100));
+  std::string text = fmt::format("name: random_{}\nrate: {}\n", below(1000), 100 + below(300));
   if (one_in(2)) text += "byteorder_reverse: true\n";
   if (one_in(2)) text += "wordorder_reverse: true\n";
   if (one_in(2)) text += fmt::format("registers_read_continuous: {}\n", one_in(2));
@@ -106,7 +106,7 @@ std::string RandomMap::options(Table table, bool scalable) {
   if (write_only) text += ", access: write";
   if (one_in(4)) text += fmt::format(", description: number {}", below(100));
   if (!holds_bits(table) && one_in(4)) text += one_in(2) ? ", units: mm" : ", units: bar";
-  if (!write_only && one_in(6)) text += fmt::format(", rate: {}", 1 + below(50));
+  if (!write_only && one_in(6)) text += fmt::format(", rate: {}", 50 + below(300));
   return text;
 }
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "test/random/client_end.hpp"
+#include "test/random/firmware_end.hpp"
+
+namespace coupler::random {
+
+/// A random map, and what was generated from it.
+struct Subject {
+  std::string name;  ///< of the map's file in the folder of the maps, without ".yaml"
+  const Map* map;
+  std::unique_ptr<ClientEnd> (*client)(client::Options options);
+  std::unique_ptr<FirmwareEnd> (*firmware)();
+};
+
+/// All that are linked.
+std::vector<Subject>& subjects();
+
+/// At static initialization.
+struct Registered {
+  explicit Registered(Subject subject) { subjects().push_back(std::move(subject)); }
+};
+
+template <class Client>
+std::unique_ptr<ClientEnd> make_client(client::Options options) {
+  return std::make_unique<GeneratedClient<Client>>(std::move(options));
+}
+
+template <class Firmware>
+std::unique_ptr<FirmwareEnd> make_firmware() {
+  return std::make_unique<Firmware>();
+}
+
+}  // namespace coupler::random
