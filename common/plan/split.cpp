@@ -2,6 +2,7 @@
 #include "common/plan/split.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace coupler::plan {
 namespace {
@@ -30,6 +31,23 @@ void for_each_hole(const ReadSpan& span, const Map& map, AtHole&& at_hole) {
   }
 }
 
+constexpr std::size_t distance(std::size_t a, std::size_t b) { return a > b ? a - b : b - a; }
+
+/// How many points go to the first half: as near to half of them as is possible without parting those that
+/// overlap, for each part would need the same addresses. Half of them if all overlap.
+std::size_t middle_boundary(const ReadSpan& span, const Map& map) {
+  const std::size_t middle = span.points.size() / 2;
+  std::optional<std::size_t> best;
+  std::uint32_t end = read_range(map.points[span.points.front()]).end();
+  for (std::size_t i = 1; i < span.points.size(); ++i) {
+    const Range range = read_range(map.points[span.points[i]]);
+    const bool apart = range.start() >= end;
+    if (apart && (!best || distance(i, middle) < distance(*best, middle))) best = i;
+    end = std::max(end, range.end());
+  }
+  return best.value_or(middle);
+}
+
 }  // namespace
 
 std::vector<Range> holes(const ReadSpan& span, const Map& map) {
@@ -42,11 +60,10 @@ Split split(const ReadSpan& span, const Map& map) {
   const std::size_t count = span.points.size();
   if (count < 2) return {};
   const std::size_t middle = count / 2;
-  const auto distance = [middle](std::size_t i) { return i > middle ? i - middle : middle - i; };
   Split result;
-  std::size_t at = middle;
+  std::size_t at = middle_boundary(span, map);
   for_each_hole(span, map, [&](std::size_t before, Range hole) {
-    if (result.hole && distance(before) >= distance(at)) return;
+    if (result.hole && distance(before, middle) >= distance(at, middle)) return;
     at = before;
     result.hole = hole;
   });

@@ -19,7 +19,7 @@ struct Split {
 };
 
 /// Parts the points of `span` where addresses lie between them that no point of it needs, at the place
-/// nearest to the middle; in the middle if there is none.
+/// nearest to the middle; if there is none, as near to the middle as points that overlap stay together.
 Split split(const ReadSpan& span, const Map& map);
 
 }  // namespace coupler::plan

@@ -54,6 +54,29 @@ TEST_F(SplitTest, A_point_under_others_makes_no_hole) {
   EXPECT_EQ(split.hole, std::nullopt);
 }
 
+TEST_F(SplitTest, Points_that_share_a_register_stay_together) {
+  MapBuilder builder;
+  for (std::uint8_t bit = 0; bit < 6; ++bit)
+    builder.add(hr, "bit_" + std::to_string(bit), 0, codec::Type::BOOL,
+                [bit](Point& point) { point.format.bit = bit; });
+  const Split split = parts(builder.many(hr, 1, 2));
+  ASSERT_EQ(split.pieces.size(), 2U);
+  EXPECT_EQ(split.pieces[0].range, Range::of(0, 1));
+  EXPECT_EQ(split.pieces[0].points.size(), 6U);
+  EXPECT_EQ(split.pieces[1].range, Range::of(1, 2));
+}
+
+TEST_F(SplitTest, Of_points_that_all_overlap_half_go_to_each_part) {
+  const Split split = parts(MapBuilder()
+                                .add(hr, "a", 0, codec::Type::DWORD)
+                                .add(hr, "b", 1, codec::Type::DWORD)
+                                .add(hr, "c", 2, codec::Type::DWORD)
+                                .add(hr, "d", 3, codec::Type::DWORD));
+  ASSERT_EQ(split.pieces.size(), 2U);
+  EXPECT_EQ(split.pieces[0].range, Range::of(0, 3));
+  EXPECT_EQ(split.pieces[1].range, Range::of(2, 3));
+}
+
 TEST_F(SplitTest, A_lone_point_has_no_parts) {
   EXPECT_TRUE(parts(MapBuilder().many(hr, 0, 1)).pieces.empty());
 }
