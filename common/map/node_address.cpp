@@ -44,9 +44,10 @@ bool take_brackets(std::string_view& text, std::string_view& host) {
 
 }  // namespace
 
-tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view argument) {
+tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view argument,
+                                                               const Connection& otherwise) {
   if (!names_a_node(argument)) return wrong("a node begins with tcp://");
-  NodeAddress node;
+  NodeAddress node{{}, otherwise.port, otherwise.unit};
   std::string_view rest = argument.substr(scheme.size());
   if (const auto unit = take_behind(rest, '/'); unit && !unit->empty()) {
     const auto value = number(*unit, 0, 255);
@@ -66,6 +67,12 @@ tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view 
   if (node.host.empty()) return wrong("there is no host");
   if (node.host.find_first_of("/[] ") != std::string_view::npos) return wrong("that is no host's name");
   return node;
+}
+
+std::string node_address_text(const Connection& connection) {
+  const bool bracketed = connection.address.find(':') != std::string_view::npos;
+  return fmt::format(bracketed ? "{}[{}]:{}/{}" : "{}{}:{}/{}", scheme, connection.address, connection.port,
+                     connection.unit);
 }
 
 Map found_at(const Map& map, const NodeAddress& where) {

@@ -27,8 +27,13 @@ struct NodeAddressError {
 /// The argument means a node, well written or not.
 constexpr bool names_a_node(std::string_view argument) { return argument.substr(0, 6) == "tcp://"; }
 
-/// "tcp://10.0.0.7", "tcp://cell:1502/3", "tcp://[fe80::1]:502".
-tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view argument);
+/// "tcp://10.0.0.7", "tcp://cell:1502/3", "tcp://[fe80::1]:502". A port or unit that is not given is
+/// `otherwise`'s.
+tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view argument,
+                                                               const Connection& otherwise = {});
+
+/// The other way round, everything given: "tcp://cell:1502/3".
+std::string node_address_text(const Connection& connection);
 
 /// `map` with the connection of where it was found, which counts, not where it says that it is. It views the
 /// argument that `where` was read from.

@@ -35,6 +35,24 @@ TEST(NodeAddress, An_ipv6_address_stands_in_brackets) {
 
 TEST(NodeAddress, A_slash_at_the_end_is_no_unit) { EXPECT_EQ(parse_node_address("tcp://cell/")->unit, 1); }
 
+TEST(NodeAddress, What_is_not_given_can_be_that_of_a_map) {
+  Connection map;
+  map.port = 1502;
+  map.unit = 7;
+  EXPECT_EQ(parse_node_address("tcp://cell", map)->port, 1502);
+  EXPECT_EQ(parse_node_address("tcp://cell", map)->unit, 7);
+  EXPECT_EQ(parse_node_address("tcp://cell:503/2", map)->port, 503);
+  EXPECT_EQ(parse_node_address("tcp://cell:503/2", map)->unit, 2);
+}
+
+TEST(NodeAddress, A_connection_as_text_reads_back_the_same) {
+  for (const std::string_view text : {"tcp://cell:1502/3", "tcp://[fe80::1]:502/0"}) {
+    const auto node = parse_node_address(text);
+    ASSERT_TRUE(node) << node.error().what;
+    EXPECT_EQ(node_address_text(found_at({}, *node).connection), text);
+  }
+}
+
 TEST(NodeAddress, What_is_wrong_is_said_with_a_remedy) {
   const std::pair<const char*, const char*> cases[] = {
       {"tcp://", "there is no host"},         {"tcp://:502", "there is no host"},
