@@ -13,6 +13,7 @@ namespace coupler::cli {
 
 void add_check(CLI::App& program, Exit& exit);
 void add_diff(CLI::App& program, Exit& exit);
+void add_dump(CLI::App& program, Exit& exit);
 void add_export(CLI::App& program, Exit& exit);
 void add_generate(CLI::App& program, Exit& exit);
 void add_import(CLI::App& program, Exit& exit);

@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
   auto exit = coupler::cli::ok;
   coupler::cli::add_check(program, exit);
   coupler::cli::add_diff(program, exit);
+  coupler::cli::add_dump(program, exit);
   coupler::cli::add_export(program, exit);
   coupler::cli::add_generate(program, exit);
   coupler::cli::add_import(program, exit);

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/core/identity_check.hpp"
 
-#include "common/map/diff.hpp"
-
 namespace coupler::driver {
 namespace {
 
 using Verdict = Identity::Verdict;
 
 Identity unreadable(std::uint64_t fingerprint, const std::string& why) {
-  return {Verdict::different, fingerprint, {"the node's map cannot be compared: " + why}};
+  return {Verdict::different, fingerprint, {"the node's map cannot be compared: " + why}, {}};
 }
 
 Identity compare(const Map& known, const Map& device, std::uint64_t fingerprint) {
-  Identity identity{Verdict::superset, fingerprint, {}};
-  for (const Difference& difference : diff(known, device)) {
+  Identity identity{Verdict::superset, fingerprint, {}, diff(known, device)};
+  for (const Difference& difference : identity.points) {
     if (is_breaking(difference.kind)) identity.verdict = Verdict::different;
     identity.differences.push_back(to_string(difference));
   }
@@ -28,7 +26,7 @@ Result<Identity> check_identity(Transport& transport, const Map& known, const Ma
   if (!read) return tl::make_unexpected(read.error());
   if (!read->has_value()) return Identity{};
   const identity::Head& head = **read;
-  if (head.fingerprint == known.fingerprint) return Identity{Verdict::equal, head.fingerprint, {}};
+  if (head.fingerprint == known.fingerprint) return Identity{Verdict::equal, head.fingerprint, {}, {}};
 
   const auto text = fetch_map_text(transport, head.map_size);
   if (!text) {

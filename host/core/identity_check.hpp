@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/map/diff.hpp"
 #include "host/core/node_map.hpp"
 
 namespace coupler::driver {
@@ -26,7 +27,8 @@ struct Identity {
   Verdict verdict = Verdict::foreign;
   std::uint64_t fingerprint = 0;  ///< the device's
   std::vector<std::string>
-      differences;  ///< one line each, the driver's map first; or why there are none to show
+      differences;                   ///< one line each, the driver's map first; or why there are none to show
+  std::vector<Difference> points{};  ///< the same; empty if the device's map cannot be read
 };
 
 /// Asks the device. An error is a broken connection, never a difference.

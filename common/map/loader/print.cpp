@@ -9,17 +9,17 @@
 
 namespace coupler {
 
-Colour colour_of_stderr() {
+Colour colour_of(int descriptor) {
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);
     return std::string_view(value == nullptr ? "" : value);
   };
   const bool wanted = variable("NO_COLOR").empty() && variable("TERM") != "dumb" && !variable("TERM").empty();
-  return wanted && ::isatty(STDERR_FILENO) == 1 ? Colour::yes : Colour::no;
+  return wanted && ::isatty(descriptor) == 1 ? Colour::yes : Colour::no;
 }
 
 void print(const Diagnostics& diagnostics) {
-  const Colour colour = colour_of_stderr();
+  const Colour colour = colour_of(STDERR_FILENO);
   for (const Diagnostic& diagnostic : diagnostics) std::fputs(render(diagnostic, colour).c_str(), stderr);
 }
 

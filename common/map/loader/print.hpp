@@ -5,9 +5,9 @@
 
 namespace coupler {
 
-/// Does the standard error lead to a person who wants colours? A terminal, and NO_COLOR (no-color.org) is not
+/// Does a file descriptor lead to a person who wants colours? A terminal, and NO_COLOR (no-color.org) is not
 /// set.
-Colour colour_of_stderr();
+Colour colour_of(int descriptor);
 
 /// All of them on standard error, for people.
 void print(const Diagnostics& diagnostics);

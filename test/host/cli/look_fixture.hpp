@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/cli/device_reader.hpp"
+#include "test/host/core/fake_clock.hpp"
+#include "test/host/core/fake_device.hpp"
+#include "test/host/core/make_map.hpp"
+
+namespace coupler::cli::test {
+
+using driver::test::FakeClock;
+using driver::test::FakeDevice;
+using driver::test::MapBuilder;
+
+/// A device without a network and what looks at it.
+struct Looking {
+  explicit Looking(const MapBuilder& builder, std::vector<bool> chosen = {})
+      : owned(builder.build()),
+        reader(owned->map(), chosen.empty() ? std::vector<bool>(owned->map().points.size(), true) : chosen,
+               device, clock, [this](std::string_view, std::string_view) { return loads; }) {
+    device.missing.insert({Table::input_registers, identity::reserved.start()});  // foreign
+  }
+
+  const Map& map() const { return owned->map(); }
+  std::uint32_t index(std::string_view name) const {
+    return static_cast<std::uint32_t>(find(map(), name) - map().points.begin());
+  }
+  static const Reading& of(const Snapshot& snapshot, std::uint32_t point) {
+    return *std::find_if(snapshot.readings.begin(), snapshot.readings.end(),
+                         [point](const Reading& reading) { return reading.point == point; });
+  }
+  const Reading& of(const Snapshot& snapshot, std::string_view name) const {
+    return of(snapshot, index(name));
+  }
+  /// The requests since the last call.
+  std::vector<std::string> requests() { return std::exchange(device.requests, {}); }
+
+  MapPtr owned;
+  LoadResult loads;  ///< what the text of the device's map is
+  FakeDevice device;
+  FakeClock clock;
+  DeviceReader reader;
+};
+
+constexpr auto identity_question = "read input_registers 65280+13";
+
+}  // namespace coupler::cli::test
