@@ -19,6 +19,7 @@ void add_generate(CLI::App& program, Exit& exit);
 void add_import(CLI::App& program, Exit& exit);
 void add_init(CLI::App& program, Exit& exit);
 void add_plan(CLI::App& program, Exit& exit);
+void add_probe(CLI::App& program, Exit& exit);
 void add_schema(CLI::App& program, Exit& exit);
 
 }  // namespace coupler::cli

@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
   coupler::cli::add_import(program, exit);
   coupler::cli::add_init(program, exit);
   coupler::cli::add_plan(program, exit);
+  coupler::cli::add_probe(program, exit);
   coupler::cli::add_schema(program, exit);
   try {
     refuse_unknown_command(program, argc, argv);

@@ -4,6 +4,7 @@
 #include <modbus/modbus.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
@@ -145,6 +146,17 @@ Result<> ModbusTransport::read_file_record(std::uint16_t file, std::uint16_t rec
   if (socket_ < 0) return fail(NotConnected{"not connected"});
   const modbus::FileRecord wanted{file, record, static_cast<std::uint16_t>(registers.size())};
   return exchange_file_record(socket_, next_header(), timeout_, wanted, registers);
+}
+
+Result<modbus::Bytes> ModbusTransport::exchange(modbus::Bytes pdu) {
+  if (socket_ < 0) return fail(NotConnected{"not connected"});
+  const Deadline deadline(timeout_);
+  if (auto sent = send_request(socket_, next_header(), pdu); !sent) return tl::make_unexpected(sent.error());
+  modbus::Framer framer;
+  const auto reply = receive_reply(socket_, sent_, timeout_, deadline, framer);
+  if (!reply) return tl::make_unexpected(reply.error());
+  std::copy(reply->begin(), reply->end(), reply_.begin());
+  return modbus::Bytes(reply_.data(), reply->size());
 }
 
 Result<> ModbusTransport::send(const modbus::WriteRequest& request) {

@@ -40,6 +40,10 @@ class ModbusTransport : public Transport {
   Woken wait_until(Time time) override;
   void wake() override { wakeup_.call(); }
 
+  /// Any request, by PDU, for answers that libmodbus cannot receive; and the PDU that answers, an exception
+  /// or not, valid until the next request.
+  Result<modbus::Bytes> exchange(modbus::Bytes pdu);
+
   // For a connection that several units share.
 
   /// Whom the next requests are for, and how long their answers may take.

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "host/modbus/modbus_transport.hpp"
+#include "host/survey/master.hpp"
+
+namespace coupler::cli {
+
+/// A survey's master over Modbus/TCP.
+class ModbusMaster : public survey::Master {
+ public:
+  explicit ModbusMaster(const Connection& where) : transport_(where), timeout_(where.timeout) {}
+
+  driver::Result<> connect() override { return transport_.connect(); }
+  void close() override { transport_.close(); }
+  void select(std::uint8_t unit) override { transport_.select(unit, timeout_); }
+  driver::Result<> read(Table table, modbus::Range range, std::uint16_t* values) override;
+  driver::Result<survey::IdentificationPage> identify(modbus::ReadDeviceIdentification wanted) override;
+
+  /// From any thread: the request in progress and all later ones fail.
+  void interrupt() { transport_.interrupt(); }
+
+ private:
+  driver::ModbusTransport transport_;
+  std::chrono::milliseconds timeout_;
+};
+
+}  // namespace coupler::cli

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/map/map.hpp"
+#include "host/survey/candidates.hpp"
+#include "host/survey/survey.hpp"
+
+namespace coupler::survey {
+
+/// A known value and where it was found, best first.
+struct Match {
+  KnownValue known;
+  std::vector<Candidate> candidates;
+};
+
+/// The order of the whole device: see common_order().
+std::optional<codec::Order> common_order(const std::vector<Match>& matches);
+
+/// What to write behind its name in a map: "{address: 100, type: REAL, order: CDAB}".
+std::string point_text(const Candidate& candidate, bool with_order);
+
+/// What came over the network, as it may stand in one line of text: printable ASCII.
+std::string printable(std::string_view text);
+
+/// A map of all that can be read, in YAML, with comments: each known value is a point of its own, the rest
+/// arrays of UINT; all of them read only, since nobody knows yet what a write would do.
+std::string draft_map(const Findings& findings, const Connection& connection,
+                      const std::vector<Match>& matches);
+
+}  // namespace coupler::survey

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/map/identity.hpp"
+#include "host/survey/inquiry.hpp"
+
+namespace coupler::survey {
+
+/// The objects of FC 43/14 by id, basic, regular and extended, as the device has them: any bytes. Empty if
+/// the device has none.
+std::map<std::uint8_t, std::string> read_identification(Inquiry& inquiry);
+
+/// "VendorName" … for those that MAP 6.21 names, "object 80" for others.
+std::string object_name(std::uint8_t id);
+
+/// What a node of this project says of itself; nullopt: a foreign device.
+std::optional<identity::Head> read_node_identity(Inquiry& inquiry);
+
+}  // namespace coupler::survey
