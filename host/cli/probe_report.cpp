@@ -26,12 +26,12 @@ std::string place(const Connection& connection, unsigned unit) {
 
 std::string units_text(const Findings& findings, const Connection& connection) {
   std::string answer;
-  for (const survey::UnitAnswer& unit : findings.units)
-    answer += fmt::format("{}{}", answer.empty() ? "" : ", ", unit.unit);
+  for (const std::uint8_t unit : findings.units)
+    answer += fmt::format("{}{}", answer.empty() ? "" : ", ", unit);
   std::string text = fmt::format("units that answer: {}\n", answer);
   if (findings.units.size() > 1)
     text += fmt::format("the rest is about unit {}; another one: coupler probe {}\n", *findings.unit,
-                        place(connection, findings.units[1].unit));
+                        place(connection, findings.units[1]));
   return text;
 }
 

@@ -32,7 +32,7 @@ Findings survey(const Task& task, Master& master, driver::Clock& clock, Watcher&
   if (findings.units.empty())
     findings.is_complete = !inquiry.broke_off() && !watcher.wants_end();
   else {
-    findings.unit = findings.units.front().unit;
+    findings.unit = findings.units.front();
     look_into_unit(task, inquiry, watcher, findings);
   }
   findings.requests = inquiry.requests();

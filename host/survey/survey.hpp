@@ -22,7 +22,7 @@ struct Task {
 };
 
 struct Findings {
-  std::vector<UnitAnswer> units;
+  std::vector<std::uint8_t> units;                     ///< that are there
   std::optional<std::uint8_t> unit;                    ///< the rest is about it
   std::map<std::uint8_t, std::string> identification;  ///< FC 43/14
   std::optional<identity::Head> node;                  ///< a node of this project

@@ -48,16 +48,24 @@ TEST_F(SurveyTest, A_device_that_is_not_there_is_told_at_once) {
   EXPECT_EQ(findings.requests, 0U);
 }
 
-TEST_F(SurveyTest, Silent_units_cost_one_request_each_and_the_one_that_answers_is_surveyed) {
+TEST_F(SurveyTest, The_unit_that_answers_is_surveyed) {
   device_.units = {17};
   device_.fill(holding, 0, 999);
   std::vector<std::uint8_t> units;
   for (std::uint8_t unit = 1; unit <= 20; ++unit) units.push_back(unit);
   const Findings findings = look(units);
   EXPECT_EQ(findings.unit, 17);
-  ASSERT_EQ(findings.units.size(), 1U);
+  EXPECT_THAT(findings.units, ElementsAre(17));
   EXPECT_TRUE(findings.is_complete);
   EXPECT_THAT(findings.tables[index(holding)].readable(), ElementsAre(Range::of(0, 1000)));
+}
+
+TEST_F(SurveyTest, Nobody_there_is_a_complete_survey) {
+  device_.units = {};
+  const Findings findings = look({1, 2, 3});
+  EXPECT_TRUE(findings.is_complete);
+  EXPECT_FALSE(findings.unit.has_value());
+  EXPECT_EQ(device_.requests, 3U);
 }
 
 TEST_F(SurveyTest, An_exception_is_an_answer_unless_a_gateway_gives_it) {
@@ -69,9 +77,23 @@ TEST_F(SurveyTest, An_exception_is_an_answer_unless_a_gateway_gives_it) {
   };
   device_.units = {1, 2, 3};
   const Findings findings = look({1, 2, 3});
-  ASSERT_EQ(findings.units.size(), 1U);
-  EXPECT_EQ(findings.units[0].unit, 3);
-  EXPECT_EQ(findings.units[0].exception, modbus::Exception::illegal_function);
+  EXPECT_THAT(findings.units, ElementsAre(3));
+}
+
+TEST_F(SurveyTest, A_unit_that_closes_in_place_of_refusing_is_found_by_another_table) {
+  device_.units = {1, 2};
+  device_.fill(Table::coils, 0, 9);
+  device_.closes_in_place_of_refusing = true;
+  EXPECT_THAT(look({1, 2}).units, ElementsAre(1, 2));
+}
+
+TEST_F(SurveyTest, The_only_unit_may_be_silent_about_three_tables) {
+  device_.fill(Table::discrete_inputs, 0, 9);
+  device_.fails = [](std::size_t request) -> std::optional<driver::Error> {
+    if (request <= 3) return driver::Timeout{std::chrono::milliseconds(1000)};
+    return std::nullopt;
+  };
+  EXPECT_THAT(look({1}).units, ElementsAre(1));
 }
 
 TEST_F(SurveyTest, Identification_is_read_to_the_end_of_each_stream) {
