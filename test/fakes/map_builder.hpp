@@ -25,10 +25,10 @@ class MapBuilder {
 
   /// A point; what the table's default does not give is set in `adjust`.
   template <class Adjust>
-  MapBuilder& add(Table table, const std::string& name, std::uint16_t address, codec::Type type,
+  MapBuilder& add(Table table, std::string_view name, std::uint16_t address, codec::Type type,
                   Adjust adjust) {
     Point point;
-    point.name = owned_->keep(name);
+    point.name = owned_->keep(std::string(name));
     point.table = table;
     point.address = address;
     point.format.type = type;
@@ -37,29 +37,29 @@ class MapBuilder {
     points_.push_back(point);
     return *this;
   }
-  MapBuilder& add(Table table, const std::string& name, std::uint16_t address, codec::Type type) {
+  MapBuilder& add(Table table, std::string_view name, std::uint16_t address, codec::Type type) {
     return add(table, name, address, type, [](Point&) {});
   }
 
-  MapBuilder& coil(const std::string& name, std::uint16_t address) {
+  MapBuilder& coil(std::string_view name, std::uint16_t address) {
     return add(Table::coils, name, address, codec::Type::BOOL);
   }
   /// A coil that cannot be read.
-  MapBuilder& command(const std::string& name, std::uint16_t address) {
+  MapBuilder& command(std::string_view name, std::uint16_t address) {
     return add(Table::coils, name, address, codec::Type::BOOL,
                [](Point& point) { point.access = Access::write; });
   }
-  MapBuilder& input(const std::string& name, std::uint16_t address) {
+  MapBuilder& input(std::string_view name, std::uint16_t address) {
     return add(Table::discrete_inputs, name, address, codec::Type::BOOL);
   }
-  MapBuilder& input_register(const std::string& name, std::uint16_t address,
+  MapBuilder& input_register(std::string_view name, std::uint16_t address,
                              codec::Type type = codec::Type::UINT) {
     return add(Table::input_registers, name, address, type);
   }
-  MapBuilder& holding(const std::string& name, std::uint16_t address, codec::Type type = codec::Type::UINT) {
+  MapBuilder& holding(std::string_view name, std::uint16_t address, codec::Type type = codec::Type::UINT) {
     return add(Table::holding_registers, name, address, type);
   }
-  MapBuilder& holding(const std::string& name, std::uint16_t address, codec::Format format) {
+  MapBuilder& holding(std::string_view name, std::uint16_t address, codec::Format format) {
     return add(Table::holding_registers, name, address, format.type,
                [&](Point& point) { point.format = format; });
   }

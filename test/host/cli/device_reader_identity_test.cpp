@@ -88,7 +88,7 @@ TEST(DeviceReader, A_coupler_that_ignores_the_question_for_its_identity_is_read_
 }
 
 TEST(DeviceReader, A_node_that_falls_silent_while_it_gives_its_map_is_no_foreign_coupler) {
-  OnNode node(MapBuilder().coil("a", 0), MapBuilder().coil("a", 7));
+  OnNode node(MapBuilder().coil("a", 0), MapBuilder().text("a: 7").coil("a", 7));
   node.device.during_read = [&node] {
     // The answer to the first question comes; the next request is that for the map.
     node.device.refuses = [&node](const std::string& request) -> std::optional<modbus::Exception> {

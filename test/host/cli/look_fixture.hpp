@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "host/cli/device_reader.hpp"
+#include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_clock.hpp"
 #include "test/host/core/fake_device.hpp"
-#include "test/host/core/make_map.hpp"
 
 namespace coupler::cli::test {
 
 using driver::test::FakeClock;
 using driver::test::FakeDevice;
-using driver::test::MapBuilder;
+using fakes::MapBuilder;
 
 /// A device without a network and what looks at it.
 struct Looking {
