@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `coupler dump` refuses. What it reads is tried on devices, by test/peers/with_dump.py."""
+import os
+import socket
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+MAP = """\
+name: cell
+mapping:
+  coils: {lamp: 0}
+"""
+
+
+class Dump(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "cell.yaml").write_text(MAP, encoding="utf-8")
+
+    def dump(self, *arguments):
+        return subprocess.run([os.environ["COUPLER"], "dump", *arguments], cwd=self.folder, timeout=60,
+                              capture_output=True, text=True, encoding="utf-8", check=False)
+
+    def refused(self, status, what, *arguments):
+        done = self.dump(*arguments)
+        self.assertEqual(done.returncode, status, done.stderr)
+        self.assertIn(what, done.stderr)
+        self.assertEqual(done.stdout, "")
+
+    def test_a_map_without_address_needs_at(self):
+        self.refused(2, "cell.yaml does not say where the device is; give --at HOST[:PORT][/UNIT]", "cell.yaml")
+
+    def test_a_wrong_place_is_said(self):
+        self.refused(2, "--at: the port '0' is not 1 … 65535; write tcp://HOST", "cell.yaml", "--at", "cell:0")
+        self.refused(2, "--at: the unit id '256'", "cell.yaml", "--at", "tcp://cell/256")
+
+    def test_a_pattern_has_to_match_a_point(self):
+        self.refused(2, "no point is called 'lmap'; `coupler export cell.yaml --to csv` lists their names",
+                     "cell.yaml", "--at", "localhost", "--points", "la*,lmap")
+
+    def test_a_period_is_a_number_of_seconds(self):
+        self.refused(2, "--watch", "cell.yaml", "--at", "localhost", "--watch", "often")
+        self.refused(2, "--watch", "cell.yaml", "--at", "localhost", "--watch", "0")
+
+    def test_a_wrong_map_is_no_reason_to_ask_a_device(self):
+        (self.folder / "cell.yaml").write_text("name: cell\nmapping: {coils: {lamp: -1}}\n", encoding="utf-8")
+        self.refused(1, "cell.yaml:2:", "cell.yaml", "--at", "localhost")
+
+    def test_a_device_that_is_not_there_is_a_failure(self):
+        with socket.socket() as place:
+            place.bind(("127.0.0.1", 0))
+            where = f"127.0.0.1:{place.getsockname()[1]}"
+            live = os.environ["LIVE"] == "1"
+            self.refused(3, f"tcp://{where}/1: " if live else "built without libmodbus", "cell.yaml", "--at", where)
+
+    def test_help_has_an_example(self):
+        done = self.dump("--help")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("Example:\n  coupler dump tcp://raspberrypi\n", done.stdout)
+
+
+unittest.main()
