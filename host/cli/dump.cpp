@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -16,8 +17,8 @@
 #include "host/cli/device_reader.hpp"
 #include "host/cli/dump_json.hpp"
 #include "host/cli/dump_text.hpp"
+#include "host/cli/interruption.hpp"
 #include "host/cli/screen.hpp"
-#include "host/cli/stop_signal.hpp"
 #include "host/core/backoff.hpp"
 #include "host/core/steady_clock.hpp"
 #include "host/modbus/modbus_transport.hpp"
@@ -80,7 +81,9 @@ Exit once(const Map& map, const DumpWish& wish) {
 Exit again_and_again(const Map& map, const DumpWish& wish) {
   driver::ModbusTransport transport(map.connection);
   driver::SteadyClock clock;
-  const StopSignal stop([&] {
+  std::atomic<bool> stopped{false};
+  const Interruption interruption([&] {
+    stopped = true;
     transport.interrupt();
     clock.stop();
   });
@@ -91,10 +94,10 @@ Exit again_and_again(const Map& map, const DumpWish& wish) {
   if (terminal) std::fputs(begin_frames, stdout);
   Snapshot before;
   Snapshot online;  // the last that was
-  for (bool first = true; !stop.has_come(); first = false) {
+  for (bool first = true; !stopped; first = false) {
     driver::Time next = clock.now() + *wish.every;
     Snapshot now = reader.look();
-    if (stop.has_come()) break;
+    if (stopped) break;
     if (now.online()) {
       backoff.reset();
       if (online.online() && !online.readings.empty()) mark_changes(online, now);
