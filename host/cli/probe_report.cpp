@@ -86,7 +86,7 @@ std::string match_text(const survey::Match& match) {
   for (std::size_t i = 0; i < std::min(match.candidates.size(), most_candidates); ++i) {
     const survey::Candidate& candidate = match.candidates[i];
     text += fmt::format("  {:<18} {:<52} {}\n", to_string(candidate.table),
-                        survey::point_text(candidate, true), candidate.value);
+                        survey::point_text(candidate, true), survey::value_text(candidate));
   }
   if (match.candidates.size() > most_candidates)
     text += fmt::format("  and {} less likely places\n", match.candidates.size() - most_candidates);

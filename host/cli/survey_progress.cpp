@@ -36,7 +36,7 @@ void SurveyProgress::moved(std::uint32_t done, std::uint32_t total, std::uint64_
   drawn_ = now;
   const std::uint32_t filled = total == 0 ? bar_width : done * bar_width / total;
   fmt::print(stderr, "{}[{:#<{}}{:.<{}}] {}", clear_line, "", filled, "", bar_width - filled, step_);
-  if (requests > 0) fmt::print(stderr, ", {} requests so far", requests);
+  if (requests > 0) fmt::print(stderr, ", requests so far: {}", requests);
   std::fflush(stderr);
 }
 

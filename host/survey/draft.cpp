@@ -132,7 +132,7 @@ class Writer {
   void named(const TableFindings& table, const Named& named) {
     std::string options = point_text(named.at, !order_ || !is_given(named.at));
     options.insert(options.size() - 1, ", access: read");
-    line(table, named.at.range, named.name, options, fmt::format("{}", named.at.value));
+    line(table, named.at.range, named.name, options, value_text(named.at));
   }
 
   /// The device's order says it already.
@@ -189,6 +189,11 @@ std::string point_text(const Candidate& candidate, bool with_order) {
     text += fmt::format(", order: {}", to_string(candidate.order, candidate.range.count() == 1));
   if (candidate.divisor != 1) text += fmt::format(", scale: {}", candidate.divisor == 10 ? "0.1" : "0.01");
   return text + "}";
+}
+
+std::string value_text(const Candidate& candidate) {
+  if (candidate.type == codec::Type::REAL) return fmt::format("{}", static_cast<float>(candidate.value));
+  return fmt::format("{}", candidate.value);
 }
 
 std::string printable(std::string_view text) {

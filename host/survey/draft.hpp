@@ -22,6 +22,9 @@ std::optional<codec::Order> common_order(const std::vector<Match>& matches);
 /// What to write behind its name in a map: "{address: 100, type: REAL, order: CDAB}".
 std::string point_text(const Candidate& candidate, bool with_order);
 
+/// The value as it was read, in as few digits as its type needs: "230.4".
+std::string value_text(const Candidate& candidate);
+
 /// What came over the network, as it may stand in one line of text: printable ASCII.
 std::string printable(std::string_view text);
 

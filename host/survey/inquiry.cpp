@@ -48,7 +48,7 @@ bool Inquiry::reconnect() {
     pause();
     if (result = connect(); result) return true;
   }
-  broke_off_ = result.error();
+  if (!watcher_.wants_end()) broke_off_ = result.error();
   return false;
 }
 

@@ -25,7 +25,7 @@ Findings survey(const Task& task, Master& master, driver::Clock& clock, Watcher&
   Findings findings;
   Inquiry inquiry(master, clock, watcher, task.rate);
   if (auto connected = inquiry.connect(); !connected) {
-    findings.broke_off = connected.error();
+    if (!watcher.wants_end()) findings.broke_off = connected.error();
     return findings;
   }
   findings.units = find_units(inquiry, watcher, task.units);

@@ -22,7 +22,6 @@ bool TableSurvey::run() {
     const auto block = modbus::Range::of(start, std::min(window.end() - start, largest_.count));
     look_at(block);
     start = block.end();
-    behind_ = start - window.start();
   }
   look_around();
   return !over_;
@@ -32,7 +31,9 @@ bool TableSurvey::run() {
 bool TableSurvey::reads(modbus::Range range) {
   if (ended()) return false;
   const Reply reply = inquiry_.read(findings_.table(), range, values_.data());
-  watcher_.moved(behind_, findings_.window().count(), inquiry_.requests());
+  const modbus::Range window = findings_.window();
+  watcher_.moved(static_cast<std::uint32_t>(range.start()) - window.start(), window.count(),
+                 inquiry_.requests());
   over_ = reply.kind == Reply::Kind::over;
   if (reply.is_given()) findings_.add_values(range, values_.data());
   if (reply.is_given() || over_) return reply.is_given();
@@ -79,10 +80,7 @@ void TableSurvey::look_around() {
   if (ranges.empty() || ended()) return;
   watcher_.begins(fmt::format("{}, around what was found", to_string(findings_.table())));
   for (; !ranges.empty() && !ended(); ranges = surroundings())
-    for (const modbus::Range range : ranges) {
-      behind_ = static_cast<std::uint32_t>(range.start()) - findings_.window().start();
-      walk(range);
-    }
+    for (const modbus::Range range : ranges) walk(range);
 }
 
 /// The neighbourhoods of all that can be read, joined, where something was not asked for yet.

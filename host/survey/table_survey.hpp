@@ -66,7 +66,6 @@ class TableSurvey {
   Largest& largest_;
   std::uint32_t stride_;
   TableFindings& findings_;
-  std::uint32_t behind_ = 0;  ///< addresses of the window, for the watcher
   std::array<std::uint16_t, modbus::max_read_bits> values_{};
   int timeouts_ = 0;
   bool over_ = false;

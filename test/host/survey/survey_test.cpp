@@ -178,6 +178,7 @@ TEST_F(SurveyTest, Known_values_become_points_of_the_draft) {
   EXPECT_NE(find(loaded.map->map(), "value_2"), nullptr) << text_;
   EXPECT_EQ(find(loaded.map->map(), "value_3"), nullptr) << text_;
   EXPECT_THAT(text_, HasSubstr("wordorder_reverse: false"));
+  EXPECT_THAT(text_, HasSubstr("   # 230.4\n"));
 }
 
 TEST_F(SurveyTest, Values_in_different_orders_keep_their_own) {
