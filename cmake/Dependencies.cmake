@@ -9,7 +9,9 @@ find_package(nlohmann_json REQUIRED)
 find_package(tl-expected REQUIRED)
 pkg_check_modules(libmd REQUIRED IMPORTED_TARGET libmd)
 
-pkg_check_modules(libmodbus IMPORTED_TARGET libmodbus>=3.1.6)
+if(NOT CMAKE_DISABLE_FIND_PACKAGE_libmodbus)  # of which pkg_check_modules() knows nothing
+  pkg_check_modules(libmodbus IMPORTED_TARGET libmodbus>=3.1.6)
+endif()
 if(NOT libmodbus_FOUND)
   message(STATUS "Left out: the host's Modbus client, coupler_driver and the node's libmodbus oracle test "
                  "(no libmodbus; apt install libmodbus-dev)")
