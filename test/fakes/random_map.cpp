@@ -23,6 +23,8 @@ RandomMap::RandomMap(std::uint32_t seed, unsigned most_points_a_table)
     : random_(seed), most_points_(most_points_a_table) {
   head_ = head();
   for (const Table table : tables) holds_bits(table) ? add_bits(table) : add_registers(table);
+  for (Row& row : rows_)
+    if (one_in(4)) add_initial(row);
 }
 
 std::uint32_t RandomMap::below(std::uint32_t end) { return static_cast<std::uint32_t>(random_() % end); }
@@ -33,6 +35,8 @@ std::string RandomMap::head() {
   if (one_in(2)) text += "wordorder_reverse: true\n";
   if (one_in(2)) text += fmt::format("registers_read_continuous: {}\n", one_in(2));
   if (one_in(2)) text += fmt::format("address: 10.0.0.{}\nport: {}\n", 1 + below(254), 1 + below(65535));
+  // Where no point is.
+  if (one_in(4)) text += "unreadable: [{table: input_registers, from: 60000, to: 60009}]\n";
   if (one_in(3)) text += fmt::format("limits: {{read_registers: {}}}\n", 32 + below(94));
   return text;
 }
@@ -110,17 +114,33 @@ std::string RandomMap::options(Table table, bool scalable) {
   return text;
 }
 
+/// A value that fits into every type that the point may have.
+void RandomMap::add_initial(Row& row) {
+  if (row.options.find("scale") != std::string::npos)
+    return;  // it would be in units, and may be out of range
+  if (holds_bits(row.table) || row.format.find("BOOL") != std::string::npos)
+    row.format += ", initial: on";
+  else if (row.format.find("STRING") != std::string::npos)
+    row.format += fmt::format(", initial: \"{}\"", static_cast<char>('A' + below(26)));
+  else
+    row.format += fmt::format(", initial: {}", below(128));
+}
+
+std::string RandomMap::keys_of(const Row& row) {
+  std::string keys = row.address ? fmt::format(", address: {}", *row.address) : std::string();
+  keys += row.part + row.format + row.options;
+  return keys.empty() ? keys : keys.substr(2);
+}
+
 std::string RandomMap::yaml() const {
   std::string text = head_ + "mapping:\n";
   for (const Table table : tables) {
     std::string points;
     for (const Row& row : rows_)
-      if (row.table == table)
-        points += fmt::format("    {}: {{address: {}{}{}{}}}\n", row.name, row.address, row.part, row.format,
-                              row.options);
+      if (row.table == table) points += fmt::format("    {}: {{{}}}\n", row.name, keys_of(row));
     text += fmt::format("  {}:{}{}", to_string(table), points.empty() ? " {}\n" : "\n", points);
   }
-  return text;
+  return text + tail_;
 }
 
 std::string RandomMap::edit() {
@@ -133,7 +153,7 @@ std::string RandomMap::edit() {
   const std::string name = row.name;
   switch (below(7)) {
     case 0: rows_.erase(rows_.begin() + which); return name + " removed";
-    case 1: row.address += 1 + below(500); return name + " moved";
+    case 1: row.address = row.address.value_or(0) + 1 + below(500); return name + " moved";
     case 2: row.name = fmt::format("p{}", names_++); return name + " renamed";
     case 3:
       if (holds_bits(row.table) || !row.part.empty()) return "nothing";

@@ -84,8 +84,7 @@ std::uint16_t NodeEnd::port() const {
 }
 
 bool NodeEnd::is_shown(const Point& point) const {
-  return is_set_by_firmware(point) &&
-         !(simulated_ && point.table == Table::discrete_inputs && point.count == 1);
+  return is_set_by_firmware(point) && !(simulated_ && point.table == Table::discrete_inputs);
 }
 
 void NodeEnd::between_requests(const std::function<void()>& work) {

@@ -30,7 +30,9 @@ bool write(const fs::path& path, const std::string& text) {
 
 bool write_maps(const fs::path& folder, unsigned seed, unsigned count) {
   for (unsigned i = 0; i < count; ++i) {
-    const fakes::RandomMap map(seed + i, most_points_a_table);
+    fakes::RandomMap map(seed + i, most_points_a_table);
+    if (i % 3 == 0) map.add_hardware();
+    if (i % 4 == 0) map.leave_out_addresses();
     if (!write(folder / (name_of(i) + ".yaml"), fmt::format("# seed {}\n{}", seed + i, map.yaml())))
       return false;
   }
