@@ -15,10 +15,10 @@ namespace coupler::survey {
 
 /// What to look for.
 struct Task {
-  std::vector<std::uint8_t> units;  ///< in this order; the first that answers is surveyed
-  modbus::Range window;             ///< of each table
-  std::uint32_t stride = 16;        ///< where blocks are refused, one address in so many is tried; 1: all
-  double rate = 20;                 ///< requests a second
+  std::vector<std::uint8_t> units{1, 255, 0};          ///< in this order; the first that answers is surveyed
+  modbus::Range window = modbus::Range::of(0, 10000);  ///< of each table
+  std::uint32_t stride = 16;  ///< where blocks are refused, one address in so many is tried; 1: all
+  double rate = 20;           ///< requests a second
 };
 
 struct Findings {

@@ -22,7 +22,7 @@ constexpr Table holding = Table::holding_registers;
 class SurveyTest : public testing::Test {
  protected:
   Findings look(std::vector<std::uint8_t> units = {1}) {
-    return survey({std::move(units), Range::of(0, 1000)}, device_, clock_, onlooker_);
+    return survey({std::move(units), Range::of(0, 1000), 16, 20}, device_, clock_, onlooker_);
   }
   /// The draft as the loader reads it.
   LoadResult draft(const Findings& findings, const std::vector<Match>& matches = {}) {
