@@ -41,7 +41,7 @@ std::string identification_text(const Findings& findings, const Connection& conn
     text += fmt::format("  {:<20} {}\n", survey::object_name(id), survey::printable(value));
   text = text.empty() ? "identification: none (FC 43/14)\n" : "identification:\n" + text;
   if (findings.node)
-    text += fmt::format("an OpenCoupler node: it serves its map, see `coupler check tcp://{}`\n",
+    text += fmt::format("an OpenCoupler node: it serves its map, see `coupler dump tcp://{}`\n",
                         place(connection, *findings.unit));
   return text;
 }

@@ -185,7 +185,7 @@ def a_node_is_known(folder, map_file, command, checks):
     with peer.running_node(command) as port:
         found = probe(f"tcp://127.0.0.1:{port}", "--to", "200", "--known", "wide=305419896", "--out", draft)
         checks.equal("node: exit status", found.returncode, 0)
-        checks.equal("node: it serves its map", f"coupler check tcp://127.0.0.1:{port}/1" in found.stdout, True)
+        checks.equal("node: it serves its map", f"coupler dump tcp://127.0.0.1:{port}/1" in found.stdout, True)
         ranges = re.findall(r"readable: (.*)", found.stdout)
         checks.equal("node: its ranges", ranges, ["0 … 9, 20", "0 … 3", "0 … 4", "0 … 16"])
         checks.equal("node: a value of its map", "wide: {address: 1, type: UDINT, access: read}" in draft.read_text(), True)
