@@ -28,9 +28,15 @@ ordered_json number(const T& value) {
   return value;
 }
 
+/// The same: 217 x 0.1 is 21.7.
+ordered_json scaled(const std::uint16_t* registers, Point point) {
+  point.count = 1;
+  return number(std::strtod(driver::format_value(registers, point).c_str(), nullptr));
+}
+
 ordered_json one_value(const std::uint16_t* registers, const Point& point) {
   if (holds_bits(point.table)) return registers[0] != 0;
-  if (point.scale.present()) return number(codec::published(registers, point.format, point.scale));
+  if (point.scale.present()) return scaled(registers, point);
   return std::visit([](const auto& value) { return number(value); }, codec::decode(registers, point.format));
 }
 

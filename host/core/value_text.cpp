@@ -2,6 +2,7 @@
 #include "host/core/value_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -91,6 +92,18 @@ std::vector<std::string_view> elements(std::string_view text) {
   return result;
 }
 
+/// 217 x 0.1 is 21.7 to a person, not 21.700000000000003: the last digits only where they tell values apart.
+std::string scaled_text(const std::uint16_t* registers, const Point& point) {
+  const double value = codec::published(registers, point.format, point.scale);
+  const std::string text = fmt::format("{:.15g}", value);
+  std::array<std::uint16_t, 4> again{};  // no type with a scale is longer
+  const std::size_t count = codec::registers(point.format);
+  std::copy_n(registers, count, again.begin());
+  const bool same = encode_scaled(std::strtod(text.c_str(), nullptr), point, again.data()).empty() &&
+                    std::equal(registers, registers + count, again.begin());
+  return same ? text : fmt::format("{}", value);
+}
+
 }  // namespace
 
 Outcome parse_value(std::string_view text, const Point& point, std::uint16_t* registers) {
@@ -109,7 +122,7 @@ Outcome parse_value(std::string_view text, const Point& point, std::uint16_t* re
 std::string format_value(const std::uint16_t* registers, const Point& point) {
   const auto one = [&](const std::uint16_t* at) -> std::string {
     if (holds_bits(point.table)) return at[0] != 0 ? "true" : "false";
-    if (point.scale.present()) return fmt::format("{}", codec::published(at, point.format, point.scale));
+    if (point.scale.present()) return scaled_text(at, point);
     return codec::to_string(codec::decode(at, point.format));
   };
   if (point.count == 1) return one(registers);

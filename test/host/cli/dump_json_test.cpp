@@ -40,6 +40,19 @@ TEST(DumpJson, A_REAL_has_the_digits_that_it_can_tell_apart) {
   EXPECT_EQ(value_of(Type::REAL, {0x3DCC, 0xCCCD}).dump(), "0.1");
 }
 
+TEST(DumpJson, A_scaled_value_is_the_number_of_its_text) {
+  const MapPtr map = MapBuilder()
+                         .add(Table::holding_registers, "a", 0, Type::INT,
+                              [](Point& point) {
+                                point.count = 2;
+                                point.scale.gain = 0.1;
+                              })
+                         .build();
+  Snapshot now;
+  now.readings = {{0, State::good, {217, 5}}};
+  EXPECT_EQ(json::parse(dump_json(map->map(), now))["points"][0]["value"].dump(), "[21.7,0.5]");
+}
+
 TEST(DumpJson, What_no_number_of_json_can_be_is_null_and_has_its_text) {
   EXPECT_EQ(value_of(Type::REAL, {0x7FC0, 0}), nullptr);
   const MapPtr map = MapBuilder().add(Table::holding_registers, "a", 0, Type::REAL).build();

@@ -81,6 +81,25 @@ TEST(ValueText, A_scaled_point_speaks_in_published_units) {
   EXPECT_THAT(error_of("nan", point), HasSubstr("not a number"));
 }
 
+TEST(ValueText, A_scaled_value_has_no_digits_that_tell_nothing) {
+  Point point = point_of(codec::Type::UINT);
+  point.scale.gain = 0.1;
+  for (std::uint32_t raw = 0; raw <= 0xFFFF; ++raw) {
+    const Registers registers{static_cast<std::uint16_t>(raw)};
+    const std::string text = format_value(registers.data(), point);
+    ASSERT_LE(text.size(), 6U) << text;
+    ASSERT_EQ(parsed(text, point), registers);
+  }
+  EXPECT_EQ(format_value(Registers{217}.data(), point), "21.7");
+  Point wide = point_of(codec::Type::ULINT);
+  wide.scale.gain = 2;
+  const Registers raw{0x000F, 0xFFFF, 0xFFFF, 0xFFFF};  // more digits than 15
+  EXPECT_EQ(parsed(format_value(raw.data(), wide), wide), raw);
+  Point real = point_of(codec::Type::REAL);
+  real.scale.gain = 2;
+  EXPECT_EQ(format_value(Registers{0x7FC0, 0}.data(), real), "nan");
+}
+
 TEST(ValueText, A_text_is_taken_as_it_stands) {
   Point text = point_of(codec::Type::STRING);
   text.format.length = 4;
