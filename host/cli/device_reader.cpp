@@ -7,9 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "common/map/fingerprint.hpp"
-#include "common/map/node_address.hpp"
 #include "common/plan/split.hpp"
+#include "host/cli/identity_findings.hpp"
 #include "host/core/refusal.hpp"
 
 namespace coupler::cli {
@@ -116,32 +115,14 @@ Result<> DeviceReader::identify() {
 }
 
 void DeviceReader::judge(const driver::Identity& identity) {
-  using Verdict = driver::Identity::Verdict;
   known_.identity = identity.verdict;
-  if (identity.verdict == Verdict::superset)
-    known_.notes.emplace_back("the device has more points than this map; those of this map are unchanged");
-  if (identity.verdict != Verdict::different) return;
-  std::string note = fmt::format("the map differs from the device's: fingerprint {} here, {} in the device",
-                                 fingerprint_text(map_.fingerprint), fingerprint_text(identity.fingerprint));
-  for (const std::string& line : identity.differences) note += "\n  " + line;
-  note += "\nOnly what is the same is read. For the device's own map give " +
-          node_address_text(map_.connection) + " in place of this one";
-  known_.notes.push_back(std::move(note));
-  for (const Difference& difference : identity.points) {
-    if (!is_breaking(difference.kind)) continue;
-    const bool missing = difference.kind == Difference::Kind::missing;
-    leave_out(*find(map_, difference.point),
-              missing ? "not in the device's map" : "another one in the device's map: " + difference.what);
+  IdentityFindings found = findings(map_, identity);
+  known_.notes = std::move(found.notes);
+  for (auto& [point, why] : found.left_out) {
+    if (!chosen_[point]) continue;
+    Reading& reading = known_.readings[place_[point]];
+    if (reading.state == State::failed) reading.why = std::move(why);
   }
-  if (identity.points.empty())
-    for (const Point& point : map_.points) leave_out(point, "the device's map cannot be compared");
-}
-
-void DeviceReader::leave_out(const Point& point, std::string why) {
-  const auto index = static_cast<std::size_t>(&point - map_.points.begin());
-  if (!chosen_[index]) return;
-  Reading& reading = known_.readings[place_[index]];
-  if (reading.state == State::failed) reading.why = std::move(why);
 }
 
 void DeviceReader::plan() {

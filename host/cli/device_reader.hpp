@@ -33,7 +33,6 @@ class DeviceReader {
   driver::Result<> connect();
   driver::Result<> identify();
   void judge(const driver::Identity& identity);
-  void leave_out(const Point& point, std::string why);
   void plan();
   driver::Result<> read_all();
   driver::Result<> ask(const ReadSpan& span, std::vector<ReadSpan>& next);
