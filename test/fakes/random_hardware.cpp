@@ -15,6 +15,12 @@ std::vector<RandomMap::Row*> RandomMap::single_bits(Table table) {
   return found;
 }
 
+void RandomMap::add_counters(const std::string& input) {
+  for (const Table table : {Table::input_registers, Table::holding_registers})
+    rows_.push_back({fmt::format("p{}", names_++), table, 50000 + below(1000), 1, "",
+                     fmt::format(", type: UINT, counter: {{of: {}, edge: both}}", input), ""});
+}
+
 void RandomMap::add_hardware() {
   unsigned lines = 0;
   const auto line = [&lines] { return fmt::format(", line: {{chip: gpiochip0, offset: {}}}", lines++); };
@@ -38,10 +44,7 @@ void RandomMap::add_hardware() {
       if (one_in(2)) coil->options += one_in(2) ? ", safe: on" : ", safe: hold, drive: open_drain";
     }
   }
-  for (const Table table : {Table::input_registers, Table::holding_registers})
-    if (!counted.empty())
-      rows_.push_back({fmt::format("p{}", names_++), table, 50000 + below(1000), 1, "",
-                       fmt::format(", type: UINT, counter: {{of: {}, edge: both}}", counted), ""});
+  if (!counted.empty()) add_counters(counted);
   if (!wires.empty()) tail_ += "sim:\n" + wires;
 }
 

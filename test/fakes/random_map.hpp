@@ -52,6 +52,7 @@ class RandomMap {
   void add_initial(Row& row);
   static std::string keys_of(const Row& row);
   std::vector<Row*> single_bits(Table table);
+  void add_counters(const std::string& input);
 
   std::mt19937 random_;  // its numbers are the standard's, those of its distributions are not
   unsigned most_points_;

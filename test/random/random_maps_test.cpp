@@ -15,12 +15,6 @@
 #include "test/random/subject.hpp"
 
 namespace coupler::random {
-
-std::vector<Subject>& subjects() {
-  static std::vector<Subject> all;
-  return all;
-}
-
 namespace {
 
 using namespace std::chrono_literals;
@@ -90,8 +84,7 @@ class Ends {
   static bool failed() { return ::testing::Test::HasFailure(); }
 
   const Case& pick(std::uint32_t point, std::size_t round) const {
-    const auto& cases = vectors_[point].cases;
-    return cases[(round + point) % cases.size()];
+    return random::pick(vectors_[point], point, round);
   }
 
   /// Every point at once, so that those that share registers or requests meet.
@@ -107,10 +100,8 @@ class Ends {
     for (std::uint32_t i = 0; i < pending.size(); ++i)
       if (is_sent(i, round)) arrived(map_.points[i], i, pick(i, round));
   }
-  /// A latched point is set by its input only.
   bool is_sent(std::uint32_t point, std::size_t round) const {
-    return is_writable(map_.points[point]) && !map_.points[point].latched.present() &&
-           !pick(point, round).only_read;
+    return is_settable(map_.points[point]) && !pick(point, round).only_read;
   }
   void arrived(const Point& point, std::uint32_t index, const Case& sent) {
     EXPECT_EQ(node_.end.raw(point), sent.raw) << point.name << ": " << to_string(sent.values);
