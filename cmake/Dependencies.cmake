@@ -9,7 +9,9 @@ find_package(nlohmann_json REQUIRED)
 find_package(tl-expected REQUIRED)
 pkg_check_modules(libmd REQUIRED IMPORTED_TARGET libmd)
 
-if(NOT CMAKE_DISABLE_FIND_PACKAGE_libmodbus)  # of which pkg_check_modules() knows nothing
+if(CMAKE_DISABLE_FIND_PACKAGE_libmodbus)
+  set(libmodbus_FOUND FALSE)  # pkg_check_modules() does not know that variable, and its last answer is in the cache
+else()
   pkg_check_modules(libmodbus IMPORTED_TARGET libmodbus>=3.1.6)
 endif()
 if(NOT libmodbus_FOUND)
