@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "common/codec/decimal.hpp"
 #include "common/generate/literal.hpp"
 
 namespace coupler::generate {
@@ -135,9 +136,9 @@ std::string deadman(const HostOptions::Deadman& deadman) {
 /// As a row says it; those of most points say "{}".
 std::string host(const HostOptions& options) {
   const auto text = [](const HostOptions& o) {
-    return fmt::format("{{{:#}, {}, {:#}, {}ms, {}, {},\n      {}, {}, {}, {}}}", o.rate,
-                       enumerator(o.publish), o.deadband, o.max_interval.count(), o.latch, o.queue_size,
-                       enumerator(o.write_function), enumerator(o.write_queue), o.verify_write,
+    return fmt::format("{{{}, {}, {}, {}ms, {}, {},\n      {}, {}, {}, {}}}", codec::decimal(o.rate),
+                       enumerator(o.publish), codec::decimal(o.deadband), o.max_interval.count(), o.latch,
+                       o.queue_size, enumerator(o.write_function), enumerator(o.write_queue), o.verify_write,
                        deadman(o.deadman));
   };
   std::string out = text(options);
@@ -147,8 +148,9 @@ std::string host(const HostOptions& options) {
 /// What few points have behind counter and latched: count, scale, iio, pwm, safe registers, read address,
 /// host.
 std::string rest(const Point& point) {
-  return fmt::format("{}, {{{:#}, {:#}}}, {}, {}, {}, {}, {}", point.count, point.scale.gain,
-                     point.scale.offset, iio(point.iio), pwm(point.pwm), registers(point.safe_value),
+  return fmt::format("{}, {{{}, {}}}, {}, {}, {}, {}, {}", point.count, codec::decimal(point.scale.gain),
+                     codec::decimal(point.scale.offset), iio(point.iio), pwm(point.pwm),
+                     registers(point.safe_value),
                      point.read_address ? fmt::format("::std::uint16_t{{{}}}", *point.read_address) : "{}",
                      host(point.host));
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "common/codec/decimal.hpp"
 #include "common/generate/literal.hpp"
 #include "common/generate/rows.hpp"
 
@@ -78,7 +79,7 @@ constexpr char text[] =
 constexpr Map map{{
     {map_name},
     {{{address}, {port}, {unit}, {timeout}ms}},  // address, port, unit, timeout
-    {{{rate:#}, {discrete_continuous}, {discrete_gap}, {register_continuous}, {register_gap}}},  // rate in Hz, joining of bits, of registers
+    {{{rate}, {discrete_continuous}, {discrete_gap}, {register_continuous}, {register_gap}}},  // rate in Hz, joining of bits, of registers
     {{{read_registers}, {read_bits}, {write_registers}, {write_bits}, {request_gap}ms, {connect_delay}ms, {connections}, {mask_write}}},  // limits
     {points_name},
     {sim_name},
@@ -173,7 +174,7 @@ std::string table_source(const Map& map, const Stamp& stamp) {
       arg("watchdog", watchdog(map.service.watchdog)), arg("readback", map.service.readback),
       arg("text", literal_lines(map.text, "    ")), arg("map_name", literal(map.name)),
       arg("address", literal(at.address)), arg("port", at.port), arg("unit", at.unit),
-      arg("timeout", at.timeout.count()), arg("rate", poll.rate),
+      arg("timeout", at.timeout.count()), arg("rate", codec::decimal(poll.rate)),
       arg("discrete_continuous", poll.discrete_continuous), arg("discrete_gap", poll.discrete_gap),
       arg("register_continuous", poll.register_continuous), arg("register_gap", poll.register_gap),
       arg("read_registers", limits.read_registers), arg("read_bits", limits.read_bits),
