@@ -45,6 +45,10 @@ SimulatedChip::SimulatedChip(const Map& map, TimePoint now) : start_(now), told_
     to->wire = &wire;
     to->from = named(outputs_, wire.from);
   }
+  const auto has_no_line = [](const Input& input) {
+    return input.wire == nullptr && !input.point->line.present();
+  };
+  inputs_.erase(std::remove_if(inputs_.begin(), inputs_.end(), has_no_line), inputs_.end());
 }
 
 std::uint16_t SimulatedChip::level_of(const Input& input, TimePoint now) const {

@@ -10,9 +10,10 @@
 
 namespace coupler::node {
 
-/// Hardware without hardware (`--sim`): every coil and discrete input of the map has a line here (but latched
-/// coils, which have none), wired as the map's `sim:` says. An input with no wire keeps the level that it was
-/// given. Nothing bounces, so nothing is debounced. No edge is missed: those of square waves are computed.
+/// Hardware without hardware (`--sim`): every coil of the map has a line here (but latched ones, which have
+/// none), and so has every discrete input with a line or a wire, wired as the map's `sim:` says; any other is
+/// its firmware's. An input with no wire keeps the level that it was given. Nothing bounces, so nothing is
+/// debounced. No edge is missed: those of square waves are computed.
 class SimulatedChip : public Lines {
  public:
   /// Outputs and unwired inputs are at their initial levels; square waves begin now, with their `on` half.

@@ -84,7 +84,9 @@ std::uint16_t NodeEnd::port() const {
 }
 
 bool NodeEnd::is_shown(const Point& point) const {
-  return is_set_by_firmware(point) && !(simulated_ && point.table == Table::discrete_inputs);
+  const auto ends_here = [&](const SimWire& wire) { return wire.to == point.name; };
+  const auto& wires = duty_.map->sim;
+  return is_set_by_firmware(point) && !(simulated_ && std::any_of(wires.begin(), wires.end(), ends_here));
 }
 
 void NodeEnd::between_requests(const std::function<void()>& work) {

@@ -22,7 +22,7 @@ class NodeEnd {
   NodeEnd& operator=(const NodeEnd&) = delete;
 
   std::uint16_t port() const;
-  /// Whether put() and hooks bring its value. Of a simulated node, lines are behind discrete inputs.
+  /// Whether put() and hooks bring its value. Where a simulated wire ends they do not.
   bool is_shown(const Point& point) const;
   /// The registers or bits of a point in the image, without what others have in them.
   std::vector<std::uint16_t> raw(const Point& point);

@@ -56,14 +56,27 @@ TEST(SimulatedChip, A_square_wave_is_on_for_the_first_half_of_its_period) {
 TEST(SimulatedChip, An_input_with_no_wire_has_its_initial_level_until_it_is_pulled) {
   MapBuilder builder;
   const auto on = builder.keep({1});
-  const auto map = builder.add(inputs, "a", 0, Type::BOOL, [&](Point& p) { p.initial = on; })
-                       .add(inputs, "b", 1, Type::BOOL)
+  const auto map = builder
+                       .add(inputs, "a", 0, Type::BOOL,
+                            [&](Point& p) {
+                              p.initial = on;
+                              p.line.name = "A";
+                            })
+                       .add(inputs, "b", 1, Type::BOOL, [](Point& p) { p.line.name = "B"; })
                        .build();
   SimulatedChip chip(map->map(), {});
   EXPECT_EQ(read(chip, 0, 2), Levels({1, 0}));
   chip.pull("a", false);
   chip.pull("b", true);
   EXPECT_EQ(read(chip, 0, 2), Levels({0, 1}));
+}
+
+TEST(SimulatedChip, An_input_with_neither_line_nor_wire_is_left_as_it_is) {
+  const auto map = MapBuilder().input("a", 0).input("b", 1).square("b", milliseconds(100)).build();
+  SimulatedChip chip(map->map(), {});
+  Levels levels{7, 7};
+  EXPECT_TRUE(chip.read(Range::of(0, 2), levels, {}));
+  EXPECT_EQ(levels, Levels({7, 1}));
 }
 
 TEST(SimulatedChip, Outputs_begin_with_their_initial_level_and_end_in_their_safe_state) {
