@@ -20,12 +20,17 @@ using Cells = std::array<std::string, 6>;  // point, value, type, table, wire, M
 /// A text from a device can hold anything: a terminal must not obey it, nor a line end in it.
 std::string printable(const std::string& text) {
   std::string result;
+  unsigned char before = 0;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7F)
+    // U+0080 … U+009F: one of them begins sequences, as ESC [ does.
+    const bool is_c1 = before == 0xC2 && byte >= 0x80 && byte < 0xA0;
+    if (is_c1) result.pop_back();
+    if (is_c1 || byte < 0x20 || byte == 0x7F)
       result += fmt::format("\\x{:02x}", byte);
     else
       result += c;
+    before = byte;
   }
   return result;
 }

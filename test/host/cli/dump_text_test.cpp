@@ -82,6 +82,16 @@ TEST_F(DumpText, A_terminal_does_not_obey_the_text_of_a_device) {
   const MapPtr label = texts.build();
   const Reading reading{0, State::good, {0x411B, 0x5B32, 0x4A0A}};
   EXPECT_EQ(value_text(label->map(), reading), "\"A\\x1b[2J\\x0a\"");
+
+  // In Latin-1, 9B is a control character, too.
+  MapBuilder latin;
+  latin.add(Table::holding_registers, "label", 0, Type::STRING, [](Point& point) {
+    point.format.length = 3;
+    point.format.order = codec::Order::ABCD;
+    point.format.encoding = codec::Encoding::latin1;
+  });
+  const MapPtr other = latin.build();
+  EXPECT_EQ(value_text(other->map(), Reading{0, State::good, {0x9BB0, 0x4100}}), "\"\\x9b°A\"");
 }
 
 TEST_F(DumpText, A_long_value_does_not_push_the_others_aside) {
