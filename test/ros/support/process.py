@@ -11,6 +11,9 @@ import time
 
 BUILD = pathlib.Path(os.environ["COUPLER_BUILD_DIR"])
 
+# `nohup ./check` leaves it ignored, and a node that is started so takes no SIGHUP.
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
 
 class Process:
     """A program of the build, and everything it prints."""
