@@ -111,7 +111,8 @@ void Device::explain_silence(const Error& error) {
   if (!silent || std::exchange(silence_told_, true)) return;
   sink_.on_report(Level::warning,
                   "connected, but the question for the device's identity is not answered; if this is a "
-                  "foreign coupler that ignores addresses it does not have, start with _verify:=off");
+                  "foreign coupler that ignores addresses it does not have, start with _verify:=off (a "
+                  "client: Options::verify)");
 }
 
 Result<> Device::judge(const Identity& identity) {
@@ -129,7 +130,9 @@ Result<> Device::judge(const Identity& identity) {
                     fingerprint_text(map_.fingerprint), fingerprint_text(identity.fingerprint));
     for (const std::string& line : identity.differences) text += "\n  " + line;
     if (refuse)
-      text += "\nNothing is read or written. Give both sides the same map, or accept it with _verify:=warn";
+      text +=
+          "\nNothing is read or written. Give both sides the same map, or accept it with _verify:=warn (a "
+          "client: Options::verify)";
     sink_.on_report(refuse ? Level::error : Level::warning, text);
   }
   if (refuse) return fail(NotConnected{"the device's map is another one"});
