@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """What becomes of messages on the way to a device: merged, verified, restored, replaced when they fall silent."""
-import struct
 import time
 
 from std_msgs.msg import Bool, UInt16
 
 from support import process, testing
+from support.device import ILLEGAL_FUNCTION, Device, Refuse, frame
 from support.peer import Peer
-from support.scripted import Scripted
 from support.topics import wait_until
 
 COUNT = 8
+SINGLE, SEVERAL = 6, 16  # function codes of writes
 
 
 def several(extra=""):
@@ -23,6 +23,17 @@ def one(options, extra=""):
             f"mapping:\n  holding_registers:\n    speed: {{address: 5, type: UINT{options}}}\n")
 
 
+def slow(device, seconds):
+    def answer(request):
+        time.sleep(seconds)
+        return device.serve(request)
+    return answer
+
+
+def registers(device, start, count):
+    return list(device.tables["holding_registers"][start:start + count])
+
+
 class Writes(testing.RosTest):
     def drive(self, text, port):
         driver = self.driver(f"_map:={process.write_map(text)}", f"_port:={port}", "_verify:=off")
@@ -33,67 +44,71 @@ class Writes(testing.RosTest):
         return self.publisher("/writes/speed/write", UInt16)
 
     def test_a_burst_while_the_device_is_busy_becomes_one_request(self):
-        with Scripted() as device:
+        with Device() as device:
             self.drive(several(), device.port)
             publishers = self.publishers({f"/writes/r{i}/write": UInt16 for i in range(COUNT)})
-            device.delay = 0.3
+            device.answer = slow(device, 0.3)
             time.sleep(0.5)
             device.requests.clear()
             for value, publisher in enumerate(publishers):
                 publisher.publish(100 + value)
-            wait_until(lambda: device.registers[:COUNT] == list(range(100, 100 + COUNT)), "all values")
-            writes = [pdu for pdu in device.requests if pdu[0] != 3]
+            wait_until(lambda: registers(device, 0, COUNT) == list(range(100, 100 + COUNT)), "all values")
+            writes = device.seen(SINGLE, SEVERAL)
             self.assertLess(len(writes), COUNT, writes)
-            self.assertIn(16, device.functions())
+            self.assertTrue(device.seen(SEVERAL))
 
     def test_a_single_write_to_an_idle_device_is_one_register(self):
-        with Scripted() as device:
+        with Device() as device:
             self.drive(one(""), device.port)
             self.speed().publish(7)
-            wait_until(lambda: device.registers[5] == 7, "the value")
-            self.assertEqual([f for f in device.functions() if f != 3], [6])
+            wait_until(lambda: registers(device, 5, 1) == [7], "the value")
+            self.assertEqual([request.function for request in device.requests if request.function != 3], [SINGLE])
 
     def test_the_old_value_does_not_flicker_back(self):
-        with Scripted() as device:
+        with Device() as device:
             self.drive(one(""), device.port)
             topic = self.topic("/writes/speed", UInt16)
             publisher = self.speed()
-            device.delay = 0.1
+            device.answer = slow(device, 0.1)
             for value in range(1, 6):
                 publisher.publish(value)
                 time.sleep(0.35)
             self.assertEqual(topic.values, sorted(topic.values), "a value came back after a newer one")
 
     def test_a_late_answer_with_an_old_transaction_is_never_taken(self):
-        with Scripted() as device:
+        with Device() as device:
             driver = self.drive(one(""), device.port)
             topic = self.topic("/writes/speed", UInt16)
             topic.wait_for(lambda _: True)
-            wrong = struct.pack(">BBH", 3, 2, 999)
-            device.script = lambda transaction, unit, pdu: Scripted.frame((transaction - 1) & 0xFFFF, unit, wrong)
+            wrong = bytes([3, 2, 999 >> 8, 999 & 0xFF])
+            device.answer = lambda request: frame(request, wrong, transaction=request.transaction - 1)
             driver.wait_for("connection lost")
-            device.script = None
+            device.answer = device.serve
             topic.next()
             self.assertNotIn(999, topic.values)
 
     def test_a_value_that_does_not_read_back_is_reported_with_both(self):
-        with Scripted() as device:
+        with Device() as device:
             driver = self.drive(one(", read_address: 105, verify_write: true"), device.port)
-            device.registers[105] = 3
+            device.tables["holding_registers"][105] = 3
             self.speed().publish(4)
             driver.wait_for("write to speed was acknowledged, but not taken: 0x0004 was written, 0x0003 reads back")
 
     def test_a_device_that_refuses_the_function_for_several_gets_single_ones(self):
-        with Scripted() as device:
-            device.script = lambda transaction, unit, pdu: (
-                Scripted.frame(transaction, unit, bytes([0x90, 1])) if pdu[0] == 16 else None)
+        with Device() as device:
+            def answer(request):
+                if request.function == SEVERAL:
+                    raise Refuse(ILLEGAL_FUNCTION)
+                time.sleep(0.1)
+                return device.serve(request)
+
+            device.answer = answer
             self.drive(several(), device.port)
             publishers = self.publishers({f"/writes/r{i}/write": UInt16 for i in range(COUNT)})
-            device.delay = 0.1
             for publisher in publishers:
                 publisher.publish(5)
-            wait_until(lambda: device.registers[:COUNT] == [5] * COUNT, "all values")
-            self.assertEqual(device.connections, 1)
+            wait_until(lambda: registers(device, 0, COUNT) == [5] * COUNT, "all values")
+            self.assertEqual(device.accepted, 1)
 
     def test_a_command_that_falls_silent_is_replaced(self):
         with Peer() as peer:
