@@ -28,6 +28,7 @@ static_assert(fingerprint == 0x{fingerprint:016x}, "{name}_client and {name}_map
 class Client : public ::coupler::client::Session {{
  public:
   explicit Client(::coupler::client::Options options = {{}});
+  ~Client() override;
 
 {members}
   /// Calls use(name in the map, point) with each point, by table and address.
@@ -50,6 +51,9 @@ namespace coupler::maps::{name} {{
 // The numbers are places in map.points.
 Client::Client(::coupler::client::Options options)
     : Session(::coupler::maps::{name}::map, ::std::move(options)){initialisers} {{}}
+
+// Callbacks may use the points until then.
+Client::~Client() {{ disconnect(); }}
 
 }}  // namespace coupler::maps::{name}
 )";

@@ -70,6 +70,7 @@ class GeneratedClient : public ClientEnd {
 class RunTimeClient : public ClientEnd, private client::Session {
  public:
   RunTimeClient(const Map& map, client::Options options) : Session(map, std::move(options)), map_(map) {}
+  ~RunTimeClient() override { disconnect(); }
   client::Session& session() override { return *this; }
   client::PendingWrite set(std::uint32_t point, const Values& values) override;
   std::optional<Values> get(std::uint32_t point) override;
