@@ -89,6 +89,7 @@ def client_and_a_node_of_another_map(node, map_file, client, checks):
 
 def client_and_a_foreign_server(client, checks):
     table = {kind: ModbusSequentialDataBlock(0, [0] * 100) for kind in ("di", "co", "ir", "hr")}
+    table["di"].setValues(0, [True])
     table["ir"].setValues(0, [412])
     table["ir"].setValues(7, [2, 1])
     context = ModbusServerContext(slaves=ModbusSlaveContext(zero_mode=True, **table), single=True)

@@ -44,11 +44,12 @@ int main(int argc, char** argv) {
   for (int tries = 0; tries < 100; ++tries) {
     const auto pressure = pump.pressure.wait(1s);
     const auto starts = pump.starts.wait(1s);
-    if (!pressure || !starts) {
-      std::fputs("the pump does not tell its pressure and its starts\n", stderr);
+    const auto running = pump.running.wait(1s);
+    if (!pressure || !starts || !running) {
+      std::fputs("the pump does not tell how it is\n", stderr);
       return 3;
     }
-    if (pressure->value > 4) {
+    if (running->value && pressure->value > 4) {
       std::printf("%.2f bar after %u starts\n", pressure->value, starts->value);
       return is_taken("stop", pump.run.set(false)) ? 0 : 1;
     }
