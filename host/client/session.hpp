@@ -61,8 +61,8 @@ class Session : private driver::Sink {
   bool wait_online(std::chrono::milliseconds at_most) const;
 
  protected:
-  /// What `map` views must outlive it. The destructor of what derives from it must disconnect(): until then the
-  /// connection's thread calls virtual functions and callbacks.
+  /// What `map` views must outlive it. The destructor of what derives from it must disconnect(): until then
+  /// the connection's thread calls virtual functions and callbacks.
   Session(const Map& map, Options options);
 
  private:
