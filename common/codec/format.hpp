@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "common/codec/order.hpp"
 #include "common/codec/type.hpp"
@@ -28,6 +29,11 @@ struct Format {
 /// BADC by default and ABCD with `ignore_byteorder: true`, whatever the global keys say.
 constexpr bool ignores_byte_order(const Format& format) {
   return format.type == Type::STRING && format.order == Order::ABCD;
+}
+
+/// The order as a map writes it. STRING has width 0: its order is AB or BA, as that of one register.
+constexpr std::string_view order_text(const Format& format) {
+  return to_string(format.order, width(format.type) <= 16);
 }
 
 /// Registers that the value touches. 8-bit values and bits touch one.

@@ -13,15 +13,6 @@
 namespace coupler {
 namespace {
 
-std::string_view to_string(Access access) {
-  switch (access) {
-    case Access::read: return "read";
-    case Access::write: return "write";
-    case Access::read_write: return "read_write";
-  }
-  return "?";
-}
-
 std::string part(const Point& point) {
   if (!is_partial(point)) return "-";
   if (point.format.type == codec::Type::BOOL) return fmt::format("bit{}", point.format.bit);
@@ -30,9 +21,7 @@ std::string part(const Point& point) {
 
 std::string order(const Point& point) {
   if (holds_bits(point.table)) return "-";
-  const bool one_register =
-      codec::width(point.format.type) <= 16;  // STRING has width 0: its order is AB or BA
-  return std::string(codec::to_string(point.format.order, one_register));
+  return std::string(codec::order_text(point.format));
 }
 
 /// By C's printf: fmt 10 and later write hexadecimal floats in another way.

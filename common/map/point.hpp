@@ -20,6 +20,16 @@ namespace coupler {
 /// What the master may do with a point.
 enum class Access : std::uint8_t { read, write, read_write };
 
+/// As a map writes it.
+constexpr std::string_view to_string(Access access) {
+  switch (access) {
+    case Access::read: return "read";
+    case Access::write: return "write";
+    case Access::read_write: return "read_write";
+  }
+  return "?";
+}
+
 /// One named value of a coupler. A literal type, so that a generated table is constant data.
 struct Point {
   std::string_view name;  ///< a valid ROS name, unique in the map

@@ -26,7 +26,7 @@ std::string part_of(const Point& point) {
 
 std::string order_of(const Point& point) {
   if (holds_bits(point.table)) return {};
-  return std::string(codec::to_string(point.format.order, codec::width(point.format.type) <= 16));
+  return std::string(codec::order_text(point.format));
 }
 
 std::string range_text(std::string first, std::string last) {

@@ -18,15 +18,6 @@ std::string field(std::string_view key, std::string_view value) {
   return fmt::format(", \"{}\": {}", key, value);
 }
 
-std::string_view to_string(Access access) {
-  switch (access) {
-    case Access::read: return "read";
-    case Access::write: return "write";
-    case Access::read_write: return "read_write";
-  }
-  return "?";
-}
-
 /// What a value is and where it stands: all that a reader of registers needs.
 std::string place(const Point& point) {
   std::string text = fmt::format("\"name\": {}, \"table\": \"{}\", \"address\": {}, \"{}\": {}",
@@ -42,8 +33,7 @@ std::string format(const Point& point) {
   const codec::Format& format = point.format;
   std::string text = field("type", json_text(codec::to_string(format.type)));
   if (holds_bits(point.table)) return text;
-  const bool one_register = codec::width(format.type) <= 16;
-  text += field("order", json_text(codec::to_string(format.order, one_register)));
+  text += field("order", json_text(codec::order_text(format)));
   if (format.type == Type::BOOL) text += field("bit", std::to_string(format.bit));
   if (codec::width(format.type) == 8)
     text += field("offset", format.half == codec::Half::high ? "\"high\"" : "\"low\"");

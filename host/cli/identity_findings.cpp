@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/cli/identity_findings.hpp"
 
-#include <fmt/format.h>
-
-#include "common/map/fingerprint.hpp"
 #include "common/map/node_address.hpp"
 
 namespace coupler::cli {
@@ -12,18 +9,14 @@ namespace {
 using Verdict = driver::Identity::Verdict;
 
 std::string difference_note(const Map& map, const driver::Identity& identity) {
-  std::string note = fmt::format("the map differs from the device's: fingerprint {} here, {} in the device",
-                                 fingerprint_text(map.fingerprint), fingerprint_text(identity.fingerprint));
-  for (const std::string& line : identity.differences) note += "\n  " + line;
-  return note + "\nOnly what is the same is read. For the device's own map give " +
+  return difference_text(map, identity) + "\nOnly what is the same is read. For the device's own map give " +
          node_address_text(map.connection) + " in place of this one";
 }
 
 }  // namespace
 
 IdentityFindings findings(const Map& map, const driver::Identity& identity) {
-  if (identity.verdict == Verdict::superset)
-    return {{"the device has more points than this map; those of this map are unchanged"}, {}};
+  if (identity.verdict == Verdict::superset) return {{driver::superset_text}, {}};
   if (identity.verdict != Verdict::different) return {};
   IdentityFindings found{{difference_note(map, identity)}, {}};
   for (const Difference& difference : identity.points) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/map/node_address.hpp"
 #include "host/survey/identification.hpp"
 
 namespace coupler::cli {
@@ -18,10 +19,9 @@ constexpr std::size_t most_ranges = 24;
 constexpr std::size_t most_candidates = 6;
 
 /// "10.0.0.7:502/255", to be given to a command.
-std::string place(const Connection& connection, unsigned unit) {
-  const bool is_v6 = connection.address.find(':') != std::string_view::npos;
-  return fmt::format("{}{}{}:{}/{}", is_v6 ? "[" : "", survey::printable(connection.address),
-                     is_v6 ? "]" : "", connection.port, unit);
+std::string place(Connection connection, std::uint8_t unit) {
+  connection.unit = unit;
+  return survey::printable(node_address_text(connection)).substr(std::string_view("tcp://").size());
 }
 
 std::string units_text(const Findings& findings, const Connection& connection) {

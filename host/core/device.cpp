@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "common/map/fingerprint.hpp"
 #include "host/core/probe.hpp"
 
 namespace coupler::driver {
@@ -118,17 +117,12 @@ void Device::explain_silence(const Error& error) {
 Result<> Device::judge(const Identity& identity) {
   if (identity.verdict != Identity::Verdict::different) {
     refused_fingerprint_ = 0;
-    if (identity.verdict == Identity::Verdict::superset)
-      sink_.on_report(Level::info,
-                      "the device has more points than this map; those of this map are unchanged");
+    if (identity.verdict == Identity::Verdict::superset) sink_.on_report(Level::info, superset_text);
     return {};
   }
   const bool refuse = verify_ == Verify::require;
   if (std::exchange(refused_fingerprint_, identity.fingerprint) != identity.fingerprint) {
-    std::string text =
-        fmt::format("the map differs from the device's: fingerprint {} here, {} in the device",
-                    fingerprint_text(map_.fingerprint), fingerprint_text(identity.fingerprint));
-    for (const std::string& line : identity.differences) text += "\n  " + line;
+    std::string text = difference_text(map_, identity);
     if (refuse)
       text +=
           "\nNothing is read or written. Give both sides the same map, or accept it with _verify:=warn (a "

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/core/identity_check.hpp"
 
+#include <fmt/format.h>
+
+#include "common/map/fingerprint.hpp"
+
 namespace coupler::driver {
 namespace {
 
@@ -20,6 +24,13 @@ Identity compare(const Map& known, const Map& device, std::uint64_t fingerprint)
 }
 
 }  // namespace
+
+std::string difference_text(const Map& known, const Identity& identity) {
+  std::string text = fmt::format("the map differs from the device's: fingerprint {} here, {} in the device",
+                                 fingerprint_text(known.fingerprint), fingerprint_text(identity.fingerprint));
+  for (const std::string& line : identity.differences) text += "\n  " + line;
+  return text;
+}
 
 Result<Identity> check_identity(Transport& transport, const Map& known, const MapLoader& load) {
   const auto read = read_identity(transport);

@@ -31,6 +31,12 @@ struct Identity {
   std::vector<Difference> points{};  ///< the same; empty if the device's map cannot be read
 };
 
+/// What `different` means, for people: both fingerprints, then the differences, a line each.
+std::string difference_text(const Map& known, const Identity& identity);
+
+/// What `superset` means.
+constexpr auto superset_text = "the device has more points than this map; those of this map are unchanged";
+
 /// Asks the device. An error is a broken connection, never a difference.
 Result<Identity> check_identity(Transport& transport, const Map& known, const MapLoader& load);
 
