@@ -13,13 +13,11 @@ struct Context {
   Problems& problems;
   OwnedMap& map;                   ///< keeps the texts that points refer to
   std::vector<int> point_lines{};  ///< LoadResult::point_lines
-  bool only_origin =
-      false;  ///< the file uses no key of this project: what the origin would ignore is a warning
-
-  bool host_makes_safe = false;  ///< on_shutdown: safe: any output may say what is safe for it
+  bool origin = false;             ///< may_be_of_the_origin: what the origin would ignore is a warning
+  bool host_makes_safe = false;    ///< on_shutdown: safe: any output may say what is safe for it
 
   void ignored(Position at, std::string what, std::string remedy) {
-    if (only_origin)
+    if (origin)
       problems.warning(at, what + ", ignored", std::move(remedy));
     else
       problems.error(at, std::move(what), std::move(remedy));

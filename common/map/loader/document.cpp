@@ -62,7 +62,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                 const std::string& value) override {
-    check_tag(mark, tag);
+    if (tag != "!" || text_[offset(mark)] == '!') check_tag(mark, tag);  // it is "!" of quoted text, too
     check_text_at(mark, value, tag == "!");
     if (awaits_key()) return set_key(mark, value);
     Entry entry;
@@ -110,8 +110,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void check_tag(const YAML::Mark& mark, const std::string& tag) const {
-    if (!tag.empty() && tag != "?" && tag != "!")
-      fail(mark, "tags are not supported", "remove the '!' and its name");
+    if (!tag.empty() && tag != "?") fail(mark, "tags are not supported", "remove the '!' and its name");
   }
 
   void check_text_at(const YAML::Mark& mark, const std::string& value, bool quoted) const {

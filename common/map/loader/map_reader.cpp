@@ -124,7 +124,7 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
                            "begin with 'name: NAME'");
     return;
   }
-  context.only_origin = has_only_origin_keys(file);
+  context.origin = may_be_of_the_origin(file);
   const auto preset = read_preset(file, context);
   const Entry root = preset ? completed(file, *preset) : file;
   const Reader top(root, Section::map, context);

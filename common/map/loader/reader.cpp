@@ -192,20 +192,26 @@ bool check_map(const Entry& entry, std::string_view expected, std::string_view r
   return false;
 }
 
-bool has_only_origin_keys(const Entry& root) {
-  const auto foreign = [](const Entry& map, Section section) {
+bool may_be_of_the_origin(const Entry& root) {
+  const auto named = [](const Entry& map, Section section, const auto& is) {
     return std::any_of(map.children.begin(), map.children.end(), [&](const Entry& entry) {
       const Key* key = find_key(entry.key, section);
-      return key != nullptr && key->owner == Owner::project;
+      return key != nullptr && is(*key);
     });
   };
-  if (foreign(root, Section::map)) return false;
+  const auto ours = [](const Key& key) { return key.owner == Owner::project; };
+  const auto address = [](const Key& key) { return key.name == "address"; };
+  if (named(root, Section::map, ours)) return false;
   for (const Entry& mapping : root.children) {
     if (mapping.key != "mapping") continue;
     for (const Entry& table : mapping.children)
-      for (const Table which : tables)
+      for (const Table which : tables) {
+        if (table.key != to_string(which)) continue;
         for (const Entry& point : table.children)
-          if (table.key == to_string(which) && foreign(point, section_of(which))) return false;
+          if (named(point, section_of(which), ours) ||
+              (point.kind != Entry::Kind::scalar && !named(point, section_of(which), address)))
+            return false;
+      }
   }
   return true;
 }

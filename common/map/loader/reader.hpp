@@ -88,7 +88,8 @@ std::string shown(const Entry& value);
 /// The entry is a map, or nothing at all; otherwise a problem that says what `expected` is.
 bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy, Context& context);
 
-/// A file that has none of this project's keys, as far as they can be seen without reading it.
-bool has_only_origin_keys(const Entry& root);
+/// Nothing in the file is this project's alone, as far as that can be seen without reading it: neither a key
+/// nor a point that leaves its address out.
+bool may_be_of_the_origin(const Entry& root);
 
 }  // namespace coupler::loader

@@ -37,7 +37,7 @@ UNSEEN = {name + ".yaml" for name in (
     # in the lock, or for want of one
     "address_is_missing lock_does_not_know_it lock_of_a_merge lock_is_outgrown "
     # in the text: gone when it is read as YAML
-    "anchor tag key_is_null duplicate_key duplicate_table").split()} | {"json_surrogate_escape.json"}
+    "anchor tag tag_of_a_map tag_of_quoted_text key_is_null duplicate_key duplicate_table").split()} | {"json_surrogate_escape.json"}
 
 
 def is_map(path):
