@@ -54,7 +54,11 @@ void IoService::run(const std::function<bool()>& is_over, Pulse* pulse) {
 
 std::vector<OpenConnection> IoService::release() { return tcp_.release(); }
 
-void IoService::end(int signal) { log_.write(farewell(signal, hardware_.drive_safe(), statistics_)); }
+bool IoService::end(int signal) {
+  const bool safe = hardware_.drive_safe();
+  log_.write(farewell(signal, safe, statistics_));
+  return safe;
+}
 
 void IoService::turn(Patience at_most) {
   now_ = loop_.run_once(shorter(at_most, shorter(tcp_.patience(), node_.handler().patience(now_))));

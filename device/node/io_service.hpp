@@ -26,8 +26,8 @@ class IoService {
   void run(const std::function<bool()>& is_over, Pulse* pulse);
   /// Lets go of its clients, outputs as they are.
   std::vector<OpenConnection> release();
-  /// The end after a signal: drives the outputs to their safe state.
-  void end(int signal);
+  /// The end after a signal: drives the outputs to their safe state. False: one of them could not be driven.
+  bool end(int signal);
 
  private:
   void turn(std::optional<std::chrono::milliseconds> at_most);

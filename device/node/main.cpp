@@ -19,5 +19,6 @@ int main(int argc, char** argv) {
   };
   const MapPtr map = read();
   if (map == nullptr) return 1;
-  return node::serve(map->map(), std::get<node::Options>(options), read);
+  const bool once = std::get<node::Options>(options).map == "-";
+  return node::serve(map->map(), std::get<node::Options>(options), once ? node::ReadAgain() : read);
 }

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 
 #include "device/keeper/keeper.hpp"
 #include "device/node/stderr_log.hpp"
@@ -12,20 +13,22 @@ namespace coupler::node {
 
 int serve(const Map& map, const Options& options, const ReadAgain& read_again, Hooks* hooks) {
   StderrLog log(std::getenv("JOURNAL_STREAM"));
-  const auto refused = [&](const Refusal& refusal) {
+  const auto failed = [&](const Refusal& refusal) {
     tell(log, refusal);
     return refusal.reason;
   };
   Loop loop;
-  if (!loop.is_open()) return refused({Refusal::device_failed, std::strerror(errno)});
+  if (!loop.is_open()) return failed({Refusal::device_failed, std::strerror(errno)});
   Signals signals(loop);
   ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"));
   Station station(options, read_again, manager, log, hooks);
-  if (const auto started = station.start(map); !started) return refused(started.error());
-  if (station.serve_alone(loop, signals))
-    Keeper(loop, signals, station, log, manager.is_there() ? &manager : nullptr).run();
+  if (const auto started = station.start(map); !started) return failed(started.error());
+  const std::optional<bool> alone = station.serve_alone(loop, signals);
+  const bool safe =
+      alone ? *alone : Keeper(loop, signals, station, log, manager.is_there() ? &manager : nullptr).run();
   manager.stopping();
-  return 0;
+  if (safe) return 0;
+  return failed({Refusal::device_failed, "ended, and not every output could be driven to its safe state"});
 }
 
 }  // namespace coupler::node

@@ -101,7 +101,7 @@ bool Station::needs_keeper() const {
   return !options_.simulated && std::any_of(duty_->map->points.begin(), duty_->map->points.end(), is_wired);
 }
 
-bool Station::serve_alone(Loop& loop, Signals& signals) {
+std::optional<bool> Station::serve_alone(Loop& loop, Signals& signals) {
   Pulse* const managed = manager_.is_there() ? &manager_ : nullptr;
   if (hooks_ != nullptr && !needs_keeper()) hooks_->serving_began();
   for (std::vector<OpenConnection> clients; !needs_keeper(); change(clients)) {
@@ -114,13 +114,10 @@ bool Station::serve_alone(Loop& loop, Signals& signals) {
           return to_change || signals.stop() != 0;
         },
         managed);
-    if (signals.stop() != 0) {
-      service.end(signals.stop());
-      return false;
-    }
+    if (signals.stop() != 0) return service.end(signals.stop());
     clients = service.release();
   }
-  return true;
+  return std::nullopt;
 }
 
 int Station::serve(Superior& superior, std::vector<OpenConnection> clients) {
@@ -146,7 +143,9 @@ int Station::serve(Superior& superior, std::vector<OpenConnection> clients) {
 
 bool Station::reload() {
   if (!read_again_) {
-    log_.write("SIGHUP: the map of this node is built in, so there is nothing to read again");
+    log_.write(
+        "SIGHUP: the map of this node is built in or came through standard input; there is nothing to read "
+        "again");
     return false;
   }
   manager_.reloading(TimePoint::clock::now());

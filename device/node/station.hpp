@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -42,8 +43,9 @@ class Station final : public Charge {
 
   /// Whether somebody has to hold its lines: simulated ones fall nowhere.
   bool needs_keeper() const;
-  /// Answers masters in this process until a signal asks to stop, or (true) a map came that needs a keeper.
-  bool serve_alone(Loop& loop, Signals& signals);
+  /// Answers masters in this process until a signal asks to stop; then whether every output is in its safe
+  /// state. nullopt: the map, or one that came meanwhile, needs a keeper.
+  std::optional<bool> serve_alone(Loop& loop, Signals& signals);
 
   int serve(Superior& superior, std::vector<OpenConnection> clients) override;
   bool reload() override;

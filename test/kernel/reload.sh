@@ -127,6 +127,14 @@ for _ in {1..10}; do
 done
 expect "twenty times" $((before + 20)) "$(times "$taken")"
 
+echo "# a map through standard input"
+start piped bash -c "exec '$bin/coupler-node' - --sim --port 1504 <reload.yaml"
+check "it is served" wait_until 5 says piped 'serving plant'
+kill -HUP "$(pid piped)"
+check "it cannot be read again" wait_until 5 says piped 'there is nothing to read again'
+refuse "and is not refused" says piped 'is refused'
+check "the node ends well" stop piped TERM
+
 echo "# the end"
 check "the traffic ends" stop traffic TERM
 refuse "no answer was wrong" says traffic wrong
