@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/arguments.hpp"
 
+#include <algorithm>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,27 +24,57 @@ constexpr const char* examples =
     "  coupler_driver _map:=device.yaml\n"
     "  coupler_driver --map device.yaml --address 192.168.10.101 --rate 50\n"
     "  coupler_driver _address:=raspberrypi        (a node that serves its map)\n"
-    "  coupler_driver _maps:=[press.yaml,belt.yaml]\n"
+    "  coupler_driver _maps:=[press.yaml,belt.yaml] _belt/address:=192.168.10.102\n"
     "  rostopic echo /device/in_A\n"
     "  rostopic pub -1 /device/out_Z/write std_msgs/Bool true";
 
 bool starts_with(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
 
-/// The arguments as CLI11 knows them, last first as it wants them; ROS's own are left out.
-std::vector<std::string> in_one_spelling(Span<char* const> arguments, bool& names_the_node) {
-  std::vector<std::string> result;
+/// What was given in ROS's spelling, `_key:=VALUE`.
+struct Assignment {
+  std::string_view device;  ///< of `_device/key:=VALUE`
+  std::string_view key;
+  std::string_view value;
+};
+
+/// What the arguments are.
+struct Sorted {
+  std::vector<std::string> options;  ///< as CLI11 knows them, last first as it wants them
+  std::vector<Assignment> of_devices;
+  bool names_the_node = false;
+};
+
+/// ROS's own are left out.
+Sorted sorted(Span<char* const> arguments) {
+  Sorted result;
   for (const char* const raw : arguments.from(1)) {
     const std::string_view argument(raw);
     const std::size_t assign = argument.find(":=");
     if (assign == std::string_view::npos) {
-      result.emplace_back(argument);
+      result.options.emplace_back(argument);
     } else if (argument[0] == '_' && !starts_with(argument, "__")) {
-      result.push_back(fmt::format("--{}={}", argument.substr(1, assign - 1), argument.substr(assign + 2)));
+      const std::string_view name = argument.substr(1, assign - 1);
+      const std::string_view value = argument.substr(assign + 2);
+      const std::size_t slash = name.rfind('/');
+      if (slash == std::string_view::npos)
+        result.options.push_back(fmt::format("--{}={}", name, value));
+      else
+        result.of_devices.push_back({name.substr(0, slash), name.substr(slash + 1), value});
     } else if (starts_with(argument, "__name:=")) {
-      names_the_node = true;
+      result.names_the_node = true;
     }
   }
-  return {result.rbegin(), result.rend()};
+  std::reverse(result.options.begin(), result.options.end());
+  return result;
+}
+
+tl::expected<void, std::string> set_of_device(Settings& settings, const Assignment& given) {
+  if (given.key == "map" || given.key == "maps")
+    return tl::make_unexpected(
+        fmt::format("_{}/{}: the maps are given as in _maps:=[a.yaml,b.yaml]", given.device, given.key));
+  if (const auto done = set(settings, given.key, std::string(given.value)); !done)
+    return tl::make_unexpected(fmt::format("_{}/{}", given.device, done.error()));
+  return {};
 }
 
 std::string option_names(const SettingKey& key) {
@@ -53,13 +85,15 @@ std::string option_names(const SettingKey& key) {
 
 Arguments parse_arguments(Span<char* const> arguments) {
   Arguments result;
+  Sorted given = sorted(arguments);
+  result.names_the_node = given.names_the_node;
   CLI::App app(description, "coupler_driver");
   app.footer(examples);
   std::array<std::string, setting_keys.size()> texts;
   for (std::size_t i = 0; i < texts.size(); ++i)
     app.add_option(option_names(setting_keys[i]), texts[i], std::string(setting_keys[i].help));
   try {
-    app.parse(in_one_spelling(arguments, result.names_the_node));
+    app.parse(std::move(given.options));
   } catch (const CLI::ParseError& error) {
     std::ostringstream out;
     std::ostringstream err;
@@ -75,6 +109,11 @@ Arguments parse_arguments(Span<char* const> arguments) {
       result.text = done.error() + "\n";
     }
   }
+  for (const Assignment& one : given.of_devices)
+    if (const auto done = set_of_device(result.of_devices[std::string(one.device)], one); !done) {
+      result.exit_code = 2;
+      result.text = done.error() + "\n";
+    }
   return result;
 }
 

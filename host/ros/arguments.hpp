@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -11,13 +12,16 @@ namespace coupler::driver {
 
 struct Arguments {
   Settings settings;
-  bool names_the_node = false;   ///< `__name:=` is there
+  std::map<std::string, Settings> of_devices;  ///< by the name of their maps
+  bool names_the_node = false;                 ///< `__name:=` is there
   std::optional<int> exit_code;  ///< the program is to end: 0 after --help, 2 after a wrong call
   std::string text;              ///< then: what to print, to stdout or stderr
 };
 
-/// Reads the settings in both spellings, `_key:=VALUE` and `--key VALUE`, and passes over ROS's own arguments
-/// (`from:=to`, `__name:=…`). `arguments[0]` is the program.
+/// Reads the settings in both spellings, `_key:=VALUE` and `--key VALUE`, those of one device of several, as
+/// in
+/// `_NAME/key:=VALUE`, and passes over ROS's own arguments (`from:=to`, `__name:=…`). `arguments[0]` is the
+/// program.
 Arguments parse_arguments(Span<char* const> arguments);
 
 }  // namespace coupler::driver

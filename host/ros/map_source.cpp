@@ -104,8 +104,7 @@ std::string_view why_not_several(const Map* built_in, const Settings& settings) 
   if (settings.map) return "both map and maps are given; give one of them";
   if (settings.name || settings.address || settings.port || settings.unit)
     return "name, address, port and unit are those of one device; with several maps give them in the maps, "
-           "or "
-           "as parameters ~NAME/address and so on, NAME being the map's name";
+           "as in _NAME/address:=HOST (NAME being the map's name), or as a parameter ~NAME/address";
   return {};
 }
 

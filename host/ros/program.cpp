@@ -65,8 +65,24 @@ struct Configured {
 };
 using Devices = std::deque<Configured>;  // each stays where it is
 
-/// Precedence: map < parameter ~key < parameter ~NAME/key, where there are several devices < argument.
-tl::expected<Devices, int> configure(std::vector<MapSource> sources, const Settings& arguments) {
+/// Arguments for devices that are not there, or an empty text.
+std::string strangers(const std::vector<MapSource>& sources, const Arguments& arguments) {
+  std::vector<std::string_view> names;
+  for (const MapSource& source : sources) names.push_back(source.map.name);
+  for (const auto& [name, settings] : arguments.of_devices)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      return fmt::format("there are arguments for '{}', but the maps are those of {}", name,
+                         fmt::join(names, ", "));
+  return {};
+}
+
+/// Precedence: map < parameter ~key < parameter ~NAME/key, where there are several devices < argument <
+/// argument for the device.
+tl::expected<Devices, int> configure(std::vector<MapSource> sources, const Arguments& arguments) {
+  if (const std::string wrong = strangers(sources, arguments); !wrong.empty()) {
+    print(wrong);
+    return tl::make_unexpected(wrong_input);
+  }
   const auto common = parameters_of(ros::NodeHandle("~"));
   if (!common) return tl::make_unexpected(common.error());
   Devices devices;
@@ -77,7 +93,10 @@ tl::expected<Devices, int> configure(std::vector<MapSource> sources, const Setti
       if (!own) return tl::make_unexpected(own.error());
       settings = overlay(settings, *own);
     }
-    Configured& device = devices.emplace_back(Configured{overlay(settings, arguments), std::move(source)});
+    settings = overlay(settings, arguments.settings);
+    const auto own = arguments.of_devices.find(std::string(source.map.name));
+    if (own != arguments.of_devices.end()) settings = overlay(settings, own->second);
+    Configured& device = devices.emplace_back(Configured{std::move(settings), std::move(source)});
     apply(device.settings, device.source.map);
   }
   return devices;
@@ -149,7 +168,7 @@ int main_with(const Map* built_in, int argc, char** argv) {
   if (!sources) return sources.error();
   if (!arguments.names_the_node)
     init_ros(argc, argv, node_name(arguments.settings.name.value_or(std::string(sources->front().map.name))));
-  const auto devices = configure(std::move(*sources), arguments.settings);
+  const auto devices = configure(std::move(*sources), arguments);
   return devices ? run(*devices) : devices.error();
 }
 

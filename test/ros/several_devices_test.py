@@ -65,6 +65,15 @@ class SeveralDevices(testing.RosTest):
         self.assertEqual(self.topic("/belt/level", Int16).next(), 22)
         self.assertEqual(self.topic("/press/level", Int16).next(), 11)
 
+    def test_or_an_argument_of_its_own(self):
+        press, belt = self.peer(11), self.peer(22)
+        maps = [write_map("press", free_port()), write_map("belt", free_port())]
+        rospy.set_param("/press_driver", {"belt": {"port": free_port()}})  # weaker than the argument
+        self.addCleanup(rospy.delete_param, "/press_driver")
+        self.driver(f"_maps:=[{','.join(maps)}]", f"_press/port:={press.port}", f"_belt/port:={belt.port}")
+        self.assertEqual(self.topic("/belt/level", Int16).next(), 22)
+        self.assertEqual(self.topic("/press/level", Int16).next(), 11)
+
     def assert_ends(self, code, text, *arguments):
         driver = process.Driver(*arguments)
         self.assertEqual(driver.wait(), code, driver.output)
@@ -74,7 +83,8 @@ class SeveralDevices(testing.RosTest):
         path = write_map("press", 502)
         self.assert_ends(1, "two maps have the name press", f"_maps:=[{path},{write_map('press', 503)}]")
         self.assert_ends(2, "both map and maps are given", f"_maps:=[{path}]", f"_map:={path}")
-        self.assert_ends(2, "give them in the maps, or as parameters ~NAME/address", f"_maps:=[{path}]", "_port:=503")
+        self.assert_ends(2, "give them in the maps, as in _NAME/address:=HOST", f"_maps:=[{path}]", "_port:=503")
+        self.assert_ends(1, "arguments for 'belt', but the maps are those of press", f"_map:={path}", "_belt/port:=503")
         self.assert_ends(1, "/nowhere.yaml", f"_maps:=[{path},/nowhere.yaml]")
 
 

@@ -34,6 +34,23 @@ TEST(Arguments, Several_maps_are_a_list_in_each_spelling) {
   EXPECT_EQ(parse({"_maps:=[]"}).exit_code, 2);
 }
 
+TEST(Arguments, One_of_several_devices_may_have_its_own) {
+  const Arguments result = parse({"_port:=502", "_belt/port:=503", "_cell/press/unit:=7", "_belt/rate:=5"});
+  EXPECT_FALSE(result.exit_code) << result.text;
+  EXPECT_EQ(result.settings.port, 502);
+  ASSERT_EQ(result.of_devices.size(), 2U);
+  EXPECT_EQ(result.of_devices.at("belt").port, 503);
+  EXPECT_EQ(result.of_devices.at("belt").rate, 5);
+  EXPECT_EQ(result.of_devices.at("cell/press").unit, 7);
+}
+
+TEST(Arguments, What_cannot_be_a_devices_own_is_a_wrong_call) {
+  EXPECT_THAT(parse({"_belt/port:=0"}).text, HasSubstr("_belt/port: '0' is not a whole number"));
+  EXPECT_THAT(parse({"_belt/speed:=1"}).text, HasSubstr("_belt/speed: there is no such setting"));
+  EXPECT_THAT(parse({"_belt/map:=a.yaml"}).text, HasSubstr("_maps:="));
+  EXPECT_EQ(parse({"_belt/map:=a.yaml"}).exit_code, 2);
+}
+
 TEST(Arguments, Each_setting_is_read) {
   const Settings s = parse({"_name:=arm", "_address:=::1", "_port:=1502", "_unit:=255", "_rate:=12.5",
                             "_timeout:=0.5", "_verify:=warn", "_poll:=subscribed"})
