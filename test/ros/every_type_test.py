@@ -19,6 +19,8 @@ def value_of(point, index, turn):
 
 
 class EveryType(unittest.TestCase):
+    peer = Peer
+
     def document(self, byteorder_reverse, wordorder_reverse):
         document = yaml.safe_load(MAP.read_text())
         document.update(byteorder_reverse=byteorder_reverse, wordorder_reverse=wordorder_reverse)
@@ -28,7 +30,7 @@ class EveryType(unittest.TestCase):
         for order in ORDERS:
             with self.subTest(byteorder_reverse=order[0], wordorder_reverse=order[1]):
                 document = self.document(*order)
-                with Peer() as peer:
+                with self.peer() as peer:
                     points = iec.points(document)
                     for index, point in enumerate(points):
                         point.store(peer, value_of(point, index, 0))

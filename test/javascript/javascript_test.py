@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every type, in every table, in all four byte and word orders, against servers from npm."""
+import functools
+
+import every_type_test
+from device import Device
+from support import testing
+
+
+class ModbusSerial(every_type_test.EveryType):
+    peer = functools.partial(Device, "modbus-serial")
+
+
+class Jsmodbus(every_type_test.EveryType):
+    peer = functools.partial(Device, "jsmodbus")
+
+
+if __name__ == "__main__":
+    testing.main()
