@@ -68,6 +68,7 @@ using Devices = std::deque<Configured>;  // each stays where it is
 /// Arguments for devices that are not there, or an empty text.
 std::string strangers(const std::vector<MapSource>& sources, const Arguments& arguments) {
   std::vector<std::string_view> names;
+  names.reserve(sources.size());
   for (const MapSource& source : sources) names.push_back(source.map.name);
   for (const auto& [name, settings] : arguments.of_devices)
     if (std::find(names.begin(), names.end(), name) == names.end())

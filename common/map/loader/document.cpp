@@ -182,7 +182,9 @@ class TreeBuilder : public YAML::EventHandler {
 
 /// With a newline at the end yaml-cpp reports an open quote's beginning to the builder instead of stopping.
 Entry build_tree(const std::string& text, bool json) {
-  std::istringstream in(text + '\n');
+  std::string yaml = text + '\n';
+  blank_empty_lines(yaml);
+  std::istringstream in(yaml);
   TreeBuilder builder(text, json);
   try {
     YAML::Parser parser(in);

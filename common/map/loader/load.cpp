@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/map/loader/load.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -8,6 +9,7 @@
 #include <iterator>
 #include <optional>
 
+#include <fmt/format.h>
 #include <tl/expected.hpp>
 
 #include "common/map/loader/document.hpp"
@@ -38,6 +40,20 @@ LoadResult unreadable(const std::string& path, int error, std::string remedy) {
             std::string("the file cannot be read: ") + std::strerror(error), std::move(remedy)}}};
 }
 
+/// The text that a node serves is the same map. Where addresses go is known for texts that somebody would
+/// write; another reading tells about the others.
+void check_filled_in(const Map& map, loader::Position first, loader::Problems& problems) {
+  const LoadResult served = load_map(map.text, "");
+  if (served.map != nullptr && served.map->map().fingerprint == map.fingerprint) return;
+  const auto error =
+      std::find_if(served.diagnostics.begin(), served.diagnostics.end(),
+                   [](const Diagnostic& d) { return d.severity == Diagnostic::Severity::error; });
+  problems.error(first,
+                 fmt::format("the addresses that the map leaves out cannot be filled in ({})",
+                             error == served.diagnostics.end() ? "it would be another map" : error->what),
+                 "write the addresses yourself, from here on");
+}
+
 }  // namespace
 
 LoadResult load_map(std::string_view text, std::string_view file) {
@@ -58,6 +74,8 @@ LoadResult load_map_with_lock(std::string_view text, std::string_view file, Lock
   loader::Context context{problems, *map};
   if (const auto root = loader::parse_document(text, problems))
     loader::read_map(*root, text, placement, context);
+  if (!problems.has_errors() && context.filled_in.line > 0)
+    check_filled_in(map->map(), context.filled_in, problems);
   LoadResult result{nullptr, std::move(placement.problems)};
   quote(result.diagnostics, lock_text);
   if (!problems.has_errors() && !has_errors(result.diagnostics)) {

@@ -154,8 +154,10 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   top.choice("on_reconnect", {OnReconnect::drop, OnReconnect::restore}, head.on_reconnect);
   if (context.problems.has_errors()) return;
 
-  const bool complete =
-      std::none_of(drafts.begin(), drafts.end(), [](const DraftPoint& d) { return d.addressless; });
+  const auto left_out =
+      std::find_if(drafts.begin(), drafts.end(), [](const DraftPoint& d) { return d.addressless; });
+  const bool complete = left_out == drafts.end();
+  if (!complete) context.filled_in = left_out->name_at;
   head.text =
       context.map.keep(complete ? std::string(text) : addressed_text(text, drafts, defaults.addressing));
   std::vector<Point> finished;

@@ -62,6 +62,19 @@ bool check_text(std::string_view text, Problems& problems) {
   return true;
 }
 
+void blank_empty_lines(std::string& text) {
+  constexpr const char* blanks = " \t";
+  for (std::size_t tab = text.find('\t'); tab != std::string::npos; tab = text.find('\t', tab)) {
+    const std::size_t before = text.find_last_not_of(blanks, tab);
+    const std::size_t after = std::min(text.find_first_not_of(blanks, tab), text.size());
+    const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+    const bool starts_line = begin == 0 || text[begin - 1] == '\n';
+    const bool ends_line = after == text.size() || text[after] == '\n' || text[after] == '\r';
+    if (starts_line && ends_line) std::fill(text.begin() + begin, text.begin() + after, ' ');
+    tab = after;
+  }
+}
+
 Position position_of(std::string_view text, std::size_t offset) {
   const std::string_view before = text.substr(0, std::min(offset, text.size()));
   const std::size_t newline = before.rfind('\n');

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 #include "common/map/loader/entry.hpp"
@@ -19,6 +20,10 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// The text is UTF-8 of printable characters, tabs and newlines. yaml-cpp would take other control characters
 /// for the end of the file or for another encoding, without a word.
 bool check_text(std::string_view text, Problems& problems);
+
+/// Lines of nothing but blanks and tabs, which yaml-cpp takes for wrong indentation, have blanks only. All
+/// else stays where it is.
+void blank_empty_lines(std::string& text);
 
 /// Where the byte at `offset` stands.
 Position position_of(std::string_view text, std::size_t offset);

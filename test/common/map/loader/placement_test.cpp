@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Points without an address: what they get, what the lock says, and the text that a node serves.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "test/common/map/loader/loaded.hpp"
 
@@ -250,6 +250,16 @@ TEST(ServedText, It_is_the_file_if_that_leaves_nothing_out) {
   EXPECT_EQ(renewed(text).map->map().text, text);
 }
 
+TEST(ServedText, A_map_that_it_would_be_too_long_for_is_refused) {
+  const std::string map = "name: m\nmapping: {coils: {a: }}\n#";
+  const std::string longest = map + std::string((std::size_t{16} << 20U) - map.size(), '#');
+  const auto result = load(longest, LockUse::renew);
+  EXPECT_EQ(result.map, nullptr);
+  EXPECT_THAT(text_of(result.diagnostics),
+              testing::StartsWith("m.yaml:2:19: error: the addresses that the map leaves out cannot be "
+                                  "filled in (the file has 16777218 bytes"));
+}
+
 struct Form {
   std::string text;
   std::string served;
@@ -279,6 +289,8 @@ INSTANTIATE_TEST_SUITE_P(
              "{\"name\": \"m\", \"mapping\": {\"coils\": {\"a\": 0}}}"},
         Form{"name: m\r\nmapping:\r\n  coils:\r\n    a:\r\n    b:\r\n      units: x\r\n",
              "name: m\r\nmapping:\r\n  coils:\r\n    a: 0\r\n    b:\r\n      address: 1\n      units: x\r\n"},
+        Form{"name: m\n\t\nmapping:\n  coils:\n    a:\n \t \n    b:\n\t",
+             "name: m\n\t\nmapping:\n  coils:\n    a: 0\n \t \n    b: 1\n\t"},
         Form{"name: m\nmapping: {coils: {a: , 'b': , c: NULL}}",
              "name: m\nmapping: {coils: {a: 0 , 'b': 1 , c: 2}}"},
         Form{
