@@ -183,7 +183,7 @@ class TreeBuilder : public YAML::EventHandler {
 /// With a newline at the end yaml-cpp reports an open quote's beginning to the builder instead of stopping.
 Entry build_tree(const std::string& text, bool json) {
   std::string yaml = text + '\n';
-  blank_empty_lines(yaml);
+  indent_with_blanks(yaml);
   std::istringstream in(yaml);
   TreeBuilder builder(text, json);
   try {

@@ -51,7 +51,7 @@ void check_filled_in(const Map& map, loader::Position first, loader::Problems& p
   problems.error(first,
                  fmt::format("the addresses that the map leaves out cannot be filled in ({})",
                              error == served.diagnostics.end() ? "it would be another map" : error->what),
-                 "write the addresses yourself, from here on");
+                 "write them into the map");
 }
 
 }  // namespace

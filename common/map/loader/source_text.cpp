@@ -62,7 +62,7 @@ bool check_text(std::string_view text, Problems& problems) {
   return true;
 }
 
-void blank_empty_lines(std::string& text) {
+void indent_with_blanks(std::string& text) {
   constexpr const char* blanks = " \t";
   for (std::size_t tab = text.find('\t'); tab != std::string::npos; tab = text.find('\t', tab)) {
     const std::size_t before = text.find_last_not_of(blanks, tab);
@@ -70,7 +70,8 @@ void blank_empty_lines(std::string& text) {
     const std::size_t begin = before == std::string::npos ? 0 : before + 1;
     const bool starts_line = begin == 0 || text[begin - 1] == '\n';
     const bool ends_line = after == text.size() || text[after] == '\n' || text[after] == '\r';
-    if (starts_line && ends_line) std::fill(text.begin() + begin, text.begin() + after, ' ');
+    const bool is_comment = begin == tab && after < text.size() && text[after] == '#';
+    if (starts_line && (ends_line || is_comment)) std::fill(text.begin() + begin, text.begin() + after, ' ');
     tab = after;
   }
 }

@@ -21,9 +21,9 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// for the end of the file or for another encoding, without a word.
 bool check_text(std::string_view text, Problems& problems);
 
-/// Lines of nothing but blanks and tabs, which yaml-cpp takes for wrong indentation, have blanks only. All
-/// else stays where it is.
-void blank_empty_lines(std::string& text);
+/// Blanks in place of tabs where only nothing or a comment follows: yaml-cpp takes them for wrong
+/// indentation.
+void indent_with_blanks(std::string& text);
 
 /// Where the byte at `offset` stands.
 Position position_of(std::string_view text, std::size_t offset);

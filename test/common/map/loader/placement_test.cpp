@@ -289,8 +289,8 @@ INSTANTIATE_TEST_SUITE_P(
              "{\"name\": \"m\", \"mapping\": {\"coils\": {\"a\": 0}}}"},
         Form{"name: m\r\nmapping:\r\n  coils:\r\n    a:\r\n    b:\r\n      units: x\r\n",
              "name: m\r\nmapping:\r\n  coils:\r\n    a: 0\r\n    b:\r\n      address: 1\n      units: x\r\n"},
-        Form{"name: m\n\t\nmapping:\n  coils:\n    a:\n \t \n    b:\n\t",
-             "name: m\n\t\nmapping:\n  coils:\n    a: 0\n \t \n    b: 1\n\t"},
+        Form{"name: m\n\t\nmapping:\n  coils:\n    a:\n \t \n    b:\n\t# c\n\t",
+             "name: m\n\t\nmapping:\n  coils:\n    a: 0\n \t \n    b: 1\n\t# c\n\t"},
         Form{"name: m\nmapping: {coils: {a: , 'b': , c: NULL}}",
              "name: m\nmapping: {coils: {a: 0 , 'b': 1 , c: 2}}"},
         Form{
