@@ -70,7 +70,7 @@ void Device::arrived() {
 }
 
 void Device::stop() {
-  if (connected_) writer_.shut_down();
+  writer_.shut_down(connected_);
   writer_.disconnected(NotConnected{"the driver ends"});
   watchdog_.disconnected("the driver ends");
   transport_.close();

@@ -196,10 +196,16 @@ void Writer::drop(const Write& write) {
                                               name(write.point), to_string(result)));
 }
 
-void Writer::shut_down() {
+void Writer::shut_down(bool connected) {
   if (map_.on_shutdown != OnShutdown::safe) return;
+  const auto values = safe_values(map_);
+  if (!connected) {
+    if (!values.empty())
+      sink_.on_report(Level::error, "no output could be set to its safe value: not connected");
+    return;
+  }
   if (sent_) finish(transport_.receive(*sent_));
-  const auto refused = write_values(safe_values(map_), map_, transport_);
+  const auto refused = write_values(values, map_, transport_);
   if (!refused) {
     sink_.on_report(Level::error,
                     "not all outputs could be set to their safe values: " + to_string(refused.error()));

@@ -44,7 +44,7 @@ class Writer {
   /// There is no connection: nobody waits for what was sent or queued.
   void disconnected(const Error& why);
   /// As `on_shutdown` says, the last thing before the connection is closed.
-  void shut_down();
+  void shut_down(bool connected);
 
   /// Whether a newer value of the point is on its way than the one just read.
   bool is_pending(std::uint32_t point) const { return queue_.is_pending(point); }

@@ -2,6 +2,11 @@
 #include "host/ros/ros_log.hpp"
 
 #include <ros/console.h>
+#include <ros/init.h>
+
+#include <cstdio>
+
+#include <fmt/format.h>
 
 namespace coupler::driver {
 namespace {
@@ -14,6 +19,14 @@ void error(const std::string& text) { ROS_ERROR("%s", text.c_str()); }
 }  // namespace
 
 void log(Level level, const std::string& text) {
+  if (ros::isShuttingDown()) {  // its log has ended; what becomes of safe values is still to be told
+    fmt::print(stderr, "[{}] {}\n",
+               level == Level::error     ? "ERROR"
+               : level == Level::warning ? " WARN"
+                                         : " INFO",
+               text);
+    return;
+  }
   switch (level) {
     case Level::info: return info(text);
     case Level::warning: return warn(text);

@@ -7,6 +7,7 @@ import time
 import unittest
 
 from support import process, testing
+from support.device import FAILURE, Device, Refuse
 from support.peer import Peer, free_port
 
 MAP = """
@@ -59,6 +60,28 @@ class Shutdown(unittest.TestCase):
             for server in silent:
                 stack.enter_context(server.accept()[0]).recv(12)
             self.assert_ends_soon(driver)
+
+    def test_what_becomes_of_safe_values_is_told_though_ros_has_ended(self):
+        path = process.write_map("name: shutdown\naddress: 127.0.0.1\non_shutdown: safe\nmapping:\n"
+                                 "  coils: {lamp: 3, valve: {address: 7, safe: on}}\n")
+
+        def answer(request):
+            if request.function == 5 and request.address == 3:
+                raise Refuse(FAILURE)
+            return device.serve(request)
+
+        device = Device().start()
+        self.addCleanup(device.stop)
+        device.answer = answer
+        with process.Driver(f"_map:={path}", f"_port:={device.port}") as driver:
+            driver.wait_for("connected")
+            self.assert_ends_soon(driver)
+            self.assertIn("lamp could not be set to its safe value: exception 04", driver.output)
+            self.assertEqual(device.tables["coils"][7], 1)
+        with process.Driver(f"_map:={path}", f"_port:={free_port()}") as driver:
+            driver.wait_for("Connection refused")
+            self.assert_ends_soon(driver)
+            self.assertIn("no output could be set to its safe value: not connected", driver.output)
 
     def test_while_it_waits_for_a_nodes_map(self):
         with process.Driver("_address:=127.0.0.1", f"_port:={free_port()}") as driver:

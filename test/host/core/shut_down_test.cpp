@@ -58,6 +58,13 @@ TEST_F(ShutDownTest, An_output_that_does_not_take_its_safe_value_is_reported_and
   EXPECT_EQ((device.values[{Table::coils, 1}]), 1);
 }
 
+TEST_F(ShutDownTest, A_device_that_is_away_at_the_end_is_told_of) {
+  device.refuse_connect = NotConnected{"no route"};
+  start_online(OnShutdown::safe);
+  engine->stop();
+  EXPECT_EQ(sink->reported("no output could be set to its safe value: not connected"), 1);
+}
+
 TEST_F(ShutDownTest, Writes_that_still_wait_are_dropped_before_the_safe_values) {
   start_online(OnShutdown::safe);
   push("off", 1);
