@@ -19,7 +19,8 @@ constexpr const char* description =
 
 constexpr const char* examples =
     "Each option is also a private parameter (~rate) and, as ROS has it, an argument (_rate:=20).\n"
-    "Precedence: map < parameter < argument.\n\n"
+    "What is said of one device of several has the name in its map before it: _NAME/rate:=20, ~NAME/rate.\n"
+    "Precedence: map < parameter < argument, what is said of one device over what is said of all.\n\n"
     "Examples:\n"
     "  coupler_driver _map:=device.yaml\n"
     "  coupler_driver --map device.yaml --address 192.168.10.101 --rate 50\n"
@@ -41,14 +42,17 @@ struct Assignment {
 struct Sorted {
   std::vector<std::string> options;  ///< as CLI11 knows them, last first as it wants them
   std::vector<Assignment> of_devices;
+  std::vector<char*> for_ros;
   bool names_the_node = false;
 };
 
 /// ROS's own are left out.
 Sorted sorted(Span<char* const> arguments) {
   Sorted result;
-  for (const char* const raw : arguments.from(1)) {
+  result.for_ros.push_back(arguments[0]);
+  for (char* const raw : arguments.from(1)) {
     const std::string_view argument(raw);
+    result.for_ros.push_back(raw);
     const std::size_t assign = argument.find(":=");
     if (assign == std::string_view::npos) {
       result.options.emplace_back(argument);
@@ -56,10 +60,12 @@ Sorted sorted(Span<char* const> arguments) {
       const std::string_view name = argument.substr(1, assign - 1);
       const std::string_view value = argument.substr(assign + 2);
       const std::size_t slash = name.rfind('/');
-      if (slash == std::string_view::npos)
+      if (slash == std::string_view::npos) {
         result.options.push_back(fmt::format("--{}={}", name, value));
-      else
+      } else {
         result.of_devices.push_back({name.substr(0, slash), name.substr(slash + 1), value});
+        result.for_ros.pop_back();
+      }
     } else if (starts_with(argument, "__name:=")) {
       result.names_the_node = true;
     }
@@ -87,6 +93,7 @@ Arguments parse_arguments(Span<char* const> arguments) {
   Arguments result;
   Sorted given = sorted(arguments);
   result.names_the_node = given.names_the_node;
+  result.for_ros = std::move(given.for_ros);
   CLI::App app(description, "coupler_driver");
   app.footer(examples);
   std::array<std::string, setting_keys.size()> texts;
@@ -101,19 +108,17 @@ Arguments parse_arguments(Span<char* const> arguments) {
     result.text = out.str() + err.str();
     return result;
   }
+  const auto check = [&](const tl::expected<void, std::string>& done) {
+    if (done) return;
+    result.exit_code = 2;
+    result.text += done.error() + "\n";
+  };
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const SettingKey& key = setting_keys[i];
-    if (app.count("--" + std::string(key.key)) == 0) continue;
-    if (const auto done = set(result.settings, key.key, texts[i]); !done) {
-      result.exit_code = 2;
-      result.text = done.error() + "\n";
-    }
+    if (app.count("--" + std::string(key.key)) > 0) check(set(result.settings, key.key, texts[i]));
   }
   for (const Assignment& one : given.of_devices)
-    if (const auto done = set_of_device(result.of_devices[std::string(one.device)], one); !done) {
-      result.exit_code = 2;
-      result.text = done.error() + "\n";
-    }
+    check(set_of_device(result.of_devices[std::string(one.device)], one));
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/base/span.hpp"
 #include "host/ros/settings.hpp"
@@ -12,15 +13,15 @@ namespace coupler::driver {
 
 struct Arguments {
   Settings settings;
-  std::map<std::string, Settings> of_devices;  ///< by the name of their maps
-  bool names_the_node = false;                 ///< `__name:=` is there
+  std::map<std::string, Settings> of_devices;  ///< by the name in their maps
+  std::vector<char*> for_ros;    ///< all but those of one device, which ROS would keep as parameters
+  bool names_the_node = false;   ///< `__name:=` is there
   std::optional<int> exit_code;  ///< the program is to end: 0 after --help, 2 after a wrong call
   std::string text;              ///< then: what to print, to stdout or stderr
 };
 
-/// Reads the settings in both spellings, `_key:=VALUE` and `--key VALUE`, those of one device of several, as
-/// in
-/// `_NAME/key:=VALUE`, and passes over ROS's own arguments (`from:=to`, `__name:=…`). `arguments[0]` is the
+/// Reads the settings in both spellings, `_key:=VALUE` and `--key VALUE`, and those of one device of several,
+/// `_NAME/key:=VALUE`; passes over ROS's own arguments (`from:=to`, `__name:=…`). `arguments[0]` is the
 /// program.
 Arguments parse_arguments(Span<char* const> arguments);
 

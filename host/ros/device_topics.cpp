@@ -16,8 +16,6 @@ namespace {
 
 using State = PointQuality::State;
 
-constexpr auto diagnostics_interval = std::chrono::seconds(1);
-
 std::string topic(const Map& map, std::string_view point) { return fmt::format("{}/{}", map.name, point); }
 
 std::vector<std::unique_ptr<PointPublisher>> advertise_all(ros::NodeHandle& handle, const Map& map,
@@ -37,14 +35,14 @@ ros::Publisher advertise_online(ros::NodeHandle& handle, const Map& map) {
 
 }  // namespace
 
-DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, std::unique_ptr<Transport> transport,
-                           Verify verify, Poll poll)
+DeviceTopics::DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater& updater, const Map& map,
+                           std::unique_ptr<Transport> transport, Verify verify, Poll poll)
     : map_(map),
       listeners_(map.points.size()),
       publishers_(advertise_all(handle, map_, listeners_)),
       online_(advertise_online(handle, map)),
       status_(handle, map),
-      diagnostics_(map),
+      diagnostics_(map, updater),
       services_(map, listeners_),
       transport_(std::move(transport)),
       thread_(map, verify, load_map, *transport_, *this),
@@ -59,7 +57,7 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, const Map& map, std::unique_
     listeners_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
 }
 
-void DeviceTopics::report(Time now) {
+bool DeviceTopics::report(Time now) {
   const DeviceSnapshot device = thread_.statistics();
   std::vector<PointQuality> points = thread_.qualities();
   for (std::uint32_t i = 0; i < points.size(); ++i)
@@ -67,9 +65,7 @@ void DeviceTopics::report(Time now) {
                                             (state == State::stale || state == State::never_read))
       points[i].state = State::not_wanted;
   status_.update(device, points, now);
-  if (diagnosed_ != Time::min() && now - diagnosed_ < diagnostics_interval) return;
-  diagnosed_ = now;
-  diagnostics_.update(device, points);
+  return diagnostics_.update(device, points);
 }
 
 void DeviceTopics::on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) {

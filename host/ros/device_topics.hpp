@@ -23,13 +23,14 @@ namespace coupler::driver {
 class DeviceTopics : public Sink {
  public:
   /// The map's views must outlive it; ROS must have been shut down before it ends, since callbacks refer to
-  /// it.
-  DeviceTopics(ros::NodeHandle& handle, const Map& map, std::unique_ptr<Transport> transport, Verify verify,
-               Poll poll);
+  /// it, and `updater` is not used any more.
+  DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater& updater, const Map& map,
+               std::unique_ptr<Transport> transport, Verify verify, Poll poll);
   ~DeviceTopics() override { services_.withdraw(); }
 
-  /// Publishes status and diagnostics where they are due. To be called about ten times a second.
-  void report(Time now);
+  /// Publishes the status where it is due, and says what diagnostics are to tell next: true if at once. To be
+  /// called about ten times a second.
+  bool report(Time now);
 
   void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) override;
   void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) override;
@@ -46,7 +47,6 @@ class DeviceTopics : public Sink {
   ros::Publisher online_;
   StatusPublisher status_;
   Diagnostics diagnostics_;
-  Time diagnosed_ = Time::min();
   DeviceServices services_;
   std::unique_ptr<Transport> transport_;
   DeviceThread thread_;

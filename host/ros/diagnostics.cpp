@@ -26,23 +26,31 @@ void add(Wrapper& status, const std::string& name, const Histogram& histogram) {
 
 }  // namespace
 
-Diagnostics::Diagnostics(const Map& map) : map_(map) {
-  const std::string name(map.name);
-  updater_.setHardwareIDf("%s %s:%d unit %d", name.c_str(), std::string(map.connection.address).c_str(),
-                          map.connection.port, map.connection.unit);
-  updater_.add(name + " connection", this, &Diagnostics::connection);
-  updater_.add(name + " polling", this, &Diagnostics::polling);
-  updater_.add(name + " writes", this, &Diagnostics::writes);
-  if (map.coupler_watchdog.present()) updater_.add(name + " watchdog", this, &Diagnostics::watchdog);
+Diagnostics::Diagnostics(const Map& map, diagnostic_updater::Updater& updater)
+    : map_(map),
+      hardware_id_(fmt::format("{} {}:{} unit {}", map.name, map.connection.address, map.connection.port,
+                               map.connection.unit)) {
+  const auto add = [&](const char* what, void (Diagnostics::*tell)(Wrapper&)) {
+    updater.add(fmt::format("{} {}", map.name, what), [this, tell](Wrapper& status) {
+      status.hardware_id = hardware_id_;
+      (this->*tell)(status);
+    });
+  };
+  add("connection", &Diagnostics::connection);
+  add("polling", &Diagnostics::polling);
+  add("writes", &Diagnostics::writes);
+  if (map.coupler_watchdog.present()) add("watchdog", &Diagnostics::watchdog);
 }
 
-void Diagnostics::update(const DeviceSnapshot& device, const std::vector<PointQuality>& points) {
-  before_ = std::exchange(now_, device);
+bool Diagnostics::update(const DeviceSnapshot& device, const std::vector<PointQuality>& points) {
+  next_ = device;
   points_ = points;
-  updater_.force_update();
+  return next_.online != now_.online;
 }
 
+/// The first of a message.
 void Diagnostics::connection(Wrapper& status) {
+  before_ = std::exchange(now_, next_);
   summarize(status, connection_health(now_));
   status.add("online", now_.online);
   status.add("identity", std::string(to_string(now_.identity)));

@@ -3,6 +3,7 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 
+#include <string>
 #include <vector>
 
 #include "common/map/map.hpp"
@@ -16,11 +17,13 @@ namespace coupler::driver {
 /// coupler's own watchdog where the driver makes use of it. The hardware id is its name and address.
 class Diagnostics {
  public:
-  /// What `map` views must outlive it.
-  explicit Diagnostics(const Map& map);
+  /// `updater` publishes what all devices of the process say as one message: a publisher of /diagnostics
+  /// keeps only the newest. It outlives the diagnostics, and is not used once they are gone. What `map` views
+  /// outlives it too.
+  Diagnostics(const Map& map, diagnostic_updater::Updater& updater);
 
-  /// Publishes.
-  void update(const DeviceSnapshot& device, const std::vector<PointQuality>& points);
+  /// What to say next. True: it should not wait, since the device came or went.
+  bool update(const DeviceSnapshot& device, const std::vector<PointQuality>& points);
 
  private:
   using Wrapper = diagnostic_updater::DiagnosticStatusWrapper;
@@ -30,10 +33,11 @@ class Diagnostics {
   void watchdog(Wrapper& status);
 
   Map map_;
-  DeviceSnapshot before_;
-  DeviceSnapshot now_;
+  std::string hardware_id_;
+  DeviceSnapshot next_;
+  DeviceSnapshot before_;  ///< what the message before told
+  DeviceSnapshot now_;     ///< what this one tells
   std::vector<PointQuality> points_;
-  diagnostic_updater::Updater updater_;
 };
 
 }  // namespace coupler::driver

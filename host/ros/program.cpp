@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/program.hpp"
 
+#include <ros/exceptions.h>
 #include <ros/init.h>
 #include <unistd.h>
 
@@ -26,7 +27,9 @@ namespace coupler::driver {
 namespace {
 
 constexpr int wrong_input = 1;
+constexpr int wrong_call = 2;
 constexpr auto report_interval = std::chrono::milliseconds(100);
+constexpr auto diagnostics_interval = std::chrono::seconds(1);
 
 void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", text); }
 
@@ -44,11 +47,19 @@ std::string node_name(std::string_view map_name) {
   return name;
 }
 
-/// The name is overridden by `__name`. ROS takes SIGINT.
-void init_ros(int argc, char** argv, const std::string& name) {
-  ros::init(argc, argv, name);
+/// The name is overridden by `__name`. ROS takes SIGINT. False after telling what ROS does not take.
+bool init_ros(std::vector<char*> argv, const std::string& name) {
+  int argc = static_cast<int>(argv.size());
+  try {
+    ros::init(argc, argv.data(), name);
+  } catch (const ros::InvalidNameException& error) {
+    print(fmt::format("{}; what is said of one device begins with '_', as in _press/address:=HOST",
+                      error.what()));
+    return false;
+  }
   ros::start();  // here, or else the end of the first NodeHandle ends ROS
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  return true;
 }
 
 tl::expected<Settings, int> parameters_of(const ros::NodeHandle& handle) {
@@ -65,16 +76,17 @@ struct Configured {
 };
 using Devices = std::deque<Configured>;  // each stays where it is
 
-/// Arguments for devices that are not there, or an empty text.
+/// A line for each name that no map has and arguments are for.
 std::string strangers(const std::vector<MapSource>& sources, const Arguments& arguments) {
   std::vector<std::string_view> names;
   names.reserve(sources.size());
   for (const MapSource& source : sources) names.push_back(source.map.name);
+  std::string told;
   for (const auto& [name, settings] : arguments.of_devices)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      return fmt::format("there are arguments for '{}', but the maps are those of {}", name,
-                         fmt::join(names, ", "));
-  return {};
+      told += fmt::format("{}there are arguments for '{}'; the maps themselves have the names {}",
+                          told.empty() ? "" : "\ncoupler_driver: ", name, fmt::join(names, ", "));
+  return told;
 }
 
 /// Precedence: map < parameter ~key < parameter ~NAME/key, where there are several devices < argument <
@@ -82,7 +94,7 @@ std::string strangers(const std::vector<MapSource>& sources, const Arguments& ar
 tl::expected<Devices, int> configure(std::vector<MapSource> sources, const Arguments& arguments) {
   if (const std::string wrong = strangers(sources, arguments); !wrong.empty()) {
     print(wrong);
-    return tl::make_unexpected(wrong_input);
+    return tl::make_unexpected(wrong_call);
   }
   const auto common = parameters_of(ros::NodeHandle("~"));
   if (!common) return tl::make_unexpected(common.error());
@@ -130,17 +142,25 @@ int run(const Devices& devices) {
     return wrong_input;
   }
   ros::NodeHandle handle;
+  diagnostic_updater::Updater diagnostics;
+  diagnostics.setHardwareID("coupler_driver");  // each device has its own
   std::vector<std::unique_ptr<DeviceTopics>> topics;
   std::vector<Map> maps;
   for (const auto& [settings, source] : devices) maps.push_back(source.map);
   auto transports = make_transports(maps);
   auto transport = transports.begin();
   for (const auto& [settings, source] : devices)
-    topics.push_back(std::make_unique<DeviceTopics>(handle, source.map, std::move(*transport++),
+    topics.push_back(std::make_unique<DeviceTopics>(handle, diagnostics, source.map, std::move(*transport++),
                                                     settings.verify.value_or(Verify::require),
                                                     settings.poll.value_or(Poll::all)));
-  for (; ros::ok(); std::this_thread::sleep_for(report_interval))
-    for (const auto& device : topics) device->report(std::chrono::steady_clock::now());
+  for (Time diagnosed = Time::min(); ros::ok(); std::this_thread::sleep_for(report_interval)) {
+    const Time now = std::chrono::steady_clock::now();
+    bool due = diagnosed == Time::min() || now - diagnosed >= diagnostics_interval;
+    for (const auto& device : topics) due |= device->report(now);
+    if (!due) continue;
+    diagnosed = now;
+    diagnostics.force_update();
+  }
   ros::shutdown();
   end_all(topics);
   return 0;
@@ -160,15 +180,16 @@ int main_with(const Map* built_in, int argc, char** argv) {
   // A node that was given its name (by roslaunch, say) may have its map in its parameters. Otherwise the map
   // gives the name, and the parameters are those of that name.
   if (arguments.names_the_node) {
-    init_ros(argc, argv, "coupler_driver");
+    if (!init_ros(arguments.for_ros, "coupler_driver")) return wrong_call;
     const auto parameters = parameters_of(ros::NodeHandle("~"));
     if (!parameters) return parameters.error();
     settings = overlay(*parameters, arguments.settings);
   }
   auto sources = find_maps(built_in, settings);
   if (!sources) return sources.error();
-  if (!arguments.names_the_node)
-    init_ros(argc, argv, node_name(arguments.settings.name.value_or(std::string(sources->front().map.name))));
+  const std::string name =
+      node_name(arguments.settings.name.value_or(std::string(sources->front().map.name)));
+  if (!arguments.names_the_node && !init_ros(arguments.for_ros, name)) return wrong_call;
   const auto devices = configure(std::move(*sources), arguments);
   return devices ? run(*devices) : devices.error();
 }

@@ -129,7 +129,7 @@ Outcome set(Settings& settings, std::string_view key, const std::string& text) {
   if (key == "timeout") return set_timeout(settings, text);
   if (key == "verify") return set_verify(settings, text);
   if (key == "poll") return set_poll(settings, text);
-  return tl::make_unexpected(fmt::format("{}: there is no such setting", key));
+  return tl::make_unexpected(fmt::format("{}: there is no such setting; see --help", key));
 }
 
 Settings overlay(Settings weak, const Settings& strong) {

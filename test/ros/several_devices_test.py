@@ -4,6 +4,7 @@ import socket
 import time
 
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Bool, Int16
 
 from support import process, testing
@@ -56,6 +57,16 @@ class SeveralDevices(testing.RosTest):
             self.assertFalse(self.topic("/dead/online", Bool).next())
             self.assertFalse(self.topic("/away/online", Bool).next())
 
+    def test_each_is_in_the_diagnostics_each_second(self):
+        maps = [write_map(f"cell{i}", self.peer(i).port if i else free_port()) for i in range(5)]
+        self.driver(f"_maps:=[{','.join(maps)}]").wait_for("cell4: connected")
+        wanted = {f"cell{i} connection": f"cell{i} 127.0.0.1:" for i in range(5)}
+        for _ in range(3):
+            told = {status.name.partition(": ")[2]: status.hardware_id
+                    for status in rospy.wait_for_message("/diagnostics", DiagnosticArray, 10).status}
+            for name, hardware_id in wanted.items():
+                self.assertIn(hardware_id, told[name])
+
     def test_what_differs_from_a_map_is_a_parameter_below_its_name(self):
         belt = self.peer(22)
         rospy.set_param("/press_driver", {"belt": {"port": belt.port}})
@@ -84,7 +95,9 @@ class SeveralDevices(testing.RosTest):
         self.assert_ends(1, "two maps have the name press", f"_maps:=[{path},{write_map('press', 503)}]")
         self.assert_ends(2, "both map and maps are given", f"_maps:=[{path}]", f"_map:={path}")
         self.assert_ends(2, "give them in the maps, as in _NAME/address:=HOST", f"_maps:=[{path}]", "_port:=503")
-        self.assert_ends(1, "arguments for 'belt', but the maps are those of press", f"_map:={path}", "_belt/port:=503")
+        self.assert_ends(2, "arguments for 'belt'; the maps themselves have the names press", f"_map:={path}", "_belt/port:=503")
+        self.assert_ends(2, "begins with '_', as in _press/address:=HOST", f"_map:={path}", "press/address:=127.0.0.1")
+        self.assertFalse(rospy.has_param("/press_driver/belt"), "a refused argument is not kept as a parameter")
         self.assert_ends(1, "/nowhere.yaml", f"_maps:=[{path},/nowhere.yaml]")
 
 

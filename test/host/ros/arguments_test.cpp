@@ -9,9 +9,11 @@ namespace {
 using testing::HasSubstr;
 
 Arguments parse(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "coupler_driver");
+  static std::vector<std::string> kept;  // the result refers to them
+  kept = std::move(arguments);
+  kept.insert(kept.begin(), "coupler_driver");
   std::vector<char*> pointers;
-  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  for (std::string& argument : kept) pointers.push_back(argument.data());
   return parse_arguments(pointers);
 }
 
@@ -42,13 +44,17 @@ TEST(Arguments, One_of_several_devices_may_have_its_own) {
   EXPECT_EQ(result.of_devices.at("belt").port, 503);
   EXPECT_EQ(result.of_devices.at("belt").rate, 5);
   EXPECT_EQ(result.of_devices.at("cell/press").unit, 7);
+  ASSERT_EQ(result.for_ros.size(), 2U) << "ROS would keep the others as parameters";
+  EXPECT_STREQ(result.for_ros[1], "_port:=502");
 }
 
 TEST(Arguments, What_cannot_be_a_devices_own_is_a_wrong_call) {
   EXPECT_THAT(parse({"_belt/port:=0"}).text, HasSubstr("_belt/port: '0' is not a whole number"));
   EXPECT_THAT(parse({"_belt/speed:=1"}).text, HasSubstr("_belt/speed: there is no such setting"));
   EXPECT_THAT(parse({"_belt/map:=a.yaml"}).text, HasSubstr("_maps:="));
-  EXPECT_EQ(parse({"_belt/map:=a.yaml"}).exit_code, 2);
+  const Arguments both = parse({"_belt/map:=a.yaml", "_belt/unit:=999"});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_THAT(both.text, testing::AllOf(HasSubstr("_belt/map"), HasSubstr("_belt/unit"))) << "each is told";
 }
 
 TEST(Arguments, Each_setting_is_read) {
