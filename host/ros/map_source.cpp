@@ -23,8 +23,10 @@ using Source = tl::expected<MapSource, int>;
 
 void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", text); }
 
-Source from_file(const std::string& path) {
-  const LoadResult loaded = load_map_file(path);
+/// `name` is that of a map that says none.
+Source from_file(const std::string& path, const std::optional<std::string>& name) {
+  const LoadResult loaded =
+      load_map_file(path, LockUse::read, name ? std::string_view(*name) : std::string_view());
   coupler::print(loaded.diagnostics);
   if (!loaded.map) return tl::make_unexpected(wrong_input);
   return MapSource{loaded.map, loaded.map->map()};
@@ -90,7 +92,7 @@ Source find_one(const Map* built_in, const Settings& settings) {
     return MapSource{nullptr, *built_in};
   }
   if (settings.map && names_a_node(*settings.map)) return from_named_node(*settings.map, settings);
-  if (settings.map) return from_file(*settings.map);
+  if (settings.map) return from_file(*settings.map, settings.name);
   if (settings.address) return from_node(settings, *settings.address);
   print(
       "no map; give one by _map:=MAP, or _address:=HOST of a node that serves its map (--help shows "
@@ -123,7 +125,7 @@ tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const S
     return tl::make_unexpected(wrong_call);
   }
   for (const std::string& path : settings.maps) {
-    auto source = from_file(path);
+    auto source = from_file(path, std::nullopt);
     if (!source) return tl::make_unexpected(source.error());
     sources.push_back(std::move(*source));
   }

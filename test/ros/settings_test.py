@@ -59,6 +59,15 @@ class Settings(testing.RosTest):
             import rosnode  # pylint: disable=import-outside-toplevel
             self.assertIn("/other_driver", rosnode.get_node_names())
 
+    def test_a_map_without_a_name_takes_that_of_the_call(self):
+        path = process.write_map(MAP.format(address="127.0.0.1", port=self.peer.port).replace("name: settings", ""))
+        self.assert_drives(f"_map:={path}", "_name:=press", name="press")
+        rospy.set_param("/cell_io", {"map": path, "name": "belt"})
+        self.assert_drives("__name:=cell_io", name="belt")
+        driver = process.Driver(f"_map:={path}")
+        self.assertEqual(driver.wait(), 1, driver.output)
+        self.assertIn("the map has no 'name'", driver.output)
+
     def test_topics_can_be_remapped_and_are_relative(self):
         with process.Driver(f"_map:={self.map()}", "settings/level:=height", "__ns:=/cell") as driver:
             driver.wait_for("connected")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "common/map/loader/problems.hpp"
@@ -12,6 +13,7 @@ namespace coupler::loader {
 struct Context {
   Problems& problems;
   OwnedMap& map;                   ///< keeps the texts that points refer to
+  std::string_view name{};         ///< of a map that says none; empty: it has to
   std::vector<int> point_lines{};  ///< LoadResult::point_lines
   Position filled_in{};            ///< where the first point stands whose address the text leaves out
   bool origin = false;             ///< may_be_of_the_origin: what the origin would ignore is a warning

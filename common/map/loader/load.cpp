@@ -43,7 +43,7 @@ LoadResult unreadable(const std::string& path, int error, std::string remedy) {
 /// The text that a node serves is the same map. Where addresses go is known for texts that somebody would
 /// write; another reading tells about the others.
 void check_filled_in(const Map& map, loader::Position first, loader::Problems& problems) {
-  const LoadResult served = load_map(map.text, "");
+  const LoadResult served = load_map_with_lock(map.text, "", LockFile{}, map.name);
   if (served.map != nullptr && served.map->map().fingerprint == map.fingerprint) return;
   const auto error =
       std::find_if(served.diagnostics.begin(), served.diagnostics.end(),
@@ -60,7 +60,8 @@ LoadResult load_map(std::string_view text, std::string_view file) {
   return load_map_with_lock(text, file, LockFile{});
 }
 
-LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock) {
+LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock,
+                              std::string_view name) {
   lock::Parsed known;
   const std::string lock_text = lock.text.value_or("");
   if (lock.text) known = lock::parse(*lock.text, lock.path);
@@ -72,6 +73,7 @@ LoadResult load_map_with_lock(std::string_view text, std::string_view file, Lock
   loader::Problems problems(file);
   const auto map = std::make_shared<OwnedMap>();
   loader::Context context{problems, *map};
+  context.name = name;
   if (const auto root = loader::parse_document(text, problems))
     loader::read_map(*root, text, placement, context);
   if (!problems.has_errors() && context.filled_in.line > 0)
@@ -89,8 +91,8 @@ LoadResult load_map_with_lock(std::string_view text, std::string_view file, Lock
   return result;
 }
 
-LoadResult load_map_file(const std::string& path, LockUse use) {
-  if (path == "-") return load_map(read_all(std::cin), "<stdin>");
+LoadResult load_map_file(const std::string& path, LockUse use, std::string_view name) {
+  if (path == "-") return load_map_with_lock(read_all(std::cin), "<stdin>", LockFile{}, name);
   const auto text = read_file(path);
   if (!text) return unreadable(path, text.error(), "give the path of a map");
   LockFile lock{path + ".lock", std::nullopt, use};
@@ -99,7 +101,7 @@ LoadResult load_map_file(const std::string& path, LockUse use) {
     return unreadable(lock.path, lock_text.error(),
                       "it is the lock of the map: make it a file that can be read");
   if (lock_text) lock.text = std::move(*lock_text);
-  return load_map_with_lock(*text, path, std::move(lock));
+  return load_map_with_lock(*text, path, std::move(lock), name);
 }
 
 }  // namespace coupler

@@ -24,11 +24,13 @@ struct LoadResult {
 /// first one (after a syntax error only that one). Never throws.
 LoadResult load_map(std::string_view text, std::string_view file);
 
-/// The same; the lock has the addresses that the map leaves out.
-LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock);
+/// The same; the lock has the addresses that the map leaves out. `name`, if it is not empty, is that of a map
+/// that says none.
+LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock,
+                              std::string_view name = {});
 
 /// The same from a file, and from the lock beside it; "-" is standard input, which has none. A file that
 /// cannot be read is a diagnostic. Nothing is written.
-LoadResult load_map_file(const std::string& path, LockUse use = LockUse::read);
+LoadResult load_map_file(const std::string& path, LockUse use = LockUse::read, std::string_view name = {});
 
 }  // namespace coupler

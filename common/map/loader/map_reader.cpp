@@ -28,6 +28,9 @@ std::string_view read_name(const Reader& top, const Entry& root, Context& contex
   top.text("name", name);
   if (const Entry* entry = top.find("name")) {
     if (context.problems.errors() == errors) check_map_name(name, entry->at, context);
+  } else if (!context.name.empty()) {
+    name = context.map.keep(std::string(context.name));
+    check_map_name(name, root.at, context);
   } else {
     context.problems.error(root.at, "the map has no 'name'", "add 'name: NAME', the namespace of its topics");
   }

@@ -71,6 +71,17 @@ TEST(Origin, A_plain_file_loads_without_a_word) {
   EXPECT_EQ(find(map, "fault")->format.half, codec::Half::high) << "in any case";
 }
 
+TEST(Origin, A_name_may_come_from_elsewhere) {
+  const std::string text = "mapping: {coils: {a: , b: 3}}";
+  const LockFile renew{"m.yaml.lock", std::nullopt, LockUse::renew};
+  const LoadResult result = load_map_with_lock(text, "m.yaml", renew, "press");
+  EXPECT_EQ(test::text_of(result.diagnostics), "");
+  ASSERT_NE(result.map, nullptr);
+  EXPECT_EQ(result.map->map().name, "press");
+  EXPECT_TRUE(has_errors(load_map_with_lock(text, "m.yaml", renew, "no name").diagnostics));
+  EXPECT_EQ(load_map_with_lock("name: belt\n" + text, "m.yaml", renew, "press").map->map().name, "belt");
+}
+
 TEST(Origin, An_address_is_decimal_whatever_zeros_lead_it) {
   const MapPtr owned = load(COUPLER_TEST_DIR "/maps/origin/short.yaml");
   ASSERT_NE(owned, nullptr);
