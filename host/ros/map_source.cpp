@@ -24,12 +24,21 @@ using Source = tl::expected<MapSource, int>;
 void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", text); }
 
 /// `name` is that of a map that says none.
-Source from_file(const std::string& path, const std::optional<std::string>& name) {
-  const LoadResult loaded =
-      load_map_file(path, LockUse::read, name ? std::string_view(*name) : std::string_view());
+Source from_file(const std::string& path, std::string_view name) {
+  const LoadResult loaded = load_map_file(path, LockUse::read, name);
   coupler::print(loaded.diagnostics);
   if (!loaded.map) return tl::make_unexpected(wrong_input);
   return MapSource{loaded.map, loaded.map->map()};
+}
+
+/// PATH, or NAME=PATH for a device that is not to have its map's name. The result views `entry`.
+Source from_entry(std::string_view entry) {
+  const std::size_t equals = entry.find('=');
+  const bool is_named = equals < entry.find('/');  // a folder may have '=' in its name
+  const std::string_view name = is_named ? entry.substr(0, equals) : std::string_view();
+  auto source = from_file(std::string(is_named ? entry.substr(equals + 1) : entry), name);
+  if (source && !name.empty()) source->map.name = name;
+  return source;
 }
 
 std::optional<ServedMap> wait_for(Transport& transport, const std::string& where) {
@@ -92,7 +101,8 @@ Source find_one(const Map* built_in, const Settings& settings) {
     return MapSource{nullptr, *built_in};
   }
   if (settings.map && names_a_node(*settings.map)) return from_named_node(*settings.map, settings);
-  if (settings.map) return from_file(*settings.map, settings.name);
+  if (settings.map)
+    return from_file(*settings.map, settings.name ? std::string_view(*settings.name) : std::string_view());
   if (settings.address) return from_node(settings, *settings.address);
   print(
       "no map; give one by _map:=MAP, or _address:=HOST of a node that serves its map (--help shows "
@@ -124,8 +134,8 @@ tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const S
     print(wrong);
     return tl::make_unexpected(wrong_call);
   }
-  for (const std::string& path : settings.maps) {
-    auto source = from_file(path, std::nullopt);
+  for (const std::string& entry : settings.maps) {
+    auto source = from_entry(entry);
     if (!source) return tl::make_unexpected(source.error());
     sources.push_back(std::move(*source));
   }

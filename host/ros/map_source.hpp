@@ -16,7 +16,7 @@ struct MapSource {
 
 /// The built-in map, the maps of the files that the settings name (at least one), or, where they name an
 /// address only, the map that the node there serves: it is waited for. Prints why there is none; the error is
-/// the exit code.
+/// the exit code. What is found may view the settings.
 tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const Settings& settings);
 
 }  // namespace coupler::driver

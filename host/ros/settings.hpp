@@ -22,7 +22,7 @@ enum class Poll {
 /// argument.
 struct Settings {
   std::optional<std::string> map;  ///< path, or tcp://HOST[:PORT][/UNIT]
-  std::vector<std::string> maps;   ///< paths, for several devices; empty: not given
+  std::vector<std::string> maps;   ///< PATH or NAME=PATH, for several devices; empty: not given
   std::optional<std::string> name;
   std::optional<std::string> address;
   std::optional<std::uint16_t> port;

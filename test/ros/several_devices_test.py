@@ -85,6 +85,13 @@ class SeveralDevices(testing.RosTest):
         self.assertEqual(self.topic("/belt/level", Int16).next(), 22)
         self.assertEqual(self.topic("/press/level", Int16).next(), 11)
 
+    def test_devices_of_one_kind_share_a_map(self):
+        left, right = self.peer(11), self.peer(22)
+        path = write_map("io", free_port())
+        self.driver(f"_maps:=[left={path},right={path}]", f"_left/port:={left.port}", f"_right/port:={right.port}")
+        self.assertEqual(self.topic("/left/level", Int16).next(), 11)
+        self.assertEqual(self.topic("/right/level", Int16).next(), 22)
+
     def assert_ends(self, code, text, *arguments):
         driver = process.Driver(*arguments)
         self.assertEqual(driver.wait(), code, driver.output)
@@ -92,7 +99,7 @@ class SeveralDevices(testing.RosTest):
 
     def test_what_cannot_be_is_refused_with_a_remedy(self):
         path = write_map("press", 502)
-        self.assert_ends(1, "two maps have the name press", f"_maps:=[{path},{write_map('press', 503)}]")
+        self.assert_ends(1, "two devices have the name press", f"_maps:=[{path},{write_map('press', 503)}]")
         self.assert_ends(2, "both map and maps are given", f"_maps:=[{path}]", f"_map:={path}")
         self.assert_ends(2, "give them in the maps, as in _NAME/address:=HOST", f"_maps:=[{path}]", "_port:=503")
         self.assert_ends(2, "arguments for 'belt'; the maps themselves have the names press", f"_map:={path}", "_belt/port:=503")
