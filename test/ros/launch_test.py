@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 import unittest
 
+import rosnode
 import rospy
 from std_msgs.msg import Int16
 
@@ -36,6 +37,7 @@ class Launch(testing.RosTest):
             log.seek(0)
             text = log.read()
             self.assertNotIn("escalating", text, "a program did not end on SIGINT")
+            self.assertNotIn("same name", text, "another launch ended this one's node")
 
         self.addCleanup(end)
 
@@ -51,6 +53,30 @@ class Launch(testing.RosTest):
                     "name:=press", "address:=127.0.0.1", f"port:={peer.port}", "rate:=50", "node:=press_io")
         self.assertEqual(self.topic("/press/level", Int16).next(), 33)
 
+    def test_two_devices_are_launched_side_by_side(self):
+        levels = {"press": 11, "belt": 22}
+        for name, level in levels.items():
+            path = pathlib.Path(process.write_map(MAP.format(name=name)))
+            self.launch("coupler_driver", "device.launch", f"map:={path.rename(path.with_name(f'{name}.yaml'))}",
+                        "address:=127.0.0.1", f"port:={self.peer(level).port}")
+        topics = {name: self.topic(f"/{name}/level", Int16) for name in levels}
+        for _ in range(3):
+            for name, level in levels.items():
+                self.assertEqual(topics[name].next(), level)
+        self.assertLessEqual({"/press_driver", "/belt_driver"}, set(rosnode.get_node_names()))
+
+    def test_the_node_is_named_after_what_tells_devices_apart(self):
+        for arguments, node in ((["map:=/cell/press.v2.yaml"], "/press_v2_driver"),
+                                (["map:=/cell/24v.json"], "/coupler_24v_driver"),
+                                (["map:=/cell/press.yaml", "name:=hall/left"], "/hall_left_driver"),
+                                (["map:=tcp://192.168.1.17:5020/3"], "/coupler_192_168_1_17_5020_3_driver"),
+                                (["address:=raspberrypi"], "/raspberrypi_driver"),
+                                (["address:=10.0.0.1", "port:=5020", "unit:=7"], "/coupler_10_0_0_1_5020_unit7_driver"),
+                                (["map:=/cell/press.yaml", "node:=mine"], "/mine")):
+            names = subprocess.run(["roslaunch", "--nodes", "coupler_driver", "device.launch", *arguments],
+                                   capture_output=True, text=True, timeout=60, check=True).stdout
+            self.assertEqual(names.split(), [node], arguments)
+
     def test_devices_launch_takes_a_list(self):
         maps = []
         for name, level in (("press", 11), ("belt", 22)):
@@ -61,11 +87,11 @@ class Launch(testing.RosTest):
         self.assertEqual(self.topic("/belt/level", Int16).next(), 22)
 
     def test_a_launch_takes_nothing_from_the_parameters_of_an_earlier_one(self):
-        rospy.set_param("/coupler_driver/maps", ["/nowhere/earlier.yaml"])
-        rospy.set_param("/coupler_driver/unit", 77)
+        rospy.set_param("/later_driver/maps", ["/nowhere/earlier.yaml"])
+        rospy.set_param("/later_driver/unit", 77)
         peer = self.peer(44)
         self.launch("coupler_driver", "device.launch", f"map:={process.write_map(MAP.format(name='later'))}",
-                    "address:=127.0.0.1", f"port:={peer.port}")
+                    "name:=later", "address:=127.0.0.1", f"port:={peer.port}")
         self.assertEqual(self.topic("/later/level", Int16).next(), 44)
 
     @unittest.skipUnless(process.has_node(), "coupler-node was not built")
