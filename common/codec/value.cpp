@@ -40,6 +40,9 @@ bool fits(From from) {
     if constexpr (std::is_same_v<From, double> && std::is_same_v<To, float>)
       return !std::isfinite(from) || std::fabs(from) <= std::numeric_limits<float>::max();
     return true;
+  } else if constexpr (std::is_floating_point_v<From>) {  // the largest may have no double, one more has
+    return from >= static_cast<From>(std::numeric_limits<To>::min()) &&
+           from < std::ldexp(From{1}, std::numeric_limits<To>::digits);
   } else if constexpr (std::is_signed_v<From>) {
     if constexpr (std::is_signed_v<To>)
       return from >= std::numeric_limits<To>::min() && from <= std::numeric_limits<To>::max();
@@ -57,10 +60,11 @@ Result put_number(const Value& value, const Format& format, std::uint16_t* regis
         using From = std::decay_t<decltype(v)>;
         if constexpr (std::is_same_v<From, bool> || std::is_same_v<From, std::string>) {
           return tl::make_unexpected(fmt::format("'{}' is not a number", to_string(value)));
-        } else if constexpr (std::is_floating_point_v<From> && !std::is_floating_point_v<To>) {
-          return tl::make_unexpected(
-              fmt::format("{} is not a whole number, as {} needs", v, to_string(format.type)));
         } else {
+          if constexpr (std::is_floating_point_v<From> && !std::is_floating_point_v<To>)
+            if (v != std::trunc(v))
+              return tl::make_unexpected(
+                  fmt::format("{} is not a whole number, as {} needs", v, to_string(format.type)));
           if (!fits<To>(v)) return out_of_range<To>(value, format.type);
           put(static_cast<To>(v), format, registers);
           return {};

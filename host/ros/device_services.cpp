@@ -8,6 +8,7 @@
 #include "common/codec/number.hpp"
 #include "common/plan/planner.hpp"
 #include "host/core/value_text.hpp"
+#include "host/ros/ros_log.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -43,8 +44,8 @@ void DeviceServices::advertise(ros::NodeHandle& handle, const std::string& name,
   servers_.push_back(handle.advertiseService(options));
 }
 
-void DeviceServices::offer(ros::NodeHandle& handle, std::function<void(const Write&)> accept, Reset reset) {
-  accept_ = std::move(accept);
+void DeviceServices::offer(ros::NodeHandle& handle, WriteHandler writes, Reset reset) {
+  writes_ = std::move(writes);
   reset_ = std::move(reset);
   advertise<coupler_driver::Write>(
       handle, "write", [this](const auto& request, auto& response) { answer_write(request, response); });
@@ -67,7 +68,7 @@ void DeviceServices::withdraw() {
   queue_.disable();
   next_value_.end();
   const std::lock_guard lock(mutex_);
-  accept_ = nullptr;
+  writes_.reset();
   reset_ = nullptr;
 }
 
@@ -88,23 +89,34 @@ WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::
   write.listener = &ticket;
   {
     const std::lock_guard lock(mutex_);
-    if (!accept_) return {Outcome::dropped, {}, "dropped: the driver ends"};
-    accept_(write);
+    if (!writes_) return {Outcome::dropped, {}, "dropped: the driver ends"};
+    writes_->accept(write);
   }
   return ticket.wait();
+}
+
+void DeviceServices::refuse(const Point& point, const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  if (writes_)
+    writes_->refuse(static_cast<std::uint32_t>(&point - map_.points.data()),
+                    fmt::format("{} by the service {}/write: {}", point.name, map_.name, why));
 }
 
 void DeviceServices::answer_write(const coupler_driver::Write::Request& request,
                                   coupler_driver::Write::Response& response) {
   const Point* point = find_point(request.point, response.message);
-  if (point == nullptr) return;
-  if (!is_writable(*point)) {
-    response.message = fmt::format("{} cannot be written", point->name);
+  if (point == nullptr) {
+    log(Level::warning, fmt::format("{}: dropped a write by the service {}/write: {}", map_.name, map_.name,
+                                    response.message));
     return;
   }
   std::vector<std::uint16_t> value(range(*point).count());
-  if (const auto parsed = parse_value(request.value, *point, value.data()); !parsed) {
+  if (!is_writable(*point))
+    response.message = fmt::format("{} cannot be written", point->name);
+  else if (const auto parsed = parse_value(request.value, *point, value.data()); !parsed)
     response.message = parsed.error();
+  if (!response.message.empty()) {
+    refuse(*point, response.message);
     return;
   }
   const auto outcome = write(static_cast<std::uint32_t>(point - map_.points.data()), value);

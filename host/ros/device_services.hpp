@@ -11,14 +11,15 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "host/core/coupler_watchdog.hpp"
-#include "host/core/write.hpp"
 #include "host/core/write_ticket.hpp"
 #include "host/ros/listeners.hpp"
 #include "host/ros/next_value.hpp"
+#include "host/ros/point_subscriber.hpp"
 
 namespace coupler::driver {
 
@@ -36,9 +37,9 @@ class DeviceServices {
 
   using Reset = std::function<std::future<CouplerWatchdog::Answer>()>;
 
-  /// From here on each write goes to `accept`, and `reset` is asked to reset the coupler's watchdog. Neither
+  /// From here on each write goes to `writes`, and `reset` is asked to reset the coupler's watchdog. Neither
   /// waits for anything.
-  void offer(ros::NodeHandle& handle, std::function<void(const Write&)> accept, Reset reset);
+  void offer(ros::NodeHandle& handle, WriteHandler writes, Reset reset);
   /// Calls them no more: what they need may end.
   void withdraw();
 
@@ -49,6 +50,7 @@ class DeviceServices {
   template <class S, class Function>
   void advertise(ros::NodeHandle& handle, const std::string& name, Function function);
   WriteTicket::Outcome write(std::uint32_t index, Span<const std::uint16_t> value);
+  void refuse(const Point& point, const std::string& why);
   void answer_write(const coupler_driver::Write::Request& request, coupler_driver::Write::Response& response);
   void answer_read(const coupler_driver::Read::Request& request, coupler_driver::Read::Response& response);
   void answer_set(std::uint32_t index, bool on, std_srvs::SetBool::Response& response);
@@ -58,8 +60,8 @@ class DeviceServices {
   Map map_;
   Listeners& listeners_;
   std::mutex mutex_;
-  std::function<void(const Write&)> accept_;  ///< none after withdraw()
-  Reset reset_;                               ///< none after withdraw()
+  std::optional<WriteHandler> writes_;  ///< none after withdraw()
+  Reset reset_;                         ///< none after withdraw()
   NextValue next_value_;
   ros::CallbackQueue queue_;
   std::vector<ros::ServiceServer> servers_;

@@ -52,7 +52,7 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater&
     if (is_writable(map_.points[i]))
       subscribers_.push_back(
           subscribe(handle, topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
-  services_.offer(handle, writes_.accept, [this] { return thread_.reset_watchdog(); });
+  services_.offer(handle, writes_, [this] { return thread_.reset_watchdog(); });
   if (poll == Poll::subscribed)
     listeners_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
 }

@@ -7,6 +7,7 @@ from std_srvs.srv import SetBool
 
 from support import process, testing
 from support.device import ILLEGAL_ADDRESS, Device, Refuse
+from support.latest import LatestDiagnostics, values
 
 MAP = """
 name: served
@@ -28,8 +29,8 @@ class Services(testing.RosTest):
     def setUp(self):
         self.device = Device().start()
         self.addCleanup(self.device.stop)
-        driver = self.driver(f"_map:={process.write_map(MAP)}", f"_port:={self.device.port}")
-        driver.wait_for("connected")
+        self.program = self.driver(f"_map:={process.write_map(MAP)}", f"_port:={self.device.port}")
+        self.program.wait_for("connected")
 
     def call(self, name, kind, *arguments):
         rospy.wait_for_service(f"/served/{name}", 20)
@@ -74,6 +75,20 @@ class Services(testing.RosTest):
             result = self.write(point, value)
             self.assertFalse(result.success)
             self.assertIn(expected, result.message)
+
+    def test_what_is_refused_is_logged_and_counted(self):
+        diagnostics = LatestDiagnostics("served")
+        self.addCleanup(diagnostics.close)
+        self.write("level", "70000")
+        self.program.wait_for("served: dropped a write to level by the service served/write: 70000 does not fit")
+        self.write("pressure", "1")
+        self.program.wait_for("served: dropped a write to pressure by the service served/write: ")
+        self.write("nothing", "1")
+        self.program.wait_for("served: dropped a write by the service served/write: there is no point 'nothing'")
+        self.write("level", "1e3")
+        self.assertEqual(self.device.tables["holding_registers"][4], 1000)
+        known = diagnostics.wait_for(lambda known: "writes" in known and values(known["writes"])["ok"] == "1")
+        self.assertEqual(values(known["writes"])["refused"], "2")
 
     def test_a_write_that_is_lost_is_told(self):
         self.device.silent = True

@@ -39,6 +39,29 @@ TEST(Value, A_fraction_is_never_rounded_into_an_integer) {
   EXPECT_EQ(refusal(1.5, format(Type::INT)), "1.5 is not a whole number, as INT needs");
 }
 
+TEST(Value, A_whole_double_is_an_integer_where_it_fits) {
+  const auto encoded = [](double value, Type type) {
+    std::array<std::uint16_t, 4> registers{};
+    Format f = format(type);
+    f.order = Order::ABCD;
+    EXPECT_TRUE(encode(value, f, registers.data())) << value;
+    return registers;
+  };
+  using Registers = std::array<std::uint16_t, 4>;
+  EXPECT_EQ(encoded(1e3, Type::UINT), Registers{1000});
+  EXPECT_EQ(encoded(-2.0, Type::INT), Registers{0xFFFE});
+  EXPECT_EQ(encoded(-0x1p63, Type::LINT), Registers{0x8000});
+  EXPECT_EQ(encoded(0x1p63, Type::ULINT), Registers{0x8000});
+  EXPECT_THAT(refusal(1e5, format(Type::UINT)), HasSubstr("does not fit into UINT (0 … 65535)"));
+  EXPECT_THAT(refusal(-1.0, format(Type::USINT)), HasSubstr("does not fit into USINT (0 … 255)"));
+  EXPECT_THAT(refusal(0x1p63, format(Type::LINT)), HasSubstr("does not fit into LINT"));
+  EXPECT_THAT(refusal(0x1p64, format(Type::ULINT)), HasSubstr("does not fit into ULINT"));
+  EXPECT_THAT(refusal(std::numeric_limits<double>::infinity(), format(Type::LINT)),
+              HasSubstr("does not fit into LINT"));
+  EXPECT_THAT(refusal(std::numeric_limits<double>::quiet_NaN(), format(Type::LINT)),
+              HasSubstr("not a whole number"));
+}
+
 TEST(Value, A_double_beyond_float_is_refused_but_infinity_is_a_REAL) {
   EXPECT_THAT(refusal(1e300, format(Type::REAL)), HasSubstr("does not fit into REAL"));
   EXPECT_EQ(refusal(std::numeric_limits<double>::infinity(), format(Type::USINT)).empty(), false);

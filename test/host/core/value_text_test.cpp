@@ -54,6 +54,7 @@ TEST(ValueText, Numbers_are_decimal_or_hexadecimal) {
   EXPECT_EQ(parsed("18446744073709551615", point_of(codec::Type::ULINT)), Registers(4, 0xFFFF));
   EXPECT_EQ(parsed("1", point_of(codec::Type::REAL)), (Registers{0x3F80, 0}));
   EXPECT_EQ(parsed("1.0", point_of(codec::Type::REAL)), (Registers{0x3F80, 0}));
+  EXPECT_EQ(parsed("1e3", point_of(codec::Type::UINT)), Registers{1000});
 }
 
 TEST(ValueText, What_does_not_fit_is_refused_with_what_would) {
