@@ -7,6 +7,7 @@
 
 #include "common/codec/number.hpp"
 #include "common/plan/planner.hpp"
+#include "host/core/health.hpp"
 #include "host/core/value_text.hpp"
 #include "host/ros/ros_log.hpp"
 
@@ -44,9 +45,8 @@ void DeviceServices::advertise(ros::NodeHandle& handle, const std::string& name,
   servers_.push_back(handle.advertiseService(options));
 }
 
-void DeviceServices::offer(ros::NodeHandle& handle, WriteHandler writes, Reset reset) {
-  writes_ = std::move(writes);
-  reset_ = std::move(reset);
+void DeviceServices::offer(ros::NodeHandle& handle, Driver driver) {
+  driver_ = std::move(driver);
   advertise<coupler_driver::Write>(
       handle, "write", [this](const auto& request, auto& response) { answer_write(request, response); });
   advertise<coupler_driver::Read>(
@@ -68,8 +68,7 @@ void DeviceServices::withdraw() {
   queue_.disable();
   next_value_.end();
   const std::lock_guard lock(mutex_);
-  writes_.reset();
-  reset_ = nullptr;
+  driver_.reset();
 }
 
 DeviceServices::~DeviceServices() {
@@ -89,17 +88,17 @@ WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::
   write.listener = &ticket;
   {
     const std::lock_guard lock(mutex_);
-    if (!writes_) return {Outcome::dropped, {}, "dropped: the driver ends"};
-    writes_->accept(write);
+    if (!driver_) return {Outcome::dropped, {}, "dropped: the driver ends"};
+    driver_->writes.accept(write);
   }
   return ticket.wait();
 }
 
 void DeviceServices::refuse(const Point& point, const std::string& why) {
   const std::lock_guard lock(mutex_);
-  if (writes_)
-    writes_->refuse(static_cast<std::uint32_t>(&point - map_.points.data()),
-                    fmt::format("{} by the service {}/write: {}", point.name, map_.name, why));
+  if (driver_)
+    driver_->writes.refuse(static_cast<std::uint32_t>(&point - map_.points.data()),
+                           fmt::format("{} by the service {}/write: {}", point.name, map_.name, why));
 }
 
 void DeviceServices::answer_write(const coupler_driver::Write::Request& request,
@@ -138,7 +137,7 @@ void DeviceServices::answer_reset(std_srvs::Trigger::Response& response) {
   std::future<CouplerWatchdog::Answer> asked;
   {
     const std::lock_guard lock(mutex_);
-    if (reset_) asked = reset_();
+    if (driver_) asked = driver_->reset();
   }
   const auto answer = asked.valid() ? asked.get() : CouplerWatchdog::Answer{false, "the driver ends"};
   response.success = answer.success;
@@ -162,7 +161,15 @@ void DeviceServices::answer_read(const coupler_driver::Read::Request& request,
   if (value)
     response.value = format_value(value->data(), *point);
   else
-    response.message = fmt::format("no value of {} came; {}/status says why", point->name, map_.name);
+    response.message = why_no_value(*point);
+}
+
+std::string DeviceServices::why_no_value(const Point& point) {
+  const std::lock_guard lock(mutex_);
+  const DeviceSnapshot device = driver_ ? driver_->statistics() : DeviceSnapshot{};
+  if (driver_ && !device.online)
+    return fmt::format("no value of {}: the device is {}", point.name, connection_health(device).text);
+  return fmt::format("no value of {} came; {}/status says why", point.name, map_.name);
 }
 
 }  // namespace coupler::driver

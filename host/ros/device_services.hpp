@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "host/core/coupler_watchdog.hpp"
+#include "host/core/device_statistics.hpp"
 #include "host/core/write_ticket.hpp"
 #include "host/ros/listeners.hpp"
 #include "host/ros/next_value.hpp"
@@ -35,15 +36,18 @@ class DeviceServices {
   DeviceServices(const DeviceServices&) = delete;
   DeviceServices& operator=(const DeviceServices&) = delete;
 
-  using Reset = std::function<std::future<CouplerWatchdog::Answer>()>;
+  /// What they call. None of it waits for anything.
+  struct Driver {
+    WriteHandler writes;
+    std::function<std::future<CouplerWatchdog::Answer>()> reset;  ///< of the coupler's own watchdog
+    std::function<DeviceSnapshot()> statistics;
+  };
 
-  /// From here on each write goes to `writes`, and `reset` is asked to reset the coupler's watchdog. Neither
-  /// waits for anything.
-  void offer(ros::NodeHandle& handle, WriteHandler writes, Reset reset);
+  void offer(ros::NodeHandle& handle, Driver driver);
   /// Calls them no more: what they need may end.
   void withdraw();
 
-  /// Who waits for a value that is read.
+  /// Who waits for a value that is read. It must be told when the device is online.
   NextValue& next_value() { return next_value_; }
 
  private:
@@ -56,12 +60,12 @@ class DeviceServices {
   void answer_set(std::uint32_t index, bool on, std_srvs::SetBool::Response& response);
   void answer_reset(std_srvs::Trigger::Response& response);
   const Point* find_point(const std::string& name, std::string& message) const;
+  std::string why_no_value(const Point& point);
 
   Map map_;
   Listeners& listeners_;
   std::mutex mutex_;
-  std::optional<WriteHandler> writes_;  ///< none after withdraw()
-  Reset reset_;                         ///< none after withdraw()
+  std::optional<Driver> driver_;  ///< none after withdraw()
   NextValue next_value_;
   ros::CallbackQueue queue_;
   std::vector<ros::ServiceServer> servers_;

@@ -52,7 +52,8 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater&
     if (is_writable(map_.points[i]))
       subscribers_.push_back(
           subscribe(handle, topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
-  services_.offer(handle, writes_, [this] { return thread_.reset_watchdog(); });
+  services_.offer(handle, {writes_, [this] { return thread_.reset_watchdog(); },
+                           [this] { return thread_.statistics(); }});
   if (poll == Poll::subscribed)
     listeners_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
 }
@@ -86,6 +87,7 @@ void DeviceTopics::on_online(bool online) {
   if (online)  // what was published before is history
     for (const auto& publisher : publishers_)
       if (publisher) publisher->renew();
+  services_.next_value().online(online);
   std_msgs::Bool message;
   message.data = online;
   online_.publish(message);

@@ -16,12 +16,13 @@ namespace coupler::driver {
 class NextValue {
  public:
   /// The registers of the first value of `point` that comes from now on (bit tables: each bit as one
-  /// register, 0 or 1), or nullopt if none has come until `deadline` or end(). For one thread.
+  /// register, 0 or 1), or nullopt if none has come until `deadline` or end(), or while the device is
+  /// offline: there is nothing to wait for. For one thread.
   std::optional<std::vector<std::uint16_t>> wait(std::uint32_t point, Time deadline) {
     std::unique_lock lock(mutex_);
     value_.reset();
     wanted_ = point;
-    came_.wait_until(lock, deadline, [this] { return value_.has_value() || ended_; });
+    came_.wait_until(lock, deadline, [this] { return value_.has_value() || !online_ || ended_; });
     wanted_ = nobody;
     return std::move(value_);
   }
@@ -33,6 +34,15 @@ class NextValue {
       const std::lock_guard lock(mutex_);
       value_.emplace(registers, registers + count);
       wanted_ = nobody;
+    }
+    came_.notify_one();
+  }
+
+  /// As Sink::on_online(): at first it is not.
+  void online(bool online) {
+    {
+      const std::lock_guard lock(mutex_);
+      online_ = online;
     }
     came_.notify_one();
   }
@@ -53,6 +63,7 @@ class NextValue {
   std::mutex mutex_;
   std::condition_variable came_;
   std::optional<std::vector<std::uint16_t>> value_;
+  bool online_ = false;
   bool ended_ = false;
 };
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Services answer when the result is known, and say what it was."""
+import time
+
 import rospy
 from coupler_driver.srv import Read, Write
 from std_msgs.msg import Bool
@@ -22,6 +24,7 @@ mapping:
     level: {address: 4, type: INT}
     speeds: {address: 10, type: UINT, count: 3}
     label: {address: 20, type: STRING, length: 6}
+    seldom: {address: 30, type: INT, rate: 0.02}
 """
 
 
@@ -104,10 +107,21 @@ class Services(testing.RosTest):
         self.assertEqual(self.call("read", Read, "pressure").value, "21.5")
         self.device.tables["holding_registers"][10:13] = [7, 8, 9]
         self.assertEqual(self.call("read", Read, "speeds").value, "[7, 8, 9]")
+
+    def test_a_read_is_answered_at_once_while_the_device_is_offline(self):
+        online = self.topic("/served/online", Bool)
+        online.wait_for(bool)
+        self.call("read", Read, "pressure")
         self.device.silent = True
-        result = self.call("read", Read, "pressure")
-        self.assertFalse(result.success)
-        self.assertIn("served/status says why", result.message)
+        started = time.monotonic()
+        for _ in range(5):  # the first while it goes offline
+            result = self.call("read", Read, "seldom")
+            self.assertFalse(result.success)
+            self.assertIn("no value of seldom: the device is offline: ", result.message)
+        self.assertLess(time.monotonic() - started, 20, "seldom is read every 50 s")
+        self.device.silent = False
+        self.topic("/served/online", Bool).wait_for(bool)
+        self.assertTrue(self.call("read", Read, "pressure").success)
 
 
 if __name__ == "__main__":

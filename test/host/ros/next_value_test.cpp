@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/ros/next_value.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace coupler::driver {
+namespace {
+
+constexpr std::uint32_t point = 3;
+
+Time far_away() { return std::chrono::steady_clock::now() + std::chrono::minutes(10); }
+
+/// Calls `then` in another thread as soon as somebody waits.
+template <class Then>
+std::thread once_wanted(const NextValue& next, Then then) {
+  return std::thread([&next, then] {
+    while (!next.is_wanted(point)) std::this_thread::yield();
+    then();
+  });
+}
+
+TEST(NextValue, Nobody_waits_for_a_device_that_is_offline) {
+  NextValue next;
+  EXPECT_FALSE(next.wait(point, far_away()));
+  next.online(true);
+  next.online(false);
+  EXPECT_FALSE(next.wait(point, far_away()));
+}
+
+TEST(NextValue, The_wait_ends_when_the_device_goes_offline) {
+  NextValue next;
+  next.online(true);
+  std::thread device = once_wanted(next, [&] { next.online(false); });
+  EXPECT_FALSE(next.wait(point, far_away()));
+  device.join();
+}
+
+TEST(NextValue, A_value_that_comes_while_the_device_is_online_is_given) {
+  NextValue next;
+  next.online(true);
+  const std::uint16_t value = 7;
+  std::thread device = once_wanted(next, [&] { next.bring(&value, 1); });
+  EXPECT_EQ(next.wait(point, far_away()), std::vector<std::uint16_t>{7});
+  device.join();
+}
+
+}  // namespace
+}  // namespace coupler::driver
