@@ -48,16 +48,19 @@ local function float(words)
   return sign * mantissa * scale, scale / 2
 end
 
--- The shortest text that reads back as the same number.
+-- The shortest text that reads back as the same number, with an exponent only where `coupler dump` has one.
 local function shortest(number, tolerance)
   if number ~= number then return "nan" end
   if number == math.huge or number == -math.huge then return number > 0 and "inf" or "-inf" end
   for digits = 1, 17 do
-    local text = string.format("%." .. digits .. "g", number)
+    local text = string.format("%." .. digits - 1 .. "e", number)
     local off = math.abs(tonumber(text) - number)
-    if off == 0 or off < tolerance then return text end
+    if off == 0 or off < tolerance or digits == 17 then
+      local exponent = tonumber(text:match("e(.+)"))
+      if exponent < -4 or exponent >= 16 then return text end
+      return string.format("%." .. math.max(digits - 1 - exponent, 0) .. "f", tonumber(text))
+    end
   end
-  return string.format("%.17g", number)
 end
 
 local function long(words, is_signed)

@@ -45,6 +45,9 @@ def read(function, address, count):
 LONGS = (struct.pack(">q", -2**63 + 1) + swap_words(struct.pack(">Q", 2**64 - 2)) +
          swap_bytes(struct.pack(">d", 1.0e-300)) + swap_words(swap_bytes(struct.pack(">q", 81985529216486895))))
 TEXTS = swap_bytes(b"Anlage\0\0") + b"K\xfchler"
+# As `coupler dump` shows them: an exponent only for the very small and the very large.
+DOUBLES = {50.0: "50", -0.0: "-0", 1e-4: "0.0001", 1e-5: "1e-05", 0.1 + 0.2: "0.30000000000000004", -1234.5: "-1234.5",
+           1e6: "1000000", -1e15: "-1000000000000000", 1e16: "1e+16", 123456789012345678.0: "1.2345678901234568e+17"}
 PAIR = struct.pack(">hhh", 3, -4, 5)
 
 # PDU, lines that the request must show, lines that the reply must show.
@@ -57,7 +60,7 @@ TRAFFIC = [
     (read(2, 0, 2), ["button", "door"], ["button: true", "door: false"]),
     (read(4, 0, 1), ["level"], ["level: 21.5 °C"]),
     (read(4, 10, 8), ["abcd", "cdab", "badc", "dcba"],
-     ["abcd: 3.14", "cdab: -0.1", "badc: -123456789", "dcba: 4000000000"]),
+     ["abcd: 3.14", "cdab: -50", "badc: -123456789", "dcba: 4000000000"]),
     (b"\x06" + registers(0, 0xFF9C), ["speed: -100 rpm"], ["speed: -100 rpm"]),
     (write(0, registers(1500, 0x3412, 0xFE07, 0x1000, 0xBEEF)),
      ["speed: 1500 rpm", "swapped: 4660", "high: -2", "low: 7", "flag_3: false", "flag_12: true", "mask: 0xBEEF"],
@@ -75,6 +78,8 @@ TRAFFIC = [
     (write(26, PAIR), ["pair: [1.5, -2, 2.5] bar"], ["pair"]),
     (write(30, TEXTS), ['label: "Anlage"', 'plain: "Kühler"'], ["label", "plain"]),
     (read(3, 30, 7), ["label", "plain"], ['label: "Anlage"', 'plain: "Kühler"']),
+    *((write(18, swap_bytes(struct.pack(">d", number))), [f"long_badc: {text}"], ["long_badc"])
+      for number, text in DOUBLES.items()),
     # FC 23 writes speed and reads it back with its neighbour.
     (b"\x17" + registers(0, 2, 0, 1) + b"\x02" + registers(25), ["speed: 25 rpm", "speed", "swapped"],
      ["speed: 25 rpm", "swapped: 4660"]),
