@@ -81,7 +81,7 @@ void add_host_options(const Point& point, const Entry* defaults, Cells& cells) {
   if (host.write_function != HostOptions::WriteFunction::automatic)
     cells["write_function"] =
         host.write_function == HostOptions::WriteFunction::single ? "single" : "multiple";
-  if (host.verify_write && is_readable(point)) cells["verify_write"] = "true";
+  if (host.verify_write) cells["verify_write"] = "true";
   if (host.write_queue == HostOptions::WriteQueue::every) cells["write_queue"] = "every";
   const Entry* deadman = defaults != nullptr ? find(*defaults, "deadman") : nullptr;
   if (host.deadman.present() && deadman != nullptr) cells["deadman"] = flow(*deadman);

@@ -59,6 +59,9 @@ std::vector<Complaint> complaints(const Reader& reader, const Point& point) {
     for (const std::string_view key : {"rate", "publish", "max_interval", "latch"})
       refuse(key, fmt::format("'{}' is for a point that is read, this one has 'access: write'", key),
              "remove it");
+  if (!is_readable(point) && point.host.verify_write)
+    refuse("verify_write", "'verify_write' reads the point back, this one has 'access: write'",
+           "remove one of the two");
   if (!on_change)
     refuse("max_interval", "'max_interval' is for 'publish: on_change'", "add it, or remove this");
   if (is_writable(point.table) && !is_writable(point))
@@ -131,6 +134,7 @@ void read_host_options(const Reader& reader, const HostDefaults& defaults, Draft
     options.verify_write = usual.verify_write;
     return;
   }
+  if (!is_readable(point)) options.verify_write = false;
   check_write_function(reader, point, context);
   const Entry* own = reader.find("deadman");
   if (const Entry* deadman = own != nullptr ? own : defaults.deadman)

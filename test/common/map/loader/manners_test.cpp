@@ -117,6 +117,13 @@ TEST(HostOptions, A_default_that_a_point_cannot_have_is_not_its_own) {
             (Words{0, 0}));
 }
 
+TEST(HostOptions, What_is_only_written_is_not_read_back) {
+  const std::string defaults = "defaults: {verify_write: true}";
+  EXPECT_FALSE(OnePoint("coils", "{address: 0, access: write}", defaults)->host.verify_write);
+  EXPECT_FALSE(
+      OnePoint("coils", "{address: 0, access: write, verify_write: false}", defaults)->host.verify_write);
+}
+
 TEST(Unreadable, Areas_are_sorted_and_in_the_addressing_of_the_map) {
   const MapPtr map = load_clean(map_of("coils", "p: 1",
                                        "addressing: modicon\n"
