@@ -52,7 +52,8 @@ struct Point {
   codec::Scale scale{};     ///< registers: what the host publishes is a Float64
   Iio iio{};
   Pwm pwm{};
-  Span<const std::uint16_t> safe_value{};  ///< with Safe::on: what a register goes to, as `initial`
+  /// With Safe::on: what a register goes to, as `initial`. Coils: empty, that is on, or an element a bit.
+  Span<const std::uint16_t> safe_value{};
   /// Holding registers and coils: where the output reads back, if not at its own address.
   std::optional<std::uint16_t> read_address{};
   HostOptions host{};

@@ -58,8 +58,9 @@ std::string safe_of(const Point& point) {
   const bool has_hardware = coil ? point.line.present() : is_writable(point.table) && is_analogue(point);
   if (!has_hardware && point.safe == Safe::off) return {};  // nothing was said
   if (point.safe == Safe::hold) return "hold";
+  if (!point.safe_value.empty()) return value_words(point, point.safe_value);
   if (coil) return point.safe == Safe::on ? "on" : "off";
-  return point.safe == Safe::on ? value_words(point, point.safe_value) : "0";
+  return "0";
 }
 
 }  // namespace

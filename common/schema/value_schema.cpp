@@ -41,10 +41,15 @@ Json any_of(std::initializer_list<Json> schemas) {
   return {{"anyOf", Json::array_t(schemas.begin(), schemas.end())}};
 }
 
+Json boolean() {
+  return any_of({{{"type", "boolean"}}, text(any_case({"yes", "no", "on", "off"}), "write true or false")});
+}
+
 /// The origin takes its words in any case.
 Json choice(const Key& key) {
   const auto choices = loader::words(key.choices);
   Json exact{{"enum", choices}};
+  if (key.bits) return any_of({exact, {{"type", "array"}, {"minItems", 2}, {"items", boolean()}}});
   if (key.owner == Owner::project) return exact;
   return any_of({exact, text(any_case(choices), fmt::format("write one of {}", fmt::join(choices, ", ")))});
 }
@@ -67,9 +72,7 @@ Json value_schema(const Key& key) {
   switch (key.kind) {
     case ValueKind::integer: return number("integer", key);
     case ValueKind::number: return number("number", key);
-    case ValueKind::boolean:
-      return any_of(
-          {{{"type", "boolean"}}, text(any_case({"yes", "no", "on", "off"}), "write true or false")});
+    case ValueKind::boolean: return boolean();
     // A plain scalar that looks like a number is text to the loader.
     case ValueKind::text: return {{"type", {"string", "number"}}};
     case ValueKind::ros_name: return text(ros_name, ros_name_rule);

@@ -30,6 +30,10 @@ auto* named(Lines& lines, std::string_view name) {
 
 bool starts_on(const Point& point) { return !point.initial.empty() && point.initial[0] != 0; }
 
+bool is_safe_on(const Point& point) {
+  return point.safe == Safe::on && (point.safe_value.empty() || point.safe_value[0] != 0);
+}
+
 }  // namespace
 
 SimulatedChip::SimulatedChip(const Map& map, TimePoint now) : start_(now), told_(now) {
@@ -107,7 +111,7 @@ bool SimulatedChip::driven(Range coils, Span<std::uint16_t> levels) const {
 bool SimulatedChip::drive_safe() {
   if (!plugged_) return false;
   for (Output& output : outputs_)
-    if (output.point->safe != Safe::hold) set(output, output.point->safe == Safe::on);
+    if (output.point->safe != Safe::hold) set(output, is_safe_on(*output.point));
   return true;
 }
 

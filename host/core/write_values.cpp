@@ -28,8 +28,8 @@ std::optional<Write> safe_value(const Map& map, std::uint32_t index) {
     if (point.safe == Safe::on) return make_write(map, index, point.safe_value);
     return is_analogue(point) ? std::optional(make_write(map, index, {})) : std::nullopt;
   }
-  Write write = make_write(map, index, {});
-  if (point.safe == Safe::on)
+  Write write = make_write(map, index, point.safe_value);
+  if (point.safe == Safe::on && point.safe_value.empty())
     for (std::size_t i = 0; i < point.count; ++i) write.set_bit(i);
   return write;
 }

@@ -19,6 +19,12 @@ struct Row : Key {
     row.choices = words;
     return row;
   }
+  /// Beside its words, the value may be a list of on and off.
+  constexpr Row or_bits() const {
+    Row row = *this;
+    row.bits = true;
+    return row;
+  }
   constexpr Row spells(std::string_view other) const {
     Row row = *this;
     row.same_as = other;

@@ -126,9 +126,11 @@ constexpr Key keys[] = {
     project("line", S::discrete_input, K::text, "{chip: gpiochip0, offset: 17}",
             "the GPIO line; just its name will do")
         .holds(S::input_line),
-    project("safe", S::coil, K::choice, "off", "what the output does when nobody is in command")
+    project("safe", S::coil, K::choice, "off",
+            "what the output does when nobody is in command; an array takes a list of on and off, too")
         .otherwise("off")
-        .one_of("off|on|hold"),
+        .one_of("off|on|hold")
+        .or_bits(),
     project("active_low", bits | line, K::boolean, "true", "on is the low level").otherwise("false"),
     project("bias", bits | line, K::choice, "pull_up", "the line's resistor")
         .one_of("none|pull_up|pull_down"),

@@ -84,6 +84,7 @@ struct Key {
   std::string_view same_as = {};  ///< another spelling of that key
   Section inside = Section::none;
   bool several = false;
+  bool bits = false;                    ///< besides its choices, a list of on and off will do
   bool required = false;                ///< where it applies
   std::string_view required_with = {};  ///< not required by itself, but beside that key
   std::string_view types = {};          ///< if not empty, only for points of these types, separated by "|"

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/map/loader/scalar.hpp"
+#include "common/map/loader/value_reader.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -36,6 +37,17 @@ void refuse_without_line(const Reader& point, Table table, Context& context) {
     refuse("safe", ", or 'on_shutdown: safe' to the map");
 }
 
+/// One word for all of an array's coils, or a list.
+void read_safe(const Reader& reader, DraftPoint& draft, Context& context) {
+  Point& point = draft.point;
+  const Entry* entry = reader.find("safe");
+  if (entry == nullptr || entry->kind != Entry::Kind::list || point.count == 1)
+    return reader.choice("safe", {Safe::off, Safe::on, Safe::hold}, point.safe);
+  if (!draft.placed) return;
+  point.safe = Safe::on;
+  point.safe_value = read_value("safe", *entry, point, context);
+}
+
 void read_place(const Reader& reader, const Entry& entry, Line& line, Context& context) {
   const bool by_offset = reader.has("chip") && reader.has("offset");
   if (by_offset == reader.has("name") || reader.has("chip") != reader.has("offset")) {
@@ -57,7 +69,7 @@ void read_place(const Reader& reader, const Entry& entry, Line& line, Context& c
 void read_line(const Reader& point, DraftPoint& draft, Context& context) {
   const Table table = draft.point.table;
   const Entry* entry = point.find("line");
-  if (table == Table::coils) point.choice("safe", {Safe::off, Safe::on, Safe::hold}, draft.point.safe);
+  if (table == Table::coils) read_safe(point, draft, context);
   if (entry == nullptr) return refuse_without_line(point, table, context);
   Line& line = draft.point.line;
   draft.line_at = entry->at;

@@ -72,6 +72,17 @@ TEST(Row, Counters_and_channels_are_what_stands_behind_a_register) {
   EXPECT_EQ(row_of(pressure, 0).source, "ads1015 voltage0");
 }
 
+TEST(Row, The_safe_state_of_an_array_of_coils_is_one_for_all_or_one_each) {
+  static const std::uint16_t first_only[] = {1, 0};
+  Point lamps = point_of(Type::BOOL);
+  lamps.table = Table::coils;
+  lamps.count = 2;
+  lamps.safe = Safe::on;
+  EXPECT_EQ(row_of(lamps, 0).safe, "on");
+  lamps.safe_value = first_only;
+  EXPECT_EQ(row_of(lamps, 0).safe, "on, off");
+}
+
 TEST(Row, Outputs_with_hardware_have_a_safe_state_others_if_the_map_says_it) {
   Point lamp = point_of(Type::BOOL);
   lamp.table = Table::coils;

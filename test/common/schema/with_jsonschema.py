@@ -99,6 +99,14 @@ class TheSchema(unittest.TestCase):
         self.assertEqual(problems(map_with(65536, addressing="modicon")), [])
         self.assertNotEqual(problems(map_with(0, addressing="modicon")), [])
 
+    def test_takes_a_list_for_what_is_safe_for_coils(self):
+        def map_with(safe):
+            return {"name": "a", "on_shutdown": "safe", "mapping": {"coils": {"b": {"address": 0, "count": 2, "safe": safe}}}}
+        for safe in ("on", "hold", ["on", "off"], [True, False]):
+            self.assertEqual(problems(map_with(safe)), [], safe)
+        for safe in ("onn", [], ["on", "hold"], [1, 0]):
+            self.assertNotEqual(problems(map_with(safe)), [], safe)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=1)

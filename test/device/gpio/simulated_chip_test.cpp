@@ -82,19 +82,27 @@ TEST(SimulatedChip, An_input_with_neither_line_nor_wire_is_left_as_it_is) {
 TEST(SimulatedChip, Outputs_begin_with_their_initial_level_and_end_in_their_safe_state) {
   MapBuilder builder;
   const auto on = builder.keep({1});
+  const auto second_only = builder.keep({0, 1});
   const auto safe = [](Safe state) { return [state](Point& p) { p.safe = state; }; };
   const auto map = builder.add(coils, "lit", 0, Type::BOOL, [&](Point& p) { p.initial = on; })
                        .add(coils, "safe_on", 1, Type::BOOL, safe(Safe::on))
                        .add(coils, "held", 2, Type::BOOL, safe(Safe::hold))
+                       .add(coils, "array", 3, Type::BOOL,
+                            [&](Point& p) {
+                              p.count = 2;
+                              p.safe = Safe::on;
+                              p.safe_value = second_only;
+                            })
                        .build();
   SimulatedChip chip(map->map(), {});
   EXPECT_TRUE(chip.level("lit"));
   EXPECT_FALSE(chip.level("safe_on"));
-  EXPECT_TRUE(chip.drive(Range::of(0, 3), Levels{1, 0, 1}));
+  EXPECT_TRUE(chip.drive(Range::of(0, 4), Levels{1, 0, 1, 1}));
   EXPECT_TRUE(chip.drive_safe());
   EXPECT_FALSE(chip.level("lit"));
   EXPECT_TRUE(chip.level("safe_on"));
   EXPECT_TRUE(chip.level("held"));
+  EXPECT_FALSE(chip.level("array"));
 }
 
 /// Adds up what it is told.

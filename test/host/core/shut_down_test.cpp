@@ -50,6 +50,27 @@ TEST_F(ShutDownTest, With_safe_outputs_get_their_safe_values_and_others_are_left
   EXPECT_EQ((device.values[{Table::holding_registers, 0}]), 500);
 }
 
+TEST_F(ShutDownTest, With_safe_an_array_of_coils_gets_a_value_for_each_or_one_for_all) {
+  fakes::MapBuilder builder;
+  const auto car = builder.keep({1, 0, 1});
+  builder.add(Table::coils, "car", 4, Type::BOOL, [&](Point& point) {
+    point.count = 3;
+    point.safe = Safe::on;
+    point.safe_value = car;
+  });
+  builder.add(Table::coils, "lamps", 7, Type::BOOL, [](Point& point) {
+    point.count = 2;
+    point.safe = Safe::on;
+  });
+  builder.head().on_shutdown = OnShutdown::safe;
+  start(builder);
+  run_for(milliseconds(50));
+  engine->stop();
+  const std::vector<std::uint16_t> expected{1, 0, 1, 1, 1};
+  for (std::uint32_t i = 0; i < expected.size(); ++i)
+    EXPECT_EQ((device.values[{Table::coils, 4 + i}]), expected[i]) << i;
+}
+
 TEST_F(ShutDownTest, An_output_that_does_not_take_its_safe_value_is_reported_and_the_others_go_on) {
   device.missing.insert({Table::coils, 0});
   start_online(OnShutdown::safe);

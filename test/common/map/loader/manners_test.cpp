@@ -150,5 +150,16 @@ TEST(Manners, Where_the_driver_makes_safe_any_output_may_say_what_is_safe_for_it
   EXPECT_EQ(registers->map().points[0].safe_value[0], 8);
 }
 
+TEST(Manners, What_is_safe_for_an_array_of_coils_is_one_word_or_a_list) {
+  const std::string car = "{address: 4, count: 3, safe: ";
+  const OnePoint list("coils", car + "[on, off, on]}", "on_shutdown: safe");
+  EXPECT_EQ(list->safe, Safe::on);
+  EXPECT_EQ(words(list->safe_value), (Words{1, 0, 1}));
+  const OnePoint word("coils", car + "on}", "on_shutdown: safe");
+  EXPECT_EQ(word->safe, Safe::on);
+  EXPECT_TRUE(word->safe_value.empty());
+  EXPECT_EQ(OnePoint("coils", car + "hold}", "on_shutdown: safe")->safe, Safe::hold);
+}
+
 }  // namespace
 }  // namespace coupler
