@@ -20,12 +20,10 @@ class SharedArray {
 
  public:
   /// Throws std::bad_alloc like any container.
-  explicit SharedArray(std::size_t count, const T& value = T()) {
-    if (count == 0) return;
-    void* memory =
-        ::mmap(nullptr, count * sizeof(T), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) throw std::bad_alloc();
-    all_ = Span<T>(static_cast<T*>(memory), count);
+  explicit SharedArray(std::size_t count) : all_(shared(count)) {
+    std::uninitialized_value_construct(all_.begin(), all_.end());
+  }
+  SharedArray(std::size_t count, const T& value) : all_(shared(count)) {
     std::uninitialized_fill(all_.begin(), all_.end(), value);
   }
   SharedArray(const SharedArray&) = delete;
@@ -38,6 +36,14 @@ class SharedArray {
   T& operator[](std::size_t i) const { return all_[i]; }
 
  private:
+  static Span<T> shared(std::size_t count) {
+    if (count == 0) return {};
+    void* memory =
+        ::mmap(nullptr, count * sizeof(T), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    return Span<T>(static_cast<T*>(memory), count);
+  }
+
   Span<T> all_;
 };
 

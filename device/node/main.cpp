@@ -4,7 +4,6 @@
 
 #include "common/map/loader/load.hpp"
 #include "device/node/serve.hpp"
-#include "device/node/stderr_log.hpp"
 
 int main(int argc, char** argv) {
   using namespace coupler;
@@ -20,5 +19,6 @@ int main(int argc, char** argv) {
   const MapPtr map = read();
   if (map == nullptr) return 1;
   const bool once = std::get<node::Options>(options).map == "-";
-  return node::serve(map->map(), std::get<node::Options>(options), once ? node::ReadAgain() : read);
+  return node::serve(map->map(), std::get<node::Options>(options), log, once ? node::ReadAgain() : read,
+                     nullptr);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/node/program.hpp"
 
+#include <cstdlib>
+
 #include "device/node/serve.hpp"
 
 namespace coupler::node {
@@ -10,7 +12,8 @@ namespace {
 int run(const Map& map, Hooks* hooks, int argc, char** argv) {
   const auto options = parse_options(argc, argv, MapSource::built_in);
   if (const int* status = std::get_if<int>(&options)) return *status;
-  return serve(map, std::get<Options>(options), {}, hooks);
+  StderrLog log(std::getenv("JOURNAL_STREAM"));
+  return serve(map, std::get<Options>(options), log, {}, hooks);
 }
 
 }  // namespace

@@ -7,12 +7,10 @@
 #include <optional>
 
 #include "device/keeper/keeper.hpp"
-#include "device/node/stderr_log.hpp"
 
 namespace coupler::node {
 
-int serve(const Map& map, const Options& options, const ReadAgain& read_again, Hooks* hooks) {
-  StderrLog log(std::getenv("JOURNAL_STREAM"));
+int serve(const Map& map, const Options& options, StderrLog& log, const ReadAgain& read_again, Hooks* hooks) {
   const auto failed = [&](const Refusal& refusal) {
     tell(log, refusal);
     return refusal.reason;
@@ -20,6 +18,7 @@ int serve(const Map& map, const Options& options, const ReadAgain& read_again, H
   Loop loop;
   if (!loop.is_open()) return failed({Refusal::device_failed, std::strerror(errno)});
   Signals signals(loop);
+  log.never_wait();
   ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"));
   Station station(options, read_again, manager, log, hooks);
   if (const auto started = station.start(map); !started) return failed(started.error());

@@ -6,6 +6,7 @@
 #include <syslog.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <string>
 
@@ -31,17 +32,48 @@ void StderrLog::fail(std::string_view line) { put(LOG_ERR, speaker, line); }
 
 void StderrLog::tell(const Diagnostic& diagnostic) {
   const bool is_error = diagnostic.severity == Diagnostic::Severity::error;
-  if (to_journal_)
-    put(is_error ? LOG_ERR : LOG_WARNING, "", to_string(diagnostic));
-  else
-    (void)std::fputs(render(diagnostic, Colour::no).c_str(), stderr);
+  const std::string text = to_journal_ ? to_string(diagnostic) : render(diagnostic, Colour::no);
+  put(is_error ? LOG_ERR : LOG_WARNING, "", text);
 }
 
-void StderrLog::put(int priority, std::string_view who, std::string_view line) const {
-  const std::string text =
-      to_journal_ ? fmt::format("<{}>{}\n", priority, line) : fmt::format("{}{}\n", who, line);
+void StderrLog::never_wait() {
+  waits_ = false;
+  // A terminal with "stty tostop" stops the process of the background that writes.
+  std::signal(SIGTTOU, SIG_IGN);
+}
+
+void StderrLog::put(int priority, std::string_view who, std::string_view line) {
+  const std::string text = line_of(priority, who, line);
   // Whoever read it may be gone: that is no reason to end.
-  (void)std::fputs(text.c_str(), stderr);
+  if (waits_)
+    (void)std::fputs(text.c_str(), stderr);
+  else if (!tell_dropped() || !write_at_once(text))
+    ++dropped_[0].lines;
+}
+
+std::string StderrLog::line_of(int priority, std::string_view who, std::string_view line) const {
+  std::string text = to_journal_ ? fmt::format("<{}>{}", priority, line) : fmt::format("{}{}", who, line);
+  if (text.back() != '\n') text += '\n';
+  return text;
+}
+
+bool StderrLog::write_at_once(std::string_view text) {
+  const std::size_t written = stream_.write(text);
+  if (written > 0) dropped_[0].in_the_middle = written < text.size();
+  return written == text.size();
+}
+
+bool StderrLog::tell_dropped() {
+  const unsigned lines = dropped_[0].lines.exchange(0);
+  if (lines == 0) return true;
+  const std::string_view end_of_cut = dropped_[0].in_the_middle ? "\n" : "";
+  const std::string what =
+      lines == 1 ? "a line is missing here" : fmt::format("{} lines are missing here", lines);
+  if (write_at_once(
+          fmt::format("{}{}", end_of_cut, line_of(LOG_WARNING, speaker, what + ": stderr took no more"))))
+    return true;
+  dropped_[0].lines += lines;
+  return false;
 }
 
 }  // namespace coupler::node

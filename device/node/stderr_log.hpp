@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <string>
+
 #include "common/map/diagnostic.hpp"
 #include "device/core/log.hpp"
+#include "device/keeper/shared_array.hpp"
+#include "device/node/log_stream.hpp"
 
 namespace coupler::node {
 
@@ -20,10 +25,26 @@ class StderrLog : public Log {
   /// As compilers tell them, for editors.
   void tell(const Diagnostic& diagnostic);
 
- private:
-  void put(int priority, std::string_view who, std::string_view line) const;
+  /// From now on nothing waits for the reader of stderr: a line that cannot be written at once is dropped,
+  /// and the next one that can is preceded by one that tells how many were. So it is in processes forked from
+  /// this one, which count together.
+  void never_wait();
 
+ private:
+  struct Dropped {
+    std::atomic<unsigned> lines{0};
+    std::atomic<bool> in_the_middle{false};  ///< of a line: the rest of it is missing
+  };
+
+  void put(int priority, std::string_view who, std::string_view line);
+  std::string line_of(int priority, std::string_view who, std::string_view line) const;
+  bool write_at_once(std::string_view text);
+  bool tell_dropped();
+
+  LogStream stream_;
+  SharedArray<Dropped> dropped_{1};
   bool to_journal_;
+  bool waits_ = true;
 };
 
 }  // namespace coupler::node

@@ -90,3 +90,16 @@ status=0; stop node KILL || status=$?
 expect "it dies" 137 "$status"
 check "its I/O process drives the safe state and ends" wait_until 5 ended "$io"
 check "and says so" says node 'Terminated: outputs are in their safe state'
+
+echo "# nobody reads the log"
+mkfifo "$check_folder/unread"
+exec 9<>"$check_folder/unread"
+start node sh -c 'exec "$@" 2>&9' sh "$bin/coupler-node" keeper.yaml
+check "the node serves" wait_until 10 write_outputs
+dd if=/dev/zero of="$check_folder/unread" bs=4096 count=200 oflag=nonblock 2>"$check_folder/dd" || true
+check "its pipe is full" grep -q 'temporarily unavailable' "$check_folder/dd"
+before=$(io_process)
+kill -s KILL "$before"
+check "every output is in its safe state" wait_until 5 wires_are safe
+check "another I/O process is started" wait_until 10 new_io_process "$before"
+check "the keeper ends at SIGTERM" stop node TERM
