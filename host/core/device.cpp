@@ -34,13 +34,15 @@ Time Device::step() {
 
 Result<> Device::do_what_is_due(Time now) {
   Result<> answer;
+  const Time write_due = std::min(writer_.due(), watchdog_.due());
+  transport_.go_first(write_due <= now);
   if (watchdog_.due() <= now && !writer_.awaits_answer())
     answer = serve_watchdog();
   else if (writer_.due() <= now)
     answer = writer_.step();
   else if (reader_.due() <= now)
-    answer = reader_.step();
-  else if (probe_due() <= now)
+    answer = reader_.step(write_due);
+  else if (probe_due() <= now && transport_.await_turn(write_due))
     answer = probe(map_, transport_);
   else
     return {};
@@ -70,6 +72,7 @@ void Device::arrived() {
 }
 
 void Device::stop() {
+  transport_.go_first(true);
   writer_.shut_down(connected_);
   writer_.disconnected(NotConnected{"the driver ends"});
   watchdog_.disconnected("the driver ends");
@@ -79,6 +82,7 @@ void Device::stop() {
 }
 
 Time Device::connect() {
+  transport_.go_first(false);
   Result<> result = linked_ ? Result<>{} : transport_.connect();
   linked_ = result.has_value();
   if (result && verify_ != Verify::off) result = prove_equal();

@@ -28,8 +28,8 @@ Result<> Reader::request(const ReadSpan& span) {
                                 : transport_.read_registers(span.table, span.range, registers_.data());
 }
 
-Result<> Reader::step() {
-  if (cycle_.select(clock_.now()) == nullptr) return {};
+Result<> Reader::step(Time until) {
+  if (cycle_.select(clock_.now()) == nullptr || !transport_.await_turn(until)) return {};
   const ReadSpan& span = cycle_.current();
   if (Result<> answer = request(span); !answer) {
     const ExceptionReply* exception = exception_in(answer.error());

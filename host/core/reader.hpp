@@ -28,9 +28,9 @@ class Reader {
   void start();
   /// When step() has something to do.
   Time due() const { return cycle_.due(); }
-  /// Makes the request that is due, if there is one. An error means that the connection is of no more use, or
-  /// that the unit is away; any other exception is none.
-  Result<> step();
+  /// Makes the request that is due, if there is one and its turn comes before `until`. An error means that
+  /// the connection is of no more use, or that the unit is away; any other exception is none.
+  Result<> step(Time until = Time::max());
 
   void want(std::uint32_t point, bool wanted) { cycle_.want(point, wanted); }
 

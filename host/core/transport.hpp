@@ -32,8 +32,16 @@ class Transport {
   virtual Result<> read_file_record(std::uint16_t file, std::uint16_t record,
                                     Span<std::uint16_t> registers) = 0;
 
+  // For units that share a connection, and take turns.
+
+  /// Whether the reads that follow belong to a write: they go before other units' reads, as writes always do.
+  virtual void go_first(bool /*first*/) {}
+  /// Waits until a read would be sent at once. If true, a read must follow. False if it was woken meanwhile,
+  /// or at `until`: there may be something to do that comes before a read.
+  virtual bool await_turn(Time /*until*/) { return true; }
   /// Whether a send() made now would wait for nobody else's request. If true, send() must follow.
   virtual bool reserve() { return true; }
+
   /// Sends and does not wait for the answer. receive() must follow before any other request.
   virtual Result<> send(const modbus::WriteRequest& request) = 0;
   /// The answer to what was sent, at the latest a timeout after that.

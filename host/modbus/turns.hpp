@@ -1,39 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <condition_variable>
-#include <deque>
 #include <mutex>
 
-#include "host/modbus/event.hpp"
+#include "host/core/clock.hpp"
+#include "host/modbus/turn_order.hpp"
 
 namespace coupler::driver {
 
-/// Who may use what several share: first come, first served. Unlike a mutex it may be taken in one thread and
-/// released in another, and waiting for it can be ended.
+/// Who may use what several share, in a TurnOrder. Unlike a mutex it may be taken in one thread and released
+/// in another, and waiting for it can be ended.
 class Turns {
  public:
-  using Who = const void*;
+  using Who = TurnOrder::Who;
+  using Rank = TurnOrder::Rank;
 
-  /// Waits for those who came before. False if `interrupted` was set meanwhile.
-  bool take(Who who, const Event& interrupted) {
+  /// Waits for the turn. False if it has not come until `until`, or if `give_up()` was true, which is asked
+  /// at first and after each look_again().
+  template <class GiveUp>
+  bool take(Who who, Rank rank, Time until, GiveUp give_up) {
     std::unique_lock lock(mutex_);
-    waiting_.push_back(who);
-    changed_.wait(lock,
-                  [&] { return interrupted.is_set() || (holder_ == nullptr && waiting_.front() == who); });
-    waiting_.erase(std::find(waiting_.begin(), waiting_.end(), who));
-    if (interrupted.is_set()) {
-      changed_.notify_all();  // the next may be the first now
-      return false;
+    order_.come(who, rank);
+    bool is_mine = false;
+    changed_.wait_until(lock, until, [&] {
+      const bool ends = give_up();
+      is_mine = !ends && holder_ == nullptr && order_.next() == who;
+      return ends || is_mine;
+    });
+    if (is_mine) {
+      order_.serve(who);
+      holder_ = who;
+    } else {
+      order_.leave(who);
+      changed_.notify_all();  // another may be the next now
     }
-    holder_ = who;
-    return true;
+    return is_mine;
   }
   /// Takes it if nobody has it or waits for it.
   bool try_take(Who who) {
     const std::lock_guard lock(mutex_);
-    if (holder_ != nullptr || !waiting_.empty()) return false;
+    if (holder_ != nullptr || order_.next() != nullptr) return false;
     holder_ = who;
     return true;
   }
@@ -42,7 +49,12 @@ class Turns {
     holder_ = nullptr;
     changed_.notify_all();
   }
-  /// After `interrupted` was set: who waits returns; if it is `who`'s turn, `end` is called to cut it short.
+  /// Who waits asks again whether to give up.
+  void look_again() {
+    const std::lock_guard lock(mutex_);
+    changed_.notify_all();
+  }
+  /// look_again(); if it is `who`'s turn, `end` is called to cut it short.
   template <class End>
   void interrupt(Who who, End end) {
     const std::lock_guard lock(mutex_);
@@ -54,7 +66,7 @@ class Turns {
   std::mutex mutex_;
   std::condition_variable changed_;
   Who holder_ = nullptr;
-  std::deque<Who> waiting_;
+  TurnOrder order_;
 };
 
 }  // namespace coupler::driver

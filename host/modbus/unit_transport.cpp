@@ -8,6 +8,9 @@ namespace coupler::driver {
 namespace {
 
 tl::unexpected<Error> interrupted_error() { return fail(NotConnected{"interrupted"}); }
+tl::unexpected<Error> lost_error() {
+  return fail(TransportFailure{"the gateway has closed the connection, or cannot be reached"});
+}
 
 }  // namespace
 
@@ -19,17 +22,35 @@ UnitTransport::UnitTransport(std::shared_ptr<SharedConnection> shared, const Con
       gap_(limits.request_gap),
       delay_(limits.connect_delay) {}
 
+Result<> UnitTransport::take(Turns::Rank rank) {
+  if (std::exchange(has_turn_, false)) return {};
+  const auto give_up = [this] { return interrupted_.is_set() || is_lost(); };
+  if (shared_->turns.take(this, rank, Time::max(), give_up)) return {};
+  return interrupted_.is_set() ? interrupted_error() : lost_error();
+}
+
+void UnitTransport::release() {
+  if (shared_->users == 0) {
+    shared_->transport.close();
+    shared_->open = false;
+  }
+  shared_->turns.release();
+}
+
 Result<> UnitTransport::open() {
   shared_->transport.close();
+  const Time begun = std::chrono::steady_clock::now();
   Result<> opened = shared_->transport.open(interrupted_);
   shared_->open = opened.has_value();
   shared_->opened = std::chrono::steady_clock::now();
+  // Each of the others would wait as long for nothing.
+  if (!opened && shared_->opened - begun >= timeout_) ++shared_->ended;
   return opened;
 }
 
 Result<> UnitTransport::connect() {
   close();
-  if (!take()) return interrupted_error();
+  if (auto taken = take(Turns::Rank::read); !taken) return taken;
   Result<> result = shared_->transport.select(unit_, timeout_);
   if (result && !shared_->open) result = open();
   if (result) {
@@ -37,7 +58,7 @@ Result<> UnitTransport::connect() {
     ended_ = shared_->ended;
     ++shared_->users;
   }
-  shared_->turns.release();
+  release();
   return result;
 }
 
@@ -45,14 +66,18 @@ void UnitTransport::close() {
   if (std::exchange(in_flight_, false)) {  // the answer may still come, and would be taken for another
     shared_->transport.close();
     shared_->open = false;
-    shared_->turns.release();
+    release();
   }
-  if (!std::exchange(connected_, false) || !take()) return;
-  if (--shared_->users == 0) {
-    shared_->transport.close();
-    shared_->open = false;
-  }
-  shared_->turns.release();
+  if (!std::exchange(connected_, false) || --shared_->users > 0) return;
+  // Nobody waits here: a unit that is lost says so at once. If another has the turn, it connects, or closes
+  // what nobody uses.
+  if (shared_->turns.try_take(this)) release();
+}
+
+void UnitTransport::wake() {
+  woken_ = true;
+  wakeup_.call();
+  shared_->turns.look_again();
 }
 
 void UnitTransport::interrupt() {
@@ -65,7 +90,7 @@ Time UnitTransport::ready() const { return std::max(shared_->opened + delay_, sh
 /// What must be so before a request, in its turn.
 Result<> UnitTransport::prepare() {
   if (!connected_) return fail(NotConnected{"not connected"});
-  if (ended_ != shared_->ended) return fail(TransportFailure{"the gateway has closed the connection"});
+  if (is_lost()) return lost_error();
   if (auto selected = shared_->transport.select(unit_, timeout_); !selected) return selected;
   if (!shared_->open)
     if (auto opened = open(); !opened) return opened;
@@ -83,15 +108,15 @@ Result<> UnitTransport::done(Result<> result) {
     shared_->open = false;
     if (std::holds_alternative<TransportFailure>(result.error()) && !interrupted_.is_set()) ++shared_->ended;
   }
-  shared_->turns.release();
+  release();
   return result;
 }
 
 template <class Request>
 Result<> UnitTransport::in_turn(Request&& request) {
-  if (!take()) return interrupted_error();
+  if (auto taken = take(rank_of_reads_); !taken) return taken;
   if (auto prepared = prepare(); !prepared) {
-    shared_->turns.release();
+    release();
     return prepared;
   }
   return done(request(shared_->transport));
@@ -110,19 +135,24 @@ Result<> UnitTransport::read_file_record(std::uint16_t file, std::uint16_t recor
       [&](ModbusTransport& transport) { return transport.read_file_record(file, record, registers); });
 }
 
+bool UnitTransport::await_turn(Time until) {
+  const auto give_up = [this] { return woken_.exchange(false) || interrupted_.is_set() || is_lost(); };
+  has_turn_ = shared_->turns.take(this, Turns::Rank::read, until, give_up);
+  return has_turn_ || interrupted_.is_set() || is_lost();  // the read itself will fail, and say why
+}
+
 bool UnitTransport::reserve() {
   if (!shared_->turns.try_take(this)) return false;
-  reserved_ =
-      connected_ && ended_ == shared_->ended && shared_->open && std::chrono::steady_clock::now() >= ready();
-  if (!reserved_) shared_->turns.release();
-  return reserved_;
+  has_turn_ = connected_ && !is_lost() && shared_->open && std::chrono::steady_clock::now() >= ready();
+  if (!has_turn_) release();
+  return has_turn_;
 }
 
 Result<> UnitTransport::send(const modbus::WriteRequest& request) {
-  const bool reserved = std::exchange(reserved_, false);
-  if (!reserved && !take()) return interrupted_error();
+  const bool reserved = has_turn_;
+  if (auto taken = take(Turns::Rank::write); !taken) return taken;
   if (auto prepared = prepare(); !prepared) {
-    shared_->turns.release();
+    release();
     return prepared;
   }
   if (auto sent = shared_->transport.send(request); !sent) return done(sent);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "common/map/map.hpp"
@@ -10,20 +11,21 @@
 
 namespace coupler::driver {
 
-/// One connection to a gateway. Who has the turn may use the rest.
+/// One connection to a gateway. Who has the turn may use what is not atomic.
 struct SharedConnection {
   explicit SharedConnection(const Connection& gateway) : transport(gateway) {}
 
   Turns turns;
   ModbusTransport transport;
   bool open = false;
-  int users = 0;            ///< units that are connected
-  std::uint64_t ended = 0;  ///< how often the gateway has ended it
+  std::atomic<int> users{0};            ///< units that are connected
+  std::atomic<std::uint64_t> ended{0};  ///< how often the gateway has ended it, or could not be reached
   Time opened{};
   Time answered{};  ///< the last request
 };
 
-/// One of several units behind a gateway that share a connection, request by request in turn.
+/// One of several units behind a gateway that share a connection, request by request in turn:
+/// writes first, also those of a unit whose own read still waits for its turn.
 ///
 /// A unit that stays silent closes the connection, since its answer may still come; the others open it again
 /// and notice nothing. Where the gateway has ended it, all units have lost it: what is behind may have
@@ -41,14 +43,18 @@ class UnitTransport : public Transport {
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
+  void go_first(bool first) override { rank_of_reads_ = first ? Turns::Rank::write : Turns::Rank::read; }
+  bool await_turn(Time until) override;
   bool reserve() override;
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;
   Woken wait_until(Time time) override { return wait_for(wakeup_, interrupted_, -1, time); }
-  void wake() override { wakeup_.call(); }
+  void wake() override;
 
  private:
-  bool take() { return shared_->turns.take(this, interrupted_); }
+  Result<> take(Turns::Rank rank);
+  void release();
+  bool is_lost() const { return connected_ && ended_ != shared_->ended; }
   template <class Request>
   Result<> in_turn(Request&& request);
   Result<> prepare();
@@ -63,9 +69,11 @@ class UnitTransport : public Transport {
   Duration delay_;
   Event interrupted_;
   Wakeup wakeup_;
+  std::atomic<bool> woken_{false};  ///< since await_turn() last returned for it
+  Turns::Rank rank_of_reads_ = Turns::Rank::read;
   bool connected_ = false;
   std::uint64_t ended_ = 0;  ///< SharedConnection::ended when it connected
-  bool reserved_ = false;    ///< it has the turn for a send() to come
+  bool has_turn_ = false;    ///< for the request that follows
   bool in_flight_ = false;   ///< it has the turn until receive()
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <utility>
+
 #include "test/host/core/device_fixture.hpp"
 
 namespace coupler::driver {
@@ -35,6 +37,18 @@ TEST_F(DeviceWriteTest, Writes_go_before_the_reads_that_are_due_and_keep_their_o
   for (int i = 0; i < 3; ++i) engine->step();
   EXPECT_THAT(device.requests, ElementsAre("read holding_registers 5+1", "write register 50",
                                            "write register 5", "read holding_registers 50+1"));
+}
+
+TEST_F(DeviceWriteTest, A_write_that_comes_while_a_read_waits_for_its_turn_goes_first) {
+  start_online(MapBuilder().holding("a", 5));
+  clock.advance(milliseconds(200));
+  bool waits = true;
+  device.await_read = [&] {
+    if (waits) push("a", 7);
+    return !std::exchange(waits, false);
+  };
+  for (int i = 0; i < 3; ++i) engine->step();
+  EXPECT_THAT(device.requests, ElementsAre("write register 5", "read holding_registers 5+1"));
 }
 
 TEST_F(DeviceWriteTest, A_refused_write_is_reported_and_keeps_the_connection) {

@@ -34,6 +34,7 @@ class FakeDevice : public Transport {
   std::string file;                                                                     ///< what FC 20 gives
   bool connected = false;
   std::vector<std::thread::id> senders;  ///< of writes
+  std::function<bool()> await_read;      ///< what happens while a read waits for its turn; whether it gets it
   std::function<void()> during_read;     ///< what happens while a read waits for its answer
   bool missing_for_reads_only = false;   ///< writes to what is missing are acknowledged
 
@@ -65,6 +66,7 @@ class FakeDevice : public Transport {
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override {
     return read(table, range, [&](std::uint32_t i, std::uint16_t value) { registers[i] = value; });
   }
+  bool await_turn(Time) override { return !await_read || await_read(); }
   Result<> send(const modbus::WriteRequest&) override {
     if (!connected) return fail(NotConnected{"not connected"});
     const std::lock_guard lock(mutex_);

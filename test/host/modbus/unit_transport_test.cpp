@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "host/core/device_thread.hpp"
+#include "host/core/write_ticket.hpp"
 #include "host/modbus/make_transports.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/modbus/modbus_server.hpp"
@@ -22,10 +23,13 @@ using std::chrono::milliseconds;
 /// value are acknowledged.
 class Gateway {
  public:
-  std::atomic<int> silent{-1};    ///< the unit that never answers
-  std::atomic<int> away{-1};      ///< the unit that is answered for with exception 0B
-  std::atomic<bool> ends{false};  ///< hangs up instead of the next answer
-  std::atomic<int> ends_each{0};  ///< hangs up after so many requests, again and again; 0: never
+  std::atomic<int> silent{-1};             ///< the unit that never answers
+  std::atomic<int> away{-1};               ///< the unit that is answered for with exception 0B
+  std::atomic<bool> ends{false};           ///< hangs up instead of the next answer
+  std::atomic<int> ends_each{0};           ///< hangs up after so many requests, again and again; 0: never
+  std::atomic<int> delay_ms{0};            ///< before each answer
+  std::atomic<int> reads{0};               ///< so many have come
+  std::atomic<int> reads_before_write{0};  ///< `reads` when the last write came
 
   std::uint16_t port() const { return server_.port(); }
 
@@ -36,6 +40,11 @@ class Gateway {
       return false;
     if (ends.exchange(false) || (ends_each > 0 && ++requests_ % ends_each == 0)) return false;
     const std::uint8_t unit = query[6];
+    if (query[7] == 3)
+      ++reads;
+    else
+      reads_before_write = reads.load();
+    std::this_thread::sleep_for(milliseconds(delay_ms));
     if (unit == silent) return true;
     const auto refused = static_cast<std::uint8_t>(query[7] | 0x80U);
     if (unit == away) return reply(fd, query, {unit, refused, 0x0B});
@@ -60,7 +69,7 @@ struct UnitTransportTest : testing::Test {
   MapPtr make_map(std::uint8_t unit, std::uint16_t connections = 1) const {
     fakes::MapBuilder builder;
     builder.add(Table::holding_registers, "level", 1, codec::Type::UINT);
-    builder.head().connection = {"localhost", gateway.port(), unit, milliseconds(200)};
+    builder.head().connection = {"localhost", port, unit, milliseconds(200)};
     builder.head().limits.connections = connections;
     builder.head().polling.rate = 200;
     return builder.build();
@@ -81,6 +90,7 @@ struct UnitTransportTest : testing::Test {
   }
 
   Gateway gateway;
+  std::uint16_t port = gateway.port();
   std::uint16_t word = 0;
   std::vector<MapPtr> owned;
   std::vector<std::unique_ptr<Transport>> transports;
@@ -146,6 +156,54 @@ TEST_F(UnitTransportTest, Who_closes_while_its_answer_is_to_come_gives_its_turn_
   EXPECT_TRUE(read(2));
 }
 
+TEST_F(UnitTransportTest, Who_closes_does_not_wait_for_the_requests_of_others) {
+  connect_all();
+  const auto request = WriteRequest::register_value(1, 7);
+  ASSERT_TRUE(unit(1).send(request));
+  auto closing = std::async(std::launch::async, [this] { unit(2).close(); });
+  EXPECT_EQ(closing.wait_for(std::chrono::seconds(5)), std::future_status::ready);
+  EXPECT_TRUE(unit(1).receive(request));
+}
+
+TEST_F(UnitTransportTest, The_last_one_that_closes_ends_the_connection) {
+  connect_all();
+  for (const auto& transport : transports) transport->close();
+  ModbusTransport another(owned[0]->map().connection);  // the gateway serves one at a time
+  ASSERT_TRUE(another.connect());
+  EXPECT_TRUE(another.read_registers(Table::holding_registers, Range::of(1, 1), &word));
+}
+
+TEST_F(UnitTransportTest, A_read_that_waits_for_its_turn_makes_room_when_its_unit_is_woken) {
+  connect_all();
+  const auto request = WriteRequest::register_value(1, 7);
+  ASSERT_TRUE(unit(1).send(request));
+  auto waiting = std::async(std::launch::async, [this] { return unit(2).await_turn(Time::max()); });
+  unit(2).wake();
+  EXPECT_FALSE(waiting.get());
+  EXPECT_FALSE(unit(2).await_turn(std::chrono::steady_clock::now() + milliseconds(1)));
+  EXPECT_TRUE(unit(1).receive(request));
+  ASSERT_TRUE(unit(2).await_turn(Time::max()));
+  EXPECT_FALSE(unit(3).reserve());
+  EXPECT_TRUE(read(2));
+  EXPECT_TRUE(read(3));
+}
+
+TEST_F(UnitTransportTest, A_gateway_that_takes_no_connection_any_more_is_lost_for_all_at_once) {
+  const Descriptor listener(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  ASSERT_EQ(::bind(listener.get(), reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::listen(listener.get(), 0), 0);  // the kernel takes one connection that nobody accepts
+  ::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size);
+  port = ntohs(address.sin_port);
+  connect_all();
+  EXPECT_TRUE(std::holds_alternative<Timeout>(read(1).error()));
+  EXPECT_TRUE(std::holds_alternative<NotConnected>(read(2).error()));
+  EXPECT_TRUE(std::holds_alternative<TransportFailure>(read(3).error()));
+}
+
 TEST_F(UnitTransportTest, An_interrupt_ends_the_wait_for_a_turn) {
   connect_all();
   const auto request = WriteRequest::register_value(1, 7);
@@ -180,6 +238,30 @@ struct Tally : WriteListener {
     ++all;
   }
 };
+
+TEST_F(UnitTransportTest, A_write_waits_for_the_request_in_flight_and_for_no_other_read) {
+  constexpr int writes = 20;
+  gateway.delay_ms = 10;  // and each unit asks every 5 ms: their reads always wait
+  make();
+  Deaf sink;
+  std::vector<std::unique_ptr<DeviceThread>> devices;
+  for (std::size_t i = 0; i < units; ++i)
+    devices.push_back(
+        std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *transports[i], sink));
+  while (gateway.reads < 10 * units) std::this_thread::sleep_for(milliseconds(10));
+  int overtaking = 0;
+  for (int i = 0; i < writes; ++i) {
+    WriteTicket ticket;
+    Write write;
+    write.listener = &ticket;
+    const int before = gateway.reads;
+    devices[0]->write(write);
+    ASSERT_EQ(ticket.wait().outcome, WriteResult::Outcome::ok);
+    overtaking += gateway.reads_before_write - before;
+  }
+  EXPECT_LT(overtaking,
+            writes);  // a few, where the system keeps a thread waiting; with one for each it fails
+}
 
 TEST_F(UnitTransportTest, Every_write_has_one_result_while_all_units_write_and_the_gateway_hangs_up) {
   constexpr int writes = 1000;
