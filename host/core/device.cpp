@@ -10,6 +10,18 @@
 
 namespace coupler::driver {
 
+namespace {
+
+std::string loss_text(const Map& map, const Error& error, bool was_online) {
+  const std::string why = to_string(error);
+  if (is_unit_away(error))
+    return fmt::format("the gateway cannot reach unit {}: {}; asking again", map.connection.unit, why);
+  return was_online ? fmt::format("connection lost: {}; connecting again", why)
+                    : fmt::format("not connected: {}; trying again", why);
+}
+
+}  // namespace
+
 Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transport, Clock& clock, Sink& sink)
     : map_(map),
       verify_(verify),
@@ -105,17 +117,15 @@ Result<> Device::prove_equal() {
     explain_silence(identity.error());
     return tl::make_unexpected(identity.error());
   }
+  explains_silence_ = false;
   statistics_.identified(identity->verdict);
   return judge(*identity);
 }
 
 void Device::explain_silence(const Error& error) {
   const bool silent = std::holds_alternative<Timeout>(error) || is_unit_away(error);
-  if (!silent || std::exchange(silence_told_, true)) return;
-  sink_.on_report(Level::warning,
-                  "connected, but the question for the device's identity is not answered; if this is a "
-                  "foreign coupler that ignores addresses it does not have, start with _verify:=off (a "
-                  "client: Options::verify)");
+  if (silent && std::exchange(explains_silence_, false))
+    sink_.on_report(Level::warning, silence_text(map_, error));
 }
 
 Result<> Device::judge(const Identity& identity) {
@@ -141,7 +151,6 @@ void Device::came_online() {
   if (std::exchange(online_, true)) return;
   backoff_.reset();
   last_trouble_.clear();
-  silence_told_ = false;
   statistics_.online();
   qualities_.online(true);
   sink_.on_online(true);
@@ -161,13 +170,12 @@ void Device::lost(const Error& error) {
   const std::string why = to_string(error);
   statistics_.offline(why);
   qualities_.online(false);
-  if (std::exchange(online_, false)) {
+  const bool was_online = std::exchange(online_, false);
+  if (was_online) {
     identity_suffices_ = transport_.replies() > replies_at_connect_;
     sink_.on_online(false);
-    sink_.on_report(Level::warning, fmt::format("connection lost: {}; connecting again", why));
-  } else if (why != last_trouble_) {
-    sink_.on_report(Level::warning, fmt::format("not connected: {}; trying again", why));
   }
+  if (was_online || why != last_trouble_) sink_.on_report(Level::warning, loss_text(map_, error, was_online));
   last_trouble_ = why;
 }
 

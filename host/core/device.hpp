@@ -91,7 +91,7 @@ class Device {
   bool identity_suffices_ = true;
   Time retry_at_ = Time::min();
   std::string last_trouble_;               ///< why the last attempt failed, so that it is told once
-  bool silence_told_ = false;              ///< that the identity was not answered, and the remedy
+  bool explains_silence_ = true;           ///< until the identity has been answered, or the remedy told
   std::uint64_t refused_fingerprint_ = 0;  ///< whose differences have been told
 };
 

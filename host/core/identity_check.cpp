@@ -32,6 +32,14 @@ std::string difference_text(const Map& known, const Identity& identity) {
   return text;
 }
 
+std::string silence_text(const Map& known, const Error& error) {
+  return fmt::format(
+      "{}, but unit {} does not answer the question for its identity: {}; check that the device runs, and "
+      "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, start "
+      "with _verify:=off (a client: Options::verify)",
+      is_unit_away(error) ? "the gateway answers" : "connected", known.connection.unit, to_string(error));
+}
+
 Result<Identity> check_identity(Transport& transport, const Map& known, const MapLoader& load) {
   const auto read = read_identity(transport);
   if (!read) return tl::make_unexpected(read.error());

@@ -37,6 +37,10 @@ std::string difference_text(const Map& known, const Identity& identity);
 /// What `superset` means.
 constexpr auto superset_text = "the device has more points than this map; those of this map are unchanged";
 
+/// What it may mean that a device which has never answered the question does not do so now (a timeout, or a
+/// gateway that cannot reach it), and what to do.
+std::string silence_text(const Map& known, const Error& error);
+
 /// Asks the device. An error is a broken connection, never a difference.
 Result<Identity> check_identity(Transport& transport, const Map& known, const MapLoader& load);
 

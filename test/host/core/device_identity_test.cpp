@@ -42,6 +42,35 @@ TEST_F(DeviceIdentityTest, A_device_that_is_silent_about_its_identity_is_told_on
   EXPECT_THAT(sink->online, ElementsAre(true));
 }
 
+TEST_F(DeviceIdentityTest, A_unit_that_a_gateway_never_reached_is_told_as_such_with_both_remedies) {
+  start(here());
+  for (int i = 0; i < 4; ++i)
+    device.next_errors.push_back(ExceptionReply{modbus::Exception::gateway_target_failed_to_respond});
+  run_for(milliseconds(1200));
+  EXPECT_EQ(sink->reported("the gateway answers, but unit 1 does not answer"), 1);
+  EXPECT_EQ(sink->reported("'unit' is its unit id"), 1);
+  EXPECT_EQ(sink->reported("_verify:=off"), 1);
+  EXPECT_EQ(sink->reported("the gateway cannot reach unit 1: exception 0B"), 1);
+  EXPECT_EQ(sink->reported("not connected"), 0);
+}
+
+TEST_F(DeviceIdentityTest, Who_has_answered_once_is_not_taken_for_one_who_ignores_the_question) {
+  const std::vector<Error> troubles{Timeout{milliseconds(3000)},
+                                    ExceptionReply{modbus::Exception::gateway_path_unavailable}};
+  serve(here());
+  for (const Error& trouble : troubles) {
+    device.next_errors.clear();
+    start(here());
+    run_for(milliseconds(150));
+    for (int i = 0; i < 6; ++i) device.next_errors.push_back(trouble);
+    run_for(seconds(3));
+    const bool by_gateway = is_unit_away(trouble);
+    EXPECT_EQ(sink->reported("_verify:=off"), 0);
+    EXPECT_EQ(sink->reported("the gateway cannot reach unit 1: exception 0A"), by_gateway ? 1 : 0);
+    EXPECT_EQ(sink->reported("connection lost"), by_gateway ? 0 : 1);
+  }
+}
+
 TEST_F(DeviceIdentityTest, A_different_map_is_neither_read_nor_written) {
   serve(there());
   start(here());
