@@ -123,9 +123,19 @@ std::vector<std::string> columns_of(const std::vector<Cells>& rows) {
   return columns;
 }
 
-void add_losses(const Entry& root, Losses& losses) {
-  const std::set<std::string_view> worked_in{"mapping", "defaults", "addressing", "byteorder_reverse",
-                                             "wordorder_reverse"};
+/// Who imports the table says so again, for points with nothing behind them have a safe value.
+bool tells_on_shutdown(const Map& map, const EntriesByName& entries) {
+  return std::any_of(map.points.begin(), map.points.end(), [&](const Point& point) {
+    const auto entry = entries.find(point.name);
+    return !point.line.present() && !is_analogue(point) && entry != entries.end() &&
+           find(*entry->second, "safe") != nullptr;
+  });
+}
+
+void add_losses(const Entry& root, bool with_on_shutdown, Losses& losses) {
+  std::set<std::string_view> worked_in{"mapping", "defaults", "addressing", "byteorder_reverse",
+                                       "wordorder_reverse"};
+  if (with_on_shutdown) worked_in.insert("on_shutdown");
   for (const Entry& entry : root.children)
     if (worked_in.count(entry.key) == 0)
       losses.add("the table has points only, the device's keys are left out",
@@ -147,7 +157,7 @@ Export write_csv(const Map& map) {
     if (const auto entry = entries.find(point.name); entry != entries.end())
       add_file_keys(*entry->second, rows.back());
   }
-  if (root) add_losses(*root, out.losses);
+  if (root) add_losses(*root, tells_on_shutdown(map, entries), out.losses);
   const std::vector<std::string> columns = columns_of(rows);
   out.text = fmt::format("{}\r\n", fmt::join(columns, ","));
   for (const Cells& cells : rows) {

@@ -197,6 +197,35 @@ class RowReader {
   Problems& problems_;
 };
 
+/// `safe` of a point with nothing behind it on a node: what the driver leaves. nullptr if no point has one.
+const Entry* safe_for_the_driver(const Entry& map) {
+  const Entry* mapping = find(map, "mapping");
+  for (const Table table : {Table::coils, Table::holding_registers}) {
+    const Entry* points = mapping != nullptr ? find(*mapping, to_string(table)) : nullptr;
+    if (points == nullptr) continue;
+    for (const Entry& point : points->children) {
+      const Entry* safe = find(point, "safe");
+      const bool wired = table == Table::coils
+                             ? find(point, "line") != nullptr
+                             : find(point, "iio") != nullptr || find(point, "pwm") != nullptr;
+      if (safe != nullptr && !wired) return safe;
+    }
+  }
+  return nullptr;
+}
+
+void add_on_shutdown(Entry& map, Problems& problems) {
+  const Entry* safe = safe_for_the_driver(map);
+  if (safe == nullptr) return;
+  const loader::Position at = safe->at;
+  set(map, scalar("on_shutdown", "safe", at));
+  problems.warning(
+      at,
+      "'safe' of a point without a line, 'iio' or 'pwm' is what the driver leaves behind, so the "
+      "map says 'on_shutdown: safe'",
+      "empty such cells if the driver is to leave outputs as they are");
+}
+
 }  // namespace
 
 std::vector<ForeignUnit> read_csv(std::string_view text, Problems& problems) {
@@ -212,6 +241,7 @@ std::vector<ForeignUnit> read_csv(std::string_view text, Problems& problems) {
   std::vector<ForeignUnit> units;
   RowReader reader(columns, problems);
   for (auto row = rows.begin() + 1; row != rows.end(); ++row) reader.read(*row, units);
+  for (ForeignUnit& unit : units) add_on_shutdown(unit.map, problems);
   return units;
 }
 

@@ -43,6 +43,10 @@ TEST(CsvExport, A_map_that_goes_through_a_table_and_back_has_the_same_fingerprin
         EXPECT_EQ(a.host.rate, b.host.rate) << a.name;
       }
       EXPECT_EQ(a.host.deadman.timeout, b.host.deadman.timeout) << a.name;
+      EXPECT_EQ(a.safe, b.safe) << a.name;
+      EXPECT_TRUE(
+          std::equal(a.safe_value.begin(), a.safe_value.end(), b.safe_value.begin(), b.safe_value.end()))
+          << a.name;
       EXPECT_EQ(a.line.name, b.line.name) << a.name;
       EXPECT_EQ(a.line.chip, b.line.chip) << a.name;
       EXPECT_EQ(a.description, b.description);
@@ -62,6 +66,45 @@ TEST(CsvExport, Orders_and_addresses_are_written_out_whatever_the_map_counts_in)
             "table,name,address,type,order,access,units,description,offset\r\n"
             "holding_registers,a,10,REAL,ABCD,,,,\r\n"
             "holding_registers,b,12,SINT,,,,,low\r\n");
+}
+
+TEST(CsvExport, What_the_driver_leaves_behind_goes_through_a_table_and_back) {
+  const LoadResult loaded = load_map(
+      "{name: m, on_shutdown: safe, mapping: {\n"
+      "  coils: {car: {address: 4, count: 3, safe: [on, off, on]}, lamp: {address: 8, safe: hold}, horn: "
+      "9},\n"
+      "  holding_registers: {speed: {address: 0, type: INT, scale: 0.5, safe: 12}}}}",
+      "m");
+  ASSERT_NE(loaded.map, nullptr) << lines_of(loaded.diagnostics);
+  const formats::Export out = formats::write_csv(loaded.map->map());
+  EXPECT_THAT(lines_of(out.losses.diagnostics("m")), testing::Not(testing::HasSubstr("on_shutdown")));
+  const Imported back("csv", out.text, {"m", {}});
+  ASSERT_EQ(back.result.maps.size(), 1U) << back.said << out.text;
+  EXPECT_EQ(back.said,
+            "given:2:18: warning: 'safe' of a point without a line, 'iio' or 'pwm' is what the driver leaves "
+            "behind, so the map says 'on_shutdown: safe'; empty such cells if the driver is to leave outputs "
+            "as they are\n");
+  const Map& again = back.result.maps[0].map->map();
+  EXPECT_EQ(again.fingerprint, loaded.map->map().fingerprint);
+  EXPECT_EQ(again.on_shutdown, OnShutdown::safe);
+  const Point& car = *find(again, "car");
+  EXPECT_EQ(std::vector<std::uint16_t>(car.safe_value.begin(), car.safe_value.end()),
+            (std::vector<std::uint16_t>{1, 0, 1}));
+  EXPECT_EQ(find(again, "lamp")->safe, Safe::hold);
+  EXPECT_EQ(find(again, "horn")->safe, Safe::off);
+  EXPECT_EQ(find(again, "speed")->safe_value[0], 24);
+}
+
+TEST(CsvExport, Where_the_wiring_alone_has_safe_states_the_drivers_manners_are_told) {
+  const LoadResult loaded = load_map(
+      "{name: m, on_shutdown: safe, mapping: {coils: {a: {address: 0, line: GPIO4, safe: on}}}}", "m");
+  ASSERT_NE(loaded.map, nullptr);
+  const formats::Export out = formats::write_csv(loaded.map->map());
+  EXPECT_THAT(lines_of(out.losses.diagnostics("m")), testing::HasSubstr("left out: name, on_shutdown;"));
+  const Imported back("csv", out.text, {"m", {}});
+  EXPECT_EQ(back.said, "");
+  ASSERT_EQ(back.result.maps.size(), 1U);
+  EXPECT_EQ(back.result.maps[0].map->map().on_shutdown, OnShutdown::hold);
 }
 
 TEST(CsvExport, The_devices_own_keys_are_told) {
