@@ -103,9 +103,9 @@ bool AnaloguePoints::drive(const Point& output, bool safe) {
   return outcome == Outcome::done;
 }
 
-bool AnaloguePoints::drive_all() {
+bool AnaloguePoints::drive_all(bool safe) {
   bool good = true;
-  each_output(map_, [&](const Point& output) { good &= drive(output, false); });
+  each_output(map_, [&](const Point& output) { good &= drive(output, safe); });
   return good;
 }
 

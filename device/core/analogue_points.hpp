@@ -29,8 +29,8 @@ class AnaloguePoints {
   /// Whether the range has a register of an output.
   bool has_output(modbus::Range holding) const;
 
-  /// Drives every output to what the image says. Tries all of them; false if one cannot be driven.
-  [[nodiscard]] bool drive_all();
+  /// Drives every output as drive() does one. Tries all of them; false if one cannot be driven.
+  [[nodiscard]] bool drive_all(bool safe);
 
   /// Drives one output to its safe state, if `safe`, or else to what the image says. False if it cannot be.
   [[nodiscard]] bool drive(const Point& output, bool safe);

@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "device/gpio/grouped_lines.hpp"
+
 namespace coupler::node {
 namespace {
 
@@ -23,7 +25,10 @@ std::string busy_lines(const std::vector<Wanted>& lines, const HolderOf& holder_
 
 }  // namespace
 
-int initial_level(const Point& point) { return !point.initial.empty() && point.initial[0] != 0 ? 1 : 0; }
+int first_level(const Point& point, bool safe) {
+  const int initial = !point.initial.empty() && point.initial[0] != 0 ? 1 : 0;
+  return safe ? safe_level(point.safe, initial) : initial;
+}
 
 std::string names_of(const std::vector<Wanted>& lines) {
   constexpr std::size_t enough = 8;

@@ -22,8 +22,8 @@ struct Wanted {
 
 inline bool is_output(const Wanted& wanted) { return wanted.point->table == Table::coils; }
 
-/// The level that the map gives an output at the start.
-int initial_level(const Point& point);
+/// The level that an output begins with: the map's initial one, or its safe one if `safe`.
+int first_level(const Point& point, bool safe);
 
 /// "gpiochip0 line 5 (GPIO5), gpiochip0 line 6 (GPIO6) and 3 more".
 std::string names_of(const std::vector<Wanted>& lines);

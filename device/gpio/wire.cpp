@@ -27,7 +27,7 @@ std::optional<Edge> counted(const Map& map, const Point& input) {
 void add_line(std::string& errors, const std::string& text) { errors += (errors.empty() ? "" : "\n") + text; }
 
 /// The lines of the map; `errors` says which there are not.
-Wants find_lines(const Map& map, const Inventory& inventory, std::string& errors) {
+Wants find_lines(const Map& map, const Inventory& inventory, bool safe, std::string& errors) {
   Wants wanted;
   std::map<std::pair<const Chip*, unsigned>, const Point*> users;
   for (const Point& point : map.points) {
@@ -39,7 +39,7 @@ Wants find_lines(const Map& map, const Inventory& inventory, std::string& errors
     }
     const auto [other, is_new] = users.emplace(std::pair(found->chip, found->offset), &point);
     if (is_new)
-      wanted.push_back({&point, *found, counted(map, point), initial_level(point)});
+      wanted.push_back({&point, *found, counted(map, point), first_level(point, safe)});
     else
       add_line(errors,
                fmt::format("point '{}': {} is the line of point '{}' too; give one of them another line",
@@ -68,12 +68,12 @@ std::string name_of(const HeldLine& line) { return fmt::format("{} line {}", lin
 /// Finds and requests, and collects what went wrong so that one run tells everything.
 class Wirer : public NextWiring {
  public:
-  Wirer(const Map& map, HeldWiring* before, Log& log)
+  Wirer(const Map& map, HeldWiring* before, bool safe, Log& log)
       : map_(map),
         before_(before),
         log_(log),
         inventory_(backend::chips()),
-        wanted_(find_lines(map, inventory_, errors_)),
+        wanted_(find_lines(map, inventory_, safe, errors_)),
         succession_(succession(before, wanted_)),
         next_(std::make_unique<HeldWiring>(log)) {
     if (!succession_.errors.empty()) add_line(errors_, succession_.errors);
@@ -89,11 +89,11 @@ class Wirer : public NextWiring {
 
   std::unique_ptr<Wiring> take_over() override {
     if (before_ == nullptr) return std::move(next_);
-    const std::vector<const Point*> taken_up = points_of_idle_outputs();
+    const std::vector<const Wanted*> taken_up = wanted_of_idle_outputs();
     next_->groups().succeed(before_->groups());
-    for (const Point* point : taken_up) {
-      const auto level = static_cast<std::uint16_t>(initial_level(*point));
-      (void)next_->groups().drive(range(*point), Span<const std::uint16_t>(&level, 1));
+    for (const Wanted* wanted : taken_up) {
+      const auto level = static_cast<std::uint16_t>(wanted->level);
+      (void)next_->groups().drive(range(*wanted->point), Span<const std::uint16_t>(&level, 1));
     }
     before_->release();
     for (const std::string& line : idle_)
@@ -142,13 +142,13 @@ class Wirer : public NextWiring {
   }
 
   /// Outputs that are held, but were no point's.
-  std::vector<const Point*> points_of_idle_outputs() const {
-    std::vector<const Point*> points;
+  std::vector<const Wanted*> wanted_of_idle_outputs() const {
+    std::vector<const Wanted*> all;
     for (const KeptRequest& kept : succession_.outputs)
       for (std::size_t i = 0; i < kept.wanted.size(); ++i)
         if (kept.wanted[i] != nullptr && before_->outputs()[kept.group].points[i] == nullptr)
-          points.push_back(kept.wanted[i]->point);
-    return points;
+          all.push_back(kept.wanted[i]);
+    return all;
   }
 
   const Map& map_;
@@ -164,8 +164,9 @@ class Wirer : public NextWiring {
 
 }  // namespace
 
-tl::expected<std::unique_ptr<NextWiring>, std::string> wire(const Map& map, HeldWiring* before, Log& log) {
-  auto wirer = std::make_unique<Wirer>(map, before, log);
+tl::expected<std::unique_ptr<NextWiring>, std::string> wire(const Map& map, HeldWiring* before, bool safe,
+                                                            Log& log) {
+  auto wirer = std::make_unique<Wirer>(map, before, safe, log);
   if (!wirer->errors().empty()) return tl::unexpected(wirer->errors());
   return wirer;
 }

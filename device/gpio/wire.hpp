@@ -9,6 +9,7 @@ namespace coupler::node {
 /// requests as it allows, each of up to max_group_size lines. Lines that `before` (may be null) holds with
 /// the same settings stay in their requests, which cannot give up single lines: what the map does not want
 /// any more of such a request stays held, outputs in their safe state.
-tl::expected<std::unique_ptr<NextWiring>, std::string> wire(const Map& map, HeldWiring* before, Log& log);
+tl::expected<std::unique_ptr<NextWiring>, std::string> wire(const Map& map, HeldWiring* before, bool safe,
+                                                            Log& log);
 
 }  // namespace coupler::node

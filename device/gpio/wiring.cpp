@@ -60,10 +60,11 @@ class NextNothing : public NextWiring {
 }  // namespace
 
 tl::expected<std::unique_ptr<NextWiring>, std::string> prepare_wiring(const Map& map, bool simulated,
-                                                                      Wiring* before, Log& log) {
+                                                                      Wiring* before,
+                                                                      [[maybe_unused]] bool safe, Log& log) {
   if (simulated) return std::make_unique<NextSimulated>(map, before);
 #ifdef COUPLER_WITH_GPIOD
-  return wire(map, dynamic_cast<HeldWiring*>(before), log);
+  return wire(map, dynamic_cast<HeldWiring*>(before), safe, log);
 #else
   const auto* wired =
       std::find_if(map.points.begin(), map.points.end(), [](const auto& p) { return p.line.present(); });

@@ -39,10 +39,11 @@ class NextWiring {
 };
 
 /// The hardware of the map: simulated, or its GPIO lines by libgpiod, with new outputs at their initial
-/// levels. A map without lines needs neither. `before` (may be null) is in use still. The error says chip,
-/// line and holder of each line that cannot be had, and the remedy; it may have several lines. `map`, `log`
-/// and `before` outlive the result and what it becomes; the map of `before` lives until take_over().
+/// levels, or safe if `safe`. A map without lines needs neither. `before` (may be null) is in use still. The
+/// error says chip, line and holder of each line that cannot be had, and the remedy; it may have several
+/// lines. `map`, `log` and `before` outlive the result and what it becomes; the map of `before` lives until
+/// take_over().
 tl::expected<std::unique_ptr<NextWiring>, std::string> prepare_wiring(const Map& map, bool simulated,
-                                                                      Wiring* before, Log& log);
+                                                                      Wiring* before, bool safe, Log& log);
 
 }  // namespace coupler::node

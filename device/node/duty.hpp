@@ -37,6 +37,7 @@ struct Duty {
     return !mended.empty();
   }
 
+  bool has_expired() const { return memory->watchdog().state() == OutputWatchdog::State::expired; }
   /// Once it is in force.
   Hardware hardware() const { return {wiring->lines(), analogue.get(), hooked.get()}; }
 };

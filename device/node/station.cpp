@@ -38,7 +38,7 @@ tl::expected<void, Refusal> Station::start(const Map& map) {
   auto first = prepare(map, nullptr);
   if (!first) return tl::unexpected(std::move(first).error());
   duty_ = *std::move(first);
-  if (duty_->analogue && !duty_->analogue->drive_all())
+  if (duty_->analogue && !duty_->analogue->drive_all(false))
     return tl::unexpected(
         Refusal{Refusal::device_failed, "not every analogue output can be driven to its initial value"});
   duty_->wiring = std::exchange(duty_->prepared, nullptr)->take_over();
@@ -73,7 +73,8 @@ tl::expected<std::unique_ptr<Duty>, Refusal> Station::prepare(const Map& map, Ma
   if (duty->channels)
     duty->analogue = std::make_unique<AnaloguePoints>(map, duty->memory->image(), *duty->channels);
   if (hooks_ != nullptr) duty->hooked = std::make_unique<HookedPoints>(map, duty->memory->image(), *hooks_);
-  auto wiring = prepare_wiring(map, options_.simulated, duty_ ? duty_->wiring.get() : nullptr, log_);
+  const bool safe = duty_ && duty_->has_expired() && map.service.watchdog.present();
+  auto wiring = prepare_wiring(map, options_.simulated, duty_ ? duty_->wiring.get() : nullptr, safe, log_);
   if (!wiring) return tl::unexpected(Refusal{Refusal::device_failed, std::move(wiring).error()});
   duty->prepared = *std::move(wiring);
   return duty;
@@ -163,7 +164,7 @@ bool Station::reload() {
 }
 
 bool Station::look_after(TimePoint) {
-  const bool safe = duty_->memory->watchdog().state() == OutputWatchdog::State::expired;
+  const bool safe = duty_->has_expired();
   const bool lines = duty_->wiring->mend(safe);
   const bool channels = duty_->mend_channels(safe);
   return lines || channels;
@@ -176,7 +177,10 @@ void Station::change(std::vector<OpenConnection>& clients) {
   next_->wiring = std::exchange(next_->prepared, nullptr)->take_over();
   if (duty_->channels) duty_->channels->give_way(next_->channels.get());
   // Outputs that both have keep their value, which was carried over; what fails says so.
-  if (next_->analogue) (void)next_->analogue->drive_all();
+  const bool safe = next_->has_expired();
+  if (next_->analogue) (void)next_->analogue->drive_all(safe);
+  // It may have expired since the new lines were requested.
+  if (safe) next_->memory->watchdog().expire(next_->hardware().drive_safe(), TimePoint::clock::now());
   if (!same) clients.clear();
   duty_ = std::exchange(next_, nullptr);
   log_.write(

@@ -143,3 +143,20 @@ stop wires KILL || true
 refuse "no kept line moved, all the time" says wires changed
 check "the node ends well" stop node TERM
 cat "$(log node)"
+
+echo "# the watchdog has expired, and one output is new, another one moves"
+watched() {
+  printf '%s\n' 'name: plant' 'port: 1502' 'watchdog: {timeout: 300ms, recovery: manual}' 'mapping:' '  coils:'
+  printf '    %s: {address: %s, line: {chip: plant, offset: %s}, initial: on}\n' "$@"
+}
+expired() { [ "$(read_one 3 $((0xFF0B)))" = 3 ]; }
+watched moves 0 0 >"$map"
+plant_node "$map"
+check "an output is written" set_coil 0 1
+check "the watchdog expires" wait_until 5 expired
+check "the map is taken" reload_with "$taken" < <(watched moves 0 1 new 1 3)
+for line in 1 3; do
+  sim_pull plant "$line" up
+  check "line $line is in its safe state, against its pull" level_is "$line" 0
+done
+check "the node ends well" stop node TERM

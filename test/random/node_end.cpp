@@ -55,7 +55,7 @@ class NodeEnd::Bell : public node::Watcher {
 NodeEnd::NodeEnd(const Map& map, node::Hooks* hooks)
     : simulated_(std::any_of(map.points.begin(), map.points.end(), has_hardware)) {
   auto listener = node::listen_on("127.0.0.1", 0);
-  auto wiring = node::prepare_wiring(map, simulated_, nullptr, log_);
+  auto wiring = node::prepare_wiring(map, simulated_, nullptr, false, log_);
   if (!listener || !wiring) std::abort();
   duty_.map = &map;
   duty_.listener = *std::move(listener);

@@ -181,7 +181,7 @@ TEST(AnaloguePoints, A_safe_state_that_an_unplugged_output_missed_is_what_it_com
   node.channels.unplugged = {1};
   EXPECT_FALSE(node.analogue.drive_safe());
   node.channels.unplugged.clear();
-  EXPECT_TRUE(node.analogue.drive_all());
+  EXPECT_TRUE(node.analogue.drive_all(false));
   EXPECT_DOUBLE_EQ(0, node.channels.outputs[1]);
 }
 
@@ -207,7 +207,7 @@ TEST(AnaloguePoints, At_the_start_outputs_are_driven_to_what_the_image_says) {
   map.add(Table::holding_registers, "other", 1, Type::UINT, [&](Point& p) { p.pwm = fan(); });
   NodeUnderTest node(map.build());
   node.channels.broken = {0};
-  EXPECT_FALSE(node.analogue.drive_all());
+  EXPECT_FALSE(node.analogue.drive_all(false));
   EXPECT_THAT(node.channels.driven, ElementsAre(Pair(0, 20), Pair(1, 0)));
 }
 

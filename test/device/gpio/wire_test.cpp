@@ -143,9 +143,9 @@ class Wires : public testing::Test {
   Wires() { machine = Machine(); }
 
   /// The error; empty: it is in force.
-  std::string change_to(MapBuilder builder) {
+  std::string change_to(MapBuilder builder, bool safe = false) {
     const MapPtr map = builder.build();
-    auto next = wire(map->map(), wiring(), log_);
+    auto next = wire(map->map(), wiring(), safe, log_);
     if (!next) return next.error();
     machine.history.push_back("prepared");
     auto taken = (*next)->take_over();
@@ -203,6 +203,34 @@ TEST_F(Wires, A_line_that_leaves_others_behind_stays_held_safe_and_can_come_back
   news();
   EXPECT_EQ(change_to(two_lamps()), "");
   EXPECT_THAT(news(), ElementsAre("prepared", "drive 1 0")) << "to its initial level";
+}
+
+TEST_F(Wires, After_the_watchdog_new_outputs_begin_safe) {
+  const auto initially_on = [](unsigned offset, Safe safe) {
+    return [=](Point& p) {
+      static constexpr std::uint16_t on = 1;
+      at(offset, safe)(p);
+      p.initial = Span<const std::uint16_t>(&on, 1);
+    };
+  };
+  EXPECT_EQ(change_to(two_lamps()), "");
+  EXPECT_EQ(change_to(MapBuilder().add(Table::coils, "a", 0, codec::Type::BOOL, at(0))), "");
+  EXPECT_EQ(machine.levels[1], 1) << "idle, and safe";
+  news();
+  EXPECT_EQ(change_to(two_lamps()
+                          .add(Table::coils, "c", 2, codec::Type::BOOL, initially_on(2, Safe::off))
+                          .add(Table::coils, "d", 3, codec::Type::BOOL, initially_on(3, Safe::hold))
+                          .add(Table::coils, "e", 4, codec::Type::BOOL, at(4, Safe::on)),
+                      true),
+            "");
+  EXPECT_THAT(news(), ElementsAre("take 2 0", "take 3 1", "take 4 1", "prepared"));
+}
+
+TEST_F(Wires, After_the_watchdog_an_output_that_moves_to_another_line_begins_safe_there) {
+  EXPECT_EQ(change_to(MapBuilder().add(Table::coils, "a", 0, codec::Type::BOOL, at(0))), "");
+  news();
+  EXPECT_EQ(change_to(MapBuilder().add(Table::coils, "a", 0, codec::Type::BOOL, at(1, Safe::on)), true), "");
+  EXPECT_THAT(news(), ElementsAre("take 1 1", "prepared", "release 0"));
 }
 
 TEST_F(Wires, What_cannot_be_had_leaves_everything_as_it_is) {

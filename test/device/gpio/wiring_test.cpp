@@ -15,7 +15,7 @@ using testing::HasSubstr;
 TEST(PreparedWiring, A_map_without_lines_needs_no_hardware) {
   FakeLog log;
   const auto map = MapBuilder().many(Table::coils, 0, 4).build();
-  EXPECT_TRUE(prepare_wiring(map->map(), false, nullptr, log).has_value());
+  EXPECT_TRUE(prepare_wiring(map->map(), false, nullptr, false, log).has_value());
 }
 
 TEST(PreparedWiring, A_chip_that_does_not_exist_is_named_with_its_point_and_the_simulation_does_without) {
@@ -24,11 +24,11 @@ TEST(PreparedWiring, A_chip_that_does_not_exist_is_named_with_its_point_and_the_
       MapBuilder()
           .add(Table::coils, "lamp", 0, codec::Type::BOOL, [](Point& p) { p.line.chip = "no-such-chip"; })
           .build();
-  const auto lines = prepare_wiring(map->map(), false, nullptr, log);
+  const auto lines = prepare_wiring(map->map(), false, nullptr, false, log);
   ASSERT_FALSE(lines.has_value());
   EXPECT_THAT(lines.error(), HasSubstr("point 'lamp'"));
   EXPECT_THAT(lines.error(), HasSubstr("--sim"));
-  EXPECT_TRUE(prepare_wiring(map->map(), true, nullptr, log).has_value());
+  EXPECT_TRUE(prepare_wiring(map->map(), true, nullptr, false, log).has_value());
 }
 
 }  // namespace
