@@ -72,6 +72,8 @@ class Gateway(testing.RosTest):
         def all_but_the_third(request):
             return None if request.unit == 3 else self.answer_late(request)
 
+        for online in self.online.values():
+            online.values.clear()  # False at first
         self.device.answer = all_but_the_third
         self.online[3].wait_for(lambda now: not now)
         time.sleep(3 * TIMEOUT)
