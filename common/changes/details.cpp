@@ -188,6 +188,7 @@ std::vector<Detail> details_of(const Map& map) {
       {"unreadable-changed", compatible, unreadable_text(map)},
       {"on-reconnect-changed", compatible, map.on_reconnect == OnReconnect::drop ? "drop" : "restore"},
       {"on-shutdown-changed", compatible, map.on_shutdown == OnShutdown::hold ? "hold" : "safe"},
+      {"poll-changed", compatible, map.poll == Poll::all ? "all" : "subscribed"},
       {"listen-changed", compatible, std::string(service.listen)},
       {"allow-changed", compatible,
        fmt::format("{}", fmt::join(service.allow.begin(), service.allow.end(), ", "))},

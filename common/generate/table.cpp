@@ -50,6 +50,7 @@ using ::coupler::Map;
 using ::coupler::OnReconnect;
 using ::coupler::OnShutdown;
 using ::coupler::Point;
+using ::coupler::Poll;
 using ::coupler::Safe;
 using ::coupler::SimWire;
 using ::coupler::Table;
@@ -89,6 +90,7 @@ constexpr Map map{{
     {{{listen}, {allow_name}, {watchdog}, {readback}}},  // listen, allow, watchdog, readback
     OnReconnect::{on_reconnect}, OnShutdown::{on_shutdown}, {unreadable_name},
     {coupler_watchdog},  // timeout, recovery, feed every, arm, feed, reset, how it shows that it has expired
+    Poll::{poll},
 }};
 
 }}  // namespace coupler::maps::{name}
@@ -169,7 +171,7 @@ std::string table_source(const Map& map, const Stamp& stamp) {
       arg("coupler_watchdog", coupler_watchdog(map.coupler_watchdog)),
       arg("on_reconnect", map.on_reconnect == OnReconnect::drop ? "drop" : "restore"),
       arg("on_shutdown", map.on_shutdown == OnShutdown::hold ? "hold" : "safe"),
-      arg("listen", literal(map.service.listen)),
+      arg("poll", map.poll == Poll::all ? "all" : "subscribed"), arg("listen", literal(map.service.listen)),
       arg("allow_name", map.service.allow.empty() ? "{}" : "allow"),
       arg("watchdog", watchdog(map.service.watchdog)), arg("readback", map.service.readback),
       arg("text", literal_lines(map.text, "    ")), arg("map_name", literal(map.name)),

@@ -15,7 +15,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 4;
+constexpr int model_version = 5;
 
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {
@@ -63,6 +63,12 @@ enum class OnShutdown : std::uint8_t {
   safe   ///< outputs go to their safe values: Point::safe, Point::safe_value
 };
 
+/// Which points the driver reads.
+enum class Poll : std::uint8_t {
+  all,
+  subscribed  ///< those that somebody listens to
+};
+
 /// One wire of the simulated chip: `from` an output `to` an input, or a square wave `to` an input.
 struct SimWire {
   std::string_view from;  ///< a coil; empty: a square wave
@@ -88,6 +94,7 @@ struct Map {
   OnShutdown on_shutdown = OnShutdown::hold;
   Span<const Unreadable> unreadable{};
   WatchdogSequences coupler_watchdog{};
+  Poll poll = Poll::all;
 };
 
 /// The point of that name, or nullptr.

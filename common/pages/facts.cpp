@@ -37,6 +37,7 @@ FactGroup connection(const Map& map) {
        {"Unit id", fmt::to_string(at.unit)},
        {"Timeout", words(at.timeout)},
        {"Polled", fmt::format("{} Hz", map.polling.rate)},
+       {"Points that are read", map.poll == Poll::all ? "all" : "those that somebody listens to"},
        {"After a reconnect", map.on_reconnect == OnReconnect::restore ? "outputs are written again"
                                                                       : "writes that found no link are lost"},
        {"When the driver ends",

@@ -152,7 +152,7 @@ int run(const Devices& devices) {
   for (const auto& [settings, source] : devices)
     topics.push_back(std::make_unique<DeviceTopics>(handle, diagnostics, source.map, std::move(*transport++),
                                                     settings.verify.value_or(Verify::require),
-                                                    settings.poll.value_or(Poll::all)));
+                                                    source.map.poll));
   for (Time diagnosed = Time::min(); ros::ok(); std::this_thread::sleep_for(report_interval)) {
     const Time now = std::chrono::steady_clock::now();
     bool due = diagnosed == Time::min() || now - diagnosed >= diagnostics_interval;

@@ -117,7 +117,9 @@ const std::array<SettingKey, 10> setting_keys{{
     {"timeout", "", "longest wait for a reply, in seconds"},
     {"verify", "",
      "if the node's map differs: require (default: do not talk to it), warn (go on) or off (do not ask)"},
-    {"poll", "", "which points are read: all (default), or subscribed: those that somebody listens to"},
+    {"poll", "",
+     "which points are read: all (default), or subscribed: those that somebody listens to; instead of the "
+     "map's"},
 }};
 
 Outcome set(Settings& settings, std::string_view key, const std::string& text) {
@@ -157,6 +159,7 @@ void apply(const Settings& settings, Map& map) {
   if (settings.unit) map.connection.unit = *settings.unit;
   if (settings.timeout) map.connection.timeout = *settings.timeout;
   if (settings.rate) map.polling.rate = *settings.rate;
+  if (settings.poll) map.poll = *settings.poll;
 }
 
 }  // namespace coupler::driver

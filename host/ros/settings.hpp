@@ -12,12 +12,6 @@
 
 namespace coupler::driver {
 
-/// Which points are read.
-enum class Poll {
-  all,
-  subscribed  ///< those that somebody listens to
-};
-
 /// What may be said about a device, or about all of them, outside its map. Precedence: map < ROS parameter <
 /// argument.
 struct Settings {

@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 4, "Compare the new fields of the model here, too");
+static_assert(model_version == 5, "Compare the new fields of the model here, too");
 
 inline void expect_same(const Line& a, const Line& b) {
   EXPECT_EQ(a.chip, b.chip);
@@ -164,6 +164,7 @@ inline void expect_same(const Map& a, const Map& b) {
   expect_same(a.service, b.service);
   EXPECT_EQ(a.on_reconnect, b.on_reconnect);
   EXPECT_EQ(a.on_shutdown, b.on_shutdown);
+  EXPECT_EQ(a.poll, b.poll);
   ASSERT_EQ(a.unreadable.size(), b.unreadable.size());
   for (std::size_t i = 0; i < a.unreadable.size(); ++i) {
     EXPECT_EQ(a.unreadable[i].table, b.unreadable[i].table);

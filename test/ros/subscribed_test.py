@@ -69,5 +69,22 @@ class Subscribed(testing.RosTest):
         self.assertEqual(self.asked(), set())
 
 
+class SaidByTheMap(testing.RosTest):
+    def drive(self, *arguments):
+        device = Device().start()
+        self.addCleanup(device.stop)
+        self.driver(f"_map:={process.write_map('poll: subscribed' + MAP)}", f"_port:={device.port}",
+                    *arguments).wait_for("connected")
+        status = LatestStatus("quiet")
+        self.addCleanup(status.close)
+        return status
+
+    def test_only_what_is_subscribed_is_read(self):
+        self.drive().quality("far", PointStatus.NOT_WANTED)
+
+    def test_the_argument_wins(self):
+        self.drive("_poll:=all").quality("far", PointStatus.GOOD)
+
+
 if __name__ == "__main__":
     testing.main()

@@ -182,6 +182,9 @@ constexpr Key keys[] = {
     project("on_shutdown", S::map, K::choice, "safe", "what becomes of outputs when the driver ends")
         .otherwise("hold")
         .one_of("hold|safe"),
+    project("poll", S::map, K::choice, "subscribed", "which points the driver reads")
+        .otherwise("all")
+        .one_of("all|subscribed"),
     project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
             "addresses that the device refuses")
         .lists(S::area),

@@ -155,6 +155,7 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   check_reserved(reserved, drafts, context);
   head.unreadable = context.map.keep(sorted_unreadable(unreadable));
   top.choice("on_reconnect", {OnReconnect::drop, OnReconnect::restore}, head.on_reconnect);
+  top.choice("poll", {Poll::all, Poll::subscribed}, head.poll);
   if (context.problems.has_errors()) return;
 
   const auto left_out =

@@ -73,6 +73,8 @@ TEST(Changes, What_a_side_does_by_itself_is_compatible) {
               ElementsAre("compatible safe-changed lamp: off -> hold"));
   EXPECT_THAT(changes_by("rate: 10", "rate: 20"),
               ElementsAre("compatible map-rate-changed : 10 Hz -> 20 Hz"));
+  EXPECT_THAT(changes_by("rate: 10", "rate: 10\npoll: subscribed"),
+              ElementsAre("compatible poll-changed : all -> subscribed"));
   EXPECT_THAT(changes_by("units: rpm", "units: rpm, rate: 2"),
               ElementsAre("compatible rate-changed speed:  -> 2 Hz"));
 }

@@ -28,6 +28,14 @@ TEST(Facts, A_foreign_coupler_has_no_identity_area) {
   EXPECT_EQ(told(map, "Address"), "not in the map");
 }
 
+TEST(Facts, Which_points_are_read_is_told) {
+  auto builder = fakes::MapBuilder();
+  EXPECT_EQ(told(builder.build(), "Points that are read"), "all");
+  auto wanted = fakes::MapBuilder();
+  wanted.head().poll = Poll::subscribed;
+  EXPECT_EQ(told(wanted.build(), "Points that are read"), "those that somebody listens to");
+}
+
 TEST(Facts, A_map_with_wiring_is_served_by_a_node_with_an_identity_area) {
   auto builder = fakes::MapBuilder();
   builder.add(Table::coils, "lamp", 0, codec::Type::BOOL, [](Point& point) { point.line.name = "GPIO17"; });

@@ -124,9 +124,14 @@ TEST(Settings, What_is_not_set_stays_as_the_map_has_it) {
   Map map;
   map.name = "device";
   map.connection.port = 1502;
+  map.poll = Poll::subscribed;
   Settings settings;
   settings.unit = 9;
   apply(settings, map);
+  EXPECT_EQ(map.poll, Poll::subscribed);
+  settings.poll = Poll::all;
+  apply(settings, map);
+  EXPECT_EQ(map.poll, Poll::all);
   EXPECT_EQ(map.name, "device");
   EXPECT_EQ(map.connection.port, 1502);
   EXPECT_EQ(map.connection.unit, 9);

@@ -135,10 +135,13 @@ TEST(Unreadable, Areas_are_sorted_and_in_the_addressing_of_the_map) {
   EXPECT_EQ(map->map().unreadable[1].range, modbus::Range::of(10, 10));
 }
 
-TEST(Link, What_becomes_of_outputs_is_said_at_the_top) {
-  const MapPtr map = load_clean(map_of("coils", "p: 1", "on_reconnect: restore\non_shutdown: safe"));
+TEST(Link, What_becomes_of_outputs_and_which_points_are_read_is_said_at_the_top) {
+  const MapPtr map =
+      load_clean(map_of("coils", "p: 1", "on_reconnect: restore\non_shutdown: safe\npoll: subscribed"));
   EXPECT_EQ(map->map().on_reconnect, OnReconnect::restore);
   EXPECT_EQ(map->map().on_shutdown, OnShutdown::safe);
+  EXPECT_EQ(map->map().poll, Poll::subscribed);
+  EXPECT_EQ(load_clean(map_of("coils", "p: 1"))->map().poll, Poll::all);
 }
 
 TEST(Manners, Where_the_driver_makes_safe_any_output_may_say_what_is_safe_for_it) {
