@@ -11,11 +11,15 @@ constexpr auto longest_farewell = std::chrono::milliseconds(700);
 
 }  // namespace
 
-DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink)
+DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink,
+                           Poll poll)
     : transport_(transport),
       device_(map, verify, std::move(load), transport, clock_, sink),
-      ends_safely_(map.on_shutdown == OnShutdown::safe),
-      thread_([this] { run(); }) {}
+      ends_safely_(map.on_shutdown == OnShutdown::safe) {
+  if (poll == Poll::subscribed)
+    for (std::uint32_t i = 0; i < map.points.size(); ++i) device_.want(i, false);
+  thread_ = std::thread([this] { run(); });
+}
 
 DeviceThread::~DeviceThread() {
   stopping_ = true;

@@ -17,7 +17,9 @@ namespace coupler::driver {
 /// answer wakes the owner. So a write to an idle device costs no thread hand-over.
 class DeviceThread {
  public:
-  DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink);
+  /// With Poll::subscribed no point is wanted at first.
+  DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink,
+               Poll poll = Poll::all);
   /// Ends the request in progress and waits for the thread: milliseconds, or, where outputs are to go to
   /// their safe values, most of a second at the worst.
   ~DeviceThread();
@@ -31,7 +33,7 @@ class DeviceThread {
   void write(const Write& write);
   /// Counts a value that is none of its point, and tells the listener.
   void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
-  /// Whether somebody wants the values of a point (index into Map::points). At first all are wanted.
+  /// Whether somebody wants the values of a point (index into Map::points).
   void want(std::uint32_t point, bool wanted);
   /// Resets the coupler's own watchdog. The answer comes after a few timeouts at most.
   std::future<CouplerWatchdog::Answer> reset_watchdog();
@@ -52,7 +54,7 @@ class DeviceThread {
   std::atomic<bool> stopping_{false};
   std::atomic<std::thread::id> owner_{};  ///< has its turn while it calls the sink
   std::promise<void> stopped_;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // begins when the others are there: it uses them
 };
 
 }  // namespace coupler::driver

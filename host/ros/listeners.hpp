@@ -23,13 +23,13 @@ class Listeners {
     if (--counts_[point] == 0 && want_) want_(point, false);
   }
 
-  /// `want(point, wanted)` is called for each point that nobody listens to, and from now on when the first
-  /// one comes and when the last one has left. It must wait for nothing.
+  /// `want(point, true)` is called for each point that somebody listens to, and from now on `want` when the
+  /// first one comes and when the last one has left. It must wait for nothing.
   void follow(std::function<void(std::uint32_t point, bool wanted)> want) {
     const std::lock_guard lock(mutex_);
     want_ = std::move(want);
     for (std::uint32_t point = 0; point < counts_.size(); ++point)
-      if (counts_[point] == 0) want_(point, false);
+      if (counts_[point] > 0) want_(point, true);
   }
 
   /// Nobody listens to it, and somebody minds.

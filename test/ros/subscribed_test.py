@@ -45,6 +45,11 @@ class Subscribed(testing.RosTest):
     def test_without_a_subscriber_there_is_no_request(self):
         self.assertEqual(self.asked(1), set())
 
+    def test_not_even_at_the_start(self):
+        time.sleep(0.5)
+        points = {0, 1, 100}
+        self.assertEqual([r for r in self.device.requests if points & set(range(r.address, r.address + r.count))], [])
+
     def test_what_is_subscribed_is_read_and_nothing_else(self):
         far = self.topic("/quiet/far", Int16)
         self.assertEqual(far.next(), 33)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/core/device_thread.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <future>
@@ -44,6 +45,18 @@ TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
   on.registers[0] = 1;
   thread.write(on);
   EXPECT_EQ(sink.written.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
+}
+
+TEST(DeviceThread, With_subscribed_nothing_is_read_before_somebody_wants_it) {
+  const auto owned = MapBuilder().coil("a", 1).coil("b", 9).build();
+  FakeDevice device;
+  WaitingSink sink;
+  {
+    DeviceThread thread(owned->map(), Verify::off, no_map, device, sink, Poll::subscribed);
+    thread.want(0, true);
+    ASSERT_EQ(sink.first.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  }
+  EXPECT_THAT(device.requests, testing::Each(testing::AnyOf("connect", "read coils 1+1")));
 }
 
 TEST(DeviceThread, A_write_to_an_idle_device_is_sent_by_the_one_who_makes_it) {
