@@ -17,9 +17,8 @@ constexpr std::chrono::seconds look_period{1};
 
 }  // namespace
 
-bool Keeper::run() {
-  Backoff backoff;
-  for (std::vector<OpenConnection> clients;;) {
+bool Keeper::run(std::vector<OpenConnection> clients) {
+  for (Backoff backoff;;) {
     const TimePoint started = TimePoint::clock::now();
     const auto work = [&](Superior& superior) { return charge_.serve(superior, std::move(clients)); };
     auto process = IoProcess::start(loop_, work, heard_);

@@ -21,9 +21,9 @@ class Keeper {
   Keeper(Loop& loop, Signals& signals, Charge& charge, Log& log, Pulse* heard)
       : loop_(loop), signals_(signals), charge_(charge), log_(log), heard_(heard) {}
 
-  /// Runs I/O processes until a signal asks to stop; then the outputs are in their safe state. False: one of
-  /// them could not be driven.
-  bool run();
+  /// Runs I/O processes, the first one with `clients`, until a signal asks to stop; then the outputs are in
+  /// their safe state. False: one of them could not be driven.
+  bool run(std::vector<OpenConnection> clients);
 
  private:
   /// Until it ends, misses its beat, a signal asks to stop, or it has to make room for another one.

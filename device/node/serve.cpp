@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "device/keeper/keeper.hpp"
 
@@ -22,9 +24,10 @@ int serve(const Map& map, const Options& options, StderrLog& log, const ReadAgai
   ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"));
   Station station(options, read_again, manager, log, hooks);
   if (const auto started = station.start(map); !started) return failed(started.error());
-  const std::optional<bool> alone = station.serve_alone(loop, signals);
-  const bool safe =
-      alone ? *alone : Keeper(loop, signals, station, log, manager.is_there() ? &manager : nullptr).run();
+  Pulse* const managed = manager.is_there() ? &manager : nullptr;
+  std::vector<OpenConnection> clients;
+  const std::optional<bool> alone = station.serve_alone(loop, signals, clients);
+  const bool safe = alone ? *alone : Keeper(loop, signals, station, log, managed).run(std::move(clients));
   manager.stopping();
   if (safe) return 0;
   return failed({Refusal::device_failed, "ended, and not every output could be driven to its safe state"});

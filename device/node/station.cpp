@@ -102,10 +102,10 @@ bool Station::needs_keeper() const {
   return !options_.simulated && std::any_of(duty_->map->points.begin(), duty_->map->points.end(), is_wired);
 }
 
-std::optional<bool> Station::serve_alone(Loop& loop, Signals& signals) {
+std::optional<bool> Station::serve_alone(Loop& loop, Signals& signals, std::vector<OpenConnection>& clients) {
   Pulse* const managed = manager_.is_there() ? &manager_ : nullptr;
   if (hooks_ != nullptr && !needs_keeper()) hooks_->serving_began();
-  for (std::vector<OpenConnection> clients; !needs_keeper(); change(clients)) {
+  for (; !needs_keeper(); change(clients)) {
     IoService service(*duty_, loop, log_);
     service.adopt(std::move(clients));
     bool to_change = false;

@@ -44,8 +44,8 @@ class Station final : public Charge {
   /// Whether somebody has to hold its lines: simulated ones fall nowhere.
   bool needs_keeper() const;
   /// Answers masters in this process until a signal asks to stop; then whether every output is in its safe
-  /// state. nullopt: the map, or one that came meanwhile, needs a keeper.
-  std::optional<bool> serve_alone(Loop& loop, Signals& signals);
+  /// state. nullopt: the map, or one that came meanwhile, needs a keeper, and `clients` are connected.
+  std::optional<bool> serve_alone(Loop& loop, Signals& signals, std::vector<OpenConnection>& clients);
 
   int serve(Superior& superior, std::vector<OpenConnection> clients) override;
   bool reload() override;

@@ -160,3 +160,16 @@ for line in 1 3; do
   check "line $line is in its safe state, against its pull" level_is "$line" 0
 done
 check "the node ends well" stop node TERM
+
+echo "# the first line of a map comes by a reload"
+sed '/watchdog/d; s/, line: {[^}]*}//' <(watched lamp 0 0) >"$map"
+plant_node "$map"
+refuse "there is no I/O process yet" io_process
+exec 8<>/dev/tcp/127.0.0.1/1502
+check "the map is taken" reload_with "$taken" < <(watched lamp 0 0 | sed '/watchdog/d')
+check "there is one now" wait_until 5 io_process
+printf '\0\1\0\0\0\6\1\5\0\0\0\0' >&8
+expect "a master that was there is answered" '00 01 00 00 00 06 01 05 00 00 00 00' "$(timeout 5 head -c 12 <&8 | od -An -tx1 | xargs)"
+check "and drives" level_is 0 0
+exec 8<&-
+check "the node ends well" stop node TERM

@@ -143,7 +143,7 @@ class Wires : public testing::Test {
   Wires() { machine = Machine(); }
 
   /// The error; empty: it is in force.
-  std::string change_to(MapBuilder builder, bool safe = false) {
+  std::string change_to(const MapBuilder& builder, bool safe = false) {
     const MapPtr map = builder.build();
     auto next = wire(map->map(), wiring(), safe, log_);
     if (!next) return next.error();

@@ -59,9 +59,9 @@ class Kept : public testing::Test, public Pulse, public Charge {
     }
     return 0;
   }
-  bool keep(Life life) {
+  bool keep(Life life, std::vector<OpenConnection> clients = {}) {
     life_ = std::move(life);
-    return Keeper(loop_, signals_, *this, log_, this).run();
+    return Keeper(loop_, signals_, *this, log_, this).run(std::move(clients));
   }
 
   Loop loop_;
@@ -93,6 +93,17 @@ TEST_F(Kept, A_process_that_is_killed_leaves_safe_outputs_and_is_started_again) 
   EXPECT_EQ(lines_.safe_calls, 2);
   EXPECT_THAT(log_.lines, ElementsAre(AllOf(HasSubstr("was killed by signal 9"), HasSubstr("safe state"),
                                             HasSubstr("starting it again in 100 ms"))));
+}
+
+TEST_F(Kept, The_first_process_goes_on_with_clients_that_were_there_before) {
+  std::vector<OpenConnection> one(1);
+  one[0].unread = {1, 2, 3};
+  keep(
+      [&](Superior& pulse) {
+        return clients_.size() == 1 && clients_[0].unread.size() == 3 ? beat_for_ever(pulse) : 3;
+      },
+      std::move(one));
+  EXPECT_THAT(log_.lines, testing::IsEmpty());
 }
 
 TEST_F(Kept, A_process_that_exits_is_started_again) {
