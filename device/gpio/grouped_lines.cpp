@@ -27,6 +27,11 @@ bool each_in(Range range, const Addresses& addresses, Use use) {
   return any;
 }
 
+/// Its safe state asks for no level.
+bool only_holds(const WiredOutputs& wired) {
+  return std::all_of(wired.safe.begin(), wired.safe.end(), [](Safe safe) { return safe == Safe::hold; });
+}
+
 void copy(Span<const int> from, Span<int> to) { std::copy(from.begin(), from.end(), to.begin()); }
 
 }  // namespace
@@ -144,10 +149,11 @@ bool GroupedLines::drive_safe() {
   for (Output& output : outputs_) {
     for (std::size_t line = 0; line < output.next.size(); ++line)
       output.next[line] = safe_level(output.wired.safe[line], output.levels()[line]);
-    const bool is_safe = output.fault.note(drive(output, scratch_));
+    const bool is_driven = output.fault.note(drive(output, scratch_));
+    const bool is_gone = !is_driven && !output.wired.group->is_plugged();
     // A chip that is unplugged has to come back safe, whoever asks for it then.
-    if (is_safe || !output.wired.group->is_plugged()) copy(output.next, output.levels());
-    good &= is_safe;
+    if (is_driven || is_gone) copy(output.next, output.levels());
+    good &= is_driven || (is_gone && only_holds(output.wired));
   }
   return good;
 }

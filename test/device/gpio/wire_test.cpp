@@ -344,5 +344,14 @@ TEST_F(Wires, A_safe_state_that_an_unplugged_chip_missed_is_what_it_comes_back_w
   EXPECT_THAT(news(), ElementsAre("take 0 0", "take 1 1"));
 }
 
+TEST_F(Wires, Outputs_that_are_to_be_held_are_safe_on_an_unplugged_chip_too) {
+  EXPECT_EQ(change_to(MapBuilder().add(Table::coils, "a", 0, codec::Type::BOOL, at(0, Safe::hold))), "");
+  machine.gone = {"gpiochip0"};
+  machine.chips.clear();
+  EXPECT_TRUE(wiring_->mend(false));
+  EXPECT_TRUE(wiring_->lines().drive_safe());
+  EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("failed: No such device")));
+}
+
 }  // namespace
 }  // namespace coupler::node
