@@ -55,6 +55,11 @@ bool Network::contains(const IpAddress& other) const {
   return true;
 }
 
+bool is_ip_address(std::string_view text) {
+  const std::size_t zone = is_ipv4(text) ? std::string_view::npos : text.find('%');
+  return zone != text.size() - 1 && parse_address(text.substr(0, zone)).has_value();
+}
+
 tl::expected<Network, NetworkError> parse_network(std::string_view text) {
   const std::size_t slash = text.find('/');
   const bool ipv4 = is_ipv4(text);

@@ -30,4 +30,7 @@ struct NetworkError {
 /// prefix must be zero.
 tl::expected<Network, NetworkError> parse_network(std::string_view text);
 
+/// One address: "10.0.0.7", "fd00::7", or with the interface that a link-local one is of, "fe80::7%eth0".
+bool is_ip_address(std::string_view text);
+
 }  // namespace coupler

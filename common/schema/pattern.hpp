@@ -16,6 +16,10 @@ constexpr std::string_view ros_name_rule =
 /// A number with its unit, as "500ms".
 constexpr std::string_view duration = R"(^([0-9]+\.?[0-9]*|\.[0-9]+)(us|ms|s|min)$)";
 
+/// No name, port or range; what else is wrong with an address, the loader says.
+constexpr std::string_view ip_address =
+    R"(^([0-9]+(\.[0-9]+){3}|[0-9A-Fa-f]*:[0-9A-Fa-f]*:[0-9A-Fa-f:.]*(%[^%]+)?)$)";
+
 /// One of the words in any case; where it has '-', '_' or nothing will do too.
 std::string any_case(const std::vector<std::string_view>& words);
 

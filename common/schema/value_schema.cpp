@@ -77,6 +77,7 @@ Json value_schema(const Key& key) {
     case ValueKind::text: return {{"type", {"string", "number"}}};
     case ValueKind::ros_name: return text(ros_name, ros_name_rule);
     case ValueKind::host: return text(R"(^[^ \t\r\n]*$)", "write a host name or an IP address");
+    case ValueKind::ip_address: return text(ip_address, "write an IP address of the node");
     case ValueKind::choice: return choice(key);
     case ValueKind::preset: return preset();
     case ValueKind::duration:

@@ -75,7 +75,7 @@ tl::expected<Listener, std::string> listen_on(const std::string& address, std::u
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_STREAM;
-  hints.ai_flags = AI_PASSIVE;
+  hints.ai_flags = AI_PASSIVE | AI_NUMERICHOST;
   addrinfo* found = nullptr;
   if (const int error = ::getaddrinfo(address.empty() ? nullptr : address.c_str(),
                                       std::to_string(port).c_str(), &hints, &found);

@@ -65,7 +65,7 @@ constexpr Key keys[] = {
         .lists(S::wire),
     project("reserve", S::map, K::section, "[{table: coils, from: 8, to: 15}]", "addresses kept free")
         .lists(S::area),
-    project("listen", S::map, K::host, "127.0.0.1", "interface of the node"),
+    project("listen", S::map, K::ip_address, "127.0.0.1", "interface of the node"),
     project("allow", S::map, K::list, "[192.168.0.0/24, 10.0.0.7]", "who may connect to the node"),
     project("watchdog", S::map, K::section, "{timeout: 500ms}", "safe state when the master is silent")
         .holds(S::watchdog),

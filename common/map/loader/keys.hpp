@@ -54,8 +54,9 @@ enum class ValueKind : std::uint8_t {
   number,
   boolean,
   text,
-  ros_name,  ///< text: a relative ROS name
-  host,      ///< text without blanks
+  ros_name,    ///< text: a relative ROS name
+  host,        ///< text without blanks
+  ip_address,  ///< of the node
   choice,
   preset,    ///< the name of one
   duration,  ///< with a unit

@@ -56,8 +56,9 @@ Span<const std::string_view> read_allow(const Reader& top, Context& context) {
 Service read_service(const Reader& top, Context& context) {
   Service service;
   top.text("listen", service.listen);
-  if (service.listen.find_first_of(" \t\r\n") != std::string_view::npos)
-    top.wrong("listen", "an IP address or host name of the node");
+  if (const Entry* entry = top.find("listen");
+      entry != nullptr && entry->kind == Entry::Kind::scalar && !is_ip_address(entry->text))
+    top.wrong("listen", "an IP address of the node");
   service.allow = read_allow(top, context);
   service.watchdog = read_watchdog(top, context);
   top.boolean("readback", service.readback);

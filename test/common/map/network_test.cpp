@@ -57,5 +57,13 @@ TEST(Network, What_is_no_address_is_refused) {
     EXPECT_FALSE(parse_network(text).has_value()) << text;
 }
 
+TEST(Network, One_address_is_neither_a_range_nor_a_name_nor_a_port) {
+  for (const char* good : {"127.0.0.1", "0.0.0.0", "::", "::1", "fd00::7", "fe80::7%eth0", "::ffff:10.0.0.7"})
+    EXPECT_TRUE(is_ip_address(good)) << good;
+  for (const char* bad : {"", "300.1.1.1", "eth0", "localhost", "127.0.0.1:1502", "[::1]", "10.0.0.0/8",
+                          "fe80::7%", "%eth0", "10.0.0.7%eth0", " 10.0.0.7"})
+    EXPECT_FALSE(is_ip_address(bad)) << bad;
+}
+
 }  // namespace
 }  // namespace coupler

@@ -8,6 +8,7 @@
 
 #include "common/map/loader/names.hpp"
 #include "common/map/loader/scalar.hpp"
+#include "common/map/network.hpp"
 
 namespace coupler::schema {
 namespace {
@@ -25,6 +26,12 @@ TEST(Pattern, Of_durations_takes_what_the_loader_takes) {
   for (const char* text :
        {"1s", "500ms", "2.5min", "40us", ".5s", "1.s", "1", "s", "1 s", "-1s", "1h", "1..5s", ""})
     EXPECT_EQ(matches(text, duration), loader::parse_duration(text).has_value()) << text;
+}
+
+TEST(Pattern, Of_ip_addresses_takes_what_the_loader_takes_and_no_names) {
+  for (const char* text : {"127.0.0.1", "::", "::1", "fd00::7", "fe80::7%eth0", "::ffff:10.0.0.7", "", "eth0",
+                           "localhost", "127.0.0.1:1502", "[::1]", "10.0.0.0/8", "fe80::7%", "10.0.0.7%eth0"})
+    EXPECT_EQ(matches(text, ip_address), is_ip_address(text)) << text;
 }
 
 TEST(Pattern, Of_words_takes_them_in_any_case) {
