@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/node/io_service.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cstring>
-#include <string>
 #include <utility>
+
+#include "device/node/farewell.hpp"
 
 namespace coupler::node {
 namespace {
@@ -17,13 +15,6 @@ using Patience = std::optional<std::chrono::milliseconds>;
 Patience shorter(Patience a, Patience b) {
   if (!a || !b) return a ? a : b;
   return std::min(*a, *b);
-}
-
-std::string farewell(int signal, bool safe, const Statistics& statistics) {
-  return fmt::format(
-      "{}: {}; answered {} requests, {} of them with an exception", ::strsignal(signal),
-      safe ? "outputs are in their safe state" : "not every output could be driven to its safe state",
-      statistics.requests, statistics.exceptions);
 }
 
 }  // namespace
@@ -56,7 +47,7 @@ std::vector<OpenConnection> IoService::release() { return tcp_.release(); }
 
 bool IoService::end(int signal) {
   const bool safe = hardware_.drive_safe();
-  log_.write(farewell(signal, safe, statistics_));
+  log_.write(farewell(signal, safe, statistics_, TimePoint::clock::now()));
   return safe;
 }
 
