@@ -123,7 +123,9 @@ std::string why_not(const Devices& devices) {
       return fmt::format("the map has no address; add 'address: HOST' or give _address:=HOST{}",
                          devices.size() > 1 ? fmt::format(" (map of {})", source.map.name) : "");
     if (!names.insert(source.map.name).second)
-      return fmt::format("two devices have the name {}; give one of them another, as in _maps:=[left=a.yaml,right=a.yaml]", source.map.name);
+      return fmt::format(
+          "two devices have the name {}; give one of them another, as in _maps:=[left=a.yaml,right=a.yaml]",
+          source.map.name);
   }
   return {};
 }

@@ -66,5 +66,6 @@ check "and tells what happened, of each request to the kernel" wait_until 5 says
 cp "$(log node)" "$check_folder/before"
 for _ in 1 2 3; do input 0 >/dev/null 2>&1 || true; done
 check "once, not at each request" cmp "$(log node)" "$check_folder/before"
-check "it ends well on SIGTERM" stop node TERM
+status=0; stop node TERM || status=$?
+expect "it ends on SIGTERM, with 3: its outputs are not safe" 3 "$status"
 cat "$(log node)"
