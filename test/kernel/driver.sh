@@ -42,4 +42,5 @@ check "the node names the line" wait_until 10 says node 'BUTTON'
 check "the driver runs" running driver
 check "the node runs" running node
 check "the driver ends well on SIGINT" stop driver INT
-check "the node ends well on SIGINT" stop node INT
+status=0; stop node INT || status=$?
+expect "the node ends on SIGINT, with 3: its chip is gone" 3 "$status"
