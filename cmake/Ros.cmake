@@ -30,6 +30,17 @@ if(COUPLER_WITH_ROS)
   endforeach()
   # catkin wants shared libraries and devel/lib; the rooms are small static libraries.
   set(BUILD_SHARED_LIBS OFF)
+
+  # It also gives its definitions and include folders to every target of the project. Here those that need ROS link
+  # coupler_ros. The other rooms compile alike with and without ROS, so that the compiler's cache serves both.
+  get_directory_property(definitions COMPILE_DEFINITIONS)
+  set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "" INCLUDE_DIRECTORIES "")
+  add_library(coupler_ros INTERFACE)
+  target_compile_definitions(coupler_ros INTERFACE ${definitions})
+  # ROS's headers are not written for our warnings.
+  target_include_directories(coupler_ros SYSTEM INTERFACE
+    ${catkin_INCLUDE_DIRS} ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION})
+  target_link_libraries(coupler_ros INTERFACE ${catkin_LIBRARIES})
 else()
   message(STATUS "Left out: coupler_driver, the ROS driver (no catkin, roscpp, std_srvs, diagnostic_updater or "
                  "libmodbus, or COUPLER_ROS=OFF; scripts/install-packages build ros)")

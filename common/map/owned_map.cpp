@@ -8,6 +8,9 @@
 
 namespace coupler {
 
+OwnedMap::OwnedMap() = default;
+OwnedMap::~OwnedMap() = default;
+
 std::string_view OwnedMap::keep(std::string text) { return texts_.emplace_back(std::move(text)); }
 
 Span<const std::uint16_t> OwnedMap::keep(std::vector<std::uint16_t> registers) {

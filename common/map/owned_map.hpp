@@ -14,7 +14,8 @@ namespace coupler {
 /// long as it lives.
 class OwnedMap {
  public:
-  OwnedMap() = default;
+  OwnedMap();
+  ~OwnedMap();
   OwnedMap(const OwnedMap&) = delete;
   OwnedMap& operator=(const OwnedMap&) = delete;
 

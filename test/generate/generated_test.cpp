@@ -10,6 +10,7 @@
 #include "manners_map.hpp"
 #include "moxa_map.hpp"
 #include "test/generate/same_map.hpp"
+#include "test/support/paths.hpp"
 #include "unaddressed_map.hpp"
 #include "wago_map.hpp"
 
@@ -28,25 +29,25 @@ std::string read(const std::string& path) {
 }
 
 TEST(Generated, The_table_is_the_map_that_the_loader_reads) {
-  const MapPtr loaded = load(COUPLER_SOURCE_DIR "/config/example-node.yaml");
+  const MapPtr loaded = load(test::in_tree("config/example-node.yaml"));
   ASSERT_TRUE(loaded);
   testing::expect_same(maps::example::map, loaded->map());
 }
 
 TEST(Generated, Everything_that_is_hard_to_write_in_cpp_survives) {
-  const MapPtr loaded = load(HARD_MAP);
+  const MapPtr loaded = load(test::in_build("test/generate/hard.yaml"));
   ASSERT_TRUE(loaded);
   testing::expect_same(maps::hard::map, loaded->map());
 }
 
 TEST(Generated, What_the_host_does_with_points_survives) {
-  const MapPtr loaded = load(MANNERS_MAP);
+  const MapPtr loaded = load(test::in_tree("test/generate/manners.yaml"));
   ASSERT_TRUE(loaded);
   testing::expect_same(maps::manners::map, loaded->map());
 }
 
 TEST(Generated, Addresses_come_from_the_lock) {
-  const MapPtr loaded = load(COUPLER_SOURCE_DIR "/config/unaddressed.yaml");
+  const MapPtr loaded = load(test::in_tree("config/unaddressed.yaml"));
   ASSERT_TRUE(loaded);
   testing::expect_same(maps::unaddressed::map, loaded->map());
   const LoadResult served = load_map(maps::unaddressed::map.text, "served");
@@ -57,7 +58,7 @@ TEST(Generated, Addresses_come_from_the_lock) {
 TEST(Generated, The_couplers_own_watchdog_survives) {
   for (const Map* map : {&maps::wago::map, &maps::beckhoff::map, &maps::moxa::map}) {
     SCOPED_TRACE(map->name);
-    const MapPtr loaded = load(COUPLER_SOURCE_DIR "/test/generate/" + std::string(map->name) + ".yaml");
+    const MapPtr loaded = load(test::in_tree("test/generate/") + std::string(map->name) + ".yaml");
     ASSERT_TRUE(loaded);
     ASSERT_TRUE(loaded->map().coupler_watchdog.present());
     testing::expect_same(*map, loaded->map());
@@ -65,7 +66,7 @@ TEST(Generated, The_couplers_own_watchdog_survives) {
 }
 
 TEST(Generated, The_text_is_the_file_byte_by_byte) {
-  const std::string file = read(HARD_MAP);
+  const std::string file = read(test::in_build("test/generate/hard.yaml"));
   ASSERT_GT(file.size(), 65536U);  // longer than compilers must take
   EXPECT_TRUE(maps::hard::map.text == file);
 }

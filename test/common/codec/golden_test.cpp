@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/codec/value.hpp"
+#include "test/support/paths.hpp"
 
 namespace coupler::codec {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 json read_cases() {
-  std::ifstream file(COUPLER_TEST_DIR "/golden/codec.json");
+  std::ifstream file(test::in_tree("test/golden/codec.json"));
   return json::parse(file);
 }
 

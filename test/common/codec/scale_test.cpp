@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/codec/scale.hpp"
+#include "test/support/paths.hpp"
 
 namespace coupler::codec {
 namespace {
@@ -20,7 +21,7 @@ double number(const json& c, const char* key) {
   return std::strtod(c.at(key).get<std::string>().c_str(), nullptr);
 }
 
-Format format_of(const json& c) {
+Format numeric_format(const json& c) {
   Format format;
   format.type = parse_type(c.at("type").get<std::string>()).value();
   return format;
@@ -34,7 +35,7 @@ ScaleError error_of(const json& c) {
 class GoldenScale : public testing::Test {
  protected:
   GoldenScale() {
-    std::ifstream file(COUPLER_TEST_DIR "/golden/scale.json");
+    std::ifstream file(test::in_tree("test/golden/scale.json"));
     cases_ = json::parse(file);
   }
   json cases_;
@@ -43,7 +44,7 @@ class GoldenScale : public testing::Test {
 TEST_F(GoldenScale, A_published_value_becomes_the_nearest_registers_or_is_refused) {
   for (const json& c : cases_) {
     SCOPED_TRACE(c.dump());
-    const Format format = format_of(c);
+    const Format format = numeric_format(c);
     const Scale scale{number(c, "gain"), number(c, "offset")};
     std::vector<std::uint16_t> written(registers(format), 0xAAAA);
     const std::vector<std::uint16_t> before = written;
@@ -58,7 +59,7 @@ TEST_F(GoldenScale, Registers_are_published_as_raw_times_gain_plus_offset) {
     SCOPED_TRACE(c.dump());
     const auto raw = c.at("registers").get<std::vector<std::uint16_t>>();
     const Scale scale{number(c, "gain"), number(c, "offset")};
-    EXPECT_EQ(published(raw.data(), format_of(c), scale), number(c, "published"));
+    EXPECT_EQ(published(raw.data(), numeric_format(c), scale), number(c, "published"));
   }
 }
 

@@ -5,7 +5,9 @@
 
 #include <filesystem>
 
+#include "common/map/loader/load.hpp"
 #include "test/common/formats/imported.hpp"
+#include "test/support/paths.hpp"
 
 namespace coupler::test {
 namespace {
@@ -14,7 +16,7 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> maps_of_the_tree() {
   std::vector<fs::path> files;
-  const fs::path root = COUPLER_SOURCE_DIR;
+  const fs::path root = test::in_tree("");
   for (const auto* folder : {"config", "config/presets", "test/maps", "test/maps/origin", "test/generate",
                              "test/peers", "test/kernel", "test/attack"})
     for (const auto& entry : fs::directory_iterator(root / folder))

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "common/formats/exporter.hpp"
+#include "common/map/loader/load.hpp"
 #include "test/common/formats/imported.hpp"
 
 namespace coupler::test {

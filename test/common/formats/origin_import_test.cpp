@@ -6,7 +6,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/map/loader/load.hpp"
 #include "test/common/formats/imported.hpp"
+#include "test/support/paths.hpp"
 
 namespace coupler::test {
 namespace {
@@ -20,7 +22,7 @@ std::string content(const std::filesystem::path& file) {
 
 TEST(OriginImport, The_origins_files_keep_their_meaning) {
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(COUPLER_TEST_DIR "/maps/origin")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::in_tree("test/maps/origin"))) {
     const LoadResult origin = load_map_file(entry.path().string());
     ASSERT_NE(origin.map, nullptr) << entry.path();
     const Imported imported("origin", content(entry.path()));

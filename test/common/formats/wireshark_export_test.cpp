@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "common/map/loader/load.hpp"
 #include "test/common/formats/imported.hpp"
 
 namespace coupler::test {

@@ -12,11 +12,11 @@ using testing::ElementsAre;
 
 // The examples of MAP 6.1 and 6.3.
 const ReadRequest coils(Function::read_coils, Range::of(0x13, 19));
-const ReadRequest registers(Function::read_holding_registers, Range::of(0x6B, 3));
+const ReadRequest three_registers(Function::read_holding_registers, Range::of(0x6B, 3));
 
 TEST(ReadRequest, The_specifications_examples_are_built_byte_by_byte) {
   EXPECT_THAT(std::vector<int>(coils.pdu().begin(), coils.pdu().end()), ElementsAre(1, 0, 0x13, 0, 0x13));
-  EXPECT_THAT(std::vector<int>(registers.pdu().begin(), registers.pdu().end()),
+  EXPECT_THAT(std::vector<int>(three_registers.pdu().begin(), three_registers.pdu().end()),
               ElementsAre(3, 0, 0x6B, 0, 3));
 }
 
@@ -28,7 +28,7 @@ TEST(ReadRequest, The_specifications_replies_are_taken) {
 
   const std::uint8_t registers_reply[] = {3, 6, 0x02, 0x2B, 0, 0, 0, 0x64};
   std::vector<std::uint16_t> values(3);
-  ASSERT_TRUE(take_registers(registers, registers_reply, values.data()));
+  ASSERT_TRUE(take_registers(three_registers, registers_reply, values.data()));
   EXPECT_THAT(values, ElementsAre(0x022B, 0, 0x64));
 }
 
@@ -44,7 +44,7 @@ TEST(ReadRequest, A_reply_of_another_function_or_size_is_none) {
                                                        {0x84, 2}};
   std::vector<std::uint16_t> values(3);
   for (const auto& reply : replies) {
-    const auto taken = take_registers(registers, {reply.data(), reply.size()}, values.data());
+    const auto taken = take_registers(three_registers, {reply.data(), reply.size()}, values.data());
     ASSERT_FALSE(taken);
     EXPECT_FALSE(taken.error().exception);
   }

@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::plan {
 namespace {
 
 using fakes::MapBuilder;
-
-constexpr Table hr = Table::holding_registers;
 
 TEST(Explain, Modicon_numbers_count_from_1_behind_the_tables_digit) {
   EXPECT_EQ(modicon(Table::coils, 0), "00001");

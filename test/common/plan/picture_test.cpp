@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "common/plan/picture_layout.hpp"
+#include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::plan {
@@ -13,8 +14,6 @@ using fakes::MapBuilder;
 using modbus::Range;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr Table hr = Table::holding_registers;
 
 std::string drawn(MapBuilder builder) {
   const auto owned = builder.build();

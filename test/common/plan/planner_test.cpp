@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::plan {
@@ -16,10 +17,6 @@ using fakes::MapBuilder;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using Spans = std::vector<std::string>;
-
-constexpr Table hr = Table::holding_registers;
-constexpr Table ir = Table::input_registers;
-constexpr Table co = Table::coils;
 
 std::string_view text(Cut::Reason reason) {
   switch (reason) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/plan/planner.hpp"
+#include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::plan {
@@ -11,8 +12,6 @@ namespace {
 
 using fakes::MapBuilder;
 using modbus::Range;
-
-constexpr Table hr = Table::holding_registers;
 
 struct SplitTest : testing::Test {
   /// The parts of the one request that the map needs.

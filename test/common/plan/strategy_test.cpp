@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::plan {
 namespace {
 
 using fakes::MapBuilder;
-
-constexpr Table hr = Table::holding_registers;
 
 TEST(Strategy, Holes_cost_requests_unless_they_are_read) {
   auto builder = MapBuilder().many(hr, 0, 1).many(hr, 3, 1).many(hr, 50, 1);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <utility>
+#include <initializer_list>
 #include <vector>
 
 #include "device/core/handler.hpp"
@@ -15,20 +14,11 @@ namespace coupler::node {
 using Pdu = std::vector<std::uint8_t>;
 
 /// A PDU of a function code, 16-bit fields and further bytes.
-inline Pdu pdu(int function, std::initializer_list<int> fields, const Pdu& rest = {}) {
-  Pdu bytes{static_cast<std::uint8_t>(function)};
-  for (const int field : fields) {
-    bytes.push_back(static_cast<std::uint8_t>(field >> 8));
-    bytes.push_back(static_cast<std::uint8_t>(field));
-  }
-  bytes.insert(bytes.end(), rest.begin(), rest.end());
-  return bytes;
-}
+Pdu pdu(int function, std::initializer_list<int> fields, const Pdu& rest = {});
 
 /// An image with its storage.
 struct OwnedImage {
-  explicit OwnedImage(const Map& map)
-      : areas(Image::size_for(map).areas), cells(Image::size_for(map).cells), image(map, areas, cells) {}
+  explicit OwnedImage(const Map& map);
   std::vector<Image::Area> areas;
   std::vector<std::uint16_t> cells;
   Image image;
@@ -36,14 +26,11 @@ struct OwnedImage {
 
 /// The core with hardware that obeys the test.
 struct NodeUnderTest {
-  explicit NodeUnderTest(MapPtr of) : owner(std::move(of)) {}
+  explicit NodeUnderTest(MapPtr of);
+  ~NodeUnderTest();
 
   Pdu ask(const Pdu& request) { return ask(peer, request); }
-  Pdu ask(Peer& who, const Pdu& request) {
-    std::array<std::uint8_t, modbus::max_pdu_size> reply{};
-    const std::size_t size = handler.handle(request, who, now, reply);
-    return Pdu(reply.data(), reply.data() + size);
-  }
+  Pdu ask(Peer& who, const Pdu& request);
 
   MapPtr owner;
   const Map& map = owner->map();

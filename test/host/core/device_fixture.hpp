@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <optional>
-#include <utility>
+#include <string_view>
 
 #include "host/core/device.hpp"
 #include "test/fakes/map_builder.hpp"
@@ -18,17 +18,11 @@ namespace coupler::driver::test {
 class TimedDevice : public FakeDevice {
  public:
   explicit TimedDevice(FakeClock& clock) : clock_(clock) {}
+  ~TimedDevice() override;
   Duration reply_time{0};
   bool is_mute = false;  ///< answers the question for its identity only
 
-  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override {
-    clock_.advance(reply_time);
-    if (is_mute && range.start() < identity::reserved.start()) {
-      requests.emplace_back("unanswered");
-      return fail(Timeout{std::chrono::milliseconds(3000)});
-    }
-    return FakeDevice::read_registers(table, range, registers);
-  }
+  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
 
  private:
   FakeClock& clock_;
@@ -37,34 +31,15 @@ class TimedDevice : public FakeDevice {
 /// The engine on a fake device, a fake clock and a sink that keeps everything.
 struct DeviceTest : testing::Test {
   using MapBuilder = fakes::MapBuilder;
+  DeviceTest();
+  ~DeviceTest() override;
 
-  void start(const MapBuilder& builder, Verify verify = Verify::require) {
-    owned = builder.build();
-    const Map& map = owned->map();
-    sink.emplace(map);
-    const auto load = [this](std::string_view, std::string_view) { return LoadResult{served, {}}; };
-    engine.emplace(map, verify, load, device, clock, *sink);
-  }
-
+  void start(const MapBuilder& builder, Verify verify = Verify::require);
   /// The device is a node that serves this map.
-  void serve(const MapBuilder& builder) {
-    served = builder.build();
-    device.serve(served->map());
-  }
-
+  void serve(const MapBuilder& builder);
   /// What the thread does: steps, and in between waits for what is due.
-  void run_for(Duration duration) {
-    const Time end = clock.now() + duration;
-    while (clock.now() < end) clock.sleep_until(std::min(engine->step(), end));
-  }
-
-  void push(std::string_view point, std::uint16_t value, WriteListener* listener = nullptr) {
-    Write write;
-    write.point = static_cast<std::uint32_t>(find(owned->map(), point) - owned->map().points.data());
-    write.registers[0] = value;
-    write.listener = listener;
-    engine->push(write);
-  }
+  void run_for(Duration duration);
+  void push(std::string_view point, std::uint16_t value, WriteListener* listener = nullptr);
 
   FakeClock clock;
   TimedDevice device{clock};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -14,10 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include "common/map/identity.hpp"
-#include "common/modbus/request.hpp"
 #include "host/core/transport.hpp"
 
 namespace coupler::driver::test {
@@ -38,141 +33,33 @@ class FakeDevice : public Transport {
   std::function<void()> during_read;     ///< what happens while a read waits for its answer
   bool missing_for_reads_only = false;   ///< writes to what is missing are acknowledged
 
+  FakeDevice();
+  ~FakeDevice() override;
+
   /// The device is a node that serves `map`.
-  void serve(const Map& map) {
-    file = map.text;
-    std::array<std::uint16_t, identity::head_size> area{};
-    identity::write_head(identity::head_of(map), area.data());
-    for (std::uint32_t i = 0; i < area.size(); ++i)
-      values[{Table::input_registers, identity::reserved.start() + i}] = area[i];
-  }
+  void serve(const Map& map);
+  std::size_t count(const std::string& request) const;
 
-  std::size_t count(const std::string& request) const {
-    return static_cast<std::size_t>(std::count(requests.begin(), requests.end(), request));
-  }
-
-  Result<> connect() override {
-    requests.emplace_back("connect");
-    if (refuse_connect) return tl::make_unexpected(*refuse_connect);
-    connected = true;
-    return {};
-  }
+  Result<> connect() override;
   void close() override { connected = false; }
   void interrupt() override {}
-
-  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override {
-    return read(table, range, [&](std::uint32_t i, std::uint16_t value) { bits[i] = value != 0 ? 1 : 0; });
-  }
-  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override {
-    return read(table, range, [&](std::uint32_t i, std::uint16_t value) { registers[i] = value; });
-  }
+  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
+  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
   bool await_turn(Time) override { return !await_read || await_read(); }
-  Result<> send(const modbus::WriteRequest&) override {
-    if (!connected) return fail(NotConnected{"not connected"});
-    const std::lock_guard lock(mutex_);
-    senders.push_back(std::this_thread::get_id());
-    answered_ = true;
-    woken_.notify_all();
-    return {};
-  }
+  Result<> send(const modbus::WriteRequest&) override;
   /// Requests take effect when their answer is fetched.
-  Result<> receive(const modbus::WriteRequest& request) override {
-    {
-      const std::lock_guard lock(mutex_);
-      answered_ = false;
-    }
-    requests.push_back(describe(request));
-    if (const auto error = planned()) return tl::make_unexpected(*error);
-    return carry_out(request);
-  }
-  Woken wait_until(Time time) override {
-    std::unique_lock lock(mutex_);
-    const auto until = std::min(time, std::chrono::steady_clock::now() + std::chrono::hours(1));
-    woken_.wait_until(lock, until, [this] { return called_ || answered_; });
-    const bool called = std::exchange(called_, false);
-    if (answered_) return Woken::by_bytes;
-    return called ? Woken::by_call : Woken::by_time;
-  }
-  void wake() override {
-    const std::lock_guard lock(mutex_);
-    called_ = true;
-    woken_.notify_all();
-  }
+  Result<> receive(const modbus::WriteRequest& request) override;
+  Woken wait_until(Time time) override;
+  void wake() override;
   Result<> read_file_record(std::uint16_t number, std::uint16_t record,
-                            Span<std::uint16_t> registers) override {
-    requests.push_back(fmt::format("read file {} {}+{}", number, record, registers.size()));
-    if (const auto error = planned()) return tl::make_unexpected(*error);
-    if (file.empty()) return fail(ExceptionReply{modbus::Exception::illegal_function});
-    for (std::size_t i = 0; i < registers.size(); ++i) {
-      const std::size_t at = 2 * ((number - 1) * std::size_t{modbus::records_per_file} + record + i);
-      registers[i] = static_cast<std::uint16_t>(byte(at) << 8 | byte(at + 1));
-    }
-    return {};
-  }
+                            Span<std::uint16_t> registers) override;
 
  private:
-  std::optional<Error> planned() {
-    if (!connected) return Error(NotConnected{"not connected"});
-    if (const auto code = refuses ? refuses(requests.back()) : std::nullopt)
-      return Error(ExceptionReply{*code});
-    if (next_errors.empty()) return std::nullopt;
-    const Error error = next_errors.front();
-    next_errors.pop_front();
-    return error;
-  }
-  template <class Put>
-  Result<> read(Table table, modbus::Range range, Put&& put) {
-    requests.push_back(fmt::format("read {} {}+{}", to_string(table), range.start(), range.count()));
-    if (during_read) during_read();
-    if (const auto error = planned()) return tl::make_unexpected(*error);
-    for (std::uint32_t i = 0; i < range.count(); ++i)
-      if (missing.count({table, range.start() + i}) != 0)
-        return fail(ExceptionReply{modbus::Exception::illegal_data_address});
-    for (std::uint32_t i = 0; i < range.count(); ++i) {
-      const auto found = values.find({table, range.start() + i});
-      put(i, found == values.end() ? std::uint16_t{0} : found->second);
-    }
-    return {};
-  }
-  /// "write coil 5", "write registers 7+4", "write mask 3"
-  static std::string describe(const modbus::WriteRequest& request) {
-    const auto parsed = modbus::parse_request(request.pdu());
-    switch (request.function()) {
-      case modbus::Function::write_single_coil: return fmt::format("write coil {}", request.address());
-      case modbus::Function::write_single_register:
-        return fmt::format("write register {}", request.address());
-      case modbus::Function::mask_write_register: return fmt::format("write mask {}", request.address());
-      case modbus::Function::write_multiple_coils:
-        return fmt::format("write coils {}+{}", request.address(),
-                           std::get<modbus::WriteBits>(*parsed).range.count());
-      default:
-        return fmt::format("write registers {}+{}", request.address(),
-                           std::get<modbus::WriteRegisters>(*parsed).range.count());
-    }
-  }
-  Result<> carry_out(const modbus::WriteRequest& request) {
-    const auto parsed = modbus::parse_request(request.pdu());
-    if (!parsed) return fail(ExceptionReply{parsed.error()});
-    if (const auto* bits = std::get_if<modbus::WriteBits>(&*parsed))
-      return put(Table::coils, bits->range,
-                 [&](std::uint32_t i) { return std::uint16_t(bits->packed[i / 8] >> i % 8 & 1); });
-    if (const auto* registers = std::get_if<modbus::WriteRegisters>(&*parsed))
-      return put(Table::holding_registers, registers->range,
-                 [&](std::uint32_t i) { return modbus::get_u16(&registers->values[2 * i]); });
-    const auto& mask = std::get<modbus::MaskWrite>(*parsed);
-    const std::uint16_t old = values[{Table::holding_registers, mask.range.start()}];
-    return put(Table::holding_registers, mask.range, [&](std::uint32_t) {
-      return static_cast<std::uint16_t>((old & mask.and_mask) | (mask.or_mask & ~mask.and_mask));
-    });
-  }
-  template <class Get>
-  Result<> put(Table table, modbus::Range range, Get&& get) {
-    for (std::uint32_t i = 0; i < range.count(); ++i)
-      if (!missing_for_reads_only && missing.count({table, range.start() + i}) != 0)
-        return fail(ExceptionReply{modbus::Exception::illegal_data_address});
-    for (std::uint32_t i = 0; i < range.count(); ++i) values[{table, range.start() + i}] = get(i);
-    return {};
-  }
+  std::optional<Error> planned();
+  Result<> read(Table table, modbus::Range range,
+                const std::function<void(std::uint32_t i, std::uint16_t value)>& put);
+  Result<> carry_out(const modbus::WriteRequest& request);
+  Result<> put(Table table, modbus::Range range, const std::function<std::uint16_t(std::uint32_t i)>& get);
   std::uint8_t byte(std::size_t at) const {
     return at < file.size() ? static_cast<std::uint8_t>(file[at]) : 0;
   }

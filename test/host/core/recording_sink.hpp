@@ -12,32 +12,21 @@ namespace coupler::driver::test {
 /// Keeps what it is told.
 class RecordingSink : public Sink {
  public:
-  explicit RecordingSink(const Map& map) : map_(map) {}
+  explicit RecordingSink(const Map& map);
+  ~RecordingSink() override;
 
   std::map<std::string, std::vector<std::uint16_t>>
       values;  ///< first register or bit of each sample, by point
   std::vector<bool> online;
   std::vector<std::string> reports;
 
-  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time) override {
-    for (const auto i : span.points)
-      values[std::string(map_.points[i].name)].push_back(
-          bits[read_range(map_.points[i]).start() - std::size_t{span.range.start()}]);
-  }
-  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time) override {
-    for (const auto i : span.points)
-      values[std::string(map_.points[i].name)].push_back(
-          registers[read_range(map_.points[i]).start() - std::size_t{span.range.start()}]);
-  }
+  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time) override;
+  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time) override;
   void on_online(bool now) override { online.push_back(now); }
   void on_report(Level, const std::string& text) override { reports.push_back(text); }
 
   /// How many reports contain the text.
-  int reported(const std::string& text) const {
-    int count = 0;
-    for (const std::string& report : reports) count += report.find(text) != std::string::npos ? 1 : 0;
-    return count;
-  }
+  int reported(const std::string& text) const;
 
  private:
   Map map_;

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "test/common/map/loader/loaded.hpp"
+#include "test/support/paths.hpp"
 
 namespace coupler {
 namespace {
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> bad_maps() {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(COUPLER_TEST_DIR "/maps/bad"))
+  for (const auto& entry : fs::directory_iterator(test::in_tree("test/maps/bad")))
     if (entry.path().extension() != ".lock") names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
@@ -45,7 +46,7 @@ std::string expectations(const std::string& path) {
 class BadMap : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadMap, Is_answered_with_exactly_the_lines_that_it_expects) {
-  const std::string path = COUPLER_TEST_DIR "/maps/bad/" + GetParam();
+  const std::string path = test::in_tree("test/maps/bad/") + GetParam();
   const std::string expected = expectations(path);
   ASSERT_NE(expected, "") << "the file says nothing about what to expect";
   const LoadResult result = load_map_file(path);

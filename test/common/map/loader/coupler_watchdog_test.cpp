@@ -9,10 +9,9 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::load_clean;
+using test::load_with;
 using test::map_of;
 using Write = WatchdogSequences::Write;
-
-MapPtr with(const std::string& top) { return load_clean(map_of("coils", "valve: 0", top)); }
 
 /// "holding_registers 4096 = 5", one a line.
 std::string text_of(Span<const Write> steps) {
@@ -24,17 +23,17 @@ std::string text_of(Span<const Write> steps) {
 }
 
 TEST(CouplerWatchdog, Without_a_preset_the_watchdog_is_the_nodes) {
-  const MapPtr map = with("watchdog: {timeout: 500ms}");
+  const MapPtr map = load_with("watchdog: {timeout: 500ms}");
   EXPECT_TRUE(map->map().service.watchdog.present());
   EXPECT_FALSE(map->map().coupler_watchdog.present());
 }
 
 TEST(CouplerWatchdog, A_preset_alone_leaves_it_alone) {
-  EXPECT_FALSE(with("preset: wago_750")->map().coupler_watchdog.present());
+  EXPECT_FALSE(load_with("preset: wago_750")->map().coupler_watchdog.present());
 }
 
 TEST(CouplerWatchdog, With_a_preset_it_is_the_couplers_and_not_the_nodes) {
-  const MapPtr map = with("preset: wago_750\nwatchdog: {timeout: 1500ms, recovery: manual}");
+  const MapPtr map = load_with("preset: wago_750\nwatchdog: {timeout: 1500ms, recovery: manual}");
   EXPECT_FALSE(map->map().service.watchdog.present());
   const WatchdogSequences& watchdog = map->map().coupler_watchdog;
   EXPECT_EQ(watchdog.timeout, 1500ms);
@@ -43,12 +42,12 @@ TEST(CouplerWatchdog, With_a_preset_it_is_the_couplers_and_not_the_nodes) {
 }
 
 TEST(CouplerWatchdog, It_changes_no_fingerprint) {
-  EXPECT_EQ(with("preset: wago_750")->map().fingerprint,
-            with("preset: wago_750\nwatchdog: {timeout: 1s}")->map().fingerprint);
+  EXPECT_EQ(load_with("preset: wago_750")->map().fingerprint,
+            load_with("preset: wago_750\nwatchdog: {timeout: 1s}")->map().fingerprint);
 }
 
 TEST(CouplerWatchdog, Wago_counts_in_steps_of_100_ms_and_starts_with_a_change) {
-  const MapPtr map = with("preset: wago_750\nwatchdog: {timeout: 500ms}");
+  const MapPtr map = load_with("preset: wago_750\nwatchdog: {timeout: 500ms}");
   const WatchdogSequences& watchdog = map->map().coupler_watchdog;
   EXPECT_EQ(text_of(watchdog.arm),
             "holding_registers 4104 = 43605\nholding_registers 4096 = 5\nholding_registers 4097 = 0\n"
@@ -60,7 +59,7 @@ TEST(CouplerWatchdog, Wago_counts_in_steps_of_100_ms_and_starts_with_a_change) {
 }
 
 TEST(CouplerWatchdog, Beckhoff_is_written_to_only_where_it_differs_and_fed_by_any_request) {
-  const MapPtr map = with("preset: beckhoff_bk9000\nwatchdog: {timeout: 750ms}");
+  const MapPtr map = load_with("preset: beckhoff_bk9000\nwatchdog: {timeout: 750ms}");
   const WatchdogSequences& watchdog = map->map().coupler_watchdog;
   EXPECT_EQ(text_of(watchdog.arm), "holding_registers 4384 := 750\nholding_registers 4386 := 1\n");
   EXPECT_TRUE(watchdog.feed.empty());
@@ -69,7 +68,7 @@ TEST(CouplerWatchdog, Beckhoff_is_written_to_only_where_it_differs_and_fed_by_an
 }
 
 TEST(CouplerWatchdog, Moxa_shows_an_alarm_in_a_coil_and_is_armed_elsewhere) {
-  const MapPtr map = with("preset: moxa_e1200\nwatchdog: {timeout: 2s}");
+  const MapPtr map = load_with("preset: moxa_e1200\nwatchdog: {timeout: 2s}");
   const WatchdogSequences& watchdog = map->map().coupler_watchdog;
   EXPECT_TRUE(watchdog.arm.empty() && watchdog.feed.empty());
   EXPECT_EQ(text_of(watchdog.reset), "coils 4144 = 1\n");

@@ -4,6 +4,7 @@
 #include "common/map/crc32.hpp"
 #include "common/map/fingerprint.hpp"
 #include "test/common/map/loader/loaded.hpp"
+#include "test/support/paths.hpp"
 
 namespace coupler {
 namespace {
@@ -83,8 +84,9 @@ TEST(Load, A_file_that_cannot_be_read_is_a_diagnostic) {
   EXPECT_EQ(test::text_of(missing.diagnostics),
             "/no/such/map.yaml: error: the file cannot be read: No such file or directory; give the path of "
             "a map\n");
-  EXPECT_EQ(test::text_of(load_map_file(COUPLER_TEST_DIR).diagnostics),
-            COUPLER_TEST_DIR ": error: the file cannot be read: Is a directory; give the path of a map\n");
+  EXPECT_EQ(
+      test::text_of(load_map_file(test::in_tree("test")).diagnostics),
+      test::in_tree("test") + ": error: the file cannot be read: Is a directory; give the path of a map\n");
 }
 
 TEST(Load, A_json_map_may_name_its_schema) {

@@ -9,14 +9,15 @@
 #include <random>
 
 #include "test/common/map/loader/loaded.hpp"
+#include "test/support/paths.hpp"
 
 namespace coupler {
 namespace {
 
 std::vector<std::string> seeds() {
   std::vector<std::string> texts;
-  for (const char* folder : {"/maps", "/maps/origin", "/maps/bad"})
-    for (const auto& file : std::filesystem::directory_iterator(std::string(COUPLER_TEST_DIR) + folder)) {
+  for (const char* folder : {"test/maps", "test/maps/origin", "test/maps/bad"})
+    for (const auto& file : std::filesystem::directory_iterator(test::in_tree(folder))) {
       if (!file.is_regular_file()) continue;
       std::ifstream in(file.path(), std::ios::binary);
       texts.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "test/common/map/loader/loaded.hpp"
+#include "test/support/paths.hpp"
 
 namespace coupler {
 namespace {
@@ -20,7 +21,7 @@ MapPtr load(const std::string& path) {
 }
 
 TEST(Origin, A_commented_file_with_trailing_commas_loads) {
-  const MapPtr owned = load(COUPLER_TEST_DIR "/maps/origin/commented.json");
+  const MapPtr owned = load(test::in_tree("test/maps/origin/commented.json"));
   ASSERT_NE(owned, nullptr);
   const Map& map = owned->map();
   EXPECT_EQ(map.name, "weldingcell");
@@ -41,7 +42,7 @@ TEST(Origin, A_commented_file_with_trailing_commas_loads) {
 }
 
 TEST(Origin, Wide_values_have_the_least_significant_register_first_by_default) {
-  const MapPtr owned = load(COUPLER_TEST_DIR "/maps/origin/commented.json");
+  const MapPtr owned = load(test::in_tree("test/maps/origin/commented.json"));
   ASSERT_NE(owned, nullptr);
   const codec::Format current = find(owned->map(), "current")->format;
   EXPECT_EQ(current.type, Type::REAL);
@@ -49,7 +50,7 @@ TEST(Origin, Wide_values_have_the_least_significant_register_first_by_default) {
 }
 
 TEST(Origin, A_string_swaps_its_characters_by_default) {
-  const MapPtr owned = load(COUPLER_TEST_DIR "/maps/origin/commented.json");
+  const MapPtr owned = load(test::in_tree("test/maps/origin/commented.json"));
   ASSERT_NE(owned, nullptr);
   const codec::Format program = find(owned->map(), "program")->format;
   EXPECT_EQ(program.type, Type::STRING);
@@ -58,7 +59,7 @@ TEST(Origin, A_string_swaps_its_characters_by_default) {
 }
 
 TEST(Origin, A_plain_file_loads_without_a_word) {
-  const LoadResult result = load_map_file(COUPLER_TEST_DIR "/maps/origin/plain.json");
+  const LoadResult result = load_map_file(test::in_tree("test/maps/origin/plain.json"));
   EXPECT_EQ(test::text_of(result.diagnostics), "");
   ASSERT_NE(result.map, nullptr);
   const Map& map = result.map->map();
@@ -83,7 +84,7 @@ TEST(Origin, A_name_may_come_from_elsewhere) {
 }
 
 TEST(Origin, An_address_is_decimal_whatever_zeros_lead_it) {
-  const MapPtr owned = load(COUPLER_TEST_DIR "/maps/origin/short.yaml");
+  const MapPtr owned = load(test::in_tree("test/maps/origin/short.yaml"));
   ASSERT_NE(owned, nullptr);
   EXPECT_EQ(find(owned->map(), "gate")->address, 10);
 }

@@ -8,10 +8,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-MapPtr with(const std::string& top) { return test::load_clean(test::map_of("coils", "valve: 0", top)); }
-
 TEST(Service, A_map_that_says_nothing_is_open_to_all_and_has_no_watchdog) {
-  const MapPtr owned = with("");
+  const MapPtr owned = test::load_with("");
   const Service& service = owned->map().service;
   EXPECT_EQ(service.listen, "");
   EXPECT_TRUE(service.allow.empty());
@@ -20,7 +18,7 @@ TEST(Service, A_map_that_says_nothing_is_open_to_all_and_has_no_watchdog) {
 }
 
 TEST(Service, The_watchdog_is_fed_by_anything_and_recovers_by_default) {
-  const MapPtr owned = with("watchdog: {timeout: 500ms}");
+  const MapPtr owned = test::load_with("watchdog: {timeout: 500ms}");
   const Watchdog& watchdog = owned->map().service.watchdog;
   EXPECT_EQ(watchdog.timeout, 500ms);
   EXPECT_EQ(watchdog.fed_by, Watchdog::FedBy::any);
@@ -28,7 +26,7 @@ TEST(Service, The_watchdog_is_fed_by_anything_and_recovers_by_default) {
 }
 
 TEST(Service, All_of_it_is_read) {
-  const MapPtr owned = with(
+  const MapPtr owned = test::load_with(
       "listen: 192.168.1.17\n"
       "allow: [192.168.1.0/24, 10.0.0.7, 'fd00::/8']\n"
       "watchdog: {timeout: 1s, fed_by: write, recovery: manual}\n"

@@ -8,10 +8,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-MapPtr with(const std::string& top) { return test::load_clean(test::map_of("coils", "valve: 0", top)); }
-
 TEST(Settings, What_the_map_does_not_say_has_the_origins_defaults) {
-  const MapPtr owned = with("");
+  const MapPtr owned = test::load_with("");
   const Map& map = owned->map();
   EXPECT_EQ(map.connection.address, "");
   EXPECT_EQ(map.connection.port, 502);
@@ -31,19 +29,21 @@ TEST(Settings, What_the_map_does_not_say_has_the_origins_defaults) {
 }
 
 TEST(Settings, A_bare_timeout_means_seconds) {
-  EXPECT_EQ(with("timeout: 2")->map().connection.timeout, 2s);
-  EXPECT_EQ(with("timeout: 0.25")->map().connection.timeout, 250ms);
-  EXPECT_EQ(with("timeout: 40ms")->map().connection.timeout, 40ms);
+  EXPECT_EQ(test::load_with("timeout: 2")->map().connection.timeout, 2s);
+  EXPECT_EQ(test::load_with("timeout: 0.25")->map().connection.timeout, 250ms);
+  EXPECT_EQ(test::load_with("timeout: 40ms")->map().connection.timeout, 40ms);
 }
 
 TEST(Settings, An_address_is_text_even_if_it_looks_like_a_number) {
-  EXPECT_EQ(with("address: 10.0")->map().connection.address, "10.0");
+  EXPECT_EQ(test::load_with("address: 10.0")->map().connection.address, "10.0");
 }
 
-TEST(Settings, The_rate_may_be_a_fraction) { EXPECT_EQ(with("rate: 0.5")->map().polling.rate, 0.5); }
+TEST(Settings, The_rate_may_be_a_fraction) {
+  EXPECT_EQ(test::load_with("rate: 0.5")->map().polling.rate, 0.5);
+}
 
 TEST(Settings, All_limits_are_read) {
-  const MapPtr owned = with(
+  const MapPtr owned = test::load_with(
       "limits: {read_registers: 64, read_bits: 512, write_registers: 32, write_bits: 256, request_gap: 5ms, "
       "connect_delay: 0.1s, connections: 4, mask_write: true}");
   const Limits& limits = owned->map().limits;

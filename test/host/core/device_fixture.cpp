@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "test/host/core/device_fixture.hpp"
+
+#include <algorithm>
+
+#include "common/map/identity.hpp"
+
+namespace coupler::driver::test {
+
+TimedDevice::~TimedDevice() = default;
+
+Result<> TimedDevice::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
+  clock_.advance(reply_time);
+  if (is_mute && range.start() < identity::reserved.start()) {
+    requests.emplace_back("unanswered");
+    return fail(Timeout{std::chrono::milliseconds(3000)});
+  }
+  return FakeDevice::read_registers(table, range, registers);
+}
+
+DeviceTest::DeviceTest() = default;
+DeviceTest::~DeviceTest() = default;
+
+void DeviceTest::start(const MapBuilder& builder, Verify verify) {
+  owned = builder.build();
+  const Map& map = owned->map();
+  sink.emplace(map);
+  const auto load = [this](std::string_view, std::string_view) { return LoadResult{served, {}}; };
+  engine.emplace(map, verify, load, device, clock, *sink);
+}
+
+void DeviceTest::serve(const MapBuilder& builder) {
+  served = builder.build();
+  device.serve(served->map());
+}
+
+void DeviceTest::run_for(Duration duration) {
+  const Time end = clock.now() + duration;
+  while (clock.now() < end) clock.sleep_until(std::min(engine->step(), end));
+}
+
+void DeviceTest::push(std::string_view point, std::uint16_t value, WriteListener* listener) {
+  Write write;
+  write.point = static_cast<std::uint32_t>(find(owned->map(), point) - owned->map().points.data());
+  write.registers[0] = value;
+  write.listener = listener;
+  engine->push(write);
+}
+
+}  // namespace coupler::driver::test
