@@ -5,10 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-
 #include "common/cli/commands.hpp"
 #include "common/cli/locked_map.hpp"
 #include "common/cli/map_argument.hpp"
@@ -42,23 +38,23 @@ Exit check(const Arguments& arguments) {
 
 }  // namespace
 
-void add_check(CLI::App& program, Exit& exit) {
-  auto* command =
-      program.add_subcommand("check", "Say what is wrong with a map, where, and what to do about it.");
+void add_check(Program& program, Exit& exit) {
+  auto command =
+      program.add_command("check", "Say what is wrong with a map, where, and what to do about it.");
   const auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option("MAP", arguments->maps,
-                   "YAML or JSON files; - is standard input; tcp://HOST[:PORT][/UNIT] is a node")
-      ->required()
-      ->type_name("");
-  command->add_flag("--json", arguments->json,
-                    "One JSON object per map on standard output, for editors and scripts");
-  command->add_flag("--locked", arguments->locked,
-                    "Write nothing; a lock that is missing or not up to date is an error. For CI");
-  command->footer(
+      .add_option("MAP", arguments->maps,
+                  "YAML or JSON files; - is standard input; tcp://HOST[:PORT][/UNIT] is a node")
+      .required()
+      .type_name("");
+  command.add_flag("--json", arguments->json,
+                   "One JSON object per map on standard output, for editors and scripts");
+  command.add_flag("--locked", arguments->locked,
+                   "Write nothing; a lock that is missing or not up to date is an error. For CI");
+  command.footer(
       "Example:\n  coupler check device.yaml\nPoints without an address get one, which is kept in "
       "device.yaml.lock beside the map.\nExits with 0 if every map is good, with 1 if one is not.");
-  command->callback([arguments, &exit] { exit = check(*arguments); });
+  command.callback([arguments, &exit] { exit = check(*arguments); });
 }
 
 }  // namespace coupler::cli

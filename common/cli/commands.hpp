@@ -4,22 +4,21 @@
 #pragma once
 
 #include "common/cli/exit.hpp"
-
-namespace CLI {
-class App;
-}
+#include "common/command_line/command_line.hpp"
 
 namespace coupler::cli {
 
-void add_check(CLI::App& program, Exit& exit);
-void add_diff(CLI::App& program, Exit& exit);
-void add_dump(CLI::App& program, Exit& exit);
-void add_export(CLI::App& program, Exit& exit);
-void add_generate(CLI::App& program, Exit& exit);
-void add_import(CLI::App& program, Exit& exit);
-void add_init(CLI::App& program, Exit& exit);
-void add_plan(CLI::App& program, Exit& exit);
-void add_probe(CLI::App& program, Exit& exit);
-void add_schema(CLI::App& program, Exit& exit);
+using command_line::Program;
+
+void add_check(Program& program, Exit& exit);
+void add_diff(Program& program, Exit& exit);
+void add_dump(Program& program, Exit& exit);
+void add_export(Program& program, Exit& exit);
+void add_generate(Program& program, Exit& exit);
+void add_import(Program& program, Exit& exit);
+void add_init(Program& program, Exit& exit);
+void add_plan(Program& program, Exit& exit);
+void add_probe(Program& program, Exit& exit);
+void add_schema(Program& program, Exit& exit);
 
 }  // namespace coupler::cli

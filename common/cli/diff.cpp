@@ -3,10 +3,6 @@
 #include <memory>
 #include <string>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-
 #include "common/cli/commands.hpp"
 #include "common/cli/diff_report.hpp"
 #include "common/cli/map_argument.hpp"
@@ -48,28 +44,28 @@ Exit run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_diff(CLI::App& program, Exit& exit) {
-  auto* command = program.add_subcommand("diff", "Say what a new version of a map means for its users.");
+void add_diff(Program& program, Exit& exit) {
+  auto command = program.add_command("diff", "Say what a new version of a map means for its users.");
   const auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option("OLD", arguments->versions.older,
-                   "A file, REVISION:PATH of git, or tcp://HOST[:PORT][/UNIT]")
-      ->required()
-      ->type_name("");
-  command->add_option("NEW", arguments->versions.newer, "The same")->required()->type_name("");
-  command->add_option("--format", arguments->format, "text (default), json or markdown")
-      ->check(CLI::IsMember({"text", "json", "markdown"}))
-      ->type_name("FORMAT");
+      .add_option("OLD", arguments->versions.older,
+                  "A file, REVISION:PATH of git, or tcp://HOST[:PORT][/UNIT]")
+      .required()
+      .type_name("");
+  command.add_option("NEW", arguments->versions.newer, "The same").required().type_name("");
+  command.add_option("--format", arguments->format, "text (default), json or markdown")
+      .one_of({"text", "json", "markdown"})
+      .type_name("FORMAT");
   command
-      ->add_option("--fail-on", arguments->fail_on,
-                   "Exit with 1 for this class or a worse one: breaking (default), compatible, documentation")
-      ->check(CLI::IsMember({"breaking", "compatible", "documentation"}))
-      ->type_name("CLASS");
-  command->footer(
+      .add_option("--fail-on", arguments->fail_on,
+                  "Exit with 1 for this class or a worse one: breaking (default), compatible, documentation")
+      .one_of({"breaking", "compatible", "documentation"})
+      .type_name("CLASS");
+  command.footer(
       "Example:\n  coupler diff main:config/cell.yaml config/cell.yaml\n  coupler diff cell.yaml "
       "tcp://raspberrypi\n"
       "A change is breaking exactly when a driver with the old map would refuse a node with the new one.");
-  command->callback([arguments, &exit] { exit = run(*arguments); });
+  command.callback([arguments, &exit] { exit = run(*arguments); });
 }
 
 }  // namespace coupler::cli

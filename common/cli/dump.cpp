@@ -8,9 +8,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 
 #include "common/cli/commands.hpp"
 #include "common/cli/map_argument.hpp"
@@ -77,37 +74,37 @@ Exit run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_dump(CLI::App& program, Exit& exit) {
-  auto* command = program.add_subcommand(
+void add_dump(Program& program, Exit& exit) {
+  auto command = program.add_command(
       "dump", "Read every point of a device and show its value, or why there is none. Never writes to it.");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("MAP", arguments->map, map_help)->required()->type_name("");
+  command.add_option("MAP", arguments->map, map_help).required().type_name("");
   command
-      ->add_option("--at", arguments->at,
-                   "Where the device is, if not where the map says; what is not given is the map's")
-      ->type_name("HOST[:PORT][/UNIT]");
+      .add_option("--at", arguments->at,
+                  "Where the device is, if not where the map says; what is not given is the map's")
+      .type_name("HOST[:PORT][/UNIT]");
   command
-      ->add_option("--points", arguments->points, "Only points whose names match, as in 'pump_*'; repeatable")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("GLOB");
-  auto* watch =
+      .add_option("--points", arguments->points, "Only points whose names match, as in 'pump_*'; repeatable")
+      .delimiter(',')
+      .no_extra_values()
+      .type_name("GLOB");
+  auto watch =
       command
-          ->add_option("--watch", arguments->every,
-                       "Again every so many seconds, default 1, until Ctrl-C; on a terminal in place, "
-                       "else a line for each change")
-          ->expected(0, 1)
-          ->check(CLI::Range(0.05, 86400.0))
-          ->type_name("SECONDS");
-  command->add_flag("--json", arguments->json,
-                    "One JSON object on standard output, for scripts; with --watch one a line");
-  command->footer(
+          .add_option("--watch", arguments->every,
+                      "Again every so many seconds, default 1, until Ctrl-C; on a terminal in place, "
+                      "else a line for each change")
+          .optional_value()
+          .in_range(0.05, 86400.0)
+          .type_name("SECONDS");
+  command.add_flag("--json", arguments->json,
+                   "One JSON object on standard output, for scripts; with --watch one a line");
+  command.footer(
       "Example:\n  coupler dump tcp://raspberrypi\n  coupler dump device.yaml --at 10.0.0.7 --points "
       "'pump_*' "
       "--watch 0.5\n"
       "Exit status 3: the device cannot be reached, or a point cannot be read.");
-  command->callback([arguments, watch, &exit] {
-    arguments->watch = watch->count() > 0;
+  command.callback([arguments, watch, &exit] {
+    arguments->watch = watch.given();
     exit = run(*arguments);
   });
 }

@@ -4,9 +4,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 
 #include "common/cli/commands.hpp"
 #include "common/cli/map_argument.hpp"
@@ -64,18 +61,18 @@ Exit run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_export(CLI::App& program, Exit& exit) {
-  auto* command = program.add_subcommand("export", "Write a map as a file of another program.");
+void add_export(Program& program, Exit& exit) {
+  auto command = program.add_command("export", "Write a map as a file of another program.");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("MAP", arguments->map, map_help)->type_name("");
-  command->add_option("--to", arguments->to, "What to write: see --list")->type_name("FORMAT");
-  command->add_option("--out", arguments->out, "Where to write it; default: standard output")
-      ->type_name("FILE");
-  command->add_flag("--list", arguments->list, "Print the formats");
-  command->footer(
+  command.add_option("MAP", arguments->map, map_help).type_name("");
+  command.add_option("--to", arguments->to, "What to write: see --list").type_name("FORMAT");
+  command.add_option("--out", arguments->out, "Where to write it; default: standard output")
+      .type_name("FILE");
+  command.add_flag("--list", arguments->list, "Print the formats");
+  command.footer(
       "Example:\n  coupler export device.yaml --to csv --out device.csv\n"
       "What the format cannot say is on standard error.");
-  command->callback([arguments, &exit] { exit = run(*arguments); });
+  command.callback([arguments, &exit] { exit = run(*arguments); });
 }
 
 }  // namespace coupler::cli

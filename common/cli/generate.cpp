@@ -8,9 +8,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 
 #include "common/cli/commands.hpp"
 #include "common/cli/locked_map.hpp"
@@ -91,38 +88,38 @@ Exit run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_generate(CLI::App& program, Exit& exit) {
-  auto* command = program.add_subcommand(
+void add_generate(Program& program, Exit& exit) {
+  auto command = program.add_command(
       "generate",
       "Make C++ from a map: a constant table, a node, a driver, a typed client, hooks for a firmware.");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("MAP", arguments->map, map_help)->required()->type_name("");
-  auto* out =
+  command.add_option("MAP", arguments->map, map_help).required().type_name("");
+  auto out =
       command
-          ->add_option(
+          .add_option(
               "--out", arguments->out,
               "Folder for the files; made if it is not there. With --docs and --vectors, if not given: "
               "this one")
-          ->type_name("DIR");
+          .type_name("DIR");
   command
-      ->add_option("--name", arguments->name,
-                   "What the files and the C++ namespace are called; default: the map's name")
-      ->type_name("NAME");
-  auto* docs = command->add_flag("--docs", arguments->docs,
-                                 "Instead: NAME.md and NAME.html, the register map for people");
+      .add_option("--name", arguments->name,
+                  "What the files and the C++ namespace are called; default: the map's name")
+      .type_name("NAME");
+  auto docs = command.add_flag("--docs", arguments->docs,
+                               "Instead: NAME.md and NAME.html, the register map for people");
   command
-      ->add_option("--source-url", arguments->source_url,
-                   "With --docs: where the map is on a forge; links go to this, its name and #L12")
-      ->needs(docs)
-      ->type_name("PREFIX");
+      .add_option("--source-url", arguments->source_url,
+                  "With --docs: where the map is on a forge; links go to this, its name and #L12")
+      .needs(docs)
+      .type_name("PREFIX");
   command
-      ->add_flag("--vectors", arguments->vectors,
-                 "Instead: NAME_vectors.json, values of every point and how they stand on the wire")
-      ->excludes(docs);
-  command->add_flag("--locked", arguments->locked,
-                    "Do not write the map's lock; one that is missing or not up to date is an error");
-  command->add_flag("--quiet", arguments->quiet, "Say nothing of files when all is well");
-  command->footer(
+      .add_flag("--vectors", arguments->vectors,
+                "Instead: NAME_vectors.json, values of every point and how they stand on the wire")
+      .excludes(docs);
+  command.add_flag("--locked", arguments->locked,
+                   "Do not write the map's lock; one that is missing or not up to date is an error");
+  command.add_flag("--quiet", arguments->quiet, "Say nothing of files when all is well");
+  command.footer(
       "Example:\n  coupler generate device.yaml --out generated\n"
       "makes device_map.hpp and .cpp, device_client.hpp and .cpp, device_hooks.hpp, device_node.cpp and "
       "device_driver.cpp. Files that would not change are not touched.\n"
@@ -130,8 +127,8 @@ void add_generate(CLI::App& program, Exit& exit) {
       "  coupler generate device.yaml --vectors\nmakes device_vectors.json.\n"
       "In a CMake build, coupler_add_map(device device.yaml) does this and builds the "
       "programs.");
-  command->callback([arguments, out, &exit] {
-    if (out->empty() && !arguments->docs && !arguments->vectors) throw CLI::RequiredError(out->get_name());
+  command.callback([arguments, out, &exit] {
+    if (!out.given() && !arguments->docs && !arguments->vectors) out.refuse_missing();
     exit = run(*arguments);
   });
 }

@@ -10,9 +10,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <tl/expected.hpp>
 
 #include "common/cli/commands.hpp"
@@ -123,28 +120,28 @@ Exit run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_import(CLI::App& program, Exit& exit) {
-  auto* command = program.add_subcommand("import", "Make a map from another program's file.");
+void add_import(Program& program, Exit& exit) {
+  auto command = program.add_command("import", "Make a map from another program's file.");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("FORMAT", arguments->format, "What the file is: see --list")->type_name("");
-  command->add_option("FILE", arguments->file, "The file; - is standard input")->type_name("");
+  command.add_option("FORMAT", arguments->format, "What the file is: see --list").type_name("");
+  command.add_option("FILE", arguments->file, "The file; - is standard input").type_name("");
   command
-      ->add_option(
+      .add_option(
           "--out", arguments->out,
           "Where to write the map; default: standard output. Of several units each gets a file: MAP_1.yaml …")
-      ->type_name("MAP");
-  command->add_option("--name", arguments->options.name, "Name of the map; default: the file's")
-      ->type_name("NAME");
-  auto* unit = command->add_option("--unit", arguments->unit, "Only this unit of the file")
-                   ->check(CLI::Range(0, 255))
-                   ->type_name("N");
-  command->add_flag("--list", arguments->list, "Print the formats");
-  command->footer(
+      .type_name("MAP");
+  command.add_option("--name", arguments->options.name, "Name of the map; default: the file's")
+      .type_name("NAME");
+  auto unit = command.add_option("--unit", arguments->unit, "Only this unit of the file")
+                  .in_range(0, 255)
+                  .type_name("N");
+  command.add_flag("--list", arguments->list, "Print the formats");
+  command.footer(
       "Example:\n  coupler import csv points.csv --name press --out press.yaml\n"
       "What was mended, and what could not be carried over, is on standard error, with its place in the "
       "file.");
-  command->callback([arguments, unit, &exit] {
-    if (*unit) arguments->options.unit = arguments->unit;
+  command.callback([arguments, unit, &exit] {
+    if (unit.given()) arguments->options.unit = arguments->unit;
     exit = run(*arguments);
   });
 }

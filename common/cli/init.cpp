@@ -5,9 +5,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 
 #include "common/cli/commands.hpp"
 #include "common/cli/report.hpp"
@@ -56,26 +53,26 @@ Exit init(const Arguments& arguments) {
 
 }  // namespace
 
-void add_init(CLI::App& program, Exit& exit) {
-  auto* command = program.add_subcommand(
+void add_init(Program& program, Exit& exit) {
+  auto command = program.add_command(
       "init", "Write a first map, with comments, and beside it the schema that editors check it with.");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("NAME", arguments->starter.name, "Of the device: its topics are NAME/POINT")
-      ->type_name("");
-  auto* address = command->add_option("--address", arguments->starter.address, "Host name or IP address")
-                      ->type_name("HOST");
-  auto* preset = command
-                     ->add_option("--preset", arguments->starter.preset,
-                                  "The coupler's kind: wago_750, beckhoff_bk9000, moxa_e1200 or plc")
-                     ->type_name("PRESET");
-  command->add_flag("--node", arguments->starter.node, "For a board with GPIO lines, served by coupler-node")
-      ->excludes(address)
-      ->excludes(preset);
-  command->add_option("--out", arguments->out, "The map's file (default: NAME.yaml)")->type_name("FILE");
-  command->add_flag("--force", arguments->force, "Replace a map that is there");
-  command->footer(
+  command.add_option("NAME", arguments->starter.name, "Of the device: its topics are NAME/POINT")
+      .type_name("");
+  auto address = command.add_option("--address", arguments->starter.address, "Host name or IP address")
+                     .type_name("HOST");
+  auto preset = command
+                    .add_option("--preset", arguments->starter.preset,
+                                "The coupler's kind: wago_750, beckhoff_bk9000, moxa_e1200 or plc")
+                    .type_name("PRESET");
+  command.add_flag("--node", arguments->starter.node, "For a board with GPIO lines, served by coupler-node")
+      .excludes(address)
+      .excludes(preset);
+  command.add_option("--out", arguments->out, "The map's file (default: NAME.yaml)").type_name("FILE");
+  command.add_flag("--force", arguments->force, "Replace a map that is there");
+  command.footer(
       "Example:\n  coupler init press --preset wago_750 --address 192.168.1.17\n  coupler init cell --node");
-  command->callback([arguments, &exit] { exit = init(*arguments); });
+  command.callback([arguments, &exit] { exit = init(*arguments); });
 }
 
 }  // namespace coupler::cli

@@ -5,9 +5,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 
 #include "common/cli/commands.hpp"
 #include "common/cli/map_argument.hpp"
@@ -66,22 +63,22 @@ Exit run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_plan(CLI::App& program, Exit& exit) {
-  auto* command = program.add_subcommand(
+void add_plan(Program& program, Exit& exit) {
+  auto command = program.add_command(
       "plan", "Show the requests that read a map, why each ends where it does, and how long they take.");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("MAP", arguments->map, map_help)->required()->type_name("");
+  command.add_option("MAP", arguments->map, map_help).required().type_name("");
   command
-      ->add_option("--rtt", arguments->rtt,
-                   "Milliseconds from a request to its reply, network and device together; default 1")
-      ->check(CLI::PositiveNumber)
-      ->type_name("MS");
-  command->add_flag("--json", arguments->json, "One JSON object on standard output, for scripts");
-  command->add_option("--svg", arguments->svg, "Write a picture of the address spaces")->type_name("FILE");
-  command->footer(
+      .add_option("--rtt", arguments->rtt,
+                  "Milliseconds from a request to its reply, network and device together; default 1")
+      .positive()
+      .type_name("MS");
+  command.add_flag("--json", arguments->json, "One JSON object on standard output, for scripts");
+  command.add_option("--svg", arguments->svg, "Write a picture of the address spaces").type_name("FILE");
+  command.footer(
       "Example:\n  coupler plan device.yaml --rtt 2.5 --svg device.svg\n"
       "The driver makes the same requests. It warns when they do not fit into their time.");
-  command->callback([arguments, &exit] { exit = run(*arguments); });
+  command.callback([arguments, &exit] { exit = run(*arguments); });
 }
 
 }  // namespace coupler::cli

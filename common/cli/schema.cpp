@@ -6,9 +6,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 
 #include "common/cli/commands.hpp"
 #include "common/generate/output.hpp"
@@ -31,16 +28,16 @@ Exit run(const std::string& out) {
 
 }  // namespace
 
-void add_schema(CLI::App& program, Exit& exit) {
-  auto* command = program.add_subcommand(
+void add_schema(Program& program, Exit& exit) {
+  auto command = program.add_command(
       "schema", "Print the JSON Schema of maps: editors check, complete and explain keys with it.");
   const auto out = std::make_shared<std::string>();
-  command->add_option("--out", *out, "Write it to a file; one that holds it already is not touched")
-      ->type_name("FILE");
-  command->footer(
+  command.add_option("--out", *out, "Write it to a file; one that holds it already is not touched")
+      .type_name("FILE");
+  command.footer(
       "Example:\n  coupler schema --out map.schema.json\n"
       "and as the first line of a map beside it: # yaml-language-server: $schema=map.schema.json");
-  command->callback([out, &exit] { exit = run(*out); });
+  command.callback([out, &exit] { exit = run(*out); });
 }
 
 }  // namespace coupler::cli

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/node/options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
+
+#include "common/command_line/command_line.hpp"
 
 namespace coupler::node {
 
@@ -16,25 +17,22 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
   const std::string program = std::filesystem::path(argc > 0 ? argv[0] : "coupler-node").filename();
   const std::string map = source == MapSource::argument ? " device.yaml" : "";
   Options options;
-  CLI::App app("Serves the points of a map as a Modbus/TCP device: GPIO lines, or simulated ones.", program);
+  command_line::Program app(
+      "Serves the points of a map as a Modbus/TCP device: GPIO lines, or simulated ones.", program);
   app.footer("Example, without hardware, for any Modbus master on this machine:\n  " + program + map +
              " --sim --port 1502" +
              (source == MapSource::argument
                   ? "\nSIGHUP makes it read MAP again; one that cannot be served is refused."
                   : ""));
   if (source == MapSource::argument)
-    app.add_option("MAP", options.map, "The map file, YAML or JSON; - is standard input")->required();
+    app.add_option("MAP", options.map, "The map file, YAML or JSON; - is standard input").required();
   app.add_option(
       "--listen", options.listen,
       "IP address to listen on (default: the map's 'listen', or every interface; with --sim 127.0.0.1)");
   app.add_option("--port", options.port, "TCP port (default: the map's, usually 502; 0: any free one)");
   app.add_flag("--sim", options.simulated,
                "Simulate every coil and discrete input, wired as the map's sim: section says");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto done = app.parse(argc, argv)) return *done;
   return options;
 }
 

@@ -6,9 +6,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <tl/expected.hpp>
 
 #include "common/cli/commands.hpp"
@@ -102,52 +99,51 @@ Exit run(const ProbeArguments& arguments) {
 
 }  // namespace
 
-void add_probe(CLI::App& program, Exit& exit) {
-  auto* command = program.add_subcommand(
+void add_probe(Program& program, Exit& exit) {
+  auto command = program.add_command(
       "probe",
       "Find out what a device answers to that has no map, and draft one. It reads and never writes.");
   const auto arguments = std::make_shared<ProbeArguments>();
-  command->add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], with tcp:// in front or not")
-      ->required()
-      ->type_name("");
-  command->add_option("--units", arguments->units, "Unit ids to ask, as 1-247 (default: 1, 255, 0)")
-      ->delimiter(',')
-      ->type_name("N[-N]");
-  command->add_option("--from", arguments->from, "First address to look at")
-      ->check(CLI::Range(0, 65535))
-      ->capture_default_str()
-      ->type_name("N");
-  command->add_option("--to", arguments->to, "Last address to look at, up to 65535")
-      ->check(CLI::Range(0, 65535))
-      ->capture_default_str()
-      ->type_name("N");
+  command.add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], with tcp:// in front or not")
+      .required()
+      .type_name("");
+  command.add_option("--units", arguments->units, "Unit ids to ask, as 1-247 (default: 1, 255, 0)")
+      .delimiter(',')
+      .type_name("N[-N]");
+  command.add_option("--from", arguments->from, "First address to look at")
+      .in_range(0, 65535)
+      .show_default()
+      .type_name("N");
+  command.add_option("--to", arguments->to, "Last address to look at, up to 65535")
+      .in_range(0, 65535)
+      .show_default()
+      .type_name("N");
   command
-      ->add_option("--stride", arguments->stride,
-                   "Where blocks are refused, try one address in so many; 1 tries all")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str()
-      ->type_name("N");
-  command->add_option("--rate", arguments->rate, "Requests a second, at most")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str()
-      ->type_name("N");
-  command->add_option("--timeout", arguments->timeout, "Longest wait for an answer, in seconds")
-      ->check(CLI::Range(0.01, 60.0))
-      ->capture_default_str()
-      ->type_name("S");
+      .add_option("--stride", arguments->stride,
+                  "Where blocks are refused, try one address in so many; 1 tries all")
+      .in_range(1, 1000)
+      .show_default()
+      .type_name("N");
+  command.add_option("--rate", arguments->rate, "Requests a second, at most")
+      .in_range(0.1, 1000.0)
+      .show_default()
+      .type_name("N");
+  command.add_option("--timeout", arguments->timeout, "Longest wait for an answer, in seconds")
+      .in_range(0.01, 60.0)
+      .show_default()
+      .type_name("S");
   command
-      ->add_option("--known", arguments->known,
-                   "A value that the device shows, to be searched for: 230.4, voltage=230.4, voltage=230.4±2")
-      ->type_name("[NAME=]VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--out", arguments->out, "Write a draft of the map")->type_name("FILE");
-  command->add_flag("--force", arguments->force, "Replace a file that is there");
-  command->footer(
+      .add_option("--known", arguments->known,
+                  "A value that the device shows, to be searched for: 230.4, voltage=230.4, voltage=230.4±2")
+      .type_name("[NAME=]VALUE")
+      .one_value();
+  command.add_option("--out", arguments->out, "Write a draft of the map").type_name("FILE");
+  command.add_flag("--force", arguments->force, "Replace a file that is there");
+  command.footer(
       "Example:\n  coupler probe 192.168.1.17 --known voltage=230.4 --known frequency=50.02 --out "
       "meter.yaml\n"
       "Ctrl-C ends it and shows what was found so far.");
-  command->callback([arguments, &exit] { exit = run(*arguments); });
+  command.callback([arguments, &exit] { exit = run(*arguments); });
 }
 
 }  // namespace coupler::cli

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/arguments.hpp"
 
-#include <algorithm>
-#include <sstream>
+#include <array>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
+
+#include "common/command_line/command_line.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -40,7 +40,7 @@ struct Assignment {
 
 /// What the arguments are.
 struct Sorted {
-  std::vector<std::string> options;  ///< as CLI11 knows them, last first as it wants them
+  std::vector<std::string> options;  ///< as `--key VALUE` or `--key=VALUE`
   std::vector<Assignment> of_devices;
   std::vector<char*> for_ros;
   bool names_the_node = false;
@@ -70,7 +70,6 @@ Sorted sorted(Span<char* const> arguments) {
       result.names_the_node = true;
     }
   }
-  std::reverse(result.options.begin(), result.options.end());
   return result;
 }
 
@@ -94,29 +93,22 @@ Arguments parse_arguments(Span<char* const> arguments) {
   Sorted given = sorted(arguments);
   result.names_the_node = given.names_the_node;
   result.for_ros = std::move(given.for_ros);
-  CLI::App app(description, "coupler_driver");
+  command_line::Program app(description, "coupler_driver");
   app.footer(examples);
   std::array<std::string, setting_keys.size()> texts;
+  std::vector<command_line::Option> options;
   for (std::size_t i = 0; i < texts.size(); ++i)
-    app.add_option(option_names(setting_keys[i]), texts[i], std::string(setting_keys[i].help));
-  try {
-    app.parse(std::move(given.options));
-  } catch (const CLI::ParseError& error) {
-    std::ostringstream out;
-    std::ostringstream err;
-    result.exit_code = app.exit(error, out, err) == 0 ? 0 : 2;
-    result.text = out.str() + err.str();
-    return result;
-  }
+    options.push_back(
+        app.add_option(option_names(setting_keys[i]), texts[i], std::string(setting_keys[i].help)));
+  result.exit_code = app.parse(std::move(given.options), result.text);
+  if (result.exit_code) return result;
   const auto check = [&](const tl::expected<void, std::string>& done) {
     if (done) return;
     result.exit_code = 2;
     result.text += done.error() + "\n";
   };
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    const SettingKey& key = setting_keys[i];
-    if (app.count("--" + std::string(key.key)) > 0) check(set(result.settings, key.key, texts[i]));
-  }
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    if (options[i].given()) check(set(result.settings, setting_keys[i].key, texts[i]));
   for (const Assignment& one : given.of_devices)
     check(set_of_device(result.of_devices[std::string(one.device)], one));
   return result;

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line of a program, by CLI11. What we use of CLI11 is behind these classes because each file
+// that includes its headers takes about 10 s to compile; so one does.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace coupler::command_line {
+
+/// An option, a flag or an argument without a name, so that more can be said of it. A copy is the same
+/// option.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+
+  Option required();
+  Option type_name(const std::string& name);
+  Option show_default();
+  Option needs(Option other);
+  Option excludes(Option other);
+
+  // How many values there are.
+  Option optional_value();      ///< none or one
+  Option one_value();           ///< each time; of a list each gives one more
+  Option no_extra_values();     ///< the same, but the help text says "..." of a list
+  Option delimiter(char sign);  ///< between the values of a list
+
+  // What a value has to be.
+  Option in_range(int min, int max);
+  Option in_range(double min, double max);
+  Option one_of(std::vector<std::string> values);
+  Option positive();
+
+  /// Once the command line is parsed.
+  bool given() const;
+
+  /// Within a callback: the call is wrong without it.
+  [[noreturn]] void refuse_missing() const;
+
+ private:
+  CLI::Option* option_;
+};
+
+/// What options are added to. A copy is the same command.
+class Command {
+ public:
+  explicit Command(CLI::App* app) : app_(app) {}
+
+  /// `name`: "--long", "--long,--alias", or "ARGUMENT". `value` holds the default and gets what is given.
+  Option add_option(const std::string& name, std::string& value, const std::string& help);
+  Option add_option(const std::string& name, std::vector<std::string>& value, const std::string& help);
+  Option add_option(const std::string& name, double& value, const std::string& help);
+  Option add_option(const std::string& name, std::uint32_t& value, const std::string& help);
+  Option add_option(const std::string& name, std::optional<std::uint16_t>& value, const std::string& help);
+  Option add_flag(const std::string& name, bool& value, const std::string& help);
+
+  /// The last lines of the help text.
+  void footer(const std::string& text);
+  /// Takes whatever is given.
+  void allow_extras();
+  /// Called if this command is.
+  void callback(std::function<void()> run);
+
+ protected:
+  CLI::App* app_;
+};
+
+class Program : public Command {
+ public:
+  Program(const std::string& description, const std::string& name);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void version(const std::string& text);
+  /// One of them has to be called.
+  Command add_command(const std::string& name, const std::string& description);
+  /// What is said of a wrong call; `command`: "coupler check".
+  void explain(const std::function<std::string(const std::string& command, const std::string& what)>& how);
+
+  /// The exit status if there is nothing more to do: 0 after --help and --version, 2 after a wrong call,
+  /// which is explained on standard error.
+  std::optional<int> parse(int argc, const char* const* argv);
+  /// `arguments`: without the program. What there is to say is added to `text`.
+  std::optional<int> parse(std::vector<std::string> arguments, std::string& text);
+
+ private:
+  std::unique_ptr<CLI::App> owned_;
+};
+
+}  // namespace coupler::command_line
