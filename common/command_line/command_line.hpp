@@ -75,6 +75,7 @@ class Command {
   CLI::App* app_;
 };
 
+/// Say what holds for every command, as footer() and explain(), before commands are added.
 class Program : public Command {
  public:
   Program(const std::string& description, const std::string& name);
@@ -83,7 +84,7 @@ class Program : public Command {
   Program& operator=(const Program&) = delete;
 
   void version(const std::string& text);
-  /// One of them has to be called.
+  /// Of those that are added one has to be called.
   Command add_command(const std::string& name, const std::string& description);
   /// What is said of a wrong call; `command`: "coupler check".
   void explain(const std::function<std::string(const std::string& command, const std::string& what)>& how);
