@@ -82,10 +82,19 @@ Result<> FakeDevice::receive(const modbus::WriteRequest& request) {
 Woken FakeDevice::wait_until(Time time) {
   std::unique_lock lock(mutex_);
   const auto until = std::min(time, std::chrono::steady_clock::now() + std::chrono::hours(1));
+  idle_ = true;
+  woken_.notify_all();
   woken_.wait_until(lock, until, [this] { return called_ || answered_; });
+  idle_ = false;
   const bool called = std::exchange(called_, false);
+  woken_by_call = called && !answered_;
   if (answered_) return Woken::by_bytes;
   return called ? Woken::by_call : Woken::by_time;
+}
+
+void FakeDevice::await_idle() {
+  std::unique_lock lock(mutex_);
+  woken_.wait(lock, [this] { return idle_ && !called_ && !answered_; });
 }
 
 void FakeDevice::wake() {

@@ -31,6 +31,7 @@ class FakeDevice : public Transport {
   std::vector<std::thread::id> senders;  ///< of writes
   std::function<bool()> await_read;      ///< what happens while a read waits for its turn; whether it gets it
   std::function<void()> during_read;     ///< what happens while a read waits for its answer
+  bool woken_by_call = false;            ///< how the last wait_until() ended
   bool missing_for_reads_only = false;   ///< writes to what is missing are acknowledged
 
   FakeDevice();
@@ -50,6 +51,8 @@ class FakeDevice : public Transport {
   /// Requests take effect when their answer is fetched.
   Result<> receive(const modbus::WriteRequest& request) override;
   Woken wait_until(Time time) override;
+  /// Until somebody waits in wait_until(), with nothing to wake him.
+  void await_idle();
   void wake() override;
   Result<> read_file_record(std::uint16_t number, std::uint16_t record,
                             Span<std::uint16_t> registers) override;
@@ -68,6 +71,7 @@ class FakeDevice : public Transport {
   std::condition_variable woken_;
   bool called_ = false;
   bool answered_ = false;
+  bool idle_ = false;  ///< somebody is in wait_until()
 };
 
 }  // namespace coupler::driver::test

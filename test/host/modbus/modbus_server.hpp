@@ -19,28 +19,43 @@
 
 namespace coupler::driver::test {
 
-/// A socket that listens on a free loopback port, and what a thread does with each connection to it.
-class LoopbackServer {
+/// A socket on a loopback port that the kernel gave it, which it keeps to itself.
+class LoopbackSocket {
  public:
-  /// `serve` gets the connection's descriptor and is called again until it returns false.
-  explicit LoopbackServer(std::function<bool(int)> serve) : serve_(std::move(serve)) {
-    listener_ = Descriptor(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  LoopbackSocket() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof address;
-    if (::bind(listener_.get(), reinterpret_cast<sockaddr*>(&address), size) != 0 ||
-        ::listen(listener_.get(), 4) != 0)
-      std::abort();
-    ::getsockname(listener_.get(), reinterpret_cast<sockaddr*>(&address), &size);
+    if (::bind(socket_.get(), reinterpret_cast<sockaddr*>(&address), size) != 0) std::abort();
+    ::getsockname(socket_.get(), reinterpret_cast<sockaddr*>(&address), &size);
     port_ = ntohs(address.sin_port);
+  }
+  /// Until then who connects is refused.
+  void listen(int backlog) const {
+    if (::listen(socket_.get(), backlog) != 0) std::abort();
+  }
+  int fd() const { return socket_.get(); }
+  std::uint16_t port() const { return port_; }
+
+ private:
+  Descriptor socket_;
+  std::uint16_t port_ = 0;
+};
+
+/// A socket that listens, and what a thread does with each connection to it.
+class LoopbackServer {
+ public:
+  /// `serve` gets the connection's descriptor and is called again until it returns false.
+  explicit LoopbackServer(std::function<bool(int)> serve) : serve_(std::move(serve)) {
+    listener_.listen(4);
     thread_ = std::thread([this] { run(); });
   }
   ~LoopbackServer() {
     stop_.set();
     thread_.join();
   }
-  std::uint16_t port() const { return port_; }
+  std::uint16_t port() const { return listener_.port(); }
 
  private:
   bool readable(int fd) const {
@@ -49,17 +64,16 @@ class LoopbackServer {
     return wanted[1].revents == 0;
   }
   void run() {
-    while (readable(listener_.get())) {
-      const Descriptor connection(::accept(listener_.get(), nullptr, nullptr));
+    while (readable(listener_.fd())) {
+      const Descriptor connection(::accept(listener_.fd(), nullptr, nullptr));
       while (readable(connection.get()) && serve_(connection.get())) {
       }
     }
   }
 
   std::function<bool(int)> serve_;
-  Descriptor listener_;
+  LoopbackSocket listener_;
   Event stop_;
-  std::uint16_t port_ = 0;
   std::thread thread_;
 };
 
@@ -73,6 +87,7 @@ class ModbusServer {
   modbus_mapping_t& tables() { return *tables_; }
   /// Ends the connection after so many requests, again and again; 0: never.
   std::atomic<int> hang_up_after{0};
+  std::atomic<int> requests{0};  ///< so many have come
 
  private:
   bool answer(int fd) {
@@ -80,14 +95,14 @@ class ModbusServer {
     modbus_set_socket(context_.get(), fd);
     const int size = modbus_receive(context_.get(), query.data());
     if (size < 0) return false;
-    if (hang_up_after > 0 && ++requests_ % hang_up_after == 0) return false;
+    ++requests;
+    if (hang_up_after > 0 && requests % hang_up_after == 0) return false;
     return size == 0 || modbus_reply(context_.get(), query.data(), size, tables_.get()) >= 0;
   }
 
   std::unique_ptr<modbus_t, void (*)(modbus_t*)> context_{modbus_new_tcp("127.0.0.1", 0), modbus_free};
   std::unique_ptr<modbus_mapping_t, void (*)(modbus_mapping_t*)> tables_{
       modbus_mapping_new(100, 100, 100, 100), modbus_mapping_free};
-  int requests_ = 0;
   LoopbackServer server_;  // last: its thread uses the others
 };
 

@@ -38,6 +38,7 @@ struct WriteStorm : testing::Test {
     builder.many(Table::coils, 0, 32).many(Table::holding_registers, 0, 32);
     builder.head().connection.address = "localhost";
     builder.head().connection.port = server.port();
+    builder.head().connection.timeout = std::chrono::seconds(20);
     builder.head().polling.rate = 500;
     return builder.build();
   }
@@ -70,6 +71,7 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
   constexpr int writes = 2000;
   server.hang_up_after = 301;
   Tally tally;
+  std::atomic<int> written{0};
   {
     DeviceThread device(owned->map(), Verify::off, {}, transport, sink);
     wait_until_connected(device);
@@ -77,12 +79,13 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
     writers.reserve(threads);
     for (int t = 0; t < threads; ++t)
       writers.emplace_back([&, t] {
-        for (int i = 0; i < writes; ++i) {
+        for (int i = 0; i < writes || tally.ok == 0; ++i) {
           Write write;
           write.point = static_cast<std::uint32_t>((t * 16 + i) % 64);
           write.registers[0] = static_cast<std::uint16_t>(i % 2);
           write.listener = &tally;
           device.write(write);
+          ++written;
           if (i % 50 == 0) {
             device.statistics();
             device.qualities();
@@ -92,7 +95,7 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
       });
     for (std::thread& writer : writers) writer.join();
   }
-  EXPECT_EQ(tally.all, threads * writes);
+  EXPECT_EQ(tally.all, written);
   EXPECT_GT(tally.ok, 0);
 }
 
