@@ -13,7 +13,8 @@ std::chrono::nanoseconds Sampler::period_for(double rate) {
       std::clamp<std::chrono::duration<double>>(wanted, shortest, longest));
 }
 
-Sampler::Sampler(SysfsChannels& channels, std::chrono::nanoseconds period) : period_(period) {
+Sampler::Sampler(SysfsChannels& channels, std::chrono::nanoseconds period, std::chrono::milliseconds patience)
+    : period_(period) {
   std::map<std::string, Inputs> devices;
   for (SysfsChannels::Sampled& input : channels.inputs()) {
     input.latest.begin(TimePoint::clock::now());
@@ -21,7 +22,7 @@ Sampler::Sampler(SysfsChannels& channels, std::chrono::nanoseconds period) : per
   }
   for (const auto& [name, inputs] : devices) threads_.emplace_back([this, list = inputs] { run(list); });
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, first, [&] { return sampled_ == threads_.size(); });
+  changed_.wait_for(lock, patience, [&] { return sampled_ == threads_.size(); });
 }
 
 Sampler::~Sampler() {

@@ -18,14 +18,15 @@ class Sampler {
   /// How often a device is read at most, and at least, whatever the map's rate.
   static constexpr std::chrono::milliseconds shortest{5};
   static constexpr std::chrono::milliseconds longest{1000};
-  /// How long the first samples are waited for.
+  /// How long the first samples are waited for, unless somebody says otherwise.
   static constexpr std::chrono::milliseconds first{200};
 
   /// The period of a map that is polled at `rate` Hz.
   static std::chrono::nanoseconds period_for(double rate);
 
   /// `channels` outlive it.
-  Sampler(SysfsChannels& channels, std::chrono::nanoseconds period);
+  Sampler(SysfsChannels& channels, std::chrono::nanoseconds period,
+          std::chrono::milliseconds patience = first);
   Sampler(const Sampler&) = delete;
   Sampler& operator=(const Sampler&) = delete;
   /// Waits for the conversions that are under way.

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
+
+#include "device/net/descriptor.hpp"
 
 namespace coupler::node {
 
@@ -21,11 +25,15 @@ class FakeSysfs {
   FakeSysfs& operator=(const FakeSysfs&) = delete;
   ~FakeSysfs() { std::filesystem::remove_all(root); }
 
-  /// `path` is below the root.
+  /// `path` is below the root. Who reads meanwhile sees a value, and never none.
   void write(const std::string& path, const std::string& text) const {
     const std::filesystem::path file = root + "/" + path;
     std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file) << text << "\n";
+    const Descriptor all(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
+    const std::string line = text + "\n";
+    if (::pwrite(all.get(), line.data(), line.size(), 0) != static_cast<ssize_t>(line.size()) ||
+        ::ftruncate(all.get(), static_cast<off_t>(line.size())) != 0)
+      throw std::runtime_error("cannot write " + file.string());
   }
   /// The first line, which is what was written last.
   std::string read(const std::string& path) const {

@@ -19,6 +19,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+constexpr milliseconds soon{20000};
+
 /// Input register 0: voltage0 of "adc"; holding registers 0: its DAC, 1: a PWM.
 fakes::MapBuilder board() {
   fakes::MapBuilder map;
@@ -97,12 +99,12 @@ TEST_F(ChannelsOfAMap, That_fail_are_logged_once_per_change) {
 TEST_F(ChannelsOfAMap, Are_sampled_while_there_is_a_sampler) {
   open(board().build());
   EXPECT_EQ(std::nullopt, channels->read(point("volts"), TimePoint::clock::now()));
-  const Sampler sampler(*channels, milliseconds(1));
+  const Sampler sampler(*channels, milliseconds(1), soon);
   EXPECT_DOUBLE_EQ(0.4, channels->read(point("volts"), TimePoint::clock::now()).value_or(-1));
   sysfs.write("bus/iio/devices/iio:device0/in_voltage0_raw", "2200");
   double seen = 0;
-  for (int i = 0; i < 1000 && seen != 1; ++i) {
-    std::this_thread::sleep_for(milliseconds(5));
+  for (const auto end = TimePoint::clock::now() + soon; seen != 1 && TimePoint::clock::now() < end;) {
+    std::this_thread::sleep_for(milliseconds(1));
     seen = channels->read(point("volts"), TimePoint::clock::now()).value_or(seen);
   }
   EXPECT_DOUBLE_EQ(1, seen);
@@ -112,7 +114,7 @@ TEST_F(ChannelsOfAMap, Are_sampled_while_there_is_a_sampler) {
 TEST_F(ChannelsOfAMap, That_hold_no_number_cannot_be_read_and_say_so_once) {
   open(board().build());
   sysfs.write("bus/iio/devices/iio:device0/in_voltage0_raw", "none");
-  const Sampler sampler(*channels, milliseconds(1));
+  const Sampler sampler(*channels, milliseconds(1), soon);
   for (int i = 0; i < 3; ++i)
     EXPECT_EQ(std::nullopt, channels->read(point("volts"), TimePoint::clock::now()));
   EXPECT_THAT(log.lines, ElementsAre(HasSubstr("iio:device0 (adc) input voltage0 failed: ")));
