@@ -59,12 +59,13 @@ TEST_F(HandedOver, Whole_requests_that_wait_behind_replies_are_answered_in_order
   ASSERT_LT(before, asked);
   hand_over();
   std::size_t answered = 0;
-  for (int quiet = 0; quiet < 20;) {
-    const std::size_t size = client.received().size();
-    answered += size;
-    quiet = size == 0 ? quiet + 1 : 0;
+  const TimePoint end = TimePoint::clock::now() + std::chrono::seconds(20);
+  while (answered < asked * std::size_t{259} && TimePoint::clock::now() < end) {
+    answered += client.received().size();
     other.loop.run_once(std::chrono::milliseconds(1));
   }
+  other.settle();
+  answered += client.received().size();
   EXPECT_EQ(answered, asked * std::size_t{259});
   EXPECT_EQ(one.node.statistics.requests + other.node.statistics.requests, asked);
 }

@@ -45,11 +45,11 @@ class StderrReader {
   StderrReader& operator=(const StderrReader&) = delete;
   ~StderrReader() { ::dup2(before_.get(), STDERR_FILENO); }
 
-  /// All that came until now.
+  /// All that came until now, and what a terminal still has on its way.
   std::string read() const {
     std::string all;
     std::array<char, 4096> some{};
-    for (pollfd wish{end_.get(), POLLIN, 0}; ::poll(&wish, 1, 100) > 0;) {
+    for (pollfd wish{end_.get(), POLLIN, 0}; ::poll(&wish, 1, quiet_ms) > 0;) {
       const ssize_t size = ::read(end_.get(), some.data(), some.size());
       if (size <= 0) break;
       all.append(some.data(), static_cast<std::size_t>(size));
@@ -62,6 +62,8 @@ class StderrReader {
       : end_(std::move(end)), stderr_end_(std::move(stderr_end)) {
     EXPECT_EQ(::dup2(stderr_end_.get(), STDERR_FILENO), STDERR_FILENO);
   }
+
+  static constexpr int quiet_ms = 300;
 
   Descriptor before_{::dup(STDERR_FILENO)};
   Descriptor end_;
