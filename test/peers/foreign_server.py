@@ -10,6 +10,8 @@ from pymodbus.device import ModbusDeviceIdentification
 from pymodbus.interfaces import IModbusSlaveContext
 from pymodbus.server.async_io import ModbusConnectedRequestHandler, ModbusTcpServer
 
+import peer
+
 logging.getLogger("pymodbus").setLevel(logging.CRITICAL + 1)
 
 TABLE_OF = {1: "coils", 2: "discrete_inputs", 3: "holding_registers", 4: "input_registers"}
@@ -67,7 +69,7 @@ def handler_of(device):
 def serving(device, unit=None, names=None):
     """Serves a device on a free loopback port; yields the port. Without `unit` it answers all of them."""
     context = ModbusServerContext(slaves=device if unit is None else {unit: device}, single=unit is None)
-    identity = ModbusDeviceIdentification(info_name=names or {})
+    identity = ModbusDeviceIdentification(info_name=names) if names else None  # all servers of a program have the same
     loop = asyncio.new_event_loop()
     ready = threading.Event()
     port = []
@@ -87,11 +89,11 @@ def serving(device, unit=None, names=None):
 
     thread = threading.Thread(target=run, daemon=True)
     thread.start()
-    if not ready.wait(20):
+    if not ready.wait(peer.PATIENCE):
         raise RuntimeError("the pymodbus server did not start")
     try:
         yield port[0]
     finally:
         for task in asyncio.all_tasks(loop):
             loop.call_soon_threadsafe(task.cancel)
-        thread.join(20)
+        thread.join(peer.PATIENCE)

@@ -17,7 +17,7 @@ namespace {
 
 /// One whole ADU; empty if none comes in time.
 Bytes read_adu(int socket) {
-  const timeval patience{10, 0};
+  const timeval patience{120, 0};
   ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   Bytes adu(6);
   if (::recv(socket, adu.data(), 6, MSG_WAITALL) != 6) return {};

@@ -2,11 +2,14 @@
 """What the peer tests share: starting a node, and saying what was proved."""
 import contextlib
 import re
+import socket
 import subprocess
 import sys
 import threading
+import time
 
 SKIPPED = 77
+PATIENCE = 120  # seconds for whatever must come: tells hanging from working, on any machine
 
 
 def skip(reason):
@@ -38,6 +41,31 @@ class Checks:
         print(f"ok: {proved} ({self.passed} comparisons)")
 
 
+def await_true(what, condition, checks, poll=None):
+    """Waits until it is; `poll` is called between two looks. A failed check if it never is."""
+    end = time.monotonic() + PATIENCE
+    while not (holds := condition()) and time.monotonic() < end:
+        if poll:
+            poll()
+        time.sleep(0.02)
+    checks.equal(what, bool(holds), True)
+
+
+def pymodbus_client(port, **options):
+    from pymodbus.client import ModbusTcpClient  # not every test needs it
+    return ModbusTcpClient("127.0.0.1", port=port, **{"timeout": PATIENCE, **options})
+
+
+@contextlib.contextmanager
+def silent_port():
+    """A loopback port where nothing listens. It is nobody else's meanwhile: only a server with SO_REUSEADDR that is told
+    the number can have it."""
+    with socket.socket() as place:
+        place.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        place.bind(("127.0.0.1", 0))
+        yield place.getsockname()[1]
+
+
 @contextlib.contextmanager
 def running_node(command):
     """Runs a node on a free loopback port; yields the port. It must end well on SIGTERM."""
@@ -58,8 +86,8 @@ def running_node(command):
         reader.start()
         yield port
         node.terminate()
-        status = node.wait(timeout=20)
-        reader.join(timeout=20)
+        status = node.wait(timeout=PATIENCE)
+        reader.join(timeout=PATIENCE)
         if status != 0:
             print(f"FAILED: {' '.join(command)} ended with status {status}; it said:\n{''.join(said)}")
             sys.exit(1)

@@ -12,7 +12,6 @@ import struct
 import subprocess
 import sys
 import tempfile
-import time
 
 import peer
 import with_tshark
@@ -91,17 +90,20 @@ TRAFFIC = [
 
 
 def talk(port, first):
-    """Each request on its own, then all of them at once with a pause inside one of them."""
-    with socket.create_connection(("127.0.0.1", port), timeout=10) as client, client.makefile("rb") as stream:
+    """Each request on its own, then all of them in two segments, the first of which ends inside of one."""
+    with socket.create_connection(("127.0.0.1", port), timeout=peer.PATIENCE) as client, client.makefile("rb") as stream:
         client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         for index, (pdu, _, _) in enumerate(TRAFFIC):
             client.sendall(request(first + index, pdu))
             with_tshark.read_reply(stream)
-        everything = b"".join(request(first + len(TRAFFIC) + i, pdu) for i, (pdu, _, _) in enumerate(TRAFFIC))
-        client.sendall(everything[:100])
-        time.sleep(0.2)
-        client.sendall(everything[100:])
-        for _ in TRAFFIC:
+        everything = [request(first + len(TRAFFIC) + i, pdu) for i, (pdu, _, _) in enumerate(TRAFFIC)]
+        cut = 8  # behind the first byte of the ninth
+        segment = b"".join(everything[:cut]) + everything[cut][:1]
+        client.sendall(segment)
+        for _ in range(cut):  # so the first segment has arrived alone
+            with_tshark.read_reply(stream)
+        client.sendall(b"".join(everything)[len(segment):])
+        for _ in TRAFFIC[cut:]:
             with_tshark.read_reply(stream)
 
 
@@ -137,7 +139,7 @@ def main():
         subprocess.run([coupler, "export", device_map, "--to", "wireshark", "--out", str(script)], check=True,
                        capture_output=True)
         first = 0x4000
-        with_tshark.capture(port, file, lambda: talk(port, first))
+        with_tshark.capture(port, file, lambda: talk(port, first), checks)
         messages, errors = shown(port, file, script)
         checks.equal("what tshark says of the script", [line for line in errors.splitlines() if "lua" in line.lower()], [])
         for index, (pdu, asked, answered) in enumerate(TRAFFIC + TRAFFIC):

@@ -22,7 +22,6 @@ import time
 import peer
 
 try:
-    from pymodbus.client import ModbusTcpClient
     from pymodbus.constants import Endian
     from pymodbus.datastore import ModbusSequentialDataBlock, ModbusSlaveContext
     from pymodbus.payload import BinaryPayloadBuilder
@@ -38,7 +37,6 @@ foreign = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(foreign)
 
 READS = {1, 2, 3, 4}
-PATIENCE = 30
 
 
 class Store(ModbusSlaveContext):
@@ -70,8 +68,8 @@ def registers(**values):
     return builder.to_registers()
 
 
-def device_with_values():
-    device = foreign.Peer()
+def device_with_values(port):
+    device = foreign.Peer(port)
     device.store = Store()
     device.set("coils", 0, [1, 0, 1])
     device.set("coils", 9, [1])
@@ -94,7 +92,7 @@ NOT_HELD = {"horn": (None, "write-only"), "faulty": (4, "exception 04 (server de
 
 def dump(coupler, *arguments):
     return subprocess.run([coupler, "dump", *map(str, arguments)], capture_output=True, text=True, encoding="utf-8",
-                          timeout=60, check=False)
+                          timeout=peer.PATIENCE, check=False)
 
 
 def values_are_those_of_the_device(coupler, map_file, device, checks):
@@ -157,21 +155,22 @@ class Watch:
         def found():
             return next((i for i in range(since, len(self.lines)) if wanted(self.lines[i])), None)
         with self._news:
-            self._news.wait_for(lambda: found() is not None, PATIENCE)
+            self._news.wait_for(lambda: found() is not None, peer.PATIENCE)
             return found()
 
     def end(self):
         self.program.send_signal(signal.SIGINT)
         try:
-            return self.program.wait(PATIENCE)
+            return self.program.wait(peer.PATIENCE)
         except subprocess.TimeoutExpired:
             self.program.kill()
             return self.program.wait()
 
 
 def mbpoll_writes(port, register, value):
-    done = subprocess.run(["mbpoll", "-m", "tcp", "-p", str(port), "-a", "3", "-0", "-1", "-t", "4", "-r", str(register),
-                           "127.0.0.1", str(value)], capture_output=True, text=True, timeout=30, check=False)
+    done = subprocess.run(["mbpoll", "-m", "tcp", "-p", str(port), "-a", "3", "-0", "-1", "-o", "10", "-t", "4",
+                           "-r", str(register), "127.0.0.1", str(value)], capture_output=True, text=True,
+                          timeout=peer.PATIENCE, check=False)
     return "Written" in done.stdout
 
 
@@ -231,7 +230,7 @@ def a_terminal_is_drawn_over(coupler, map_file, device, checks):
     seen = bytearray()
 
     def await_text(text):
-        end = time.monotonic() + PATIENCE
+        end = time.monotonic() + peer.PATIENCE
         while text not in seen and time.monotonic() < end:
             if select.select([ours], [], [], 1)[0]:
                 seen.extend(os.read(ours, 65536))
@@ -249,14 +248,14 @@ def a_terminal_is_drawn_over(coupler, map_file, device, checks):
     checks.equal("the value comes back", await_text(b"  mode         44 "), True)
     program.send_signal(signal.SIGINT)
     checks.equal("the terminal wraps lines again", await_text(b"\x1b[?7h"), True)
-    checks.equal("status after SIGINT", program.wait(PATIENCE), 0)
+    checks.equal("status after SIGINT", program.wait(peer.PATIENCE), 0)
     os.close(ours)
 
 
 def a_node_needs_no_file(coupler, command, checks):
     with peer.running_node(command) as port:
         where = f"tcp://127.0.0.1:{port}"
-        client = ModbusTcpClient("127.0.0.1", port=port)
+        client = peer.pymodbus_client(port)
         client.write_coils(0, [True, False, True], 1)
         client.write_registers(0, registers(**{"16bit_int": -5}) + registers(**{"32bit_uint": 3000000000}), 1)
         client.close()
@@ -278,7 +277,8 @@ def a_node_needs_no_file(coupler, command, checks):
         checks.equal("what is not the same is told", [text in other.stdout for text in (
             "the map differs from the device's", "not in the device's map",
             "another one in the device's map: address 2 -> 1")], [True] * 3)
-    done = dump(coupler, where)
+    with peer.silent_port() as port:
+        done = dump(coupler, f"tcp://127.0.0.1:{port}")
     checks.equal("status, no node", done.returncode, 3)
 
 
@@ -286,7 +286,7 @@ def a_nodes_watchdog_stays_idle(coupler, node, checks):
     here = pathlib.Path(__file__).resolve().parent
     with peer.running_node([node, str(here / "watchdog.yaml"), "--sim"]) as port:
         checks.equal("status", dump(coupler, f"tcp://127.0.0.1:{port}").returncode, 0)
-        client = ModbusTcpClient("127.0.0.1", port=port)
+        client = peer.pymodbus_client(port)
         checks.equal("the watchdog is idle", client.read_input_registers(0xFF0B, 1, 1).registers, [1])
         client.close()
 
@@ -294,7 +294,8 @@ def a_nodes_watchdog_stays_idle(coupler, node, checks):
 def main():
     coupler, map_file, command = sys.argv[1], sys.argv[2], sys.argv[3:]
     checks = peer.Checks()
-    with device_with_values() as device:
+    # Stopped and started again, it has the same port.
+    with peer.silent_port() as port, device_with_values(port) as device:
         values_are_those_of_the_device(coupler, map_file, device, checks)
         a_watchdog_of_the_map_is_left_alone(coupler, device, checks)
         checks.equal("functions that the device was asked for", device.store.asked, READS)

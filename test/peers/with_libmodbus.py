@@ -21,7 +21,7 @@ def main():
         map_file = pathlib.Path(folder) / "oracle.yaml"
         map_file.write_text(subprocess.run([oracle, "--map"], capture_output=True, text=True, check=True).stdout)
         with peer.running_node([node, str(map_file), "--sim"]) as port:
-            done = subprocess.run([oracle, str(port)], timeout=300, check=False)
+            done = subprocess.run([oracle, str(port)], timeout=peer.PATIENCE, check=False)
     sys.exit(done.returncode)
 
 

@@ -20,12 +20,12 @@ class Mbpoll:
         self.port = port
 
     def call(self, table, address, *values, count=1, extra=()):
-        options = ["mbpoll", "-m", "tcp", "-p", str(self.port), "-a", "1", "-0", "-1", "-o", "3",
+        options = ["mbpoll", "-m", "tcp", "-p", str(self.port), "-a", "1", "-0", "-1", "-o", "10",
                    "-t", table, "-r", str(address)]
         if not values:
             options += ["-c", str(count)]
         return subprocess.run(options + list(extra) + ["127.0.0.1", *map(str, values)],
-                              capture_output=True, text=True, timeout=30, check=False)
+                              capture_output=True, text=True, timeout=peer.PATIENCE, check=False)
 
     def read(self, table, address, count=1, extra=()):
         """Values as mbpoll prints them."""

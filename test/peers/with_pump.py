@@ -11,10 +11,9 @@ import sys
 import tempfile
 import threading
 
-from peer import Checks, running_node, skip
+from peer import PATIENCE, Checks, pymodbus_client, running_node, skip
 
 try:
-    from pymodbus.client import ModbusTcpClient
     from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
     from pymodbus.server.async_io import ModbusTcpServer
 except ImportError:
@@ -33,7 +32,7 @@ def floats(registers):  # the map's default: least significant register first
 
 def firmware_obeys_a_foreign_master(firmware, checks):
     with running_node([firmware]) as port:
-        client = ModbusTcpClient("127.0.0.1", port=port)
+        client = pymodbus_client(port)
         checks.equal("connected", client.connect(), True)
         checks.equal("what the firmware set before", floats(client.read_input_registers(1, 6, 1).registers), [41.5, 38.25, 17.0])
         checks.equal("run against a closed valve", refused(client.write_coil(1, True, 1)), True)
@@ -57,7 +56,7 @@ def firmware_obeys_a_foreign_master(firmware, checks):
 
 
 def control(client, port):
-    done = subprocess.run([client, "127.0.0.1", str(port)], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([client, "127.0.0.1", str(port)], capture_output=True, text=True, timeout=PATIENCE)
     return done.returncode, done.stdout.splitlines()
 
 
@@ -78,8 +77,8 @@ def client_and_a_node_of_another_map(node, map_file, client, checks):
         other.write(text.replace("scale: 0.1", "scale: 0.01"))
         other.flush()
         with running_node([node, other.name]) as port:
-            done = subprocess.run([client, "127.0.0.1", str(port)], capture_output=True, text=True, timeout=60)
-            master = ModbusTcpClient("127.0.0.1", port=port)
+            done = subprocess.run([client, "127.0.0.1", str(port)], capture_output=True, text=True, timeout=PATIENCE)
+            master = pymodbus_client(port)
             master.connect()
             checks.equal("nothing was written", master.read_coils(0, 2, 1).bits[:2], [False, False])
             master.close()
@@ -110,14 +109,14 @@ def client_and_a_foreign_server(client, checks):
 
     thread = threading.Thread(target=lambda: asyncio.run(serve()), daemon=True)
     thread.start()
-    checks.equal("the server of pymodbus is ready", ready.wait(20), True)
+    checks.equal("the server of pymodbus is ready", ready.wait(PATIENCE), True)
     status, said = control(client, place["port"])
     checks.equal("status of the client", status, 0)
     checks.equal("the client reads", "4.12 bar after 65538 starts" in said, True)
     checks.equal("the client wrote the speed", table["hr"].getValues(0, 1), [800])
     checks.equal("and the coils", [bool(bit) for bit in table["co"].getValues(0, 2)], [False, False])
     place["loop"].call_soon_threadsafe(place["task"].cancel)
-    thread.join(20)
+    thread.join(PATIENCE)
 
 
 def main():

@@ -12,7 +12,6 @@ import struct
 import subprocess
 import sys
 import tempfile
-import time
 
 import peer
 
@@ -48,7 +47,7 @@ def read_reply(stream):
 def talk(port, first):
     """Each request on its own, then all of them in one segment. Returns the transactions."""
     transactions = list(range(first, first + 2 * len(REQUESTS)))
-    with socket.create_connection(("127.0.0.1", port), timeout=10) as client, client.makefile("rb") as stream:
+    with socket.create_connection(("127.0.0.1", port), timeout=peer.PATIENCE) as client, client.makefile("rb") as stream:
         adus = [adu(t, REQUESTS[i % len(REQUESTS)]) for i, t in enumerate(transactions)]
         for request in adus[:len(REQUESTS)]:
             client.sendall(request)
@@ -59,23 +58,34 @@ def talk(port, first):
     return transactions
 
 
-def capture(port, file, traffic):
+def ask(port, request):
+    with socket.create_connection(("127.0.0.1", port), timeout=peer.PATIENCE) as client, client.makefile("rb") as stream:
+        client.sendall(request)
+        return read_reply(stream)
+
+
+def is_captured(port, file, number):
+    """Whether an exchange with this transaction is in the file, and so is all that went before; asks for one if not."""
+    request = adu(number, words(8, 0, 0x4D4B))  # the reply is the same bytes
+    if file.exists() and file.read_bytes().count(request) >= 2:
+        return True
+    ask(port, request)
+    return False
+
+
+def capture(port, file, traffic, checks):
     """The traffic's result, captured in the file; skips if this user may not capture."""
     tshark = subprocess.Popen(["tshark", "-q", "-i", "lo", "-f", f"tcp port {port}", "-w", str(file)],
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     try:
-        deadline = time.monotonic() + 30
-        # Its start is announced before it is true: poke until something is in the file.
-        while not file.exists() or file.stat().st_size < 1000:
-            if tshark.poll() is not None or time.monotonic() > deadline:
-                tshark.kill()
-                peer.skip(f"tshark cannot capture on lo: {tshark.stderr.read().strip().splitlines()[-1:]}")
-            talk(port, 1)
-            time.sleep(0.1)
+        # Its start is announced before it is true: it has begun once something is in the file.
+        peer.await_true("tshark captures", lambda: is_captured(port, file, 1) or tshark.poll() is not None, checks)
+        if tshark.poll() is not None:
+            peer.skip(f"tshark cannot capture on lo: {tshark.stderr.read().strip().splitlines()[-1:]}")
         result = traffic()
-        time.sleep(2)  # for what is still on its way through the capture's buffers
+        peer.await_true("all of it is captured", lambda: is_captured(port, file, 2), checks)
         tshark.send_signal(signal.SIGINT)
-        tshark.wait(timeout=30)
+        tshark.wait(timeout=peer.PATIENCE)
         return result
     finally:
         if tshark.poll() is None:
@@ -96,7 +106,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder, peer.running_node(command) as port:
         pathlib.Path(folder).chmod(0o755)
         file = pathlib.Path(folder) / "node.pcapng"
-        transactions = capture(port, file, lambda: talk(port, 0x4000))
+        transactions = capture(port, file, lambda: talk(port, 0x4000), checks)
         seen = {"request": [], "reply": []}
         for line in dissect(port, file, "-Y", "modbus", "-T", "fields", "-e", "tcp.srcport", "-e", "mbtcp.trans_id"):
             source, ids = line.split("\t")

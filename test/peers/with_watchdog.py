@@ -10,7 +10,7 @@ import time
 import peer
 
 try:
-    from pymodbus.client import ModbusTcpClient
+    import pymodbus.client  # noqa: F401
 except ImportError as error:
     peer.skip(f"python3-pymodbus is missing ({error}); run scripts/install-packages test")
 
@@ -28,18 +28,51 @@ def levels(client):
     return client.read_discrete_inputs(0, 3, 1).bits[:3]
 
 
+class Silence:
+    """The longest time for which the node may have heard nothing: from before a request is sent until the next one is
+    answered."""
+
+    def __init__(self):
+        self.longest = 0.0
+        self._sent = None
+
+    def ask(self, request):
+        sent = time.monotonic()
+        reply = request()
+        if self._sent is not None:
+            self.longest = max(self.longest, time.monotonic() - self._sent)
+        self._sent = sent
+        return reply
+
+
+def speaking(client, act):
+    """What `act(silence)` returns. A busy machine may silence a master, too, and then the watchdog is right to expire:
+    such a run says nothing, and there is another one."""
+    while True:
+        silence = Silence()
+        seen = act(silence)
+        if silence.longest < TIMEOUT:
+            return seen
+        client.write_register(RESET, 0xAA55, 1)
+
+
 def a_master_that_speaks_keeps_its_outputs(master, checks):
+    def for_three_timeouts(silence):
+        seen = [silence.ask(lambda: master.write_coils(0, DRIVEN, 1).isError())]
+        end = time.monotonic() + 3 * TIMEOUT
+        while time.monotonic() < end:
+            seen.append((silence.ask(lambda: state(master)), silence.ask(lambda: levels(master))))
+            time.sleep(TIMEOUT / 10)
+        return seen
+
     checks.equal("nothing happened yet", state(master), IDLE)
-    checks.equal("the write", master.write_coils(0, DRIVEN, 1).isError(), False)
-    end = time.monotonic() + 3 * TIMEOUT
-    while time.monotonic() < end:
-        checks.equal("it is armed", state(master), ARMED)
-        checks.equal("outputs while the master reads", levels(master), DRIVEN)
-        time.sleep(TIMEOUT / 10)
+    write_failed, *seen = speaking(master, for_three_timeouts)
+    checks.equal("the write", write_failed, False)
+    checks.equal("the state and the outputs while the master reads", seen, [(ARMED, DRIVEN)] * len(seen))
 
 
 def a_monitor_does_not(monitor, checks):
-    end = time.monotonic() + 20
+    end = time.monotonic() + peer.PATIENCE
     while state(monitor) != EXPIRED and time.monotonic() < end:
         time.sleep(TIMEOUT / 10)
     checks.equal("it expired although somebody reads", state(monitor), EXPIRED)
@@ -54,16 +87,16 @@ def outputs_stay_until_the_reset(client, checks):
     checks.equal("the wires are safe", levels(client), SAFE)
     checks.equal("the code", client.write_register(RESET, 0xAA55, 1).isError(), False)
     checks.equal("the register reads", client.read_holding_registers(RESET, 1, 1).registers, [0])
-    checks.equal("a write to an output", client.write_coil(0, True, 1).isError(), False)
-    checks.equal("the wires", levels(client), [True, True, True])
-    checks.equal("it is armed", state(client), ARMED)
+    checks.equal("a write to an output, the wires, the state", speaking(client, lambda silence: [
+        silence.ask(lambda: client.write_coil(0, True, 1).isError()), silence.ask(lambda: levels(client)),
+        silence.ask(lambda: state(client))]), [False, [True, True, True], ARMED])
 
 
 def main():
     checks = peer.Checks()
     with peer.running_node(sys.argv[1:]) as port:
-        master = ModbusTcpClient("127.0.0.1", port=port)
-        monitor = ModbusTcpClient("127.0.0.1", port=port)
+        master = peer.pymodbus_client(port)
+        monitor = peer.pymodbus_client(port)
         a_master_that_speaks_keeps_its_outputs(master, checks)
         master.close()
         a_monitor_does_not(monitor, checks)

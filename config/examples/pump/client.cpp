@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   coupler::maps::pump::Client pump(options);
   pump.running.on_change([](bool turns) { std::printf("the motor %s\n", turns ? "turns" : "stands"); });
   pump.connect();
-  if (!pump.wait_online(5s)) return 3;
+  if (!pump.wait_online(10s)) return 3;
 
   is_taken("set the speed to 7000 %", pump.speed.set(7000.0));  // refused here: no such value
   is_taken("set the speed to 5 %", pump.speed.set(5.0));        // refused there: the firmware's rule
@@ -42,9 +42,9 @@ int main(int argc, char** argv) {
   is_taken("close the valve", pump.valve.set(false));  // not while it runs
 
   for (int tries = 0; tries < 100; ++tries) {
-    const auto pressure = pump.pressure.wait(1s);
-    const auto starts = pump.starts.wait(1s);
-    const auto running = pump.running.wait(1s);
+    const auto pressure = pump.pressure.wait(10s);
+    const auto starts = pump.starts.wait(10s);
+    const auto running = pump.running.wait(10s);
     if (!pressure || !starts || !running) {
       std::fputs("the pump does not tell how it is\n", stderr);
       return 3;
