@@ -11,6 +11,7 @@ from client import Client
 from real_time import ask_for_real_time
 
 PAUSE = 0.0002  # seconds between an answer and the next request
+SLOW = 0.005  # seconds
 OUTPUTS, SCRATCH = 0, 0  # map.yaml: 8 coils wired to 8 inputs, 123 registers of memory
 READ_INPUTS = 2  # which show the outputs where they are wired to them
 SERIAL = (20210907).to_bytes(4, "big")
@@ -20,7 +21,9 @@ SERIAL = (20210907).to_bytes(4, "big")
 class Report:
     """What happened since the last report."""
     requests: int = 0
-    worst: float = 0.0  # seconds
+    worst: float = 0.0  # seconds, of those that are not slow
+    slow: list = dataclasses.field(default_factory=list)  # when those that took longer than SLOW began and ended
+    silence: float = 0.0  # seconds from before a request was sent until the next one was answered: the longest
     faults: list = dataclasses.field(default_factory=list)
 
 
@@ -52,11 +55,12 @@ def _work(port, map_text, wired, pipe):
     gc.disable()
     client = Client(port)
     report = Report()
+    started = time.perf_counter()
     for number in itertools.count():
         for request, expected in _round(number, map_text):
             if not wired and request[0] == READ_INPUTS:
                 continue
-            started = time.perf_counter()
+            before, started = started, time.perf_counter()
             try:
                 client.expect_answer(expected, request, transaction=number % 0x10000)
             except (AssertionError, OSError) as error:
@@ -65,7 +69,12 @@ def _work(port, map_text, wired, pipe):
                     client = Client(port)
                 except (AssertionError, OSError):
                     return
-            report.worst = max(report.worst, time.perf_counter() - started)
+            ended = time.perf_counter()
+            report.silence = max(report.silence, ended - before)
+            if ended - started > SLOW:
+                report.slow.append((started, ended))
+            else:
+                report.worst = max(report.worst, ended - started)
             report.requests += 1
             if pipe.poll():
                 pipe.recv()

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node under attack: a server of which memory, descriptors and life are watched from outside."""
 import pathlib
+import re
 import time
 
 import adu as modbus
-from client import Client
+from client import LATE, Client
 from real_time import ask_for_real_time
 from support.served import Served
 
-PATIENCE = 5.0  # seconds for the rest of a frame, and for a client to read: device/net/connection.hpp
 CONNECTIONS = 256  # as many at a time: device/net/tcp_server.hpp
-LATE = 2.0  # seconds that a loaded machine may add
 STATE, TRIPS = 0xFF0B, 0xFF17  # of the watchdog: docs/identity.md
 
 
@@ -19,6 +18,7 @@ class Node(Served):
         super().__init__(subject.command, preexec_fn=ask_for_real_time)
         self.map_text = subject.map_text
         self._processes = self.processes()
+        self._at_rest = self.descriptors()
 
     def connect(self, **options):
         return Client(self.port, **options)
@@ -31,12 +31,22 @@ class Node(Served):
     def descriptors(self):
         return sum(len(list(pathlib.Path(f"/proc/{pid}/fd").iterdir())) for pid in self._processes)
 
-    def expect_descriptors(self, at_most, seconds=LATE):
+    def surplus(self, clients):
+        """Descriptors above those that it began with and those of so many clients."""
+        return self.descriptors() - self._at_rest - clients
+
+    def expect_clients(self, number):
         """Connections that ended are closed at this side too."""
-        end = time.monotonic() + seconds
-        while (now := self.descriptors()) > at_most:
-            assert time.monotonic() < end, f"{now} descriptors are open after {seconds:g} s instead of {at_most}"
+        end = time.monotonic() + LATE
+        while (surplus := self.surplus(number)) > 0:
+            assert time.monotonic() < end, f"{surplus} descriptors too many are open after {LATE:g} s"
             time.sleep(0.01)
+
+    def allocated(self):
+        """KiB of each process that are resident and not read from a file. The kernel counts them here; what it keeps in
+        /proc/PID/status may lag behind by as much as the limit."""
+        return [int(re.search(r"^Anonymous:\s+(\d+)", pathlib.Path(f"/proc/{pid}/smaps_rollup").read_text(), re.M)[1])
+                for pid in self.processes()]
 
     def watchdog_trips(self):
         with self.connect() as client:

@@ -13,12 +13,13 @@ class Attack:
     run: typing.Callable
     guarded: bool  # only of a node with a watchdog and a list of allowed clients
     alone: bool  # nobody else may be connected
+    waits: bool  # `run` yields where it waits, and all that do take turns
 
 
-def attack(name, guarded=False, alone=False):
+def attack(name, guarded=False, alone=False, waits=False):
     """Puts a function on the list."""
     def enlist(function):
-        ATTACKS.append(Attack(name, function, guarded, alone))
+        ATTACKS.append(Attack(name, function, guarded, alone, waits))
         return function
     return enlist
 
@@ -28,4 +29,4 @@ TARGET = 1000  # first of 125 holding registers
 TARGET_REGISTERS = 125
 TARGET_COIL = 100  # first of 16 coils
 
-from attacks import framing, requests, connections, guards  # noqa: E402,F401 in the order in which they run
+from attacks import framing, requests, connections, waiting, guards  # noqa: E402,F401 in the order in which they run

@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clients that take more than their share, or leave without a word."""
 import contextlib
-import os
-import signal
-import socket
-import time
 
 import adu as modbus
 from attacks import TARGET, TARGET_REGISTERS, attack
 from attacks.framing import READ, is_answered
-from node import CONNECTIONS, LATE, PATIENCE
+from node import CONNECTIONS
 
 MANY = 1000
 BURST = 10_000
@@ -94,56 +90,3 @@ def burst(node):
             for _ in range(500):
                 assert client.receive_adu()[:2] == answered.to_bytes(2, "big"), f"answer {answered} is another one's"
                 answered += 1
-
-
-@attack("ten thousand pipelined requests and nobody reads: the client is dropped in time")
-def never_reads(node):
-    before = node.descriptors()
-    request = modbus.adu(modbus.read(3, TARGET, TARGET_REGISTERS))
-    with node.connect(receive_buffer=4096) as client:
-        client.socket.setblocking(False)
-        data = request * BURST
-        with contextlib.suppress(BlockingIOError):
-            while data:
-                data = data[client.socket.send(data):]
-        node.expect_descriptors(before, PATIENCE + LATE)
-
-
-@attack("one byte every 300 ms: the frame has one deadline, and bytes do not extend it")
-def trickle(node):
-    with node.connect() as client:
-        request = modbus.adu(modbus.write_registers(TARGET, 50, b"\xBA" * 100))
-        end = time.monotonic() + PATIENCE + LATE
-        for byte in request:
-            client.send(bytes([byte]))
-            if client.is_closed():
-                return
-            assert time.monotonic() < end, "the frame may take longer than its deadline"
-            time.sleep(0.3)
-
-
-@attack("a header and then silence: the connection ends in time")
-def header_only(node):
-    with node.connect() as client, node.connect() as other:
-        client.send(modbus.adu(READ)[:7])
-        other.send(b"\x00")
-        client.expect_closed(PATIENCE + LATE)
-        other.expect_closed(LATE)
-
-
-@attack("a client stopped in mid-frame is dropped while it sleeps")
-def stopped_client(node):
-    before = node.descriptors()
-    child = os.fork()
-    if child == 0:
-        with socket.create_connection(("127.0.0.1", node.port)) as client:
-            client.sendall(modbus.adu(READ)[:9])
-            os.kill(os.getpid(), signal.SIGSTOP)
-        os._exit(0)
-    try:
-        os.waitpid(child, os.WUNTRACED)
-        node.expect_descriptors(before + 1)
-        node.expect_descriptors(before, PATIENCE + LATE)
-    finally:
-        os.kill(child, signal.SIGKILL)
-        os.waitpid(child, 0)
