@@ -31,7 +31,7 @@ class Cli(unittest.TestCase):
         return name
 
     def coupler(self, *arguments, stdin=""):
-        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, input=stdin, timeout=30,
+        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, input=stdin,
                               capture_output=True, text=True, encoding="utf-8", check=False)
 
 

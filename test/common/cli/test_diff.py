@@ -31,7 +31,7 @@ class Diff(unittest.TestCase):
             (self.folder / f"{name}.yaml").write_text(text, encoding="utf-8")
 
     def run_in_folder(self, *command):
-        return subprocess.run(command, cwd=self.folder, env=self.environment, timeout=30, capture_output=True,
+        return subprocess.run(command, cwd=self.folder, env=self.environment, capture_output=True,
                               text=True, encoding="utf-8", check=False)
 
     def diff(self, *arguments):

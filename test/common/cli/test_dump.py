@@ -22,7 +22,7 @@ class Dump(unittest.TestCase):
         (self.folder / "cell.yaml").write_text(MAP, encoding="utf-8")
 
     def dump(self, *arguments):
-        return subprocess.run([os.environ["COUPLER"], "dump", *arguments], cwd=self.folder, timeout=60,
+        return subprocess.run([os.environ["COUPLER"], "dump", *arguments], cwd=self.folder,
                               capture_output=True, text=True, encoding="utf-8", check=False)
 
     def refused(self, status, what, *arguments):

@@ -16,7 +16,7 @@ class Init(unittest.TestCase):
         self.folder = Path(folder.name)
 
     def coupler(self, *arguments):
-        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, timeout=60, capture_output=True,
+        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, capture_output=True,
                               text=True, encoding="utf-8", check=False)
 
     def test_writes_a_map_that_check_takes_without_a_word(self):

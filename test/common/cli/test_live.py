@@ -50,7 +50,7 @@ class Live(unittest.TestCase):
         (self.folder / "cell.yaml").write_text(MAP, encoding="utf-8")
 
     def coupler(self, *arguments):
-        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, timeout=30, capture_output=True,
+        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, capture_output=True,
                               text=True, encoding="utf-8", check=False)
 
     def node(self):

@@ -48,7 +48,7 @@ def memory(image):
 
 def exported(file, to):
     done = subprocess.run([os.environ["COUPLER"], "export", str(file), "--to", to], capture_output=True, text=True,
-                          encoding="utf-8", check=True, timeout=60)
+                          encoding="utf-8", check=True)
     return done.stdout
 
 

@@ -48,7 +48,7 @@ def good_maps():
     """Every map of the tree that `coupler check` takes without a warning of an unknown key."""
     found = [path for folder in ("config", "test") for path in sorted((SOURCE / folder).rglob("*"))
              if path.suffix in (".yaml", ".json") and BAD not in path.parents and is_map(path)]
-    return [path for path in found if subprocess.run([os.environ["COUPLER"], "check", path], timeout=30,
+    return [path for path in found if subprocess.run([os.environ["COUPLER"], "check", path],
                                                      capture_output=True, check=False).returncode == 0]
 
 
