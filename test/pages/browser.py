@@ -3,11 +3,15 @@
 import base64
 import json
 import pathlib
+import re
+import subprocess
 
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.chromium.remote_connection import ChromiumRemoteConnection
+from selenium.webdriver.support.wait import WebDriverWait
 
+PATIENCE = 120  # seconds: tells hanging from working, on any machine
 DESKTOP = (1440, 1000)
 PHONE = (390, 844)
 
@@ -24,14 +28,30 @@ class Browser:
         for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-scrollbars"):
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-        self.driver.set_page_load_timeout(60)
+        # It takes a port itself: Selenium would choose one that somebody else may take meanwhile.
+        self._server = subprocess.Popen(["/usr/bin/chromedriver", "--port=0"], stdout=subprocess.PIPE, text=True)
+        try:
+            said = iter(self._server.stdout.readline, "")
+            port = next(found[1] for line in said if (found := re.search(r"started successfully on port (\d+)", line)))
+            there = ChromiumRemoteConnection(f"http://127.0.0.1:{port}", "goog", "chrome")
+            self.driver = webdriver.Remote(there, options=options)
+        except BaseException:
+            self._server.terminate()
+            raise
+        self.driver.set_page_load_timeout(PATIENCE)
+        self.driver.set_script_timeout(PATIENCE)
 
     def close(self):
         self.driver.quit()
+        self._server.terminate()
+        self._server.communicate()
+
+    def await_true(self, condition):
+        """Until the function, or the script, says so."""
+        WebDriverWait(self, PATIENCE, 0.02).until(lambda _: self.run(condition) if isinstance(condition, str) else condition())
 
     def command(self, name, **parameters):
-        return self.driver.execute_cdp_cmd(name, parameters)
+        return self.driver.execute("executeCdpCommand", {"cmd": name, "params": parameters})["value"]
 
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
