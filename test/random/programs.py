@@ -15,10 +15,9 @@ import threading
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "peers"), str(HERE.parent / "ros")]
 
-from peer import Checks, skip  # noqa: E402  pylint: disable=wrong-import-position
+from peer import PATIENCE, Checks, pymodbus_client, silent_port, skip  # noqa: E402  pylint: disable=wrong-import-position
 
 try:
-    from pymodbus.client import ModbusTcpClient
     from support.peer import Peer
 except ImportError:
     skip("pymodbus is not installed")
@@ -47,7 +46,7 @@ class Program:
 
     @property
     def port(self):
-        self._serving.wait(20)
+        self._serving.wait(PATIENCE)
         found = re.search(r"serving .* on \S+:(\d+)", "".join(self.said))
         if not found:
             raise SystemExit(f"FAILED: {self.child.args} does not serve:\n{''.join(self.said)}")
@@ -69,19 +68,19 @@ class Program:
         if self._serving.is_set() and self.child.poll() is None and "client" not in self.child.args:
             self.child.terminate()
         try:
-            self.child.wait(20)
+            self.child.wait(PATIENCE)
         except subprocess.TimeoutExpired:
             self.child.kill()
             self.child.wait()
             raise
-        self._reader.join(5)
+        self._reader.join(PATIENCE)
 
 
 class Master:
     """pymodbus; registers as the vectors have them."""
 
     def __init__(self, port):
-        self.client = ModbusTcpClient("127.0.0.1", port=port)
+        self.client = pymodbus_client(port)
         if not self.client.connect():
             raise SystemExit("FAILED: pymodbus does not connect")
 
@@ -169,7 +168,7 @@ def firmware_shows(tested, firmware, client, master, checks):
 
 def foreign_server(tested, bin_, checks):
     """The client against a server of pymodbus, which holds what it is given."""
-    with Peer() as server, client_of(bin_, tested, server.port) as client:
+    with silent_port() as port, Peer(port) as server, client_of(bin_, tested, server.port) as client:
         def get(point):
             return masked(point, [int(word) for word in
                                   server.get(point["table"], point["address"], len(point["cases"][0]["raw"]))])

@@ -18,7 +18,7 @@ namespace coupler::random {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr auto soon = 20s;
+constexpr auto soon = 120s;  // tells hanging from working
 
 struct Command {
   std::string what;
