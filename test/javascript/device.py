@@ -4,7 +4,7 @@ import json
 import pathlib
 import subprocess
 
-from support.peer import free_port
+from support.ports import free_port
 
 SERVER = pathlib.Path(__file__).resolve().with_name("server.js")
 

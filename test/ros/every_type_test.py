@@ -7,6 +7,7 @@ import unittest
 import yaml
 
 from support import iec, process, testing
+from support.patience import NO_TIMEOUT
 from support.peer import Peer
 from support.topics import Topic, connected_publishers, wait_until
 
@@ -35,7 +36,8 @@ class EveryType(unittest.TestCase):
                     for index, point in enumerate(points):
                         point.store(peer, value_of(point, index, 0))
                     path = process.write_map(yaml.safe_dump(document))
-                    with process.Driver(f"_map:={path}", "_address:=127.0.0.1", f"_port:={peer.port}") as driver:
+                    with process.Driver(f"_map:={path}", "_address:=127.0.0.1", f"_port:={peer.port}",
+                                        f"_timeout:={NO_TIMEOUT}") as driver:
                         driver.wait_for("connected")
                         check(peer, points)
 

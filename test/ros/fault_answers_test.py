@@ -7,7 +7,8 @@ from coupler_driver.msg import PointStatus
 from support import testing
 from support.device import (ACKNOWLEDGE, BUSY, FAILURE, ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, NO_RESPONSE,
                             PATH_UNAVAILABLE, Device, Raw, Refuse, frame)
-from support.truth import Truth
+from support.patience import NO_TIMEOUT
+from support.truth import TIMEOUT, Truth
 
 LIE = b"\x03\x02\xFF\xFF"  # -1 as a reply of one register
 REJECTED = (ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE)  # not asked for again while the connection lasts
@@ -35,12 +36,14 @@ NO_REPLIES = {
 }
 
 
-class FaultAnswers(testing.RosTest):
+class Answers(testing.RosTest):
+    timeout = NO_TIMEOUT
+
     def setUp(self):
         self.device = Device().start()
         self.addCleanup(self.device.stop)
         self.value = 0
-        self.truth = Truth(self, self.device.port)
+        self.truth = Truth(self, self.device.port, timeout=self.timeout)
         self.all_is_well()
 
     def all_is_well(self):
@@ -49,6 +52,8 @@ class FaultAnswers(testing.RosTest):
         self.device.tables["holding_registers"][4] = self.value
         self.truth.is_good(self.value)
 
+
+class FaultExceptions(Answers):
     def refuse(self, code):
         def answer(request):
             raise Refuse(code)
@@ -83,12 +88,16 @@ class FaultAnswers(testing.RosTest):
                 self.device.drop()
                 self.all_is_well()
 
+
+class FaultReplies(Answers):
+    timeout = TIMEOUT  # there is nothing, or not all of it
+
     def test_a_reply_that_is_none_is_never_taken(self):
         for name, answer in NO_REPLIES.items():
             with self.subTest(name):
                 self.device.answer = answer
                 self.truth.is_offline()
-                self.assertNotIn(-1, self.truth.level.values)
+                self.assertNotIn(-1, self.truth.level.ever)
                 self.all_is_well()
 
 

@@ -1,25 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """The cable between driver and device is pulled and put back: two network namespaces and a link between them."""
-import time
-
 from support import testing
 from support.device import Device
-from support.network import DEVICE, Network
-from support.truth import Truth
-
-TIMEOUT = 0.5
+from support.network import Network
+from support.patience import NO_TIMEOUT
+from support.truth import TIMEOUT, Truth
 
 
 class FaultLink(testing.RosTest):
     def setUp(self):
         self.network = self.enterContext(Network())
-        self.device = Device(address=DEVICE)
+        self.device = Device(address=self.network.device)
         with self.network.at_the_far_end():
             self.device.start()
         self.addCleanup(self.device.stop)
         self.set(1)
-        self.truth = Truth(self, self.device.port, address=DEVICE)
+        self.start()
         self.truth.is_good(1)
+
+    def start(self, timeout=TIMEOUT):
+        self.truth = Truth(self, self.device.port, address=self.network.device, timeout=timeout)
 
     def set(self, value):
         self.device.tables["holding_registers"][4] = value
@@ -40,16 +40,21 @@ class FaultLink(testing.RosTest):
         self.truth.is_good(2)
 
     def test_a_cable_that_is_back_before_the_timeout_costs_no_connection(self):
+        self.truth.driver.end()
+        self.start(NO_TIMEOUT)
+        self.truth.is_good(1)
+        accepted = self.device.accepted
         self.network.pull()
-        time.sleep(TIMEOUT / 10)
-        self.network.plug()
         self.set(2)
+        self.truth.level.stays_quiet()
+        self.network.plug()
         self.truth.is_good(2)
+        self.assertEqual(self.device.accepted, accepted)
 
     def test_a_driver_that_starts_without_a_cable_waits_for_it(self):
         self.truth.driver.end()
         self.network.pull()
-        self.truth = Truth(self, self.device.port, address=DEVICE)
+        self.start()
         self.truth.is_offline()
         self.network.plug()
         self.truth.is_good(1)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What users of Modbus drivers ask for most, row by row (the list and its sources: docs/driver.md, What goes wrong):
 each against a device on a raw socket that misbehaves in that way."""
+import select
+import statistics
 import struct
 import time
 
@@ -9,18 +11,16 @@ from coupler_driver.msg import PointStatus, Status
 from std_msgs.msg import Bool, Int16, Int32, UInt16
 
 from support import process, testing
-from support.device import (BUSY, FAILURE, ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, NO_RESPONSE, Device, Raw,
+from support.device import (BUSY, FAILURE, ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Device, Raw,
                             Refuse, frame)
+from support.patience import NO_TIMEOUT, PATIENCE, QUIET
 from support.topics import connected_publishers, wait_until
 
 TIMEOUT = 0.5
-SOON = 10  # seconds; what is waited for takes one or two, the rest is for machines under load
-
 MAP = """
 name: plant
 address: 127.0.0.1
 rate: 20
-timeout: 0.5
 """
 
 
@@ -29,29 +29,29 @@ class FaultMatrix(testing.RosTest):
         self.device = Device().start()
         self.addCleanup(self.device.stop)
 
-    def start(self, mapping, *arguments, head=""):
-        path = process.write_map(MAP + head + "mapping:\n" + mapping)
+    def start(self, mapping, *arguments, head="", timeout=NO_TIMEOUT):
+        path = process.write_map(f"{MAP}timeout: {timeout}\n{head}mapping:\n{mapping}")
         driver = self.driver(f"_map:={path}", f"_port:={self.device.port}", *arguments)
         self.online = self.topic("/plant/online", Bool)
         return driver
 
     def expect_online(self, wanted):
-        self.online.wait_for(lambda _: self.online.values[-1] == wanted, SOON)
+        self.online.wait_for(lambda _: self.online.values[-1] == wanted)
 
     @staticmethod
     def status_says_offline():
-        status = rospy.wait_for_message("/plant/status", Status, SOON)
+        status = rospy.wait_for_message("/plant/status", Status, PATIENCE)
         return (status.online, status.points[0].quality) == (False, PointStatus.OFFLINE)
 
     LEVEL = "  holding_registers: {level: {address: 4, type: INT}}\n"
 
     def level_follows(self, topic, value):
         self.device.tables["holding_registers"][4] = value
-        topic.wait_for(lambda seen: seen == value, SOON)
+        topic.wait_for(lambda seen: seen == value)
 
     # 1. It never reconnects
     def test_01_it_comes_back_after_every_way_to_go(self):
-        self.start(self.LEVEL)
+        self.start(self.LEVEL, timeout=TIMEOUT)
         level = self.topic("/plant/level", Int16)
         self.level_follows(level, 1)
         ways = {"reset": self.device.drop, "killed": self.device.stop,
@@ -61,7 +61,7 @@ class FaultMatrix(testing.RosTest):
             with self.subTest(name):
                 self.online.values.clear()
                 go()
-                self.online.wait_for(lambda now: not now, SOON)
+                self.online.wait_for(lambda now: not now)
                 self.device.answer, self.device.silent = self.device.serve, False
                 if name == "killed":
                     self.device.start()
@@ -75,31 +75,36 @@ class FaultMatrix(testing.RosTest):
         def answer(request):
             late["n"] += 1
             if late["n"] % late["every"] == 0:
-                time.sleep(TIMEOUT + 0.3)  # when the driver has given up; the value is a lie by then
+                # The driver has given up: it has closed the connection, or asks the next. The value is a lie by then.
+                select.select([request.connection], [], [], PATIENCE)
                 return b"\x02" + struct.pack(">h", -1)
             return self.device.serve(request)
 
-        self.device.answer = answer
         self.device.tables["holding_registers"][4] = 7
-        self.start(self.LEVEL)
+        self.start(self.LEVEL, timeout=TIMEOUT)
         level = self.topic("/plant/level", Int16)
-        wait_until(lambda: late["n"] > 25, "several late replies", 60)
-        self.assertEqual(set(level.values), {7}, "a late reply was published")
+        level.next()
+        self.device.answer = answer
+        wait_until(lambda: late["n"] > 25, "several late replies")
+        self.assertEqual(set(level.ever), {7}, "a late reply was published")
 
     def test_02_a_reply_with_an_old_transaction_id_is_never_taken_for_the_answer(self):
+        answered = []
+
         def answer(request):
+            answered.append(request)
             stale = frame(request, b"\x03\x02\xFF\xFF", transaction=request.transaction - 1)
             return Raw(stale + frame(request, bytes([request.function]) + self.device.serve(request)))
 
         self.device.tables["holding_registers"][4] = 7
         self.start(self.LEVEL)
         level = self.topic("/plant/level", Int16)
-        level.wait_for(lambda value: value == 7, SOON)
+        level.wait_for(lambda value: value == 7)
         self.device.answer = answer
-        time.sleep(2)
+        wait_until(lambda: len(answered) >= 4, "several old replies")
         self.device.answer = self.device.serve
         self.level_follows(level, 8)
-        self.assertEqual(set(level.values), {7, 8}, "an old reply was published")
+        self.assertEqual(set(level.ever), {7, 8}, "an old reply was published")
 
     # 3. A batched read hits an illegal address and everything fails
     def test_03_a_refused_address_costs_its_own_point_only_and_is_remembered(self):
@@ -117,9 +122,8 @@ class FaultMatrix(testing.RosTest):
         for i in (0, 8, 10, 19):
             self.assertEqual(self.topic(f"/plant/p{i}", Int16).next(), 100 + i)
         asked = len(self.device.requests)
-        time.sleep(1)
+        wait_until(lambda: len(self.device.requests) > asked + 40, "several cycles")
         late = self.device.requests[asked:]
-        self.assertTrue(late)
         self.assertFalse([r for r in late if r.address <= 9 < r.address + r.count], "the hole was asked for again")
         self.assertLessEqual(len({(r.address, r.count) for r in late}), 6, "of 19 points")
 
@@ -147,7 +151,8 @@ class FaultMatrix(testing.RosTest):
         points = "".join(f"    p{i}: {{address: {2 * i}, type: INT}}\n" for i in range(50))
         for allowed, requests in ((True, 1), (False, 50)):
             with self.subTest(holes=allowed):
-                self.device.requests.clear()
+                self.device.stop()
+                self.setUp()  # a device that nobody has asked for anything
                 driver = self.start("  input_registers:\n" + points,
                                     head=f"registers_read_continuous: {str(allowed).lower()}\n")
                 self.topic("/plant/p49", Int16).next()
@@ -156,17 +161,13 @@ class FaultMatrix(testing.RosTest):
 
     # 6. Stale looks fresh
     def test_06_nothing_old_is_published_while_the_device_is_silent(self):
-        self.start(self.LEVEL)
+        self.start(self.LEVEL, timeout=TIMEOUT)
         level = self.topic("/plant/level", Int16)
         self.level_follows(level, 5)
         self.device.silent = True
-        began = time.monotonic()
         self.expect_online(False)
-        self.assertLess(time.monotonic() - began, SOON)
-        wait_until(self.status_says_offline, "the status", SOON)
-        level.values.clear()
-        time.sleep(1.5)
-        self.assertEqual(level.values, [])
+        wait_until(self.status_says_offline, "the status")
+        level.stays_quiet()
 
     # 7. Writes starve behind polls
     def test_07_a_write_waits_for_one_transaction_not_for_a_cycle(self):
@@ -181,11 +182,14 @@ class FaultMatrix(testing.RosTest):
         lamp = self.publisher("/plant/lamp/write", Bool)
         self.expect_online(True)
         wait_until(lambda: len(self.device.requests) > 3, "polling")
-        before = len(self.device.requests)
-        lamp.publish(True)
-        wait_until(lambda: self.device.seen(5, 15), "the write")
-        reads = self.device.requests[before:self.device.requests.index(self.device.seen(5, 15)[0])]
-        self.assertLessEqual(len(reads), 2, "a cycle has 31 requests")
+        reads = []
+        for number in range(1, 6):
+            before = len(self.device.requests)
+            lamp.publish(bool(number % 2))
+            wait_until(lambda n=number: len(self.device.seen(5, 15)) == n, "the write")
+            reads.append(self.device.requests.index(self.device.seen(5, 15)[-1]) - before)
+        # Of several: how long a message is under way, and how many requests pass meanwhile, is the machine's affair.
+        self.assertLessEqual(statistics.median(reads), 2, f"a cycle has 31 requests: {reads}")
 
     # 8. After a write the old value flickers back
     def test_08_what_was_read_before_a_write_does_not_come_after_it(self):
@@ -203,29 +207,29 @@ class FaultMatrix(testing.RosTest):
         for value in range(1, 40):
             write.publish(value)
             time.sleep(0.03)
-        level.wait_for(lambda value: value == 39, SOON)
-        time.sleep(0.3)
+        level.wait_for(lambda value: value == 39)
+        time.sleep(QUIET)
         self.assertEqual(level.values, sorted(level.values), "an older value came after a newer one")
 
     # 9. One dead unit blocks the gateway
     def test_09_a_unit_that_is_away_costs_the_others_neither_values_nor_connection(self):
-        def answer(request):
-            if request.unit == 2:
-                raise Refuse(NO_RESPONSE)
-            return self.device.serve(request)
-
-        self.device.answer = answer
+        self.device.away = {2}
         maps = [process.write_map(f"name: unit{unit}\naddress: 127.0.0.1\nport: {self.device.port}\nunit: {unit}\n"
-                                  f"rate: 20\ntimeout: 0.5\nmapping:\n{self.LEVEL}") for unit in (1, 2, 3)]
+                                  f"rate: 20\ntimeout: {NO_TIMEOUT}\nmapping:\n{self.LEVEL}") for unit in (1, 2, 3)]
         self.driver(f"_maps:=[{','.join(maps)}]")
         levels = {unit: self.topic(f"/unit{unit}/level", Int16) for unit in (1, 3)}
         for unit, level in levels.items():
             self.level_follows(level, 10 + unit)
         away = self.topic("/unit2/online", Bool)
         self.assertFalse(away.next())
-        self.assertLess(len([r for r in self.device.requests if r.unit == 2]), 20, "it is asked less and less often")
-        self.device.answer = self.device.serve
-        away.wait_for(lambda online: online, SOON)
+
+        def asked(unit):
+            return len([request for request in self.device.requests if request.unit == unit])
+
+        wait_until(lambda: asked(1) >= 40, "two seconds of requests")
+        self.assertLess(asked(2), asked(1) / 2, "it is asked less and less often")
+        self.device.away = set()
+        away.wait_for(lambda online: online)
         self.assertEqual(self.device.accepted, 1, "one connection for all of them")
 
     # 10. Pauses after connecting and between requests
@@ -292,7 +296,7 @@ class FaultMatrix(testing.RosTest):
         self.assertTrue(self.topic("/plant/fault", Bool).next())
         self.assertFalse(self.topic("/plant/ready", Bool).next())
         self.publisher("/plant/ready/write", Bool).publish(True)
-        self.topic("/plant/word", UInt16).wait_for(lambda value: value == 0xA5E5, SOON)
+        self.topic("/plant/word", UInt16).wait_for(lambda value: value == 0xA5E5)
 
     # Every exception code
     def test_every_exception_code_is_said_and_the_link_stays(self):

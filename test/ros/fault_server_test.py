@@ -4,11 +4,9 @@ import time
 
 from support import testing
 from support.device import Device
-from support.peer import free_port
+from support.ports import free_port
 from support.pymodbus_server import LEVEL, Server
-from support.truth import OK, WARN, Truth
-
-TIMEOUT = 0.5
+from support.truth import OK, TIMEOUT, WARN, Truth
 
 
 class FaultProcess(testing.RosTest):

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The two sides are proven equal at connect: the driver against coupler-node."""
 import re
-import time
 import unittest
 
 from std_msgs.msg import Bool, UInt16
 
 from support import process, testing
-from support.peer import free_port
+from support.ports import free_port
 
 MAP = """
 name: press
 address: 127.0.0.1
 rate: 20
+timeout: 60
 mapping:
   coils:
     clamp: 4
@@ -31,10 +31,9 @@ def press(lamp=5, speed="UINT"):
 @unittest.skipUnless(process.has_node(), "coupler-node was not built")
 class Identity(testing.RosTest):
     def start_node(self, text):
-        port = free_port()
-        node = process.Node(process.write_map(text), port)
+        node = process.Node(process.write_map(text))
         self.addCleanup(node.end)
-        return port
+        return node.port
 
     def assert_works(self, driver):
         driver.wait_for("connected")
@@ -63,8 +62,8 @@ class Identity(testing.RosTest):
         self.assertNotRegex(driver.output, r"[~+-] (clamp|closed):")
         self.publisher("/press/clamp/write", Bool).publish(True)
         driver.wait_for("write to clamp dropped")
-        time.sleep(0.5)
-        self.assertEqual(clamp.values, [])
+        clamp.stays_quiet()
+        self.assertEqual(clamp.ever, [])
 
     def test_with_warn_the_difference_is_reported_and_the_driver_goes_on(self):
         port = self.start_node(press())

@@ -23,10 +23,10 @@ class LampFollows(unittest.TestCase):
         rospy.Subscriber("feedback", Bool, receive)
         lamp = rospy.Publisher(rospy.resolve_name("lamp") + "/write", Bool, queue_size=1, latch=True)
         for wanted in (False, True):
-            lamp.publish(wanted)
             with changed:
                 seen.clear()
-                self.assertTrue(changed.wait_for(lambda w=wanted: w in seen, 20), f"the feedback did not become {wanted}")
+                lamp.publish(wanted)
+                self.assertTrue(changed.wait_for(lambda w=wanted: w in seen, 60), f"the feedback did not become {wanted}")
 
 
 if __name__ == "__main__":

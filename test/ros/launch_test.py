@@ -12,7 +12,9 @@ import rospy
 from std_msgs.msg import Int16
 
 from support import process, testing
-from support.peer import Peer, free_port
+from support.patience import PATIENCE
+from support.peer import Peer
+from support.ports import free_port
 
 HERE = pathlib.Path(__file__).resolve().parent
 MAP = """
@@ -29,11 +31,11 @@ class Launch(testing.RosTest):
     def launch(self, *arguments):
         log = tempfile.NamedTemporaryFile("w+")
         self.addCleanup(log.close)
-        child = subprocess.Popen(["roslaunch", *arguments], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+        child = subprocess.Popen(["roslaunch", f"--sigint-timeout={PATIENCE}", *arguments], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
 
         def end():
             child.send_signal(signal.SIGINT)
-            child.wait(60)
+            child.wait(2 * PATIENCE)
             log.seek(0)
             text = log.read()
             self.assertNotIn("escalating", text, "a program did not end on SIGINT")
@@ -74,7 +76,7 @@ class Launch(testing.RosTest):
                                 (["address:=10.0.0.1", "port:=5020", "unit:=7"], "/coupler_10_0_0_1_5020_unit7_driver"),
                                 (["map:=/cell/press.yaml", "node:=mine"], "/mine")):
             names = subprocess.run(["roslaunch", "--nodes", "coupler_driver", "device.launch", *arguments],
-                                   capture_output=True, text=True, timeout=60, check=True).stdout
+                                   capture_output=True, text=True, timeout=PATIENCE, check=True).stdout
             self.assertEqual(names.split(), [node], arguments)
 
     def test_devices_launch_takes_a_list(self):
@@ -98,7 +100,7 @@ class Launch(testing.RosTest):
     def test_the_simulated_cell_passes_its_rostest(self):
         with tempfile.NamedTemporaryFile("w+") as log:
             code = subprocess.run(["rostest", "--reuse-master", "--text", str(HERE / "simulated.test"),
-                                   f"port:={free_port()}"], stdout=log, stderr=log, timeout=120, check=False).returncode
+                                   f"port:={free_port()}"], stdout=log, stderr=log, timeout=4 * PATIENCE, check=False).returncode
             log.seek(0)
             self.assertEqual(code, 0, log.read())
 

@@ -7,7 +7,7 @@ import unittest
 from std_msgs.msg import Int8, UInt16
 
 from support import process, testing
-from support.peer import free_port
+from support.patience import PATIENCE
 
 COUPLER = process.BUILD / "bin" / "coupler"
 MAP = """
@@ -41,7 +41,7 @@ mapping:
 
 
 def check(path):
-    subprocess.run([COUPLER, "check", path], check=True, timeout=30, stdout=subprocess.DEVNULL)
+    subprocess.run([COUPLER, "check", path], check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL)
 
 
 def lock_of(path):
@@ -51,11 +51,9 @@ def lock_of(path):
 @unittest.skipUnless(process.has_node() and COUPLER.exists(), "coupler-node or coupler was not built")
 class Lock(testing.RosTest):
     def start_node(self, path):
-        port = free_port()
-        node = process.Node(path, port)
+        node = process.Node(path)
         self.addCleanup(node.end)
-        node.wait_for("serving press")  # it has read the map and the lock
-        return node, port
+        return node, node.port
 
     def locked_map(self, text=MAP):
         path = process.write_map(text)
@@ -95,7 +93,7 @@ class Lock(testing.RosTest):
 
     def test_without_the_lock_neither_starts_and_both_say_what_to_do(self):
         path = process.write_map(MAP)
-        for program in (process.Node(path, free_port()), self.driver(f"_map:={path}")):
+        for program in (process.Node(path), self.driver(f"_map:={path}")):
             self.assertEqual(program.wait(), 1)
             self.assertIn(f"there is no {path}.lock; run `coupler check {path}`", program.output)
         self.assertFalse(lock_of(path).exists())

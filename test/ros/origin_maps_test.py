@@ -8,6 +8,7 @@ import unittest
 import yaml
 
 from support import iec, process, testing
+from support.patience import NO_TIMEOUT
 from support.peer import Peer
 from support.topics import Topic, connected_publishers, wait_until
 
@@ -58,7 +59,8 @@ class OriginMaps(unittest.TestCase):
     def test_each_map_runs_unchanged_but_for_where_the_device_is(self):
         for path in maps():
             with self.subTest(path.name), Peer() as peer:
-                with process.Driver("--mapping", path, "_address:=127.0.0.1", f"_port:={peer.port}") as driver:
+                with process.Driver("--mapping", path, "_address:=127.0.0.1", f"_port:={peer.port}",
+                                    f"_timeout:={NO_TIMEOUT}") as driver:
                     driver.wait_for("connected")
                     self.check(read(path), peer)
 

@@ -2,8 +2,10 @@
 """The driver asks a foreign device for exactly what `coupler plan` shows."""
 import json
 import subprocess
+import time
 
 from support import process, testing
+from support.patience import NO_TIMEOUT, PATIENCE
 from support.peer import READ, Peer
 from support.topics import wait_until
 
@@ -11,6 +13,7 @@ MAP = """
 name: plan
 address: localhost
 rate: 20
+timeout: {timeout}
 discrete_read_continuous: true
 registers_read_continuous: true
 limits: {read_registers: 20}
@@ -30,6 +33,7 @@ RATES = """
 name: plan
 address: localhost
 rate: 10
+timeout: {timeout}
 registers_read_continuous: true
 unreadable: [{table: holding_registers, from: 24, to: 27}]
 mapping:
@@ -51,7 +55,7 @@ TABLES = {number: table for table, number in READ.items()}
 def plan_of(path):
     """(table, first, last) of each request of a cycle, the fastest rate first."""
     done = subprocess.run([str(process.BUILD / "bin" / "coupler"), "plan", path, "--json"], capture_output=True,
-                          text=True, timeout=30, check=True)
+                          text=True, timeout=PATIENCE, check=True)
     return [[(span["table"], span["from"], span["to"]) for span in group["spans"]]
             for group in json.loads(done.stdout)["groups"]]
 
@@ -61,12 +65,14 @@ class Asked:
 
     def __init__(self, peer, missing=()):
         self.requests = []
+        self.times = []
         self._missing = set(missing)
         self._validate = peer.store.validate
         peer.store.validate = self._note
 
     def _note(self, function, address, count=1):
         table = TABLES[function]
+        self.times.append(time.monotonic())
         self.requests.append((table, address, address + count - 1))
         if self._missing.intersection((table, number) for number in range(address, address + count)):
             return False
@@ -82,7 +88,7 @@ class Asked:
 
 class Plan(testing.RosTest):
     def start(self, text, missing=()):
-        path = process.write_map(text)
+        path = process.write_map(text.replace("{timeout}", str(NO_TIMEOUT)))
         peer = Peer()
         asked = Asked(peer, missing)
         peer.start()
@@ -101,10 +107,13 @@ class Plan(testing.RosTest):
         self.assertIn(("coils", 514, 515), middle, "where the lamp reads back")
         wait_until(lambda: asked.requests.count(slow[0]) == 5, "two seconds of the slowest rate")
         reads = asked.requests[1:]
+        seconds = asked.times[len(reads)] - asked.times[1]
         self.assertEqual(set(reads), {request for group in plan for request in group})
         for request, rate in ((middle[0], 10), (fast[0], 100)):
-            self.assertLessEqual(reads.count(request), 2 * rate + 3, "what was left out is not made up for")
-            self.assertGreater(reads.count(request), rate, "half of them, on a machine that does other things, too")
+            self.assertLessEqual(reads.count(request), seconds * rate + 3, "what was left out is not made up for")
+        # On a machine that does other things, too, cycles are left out; the faster rate still comes first.
+        self.assertGreater(reads.count(fast[0]), 4 * reads.count(middle[0]))
+        self.assertGreater(reads.count(middle[0]), reads.count(slow[0]))
         for request in middle:
             self.assertAlmostEqual(reads.count(request), reads.count(middle[0]), delta=1)
 

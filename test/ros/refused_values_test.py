@@ -10,6 +10,7 @@ from support.topics import wait_until
 MAP = """
 name: refused
 address: 127.0.0.1
+timeout: 60
 mapping:
   holding_registers:
     flags: {address: 0, type: WORD}

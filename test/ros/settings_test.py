@@ -5,7 +5,8 @@ import rospy
 from std_msgs.msg import Int16
 
 from support import process, testing
-from support.peer import Peer, free_port
+from support.peer import Peer
+from support.ports import free_port
 
 MAP = """
 name: settings

@@ -10,13 +10,14 @@ from std_msgs.msg import Int16
 from support import process, testing
 from support.device import Device
 from support.latest import LatestStatus
+from support.patience import NO_TIMEOUT, PATIENCE, QUIET
 from support.topics import wait_until
 
 MAP = """
 name: quiet
 address: 127.0.0.1
 rate: 20
-timeout: 5
+timeout: {timeout}
 mapping:
   input_registers:
     a: {address: 0, type: INT}
@@ -25,67 +26,79 @@ mapping:
 """
 
 
-class Subscribed(testing.RosTest):
+class SubscribedTest(testing.RosTest):
+    timeout = NO_TIMEOUT  # of silence, after which an idle device is asked whether it is still there
+
+    def map(self, head=""):
+        return process.write_map(head + MAP.replace("{timeout}", str(self.timeout)))
+
+
+class Subscribed(SubscribedTest):
     def setUp(self):
         self.device = Device().start()
         self.addCleanup(self.device.stop)
         self.device.tables["input_registers"][:2] = [11, 22]
         self.device.tables["input_registers"][100] = 33
-        self.driver(f"_map:={process.write_map(MAP)}", f"_port:={self.device.port}",
+        self.driver(f"_map:={self.map()}", f"_port:={self.device.port}",
                     "_poll:=subscribed").wait_for("connected")
 
-    def asked(self, seconds=0.5):
-        """The addresses that are asked for."""
-        time.sleep(0.5)
-        begin = len(self.device.requests)
-        time.sleep(seconds)
+    def asked(self, begin=0):
+        """The addresses that are asked for since the request of that number."""
         return {address for request in self.device.requests[begin:]
                 for address in range(request.address, request.address + request.count)}
 
-    def test_without_a_subscriber_there_is_no_request(self):
-        self.assertEqual(self.asked(1), set())
+    def asks_only_for(self, addresses):
+        """In the next ten requests."""
+        begin = len(self.device.requests)
+        wait_until(lambda: len(self.device.requests) >= begin + 10, "ten requests")
+        return self.asked(begin) == addresses
 
-    def test_not_even_at_the_start(self):
-        time.sleep(0.5)
-        points = {0, 1, 100}
-        self.assertEqual([r for r in self.device.requests if points & set(range(r.address, r.address + r.count))], [])
+    def falls_silent(self):
+        begin = len(self.device.requests)
+        time.sleep(QUIET)
+        return len(self.device.requests) == begin
+
+    def test_without_a_subscriber_there_is_no_request_not_even_at_the_start(self):
+        time.sleep(QUIET)
+        self.assertEqual(self.asked(), set())
 
     def test_what_is_subscribed_is_read_and_nothing_else(self):
         far = self.topic("/quiet/far", Int16)
         self.assertEqual(far.next(), 33)
+        self.assertTrue(self.asks_only_for({100}))
         self.assertEqual(self.asked(), {100})
         self.assertEqual(self.topic("/quiet/a", Int16).next(), 11)
+        self.assertTrue(self.asks_only_for({0, 100}))
         self.assertEqual(self.asked(), {0, 100})
         far.close()
-        wait_until(lambda: self.asked() == {0}, "the last one to leave to be noticed")
-
-    def test_status_says_which_points_nobody_wants(self):
-        status = LatestStatus("quiet")
-        self.addCleanup(status.close)
-        status.quality("far", PointStatus.NOT_WANTED)
-        far = self.topic("/quiet/far", Int16)
-        status.quality("far", PointStatus.GOOD)
-        far.close()
-        status.quality("far", PointStatus.NOT_WANTED)
+        wait_until(lambda: self.asks_only_for({0}), "the last one to leave to be noticed")
 
     def test_a_read_asks_for_its_point_once(self):
-        rospy.wait_for_service("/quiet/read", 20)
+        rospy.wait_for_service("/quiet/read", PATIENCE)
         self.assertEqual(rospy.ServiceProxy("/quiet/read", Read)("b").value, "22")
-        self.assertEqual(self.asked(), set())
+        wait_until(self.falls_silent, "it to ask for no more")
+        self.assertEqual(self.asked(), {1})
 
 
-class SaidByTheMap(testing.RosTest):
+class SaidByTheMap(SubscribedTest):
+    timeout = 1  # a value is good for one after the last reading
+
     def drive(self, *arguments):
         device = Device().start()
         self.addCleanup(device.stop)
-        self.driver(f"_map:={process.write_map('poll: subscribed' + MAP)}", f"_port:={device.port}",
+        self.driver(f"_map:={self.map('poll: subscribed')}", f"_port:={device.port}",
                     *arguments).wait_for("connected")
         status = LatestStatus("quiet")
         self.addCleanup(status.close)
         return status
 
-    def test_only_what_is_subscribed_is_read(self):
-        self.drive().quality("far", PointStatus.NOT_WANTED)
+    def test_status_says_which_points_nobody_wants(self):
+        status = self.drive()
+        status.quality("far", PointStatus.NOT_WANTED)
+        far = self.topic("/quiet/far", Int16)
+        status.quality("far", PointStatus.GOOD)
+        far.close()
+        status.quality("far", PointStatus.NOT_WANTED)
 
     def test_the_argument_wins(self):
         self.drive("_poll:=all").quality("far", PointStatus.GOOD)

@@ -12,6 +12,7 @@ import unittest
 import rostopic
 
 from support import iec, process, testing
+from support.patience import NO_TIMEOUT
 from support.peer import Peer
 from support.topics import wait_until
 
@@ -82,7 +83,8 @@ class Vectors(testing.RosTest):
         vectors = vectors_of(path)
         points = [Tested(point, i, "/" + vectors["map"]) for i, point in enumerate(vectors["points"])]
         with Peer() as peer:
-            with process.Process(*program, "_address:=127.0.0.1", f"_port:={peer.port}") as driver:
+            with process.Process(*program, "_address:=127.0.0.1", f"_port:={peer.port}",
+                                 f"_timeout:={NO_TIMEOUT}") as driver:
                 driver.wait_for("connected")
                 self.check_reading(peer, points)
                 self.check_writing(peer, points)

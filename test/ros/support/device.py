@@ -6,6 +6,8 @@ import struct
 import threading
 import time
 
+from support.ports import free_port
+
 ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE, FAILURE, ACKNOWLEDGE, BUSY = 1, 2, 3, 4, 5, 6
 PATH_UNAVAILABLE, NO_RESPONSE = 0x0A, 0x0B
 READS = {1: "coils", 2: "discrete_inputs", 3: "holding_registers", 4: "input_registers"}
@@ -21,6 +23,7 @@ class Request:
     address: int
     count: int
     data: bytes  # of the PDU
+    connection: socket.socket
 
     @property
     def is_identity(self):
@@ -38,25 +41,26 @@ class Refuse(Exception):
 
 class Device:
     """Serves four tables of 65536 elements. Replace `answer` by what is to happen instead; `requests` are those that
-    came, but for the question for the identity, which it refuses as foreign couplers do."""
+    came, but for the question for the identity, which it refuses as foreign couplers do (that to a unit which is away is
+    among them: whatever it is asked, it is an attempt)."""
 
-    def __init__(self, port=0, connections=None, address="127.0.0.1"):
+    def __init__(self, port=None, connections=None, address="127.0.0.1"):
         self.tables = {name: [0] * 65536 for name in READS.values()}
         self.requests = []
         self.accepted = 0
         self.answer = self.serve
         self.silent = False  # as a device that hangs: accepts everything and answers nothing
+        self.away = set()  # units that it, as a gateway, cannot reach
         self.answers_per_connection = None  # then it hangs up
         self._limit = connections
         self._connections = []
         self._lock = threading.Lock()
         self._listener = None
-        self.port = port
+        self.port = port or free_port()  # kept while it is stopped
         self.address = address
 
     def start(self):
         self._listener = socket.create_server((self.address, self.port))
-        self.port = self._listener.getsockname()[1]
         threading.Thread(target=self._accept, args=(self._listener,), daemon=True).start()
         return self
 
@@ -157,10 +161,13 @@ class Device:
         data = stream.read(length - 1)
         address, count = struct.unpack(">HH", data[1:5].ljust(4, b"\0"))
         request = Request(time.monotonic(), transaction, unit, data[0], address,
-                          1 if data[0] in (5, 6) else count, data)
+                          1 if data[0] in (5, 6) else count, data, connection)
         if self.silent:
             return True
         try:
+            if request.unit in self.away:
+                self.requests.append(request)
+                raise Refuse(NO_RESPONSE)
             if request.is_identity:
                 raise Refuse(ILLEGAL_ADDRESS)
             self.requests.append(request)

@@ -6,6 +6,8 @@ import rospy
 from coupler_driver.msg import Status
 from diagnostic_msgs.msg import DiagnosticArray
 
+from support.patience import PATIENCE
+
 
 class Latest:
     """The last message of a topic, and a wait for one that fits."""
@@ -21,7 +23,7 @@ class Latest:
             self._merge(self.known, message)
             self._changed.notify_all()
 
-    def wait_for(self, condition, seconds=20):
+    def wait_for(self, condition, seconds=PATIENCE):
         with self._changed:
             if not self._changed.wait_for(lambda: condition(self.known), seconds):
                 raise AssertionError(f"waited {seconds} s; last: {self.known}")

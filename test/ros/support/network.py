@@ -2,11 +2,11 @@
 """A network with one cable: the device is at its far end, in a network namespace of its own."""
 import contextlib
 import ctypes
-import os
+import ipaddress
 import subprocess
 import unittest
 
-HOST, DEVICE = "198.51.100.1", "198.51.100.2"  # addresses for documentation (RFC 5737): nobody's
+ADDRESSES = ipaddress.ip_network("198.18.0.0/15")  # for tests of networks (RFC 2544): nobody's
 CLONE_NEWNET = 0x40000000
 
 
@@ -15,26 +15,38 @@ def ip(*words):
 
 
 class Network:
-    def __init__(self):
-        self._name = f"coupler{os.getpid()}"
-        self._near, self._far = f"cn{os.getpid()}", f"cf{os.getpid()}"
+    """Its number is the first whose namespace nobody has: several runs at once have addresses of their own."""
 
     def __enter__(self):
         try:
-            ip("netns", "add", self._name)
-            ip("link", "add", self._near, "type", "veth", "peer", "name", self._far, "netns", self._name)
-            ip("address", "add", f"{HOST}/30", "dev", self._near)
-            ip("-n", self._name, "address", "add", f"{DEVICE}/30", "dev", self._far)
-            ip("link", "set", self._near, "up")
-            ip("-n", self._name, "link", "set", self._far, "up")
+            self._take_a_number()
+            with contextlib.ExitStack() as undo:
+                undo.push(self)
+                ip("link", "add", self._near, "type", "veth", "peer", "name", self._far, "netns", self._name)
+                ip("address", "add", f"{self._host}/30", "dev", self._near)
+                ip("-n", self._name, "address", "add", f"{self.device}/30", "dev", self._far)
+                ip("link", "set", self._near, "up")
+                ip("-n", self._name, "link", "set", self._far, "up")
+                undo.pop_all()
         except (OSError, subprocess.CalledProcessError) as error:
-            self.__exit__()
             raise unittest.SkipTest(f"no network namespaces here (needs root and iproute2): {error}") from error
         return self
 
+    def _take_a_number(self):
+        for number, subnet in enumerate(ADDRESSES.subnets(new_prefix=30)):
+            self._name, self._near, self._far = (f"{what}{number}" for what in ("coupler", "cn", "cf"))
+            self._host, self.device = map(str, subnet.hosts())
+            try:
+                return ip("netns", "add", self._name)
+            except subprocess.CalledProcessError as error:
+                if "File exists" not in error.stderr:
+                    raise
+
     def __exit__(self, *_):
-        with contextlib.suppress(OSError, subprocess.CalledProcessError):
-            ip("netns", "del", self._name)
+        for words in (("link", "del", self._near),  # a namespace takes its links with it, but later
+                      ("netns", "del", self._name)):
+            with contextlib.suppress(OSError, subprocess.CalledProcessError):
+                ip(*words)
 
     @contextlib.contextmanager
     def at_the_far_end(self):

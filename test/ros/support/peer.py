@@ -2,22 +2,18 @@
 """A Modbus/TCP device by pymodbus, in a thread of the test."""
 import asyncio
 import logging
-import socket
 import threading
 
 from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
 from pymodbus.server.async_io import ModbusTcpServer
 
+from support.patience import PATIENCE
+from support.ports import free_port
+
 READ = {"coils": 1, "discrete_inputs": 2, "holding_registers": 3, "input_registers": 4}
 
 # Ending a connection on purpose is no news.
 logging.getLogger("pymodbus").setLevel(logging.CRITICAL)
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 class Peer:
@@ -41,7 +37,7 @@ class Peer:
         ready = threading.Event()
         self._thread = threading.Thread(target=self._run, args=(ready,), daemon=True)
         self._thread.start()
-        if not ready.wait(20):
+        if not ready.wait(PATIENCE) or not self._thread.is_alive():
             raise RuntimeError("pymodbus did not start")
         return self
 
@@ -49,7 +45,7 @@ class Peer:
         """Ends the server and its connections."""
         if self._thread:
             self._loop.call_soon_threadsafe(self._stopping.set)
-            self._thread.join(20)
+            self._thread.join(PATIENCE)
             self._thread = None
 
     def __enter__(self):
@@ -70,6 +66,8 @@ class Peer:
         server = ModbusTcpServer(context, address=("127.0.0.1", self.port), allow_reuse_address=True)
         task = asyncio.ensure_future(server.serve_forever())
         await asyncio.wait([task, server.serving], return_when=asyncio.FIRST_COMPLETED)
+        if task.done():
+            task.result()  # raises why it does not serve
         ready.set()
         await self._stopping.wait()
         for connection in list(server.active_connections.values()):

@@ -3,13 +3,17 @@
 import contextlib
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import tempfile
 import threading
 import time
 
+from support.patience import PATIENCE
+
 BUILD = pathlib.Path(os.environ["COUPLER_BUILD_DIR"])
+SERVING = re.compile(r"serving .* on \S+:(\d+)")
 
 # `nohup ./check` leaves it ignored, and a node that is started so takes no SIGHUP.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
@@ -47,25 +51,31 @@ class Process:
         finally:
             self._child.send_signal(signal.SIGCONT)
 
-    def wait_for(self, text, seconds=30):
+    def wait_for(self, text):
         """Until the program has printed the text."""
-        end = time.monotonic() + seconds
-        while text not in self.output:
-            if time.monotonic() > end or not (self.running or self._reader.is_alive()):
-                raise AssertionError(f"'{text}' was not printed, but:\n{self.output}")
+        self._wait_until(lambda: text in self.output, f"'{text}'")
+
+    def _wait_until(self, condition, what):
+        end = time.monotonic() + PATIENCE
+        while True:
+            last = time.monotonic() > end or not self._reader.is_alive()  # before the look: what it said last counts
+            if condition():
+                return
+            if last:
+                raise AssertionError(f"{what} was not printed, but:\n{self.output}")
             time.sleep(0.02)
 
-    def wait(self, seconds=30):
+    def wait(self):
         """The exit code, once the program ends by itself."""
-        code = self._child.wait(seconds)
-        self._reader.join(5)
+        code = self._child.wait(PATIENCE)
+        self._reader.join(PATIENCE)
         return code
 
-    def interrupt(self, seconds=30):
+    def interrupt(self):
         """SIGINT; the exit code."""
         if self.running:
             self._child.send_signal(signal.SIGINT)
-        return self.wait(seconds)
+        return self.wait()
 
     def end(self):
         """SIGINT; any exit code but 0 is a failure: a sanitizer's report, too, ends with another one."""
@@ -96,8 +106,14 @@ class Driver(Process):
 class Node(Process):
     """coupler-node on the simulated chip."""
 
-    def __init__(self, map_path, port):
+    def __init__(self, map_path, port=0):
         super().__init__("coupler-node", map_path, "--sim", "--listen", "127.0.0.1", "--port", port)
+
+    @property
+    def port(self):
+        """Where it serves, once it does: it has read the map by then."""
+        self._wait_until(lambda: SERVING.search(self.output), "a port")
+        return int(SERVING.search(self.output)[1])
 
     def reload(self):
         self._child.send_signal(signal.SIGHUP)

@@ -6,6 +6,8 @@ import subprocess
 import sys
 import time
 
+from support.patience import PATIENCE
+
 LEVEL = 41  # in holding register 4
 
 
@@ -16,7 +18,7 @@ class Server:
 
     def start(self):
         self._child = subprocess.Popen([sys.executable, "-m", "support.pymodbus_server", str(self.port)])
-        end = time.monotonic() + 20
+        end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
             with socket.socket() as probe:
                 if probe.connect_ex(("127.0.0.1", self.port)) == 0:
@@ -33,7 +35,7 @@ class Server:
     def kill(self):
         if self._child:
             self._child.kill()
-            self._child.wait(10)
+            self._child.wait(PATIENCE)
             self._child = None
 
 

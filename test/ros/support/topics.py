@@ -5,22 +5,30 @@ import time
 
 import rospy
 
+from support.patience import PATIENCE, QUIET
+
 
 class Topic:
-    """Everything that was published on a topic since the subscription."""
+    """What was published on a topic: `values` since the subscription or since a test has cleared them, `ever` all of it."""
 
     def __init__(self, name, kind):
-        self.values = []
         self._changed = threading.Condition()
-        self._subscriber = rospy.Subscriber(name, kind, self._receive, queue_size=1000)
-        self.name = name
+        self.name, self._kind = name, kind
+        self.ever = []
+        self._subscribe()
 
-    def _receive(self, message):
-        with self._changed:
-            self.values.append(message.data)
-            self._changed.notify_all()
+    def _subscribe(self):
+        values = self.values = []
 
-    def wait_for(self, condition, seconds=30):
+        def receive(message):
+            with self._changed:
+                values.append(message.data)
+                self.ever.append(message.data)
+                self._changed.notify_all()
+
+        self._subscriber = rospy.Subscriber(self.name, self._kind, receive, queue_size=1000)
+
+    def wait_for(self, condition, seconds=PATIENCE):
         """The first value, of those that came and those that come, for which condition(value) is true."""
         end = time.monotonic() + seconds
         at = 0
@@ -35,25 +43,34 @@ class Topic:
                     raise AssertionError(f"{self.name}: waited {seconds} s; the last values were {self.values[-5:]}")
                 self._changed.wait(left)
 
-    def next(self, seconds=30):
+    def next(self):
         """The next value that comes."""
         with self._changed:
             self.values.clear()
-        return self.wait_for(lambda _: True, seconds)
+        return self.wait_for(lambda _: True)
+
+    def stays_quiet(self):
+        """Nothing is published from now on. By a subscription anew: what was published before may still be under way in the
+        old one."""
+        self.close()
+        self._subscribe()
+        time.sleep(QUIET)
+        if self.values:
+            raise AssertionError(f"{self.name}: {self.values} came, though there is nothing new")
 
     def close(self):
         self._subscriber.unregister()
 
 
-def connected_publishers(kinds, seconds=30):
+def connected_publishers(kinds):
     """A publisher for each topic of {name: type}, once somebody listens to all of them."""
     publishers = [rospy.Publisher(name, kind, queue_size=100) for name, kind in kinds.items()]
     for publisher in publishers:
-        wait_until(lambda p=publisher: p.get_num_connections() > 0, f"a subscriber of {publisher.name}", seconds)
+        wait_until(lambda p=publisher: p.get_num_connections() > 0, f"a subscriber of {publisher.name}")
     return publishers
 
 
-def wait_until(condition, what, seconds=30):
+def wait_until(condition, what, seconds=PATIENCE):
     end = time.monotonic() + seconds
     while not condition():
         if time.monotonic() > end:

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """All that a driver says of a device at once: a fault is told truly when its four voices agree."""
-import time
-
 from coupler_driver.msg import PointStatus
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Bool, Int16
@@ -10,15 +8,14 @@ from .latest import LatestDiagnostics, LatestStatus
 from .process import write_map
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
-SOON = 10  # seconds; it takes one or two, the rest is for machines under load
-QUIET = 0.7  # seconds without a value: fourteen polls
+TIMEOUT = 0.5
 
 
 class Truth:
     """Of the device `plant` with the point `level` in holding register 4."""
 
-    def __init__(self, test, port, *arguments, address="127.0.0.1"):
-        path = write_map(f"name: plant\naddress: {address}\nrate: 20\ntimeout: 0.5\n"
+    def __init__(self, test, port, *arguments, address="127.0.0.1", timeout=TIMEOUT):
+        path = write_map(f"name: plant\naddress: {address}\nrate: 20\ntimeout: {timeout}\n"
                          "mapping:\n  holding_registers: {level: {address: 4, type: INT}}\n")
         self.driver = test.driver(f"_map:={path}", f"_port:={port}", *arguments)
         self.level = test.topic("/plant/level", Int16)
@@ -31,9 +28,9 @@ class Truth:
 
     def is_good(self, value, polling=(OK,)):
         self.level.values.clear()
-        self.level.wait_for(lambda now: now == value, SOON)
+        self.level.wait_for(lambda now: now == value)
         self._expect_online(True)
-        self.status.wait_for(lambda known: known.get("online") and known["level"].quality == PointStatus.GOOD, SOON)
+        self.status.wait_for(lambda known: known.get("online") and known["level"].quality == PointStatus.GOOD)
         self.diagnostics.level("connection", OK)
         self.diagnostics.level("polling", *polling)
 
@@ -41,23 +38,21 @@ class Truth:
         self._expect_online(False)
         self.status.wait_for(  # with the reason, which there is none of at the very beginning
             lambda known: not known.get("online", True) and known["level"].quality == PointStatus.OFFLINE and
-            known["trouble"], SOON)
+            known["trouble"])
         self._test.assertIn("offline", self.diagnostics.level("connection", ERROR).message)
         self._nothing_is_published()
 
     def has_exception(self, code, quality):
         """The device is there, but refuses the point."""
-        point = self.status.wait_for(lambda known: known.get("online") and known["level"].quality == quality, SOON)["level"]
+        point = self.status.wait_for(lambda known: known.get("online") and known["level"].quality == quality)["level"]
         self._test.assertEqual(point.exception, code)
         self._test.assertIn("level", self.diagnostics.level("polling", WARN, ERROR).message)
         self._expect_online(True)
         self._nothing_is_published()
 
     def _expect_online(self, wanted):
-        self.online.wait_for(lambda _: self.online.values[-1] == wanted, SOON)
+        self.online.wait_for(lambda _: self.online.values[-1] == wanted)
 
     def _nothing_is_published(self):
         """What is old does not come again."""
-        self.level.values.clear()
-        time.sleep(QUIET)
-        self._test.assertEqual(self.level.values, [])
+        self.level.stays_quiet()

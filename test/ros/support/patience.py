@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How long tests wait. None of it is a rule of the driver: what must come may take as long as a busy machine needs, and what
+must not come is looked for a while."""
+import os
+import pathlib
+import re
+
+_CACHE = pathlib.Path(os.environ["COUPLER_BUILD_DIR"]) / "CMakeCache.txt"
+_SANITIZED = _CACHE.exists() and re.search(r"^COUPLER_SANITIZE:\w+=.", _CACHE.read_text(), re.MULTILINE)
+
+PATIENCE = 180 if _SANITIZED else 60  # seconds until what must come is given up
+QUIET = 0.7  # seconds in which nothing comes: fourteen polls at the 20 Hz of most maps
+
+# Of a map whose test is not about timeouts: longer than any test waits, so that a reply that comes late because the machine
+# is busy is no fault of the device.
+NO_TIMEOUT = 10 * PATIENCE
