@@ -4,6 +4,7 @@ import json
 import pathlib
 import subprocess
 
+from support.patience import PATIENCE
 from support.ports import free_port
 
 SERVER = pathlib.Path(__file__).resolve().with_name("server.js")
@@ -25,7 +26,7 @@ class Device:
 
     def __exit__(self, *_):
         self._server.stdin.close()
-        self._server.wait(20)
+        self._server.wait(PATIENCE)
         self._server.stdout.close()
 
     def set(self, table, address, values):

@@ -13,6 +13,7 @@ const jsmodbus = require("jsmodbus");
 
 const command = process.argv.slice(2);
 const IDENTITY = 0xff00;
+const PATIENCE = 60000; // ms; no rule, only reached when something is broken
 let node;
 let port;
 
@@ -36,7 +37,7 @@ describe("modbus-serial", () => {
   before(async () => {
     await client.connectTCP("127.0.0.1", { port });
     client.setID(1);
-    client.setTimeout(5000);
+    client.setTimeout(PATIENCE);
   });
   after(() => client.close(() => {}));
 
@@ -105,7 +106,7 @@ describe("modbus-serial", () => {
 
 describe("jsmodbus", () => {
   const socket = new net.Socket();
-  const client = new jsmodbus.client.TCP(socket, 1, 5000);
+  const client = new jsmodbus.client.TCP(socket, 1, PATIENCE);
   const values = async (reply) => (await reply).response.body.valuesAsArray;
   before(() => new Promise((resolve) => socket.connect({ host: "127.0.0.1", port }, resolve)));
   after(() => socket.destroy());
@@ -147,7 +148,7 @@ it("both keep their answers apart when each asks a hundred things at once", asyn
   await serial.connectTCP("127.0.0.1", { port });
   serial.setID(1);
   const socket = new net.Socket();
-  const js = new jsmodbus.client.TCP(socket, 1, 5000);
+  const js = new jsmodbus.client.TCP(socket, 1, PATIENCE);
   await new Promise((resolve) => socket.connect({ host: "127.0.0.1", port }, resolve));
   await serial.writeRegisters(0, [11, 22, 33]);
   const wanted = [11, 22, 33];

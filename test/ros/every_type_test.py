@@ -45,7 +45,7 @@ class EveryType(unittest.TestCase):
         topics = {point.name: Topic(f"/every_type/{point.name}", point.message) for point in points}
         for index, point in enumerate(points):
             expected = value_of(point, index, 0)
-            received = topics[point.name].next()
+            received = topics[point.name].wait_for(lambda _: True)
             self.assertTrue(iec.same(point.kind, received, expected), f"{point.name}: {received}, not {expected}")
         for topic in topics.values():
             topic.close()

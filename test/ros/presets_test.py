@@ -19,7 +19,7 @@ from support.couplers.plc import Plc
 from support.patience import NO_TIMEOUT, PATIENCE
 from support.topics import wait_until
 
-TIMEOUT = 2  # of the watchdogs; they are fed three times in it
+TIMEOUT = 1.5  # of the watchdogs; they are fed three times in it
 LONGER = 1.5 * TIMEOUT
 
 MAP = """
@@ -55,7 +55,7 @@ class PresetTest(testing.RosTest):
         self.coupler = coupler.start()
         self.addCleanup(coupler.stop)
 
-    def start(self, preset, watchdog="timeout: 2s", top="", mapping=VALVE, rate=20):
+    def start(self, preset, watchdog="timeout: 1500ms", top="", mapping=VALVE, rate=20):
         if watchdog:
             top += f"\nwatchdog: {{{watchdog}}}"
         path = process.write_map(MAP.format(preset=preset, top=top, mapping=mapping, rate=rate, timeout=NO_TIMEOUT))
@@ -92,7 +92,7 @@ class PresetTest(testing.RosTest):
         self.switch_on()
         self.stays_on()
         self.expire(driver)
-        driver.wait_for("watchdog has expired: 2000 ms without a request of the driver; its outputs are off")
+        driver.wait_for("watchdog has expired: 1500 ms without a request of the driver; its outputs are off")
         driver.wait_for("watchdog is reset and fed")
         wait_until(self.is_on, "the outputs to be restored")
         self.assertFalse(self.coupler.expired)
@@ -123,10 +123,10 @@ class Wago(PresetTest):
         self.use(wago.Wago750())
 
     def test_it_is_armed_before_anything_else_is_written_and_fed_by_changes(self):
-        self.start("wago_750").wait_for("watchdog is fed: outputs go off after 2000 ms")
+        self.start("wago_750").wait_for("watchdog is fed: outputs go off after 1500 ms")
         self.switch_on()
         writes = [(request.address, int.from_bytes(request.data[3:5], "big")) for request in self.coupler.seen(5, 6)]
-        self.assertEqual(writes[:5], [(wago.STOP, 0xAA55), (wago.TIME, 20), (wago.MASK, 0), (wago.TRIGGER, 1),
+        self.assertEqual(writes[:5], [(wago.STOP, 0xAA55), (wago.TIME, 15), (wago.MASK, 0), (wago.TRIGGER, 1),
                                       (wago.TRIGGER, 2)])
         self.assertIn((3, 0xFF00), writes[5:])
         self.stays_on()
@@ -138,7 +138,7 @@ class Wago(PresetTest):
         self.expect_recovery(self.start("wago_750", top="on_reconnect: restore"))
 
     def test_it_recovers_by_a_call(self):
-        driver = self.start("wago_750", "timeout: 2s, recovery: manual")
+        driver = self.start("wago_750", "timeout: 1500ms, recovery: manual")
         self.switch_on()
         self.expire(driver)
         driver.wait_for("call rack/reset_watchdog")
@@ -148,7 +148,7 @@ class Wago(PresetTest):
         self.switch_on()
 
     def test_a_driver_that_is_started_anew_leaves_the_decision_to_the_call_too(self):
-        manual = "timeout: 2s, recovery: manual"
+        manual = "timeout: 1500ms, recovery: manual"
         driver = self.start("wago_750", manual)
         driver.wait_for("watchdog is fed")
         driver.end()
@@ -211,7 +211,7 @@ class Beckhoff(PresetTest):
         driver.wait_for("watchdog is fed")
         self.assertEqual([(request.address, int.from_bytes(request.data[3:5], "big"))
                           for request in self.coupler.seen(5, 6)],
-                         [(beckhoff.TIME, 2000), (beckhoff.TYPE, beckhoff.ANYTHING_FEEDS)])
+                         [(beckhoff.TIME, 1500), (beckhoff.TYPE, beckhoff.ANYTHING_FEEDS)])
         self.switch_on()
         self.stays_on()
 
@@ -222,7 +222,7 @@ class Beckhoff(PresetTest):
         self.coupler.drop()
         wait_until(lambda: self.coupler.accepted > connections, "the next connection")
         self.stays_on()
-        self.assertEqual(self.coupler.written(beckhoff.TIME), [2000])
+        self.assertEqual(self.coupler.written(beckhoff.TIME), [1500])
         self.assertNotIn("cannot be armed", driver.output)
 
     def test_slow_polling_feeds_it_too(self):
@@ -235,7 +235,7 @@ class Beckhoff(PresetTest):
         self.assertEqual(self.coupler.written(beckhoff.RESET), [0xBECF, 0xAFFE])
 
     def test_it_recovers_by_a_call(self):
-        self.expect_recovery_by_call(self.start("beckhoff_bk9000", "timeout: 2s, recovery: manual"))
+        self.expect_recovery_by_call(self.start("beckhoff_bk9000", "timeout: 1500ms, recovery: manual"))
 
     def test_only_the_first_of_three_connections_may_write(self):
         others = [socket.create_connection(("127.0.0.1", self.coupler.port)) for _ in range(3)]
@@ -245,7 +245,7 @@ class Beckhoff(PresetTest):
         driver = self.start("beckhoff_bk9000")
         driver.wait_for("not connected")
         others.pop().close()
-        driver.wait_for("cannot be armed: exception 06 (server device busy) for 2000 at holding_registers 4384; "
+        driver.wait_for("cannot be armed: exception 06 (server device busy) for 1500 at holding_registers 4384; "
                         "another client owns its outputs")
         self.assertIn("another client owns", diagnosis(DiagnosticStatus.ERROR).message)
         self.assertEqual(self.write("valve", "true").exception, 6)
@@ -264,7 +264,7 @@ class Moxa(PresetTest):
         self.assertEqual(self.coupler.written(moxa.ALARM, function=5), [0xFF00])
 
     def test_it_recovers_by_a_call(self):
-        self.expect_recovery_by_call(self.start("moxa_e1200", "timeout: 2s, recovery: manual"))
+        self.expect_recovery_by_call(self.start("moxa_e1200", "timeout: 1500ms, recovery: manual"))
 
     def test_clear_coils_read_0_and_counters_stand_high_word_first(self):
         self.coupler.count = 70000
@@ -284,7 +284,7 @@ class Moxa(PresetTest):
 class PlcWithHeartbeat(PresetTest):
     def test_its_program_sees_the_driver_come_and_go(self):
         self.use(Plc(heartbeat=100, timeout=TIMEOUT))
-        driver = self.start("plc", "timeout: 2s, heartbeat: 100")
+        driver = self.start("plc", "timeout: 1500ms, heartbeat: 100")
         self.switch_on()
         self.stays_on()
         wait_until(lambda: len(self.coupler.written(100)) > 4, "five beats")

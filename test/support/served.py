@@ -9,11 +9,13 @@ import subprocess
 import tempfile
 import time
 
+PATIENCE = 120  # seconds; no rule, only reached when something is broken
+
 
 class Served:
     """A program that says "serving WHAT on HOST:PORT" once it does."""
 
-    def __init__(self, command, start_seconds=10, **popen):
+    def __init__(self, command, start_seconds=PATIENCE, **popen):
         self._log = tempfile.TemporaryFile()
         self._child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log, **popen)
         self.port = self._wait_for_port(start_seconds)
@@ -43,7 +45,7 @@ class Served:
         """KiB of each process that are resident and not read from a file: heap, stacks, changed data."""
         return self._memory("RssAnon")
 
-    def stop(self, seconds=10):
+    def stop(self, seconds=PATIENCE):
         """SIGTERM; the exit status, None if it did not end."""
         if not self.has_ended():
             self._child.send_signal(signal.SIGTERM)
