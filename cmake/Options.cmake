@@ -32,7 +32,7 @@ target_compile_options(coupler_flags INTERFACE
   $<$<BOOL:${COUPLER_WERROR}>:-Werror>)
 if(COUPLER_SANITIZE)
   target_compile_options(coupler_flags INTERFACE
-    -fsanitize=${COUPLER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1
+    -fsanitize=${COUPLER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1 -g1
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # among the checks GCC sees paths that are none: its manual warns
   target_link_options(coupler_flags INTERFACE -fsanitize=${COUPLER_SANITIZE})
 endif()
