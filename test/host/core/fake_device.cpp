@@ -79,7 +79,7 @@ Result<> FakeDevice::receive(const modbus::WriteRequest& request) {
   return carry_out(request);
 }
 
-Woken FakeDevice::wait_until(Time time) {
+Transport::Woken FakeDevice::wait_until(Time time) {
   std::unique_lock lock(mutex_);
   const auto until = std::min(time, std::chrono::steady_clock::now() + std::chrono::hours(1));
   idle_ = true;

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/map/map.hpp"
 #include "host/core/transport.hpp"
 
 namespace coupler::driver::test {

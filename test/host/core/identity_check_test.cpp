@@ -104,7 +104,7 @@ TEST_F(IdentityCheck, A_node_that_does_not_serve_its_map_cannot_be_compared) {
 }
 
 TEST_F(IdentityCheck, A_timeout_is_no_verdict) {
-  device.next_errors.push_back(Timeout{std::chrono::seconds(3)});
+  device.next_errors.assign(1, Timeout{std::chrono::seconds(3)});
   EXPECT_FALSE(check_identity(device, MapBuilder().build()->map(), no_map));
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/map/map.hpp"
 #include "host/core/sink.hpp"
 
 namespace coupler::driver::test {

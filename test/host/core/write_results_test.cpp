@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What becomes of writes, seen by those who make them.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "test/fakes/map_builder.hpp"
