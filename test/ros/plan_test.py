@@ -113,7 +113,7 @@ class Plan(testing.RosTest):
             self.assertLessEqual(reads.count(request), seconds * rate + 3, "what was left out is not made up for")
         # On a machine that does other things, too, cycles are left out; the faster rate still comes first.
         self.assertGreater(reads.count(fast[0]), 4 * reads.count(middle[0]))
-        self.assertGreater(reads.count(middle[0]), reads.count(slow[0]))
+        self.assertGreater(sum(request in middle for request in reads), reads.count(slow[0]))
         for request in middle:
             self.assertAlmostEqual(reads.count(request), reads.count(middle[0]), delta=1)
 

@@ -63,8 +63,7 @@ class StatusAndDiagnostics(StatusTest):
         broken = self.status.quality("broken", PointStatus.EXCEPTION)
         self.assertEqual(broken.exception, 4)
         self.assertEqual(self.status.known["level"].quality, PointStatus.GOOD)
-        polling = self.diagnostics.level("polling", DiagnosticStatus.WARN)
-        self.assertIn("broken", polling.message)
+        polling = self.diagnostics.says("broken", "polling", DiagnosticStatus.WARN)
         self.assertTrue(any(key.startswith("exception 04") for key in values(polling)))
         self.device.answer = self.device.serve
         self.status.quality("broken", PointStatus.GOOD)
@@ -113,7 +112,7 @@ class StatusOfASilentDevice(StatusTest):
         self.status.quality("level", PointStatus.OFFLINE)
         self.assertFalse(self.status.known["online"])
         self.assertTrue(self.status.known["trouble"])
-        self.assertIn("offline", self.diagnostics.level("connection", DiagnosticStatus.ERROR).message)
+        self.diagnostics.says("offline", "connection", DiagnosticStatus.ERROR)
         self.device.silent = False
         self.status.quality("level", PointStatus.GOOD)
         self.assertGreaterEqual(int(values(self.diagnostics.level("connection", DiagnosticStatus.OK))["timeouts"]), 1)

@@ -57,7 +57,11 @@ class LatestDiagnostics(Latest):
                              {status.name.split(f"{device} ")[-1]: status for status in message.status}))
 
     def level(self, name, *wanted):
-        return self.wait_for(lambda known: name in known and known[name].level in wanted)[name]
+        return self.says("", name, *wanted)
+
+    def says(self, text, name, *wanted):
+        """An entry of such a level that has the text in its message: there may be other reasons for the level before."""
+        return self.wait_for(lambda known: name in known and known[name].level in wanted and text in known[name].message)[name]
 
 
 def values(status):

@@ -39,14 +39,14 @@ class Truth:
         self.status.wait_for(  # with the reason, which there is none of at the very beginning
             lambda known: not known.get("online", True) and known["level"].quality == PointStatus.OFFLINE and
             known["trouble"])
-        self._test.assertIn("offline", self.diagnostics.level("connection", ERROR).message)
+        self.diagnostics.says("offline", "connection", ERROR)
         self._nothing_is_published()
 
     def has_exception(self, code, quality):
         """The device is there, but refuses the point."""
         point = self.status.wait_for(lambda known: known.get("online") and known["level"].quality == quality)["level"]
         self._test.assertEqual(point.exception, code)
-        self._test.assertIn("level", self.diagnostics.level("polling", WARN, ERROR).message)
+        self.diagnostics.says("level", "polling", WARN, ERROR)
         self._expect_online(True)
         self._nothing_is_published()
 
