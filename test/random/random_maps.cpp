@@ -33,7 +33,8 @@ bool write_maps(const fs::path& folder, unsigned seed, unsigned count) {
     fakes::RandomMap map(seed + i, most_points_a_table);
     if (i % 3 == 0) map.add_hardware();
     if (i % 4 == 0) map.leave_out_addresses();
-    if (!write(folder / (name_of(i) + ".yaml"), fmt::format("# seed {}\n{}", seed + i, map.yaml())))
+    // A busy machine is late, not gone.
+    if (!write(folder / (name_of(i) + ".yaml"), fmt::format("# seed {}\ntimeout: 60s\n{}", seed + i, map.yaml())))
       return false;
   }
   return true;
