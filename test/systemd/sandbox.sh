@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # What a process of the service may do: service.sh runs it in place of the node.
 #   sandbox.sh CHIP      CHIP: /dev/gpiochip0
+# shellcheck disable=SC2317 # may and may_not call what is here
 chip=$1
 failures=0
 
