@@ -34,7 +34,8 @@ bool write_maps(const fs::path& folder, unsigned seed, unsigned count) {
     if (i % 3 == 0) map.add_hardware();
     if (i % 4 == 0) map.leave_out_addresses();
     // A busy machine is late, not gone.
-    if (!write(folder / (name_of(i) + ".yaml"), fmt::format("# seed {}\ntimeout: 60s\n{}", seed + i, map.yaml())))
+    if (!write(folder / (name_of(i) + ".yaml"),
+               fmt::format("# seed {}\ntimeout: 60s\n{}", seed + i, map.yaml())))
       return false;
   }
   return true;
