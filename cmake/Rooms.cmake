@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # One library and one test program a room.
 #
-# A cold build reads the same headers hundreds of times, so they are translated once (precompiled headers), and several
-# files of a target at once (unity builds). Neither may hide a missing include: scripts/lint compiles each file by
-# itself. -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON and -DCMAKE_UNITY_BUILD=OFF build each file by itself, too.
+# A cold build reads the same headers hundreds of times, so they are translated once (precompiled headers), and the files
+# of a test program three at a time. Neither may hide a missing include: scripts/lint compiles each file by itself.
+# -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON and -DCOUPLER_TEST_UNITY=1 build each file by itself, too.
 include(GoogleTest)
 
 # Their macros must be those of the files that use them: one for libraries, one for test programs.
@@ -34,13 +34,40 @@ function(coupler_room name)
   endif()
 endfunction()
 
+# Several files as one. CMake's own UNITY_BUILD writes absolute paths, with which no two clones could share the
+# compiler's cache.
+set(COUPLER_TEST_UNITY 3 CACHE STRING "How many files of a test program are compiled as one")
+function(coupler_unite out)
+  set(files ${ARGN})
+  set(united)
+  set(i 0)
+  while(files)
+    list(SUBLIST files 0 ${COUPLER_TEST_UNITY} batch)
+    list(REMOVE_ITEM files ${batch})
+    set(text)
+    foreach(file IN LISTS batch)
+      get_filename_component(file ${file} ABSOLUTE)
+      file(RELATIVE_PATH file ${PROJECT_SOURCE_DIR} ${file})
+      string(APPEND text "#include \"${file}\"\n")
+    endforeach()
+    set(unity ${CMAKE_CURRENT_BINARY_DIR}/Unity/${out}_${i}.cpp)
+    file(GENERATE OUTPUT ${unity} CONTENT "${text}")
+    list(APPEND united ${unity})
+    math(EXPR i "${i} + 1")
+  endwhile()
+  set(${out} ${united} PARENT_SCOPE)
+endfunction()
+
 # coupler_test(NAME SOURCES … LINKS …): a test program; each of its tests is a CTest test.
 function(coupler_test name)
   cmake_parse_arguments(test "" "" "SOURCES;LINKS" ${ARGN})
+  if(COUPLER_TEST_UNITY GREATER 1)
+    coupler_unite(${name} ${test_SOURCES})
+    set(test_SOURCES ${${name}})
+  endif()
   add_executable(${name} ${test_SOURCES})
   target_link_libraries(${name} PRIVATE coupler_flags ${test_LINKS} coupler_test_paths GTest::gmock GTest::gtest_main)
   target_precompile_headers(${name} REUSE_FROM coupler_test_headers)
-  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 3
-    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/test/bin)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/test/bin)
   gtest_discover_tests(${name} TEST_PREFIX "${name}: " DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 60)
 endfunction()
