@@ -4,7 +4,6 @@
 
     with_dump.py COUPLER MAP NODE_COMMAND…
 """
-import importlib.util
 import json
 import os
 import pathlib
@@ -30,11 +29,9 @@ except ImportError as error:
 if not shutil.which("mbpoll"):
     peer.skip("mbpoll is missing; run scripts/install-packages test")
 
-# The device is the one of the driver's tests; its file has the name of this folder's helper, too.
-_spec = importlib.util.spec_from_file_location(
-    "foreign", pathlib.Path(__file__).resolve().parents[1] / "ros" / "support" / "peer.py")
-foreign = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(foreign)
+# The device is the one of the driver's tests.
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "ros"))
+from support import peer as foreign  # noqa: E402
 
 READS = {1, 2, 3, 4}
 
