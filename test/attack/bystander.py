@@ -10,7 +10,8 @@ import adu as modbus
 from client import Client
 from real_time import ask_for_real_time
 
-PAUSE = 0.0002  # seconds between an answer and the next request
+# Seconds between an answer and the next request: where answers are timed, and where everybody shares a processor.
+PAUSE, LONG_PAUSE = 0.0002, 0.01
 SLOW = 0.005  # seconds
 OUTPUTS, SCRATCH = 0, 0  # map.yaml: 8 coils wired to 8 inputs, 123 registers of memory
 READ_INPUTS = 2  # which show the outputs where they are wired to them
@@ -30,10 +31,10 @@ class Report:
 class Bystander:
     """Works in a process of its own, so that its latency is the node's and not an attacker's."""
 
-    def __init__(self, port, map_text, wired):
+    def __init__(self, port, map_text, wired, pause):
         context = multiprocessing.get_context("fork")
         self._pipe, other = context.Pipe()
-        self._process = context.Process(target=_work, args=(port, map_text, wired, other), daemon=True)
+        self._process = context.Process(target=_work, args=(port, map_text, wired, pause, other), daemon=True)
         self._process.start()
         other.close()
         self.report()
@@ -50,7 +51,7 @@ class Bystander:
         self._process.join()
 
 
-def _work(port, map_text, wired, pipe):
+def _work(port, map_text, wired, pause, pipe):
     ask_for_real_time()
     gc.disable()
     client = Client(port)
@@ -80,7 +81,7 @@ def _work(port, map_text, wired, pipe):
                 pipe.recv()
                 pipe.send(report)
                 report = Report()
-            time.sleep(PAUSE)
+            time.sleep(pause)
 
 
 def _round(number, map_text):

@@ -8,7 +8,7 @@ import time
 
 import adu as modbus
 from attacks import TARGET, TARGET_REGISTERS
-from bystander import Bystander
+from bystander import LONG_PAUSE, PAUSE, Bystander
 from machine import Machine, without
 from node import CONNECTIONS
 from subjects import TIMEOUT
@@ -32,7 +32,7 @@ class Referee:
         self._warm_up()
         self._allocated = sum(node.allocated())
         resident = node.resident()
-        self._machine = Machine()
+        self._machine = Machine() if timed else None
         self._bystander = self._start_bystander()
         time.sleep(UNDISTURBED)
         undisturbed, worst = self._ask_bystander()
@@ -84,7 +84,8 @@ class Referee:
     def summary(self):
         """Tells what was seen; the number of failures."""
         print(f"{self._attacks} attacks, {self._failures} failures; the bystander made {self._requests} requests, "
-              f"the slowest took {self._worst * 1e3:.1f} ms; the machine stalled for {self._stalled * 1e3:.0f} ms", flush=True)
+              f"the slowest took {self._worst * 1e3:.1f} ms"
+              + (f"; the machine stalled for {self._stalled * 1e3:.0f} ms" if self._timed else ""), flush=True)
         return self._failures
 
     def __enter__(self):
@@ -92,10 +93,11 @@ class Referee:
 
     def __exit__(self, *_):
         self._bystander.stop()
-        self._machine.stop()
+        if self._machine is not None:
+            self._machine.stop()
 
     def _start_bystander(self):
-        return Bystander(self._node.port, self._subject.map_text, self._subject.wired)
+        return Bystander(self._node.port, self._subject.map_text, self._subject.wired, PAUSE if self._timed else LONG_PAUSE)
 
     def _tell(self, attack, problems, seen):
         self._attacks += 1
@@ -108,7 +110,7 @@ class Referee:
     def _ask_bystander(self):
         """Its report, and its longest request without the time for which the machine stalled."""
         report = self._bystander.report()
-        stalls = self._machine.stalls()
+        stalls = [] if self._machine is None else self._machine.stalls()
         self._stalled += sum(end - began for began, end in stalls)
         return report, max([report.worst, *(without(stalls, began, ended) for began, ended in report.slow)])
 

@@ -91,7 +91,7 @@ expect "below zero as well" "$(physical in_voltage3-voltage4 0 "$scale" 1e-9)" "
 expect "a processed channel is read as it is" "$(cat $device/in_steps_input)" "$(input_register 4)"
 echo 1 >$device/in_steps_en
 echo 123 >$device/in_steps_input
-check "and followed" wait_until 5 steps_are 123
+check "and followed" wait_until steps_are 123
 
 echo "# outputs"
 check "a voltage is written" set_real 0 1.25
@@ -108,15 +108,15 @@ check "nor stored" [ "$(answered master -t 4:hex -r 0 -c 4 127.0.0.1 | grep -oE 
 
 echo "# the I/O process dies"
 start watch watch_pwm
-check "period and enable of the PWM are watched" wait_until 10 says watch armed
+check "period and enable of the PWM are watched" wait_until says watch armed
 before=$(io_process)
 kill -KILL "$before"
-check "the outputs are in their safe state" wait_until 5 shown_is "12000 of 40000, 1"
-check "all of them" wait_until 5 dac_is 0
-check "another I/O process is started" wait_until 10 new_io_process "$before"
-check "its registers show it" wait_until 10 refused_with 'illegal data value' 2 1001
+check "the outputs are in their safe state" wait_until shown_is "12000 of 40000, 1"
+check "all of them" wait_until dac_is 0
+check "another I/O process is started" wait_until new_io_process "$before"
+check "its registers show it" wait_until refused_with 'illegal data value' 2 1001
 expect "in the point's scale" 300 "$(register 2)"
-check "inputs are sampled again" wait_until 5 steps_are 123
+check "inputs are sampled again" wait_until steps_are 123
 check "the PWM works" set_registers 2 500
 
 echo "# the service is started anew"
@@ -124,15 +124,15 @@ check "it ends well" stop node TERM
 expect "in its safe state" "12000 of 40000, 1" "$(shown)"
 cp analogue.yaml "$check_folder/live.yaml"
 plant_node "$check_folder/live.yaml"
-check "and takes the PWM over, at its initial value" wait_until 5 shown_is "0 of 40000, 1"
+check "and takes the PWM over, at its initial value" wait_until shown_is "0 of 40000, 1"
 
 echo "# the map is read again"
-read_again() { kill -HUP "$(pid node)" && wait_until 10 says node "$1" "${2:-1}"; }
-check "outputs are written" wait_until 5 set_registers 0 0x3E80 0 250
+read_again() { kill -HUP "$(pid node)" && wait_until says node "$1" "${2:-1}"; }
+check "outputs are written" wait_until set_registers 0 0x3E80 0 250
 sed -i 's/initial: 5/initial: 6/; s/units: V/units: volt/' "$check_folder/live.yaml"
 check "another map is taken" read_again 'read the map again'
 expect "outputs that it has, too, stay" "250 10000 of 40000, 1" "$(cat $dac) $(shown)"
-check "inputs are sampled" wait_until 5 steps_are 123
+check "inputs are sampled" wait_until steps_are 123
 cp "$check_folder/live.yaml" "$check_folder/good.yaml"
 sed -i 's/device: adc, channel: steps/device: adc, channel: stops/' "$check_folder/live.yaml"
 check "one with a channel that is not there is refused" read_again 'the new map is refused'
@@ -149,7 +149,7 @@ refuse "period and enable never moved" says watch changed
 echo "# unplugged"
 check "a voltage is written" set_real 0 0.25
 unplug_adc
-check "an input that is gone is an exception 04" wait_until 5 input_is_gone
+check "an input that is gone is an exception 04" wait_until input_is_gone
 refuse "so is the output" set_real 0 1
 check "others are served" [ "$(input_register 5)" = 7 ]
 check "the PWM as well" set_registers 2 250
@@ -159,9 +159,9 @@ check "what happened was said once" cmp "$(log node)" "$check_folder/before"
 check "for each channel that was asked for" [ "$(grep -c 'iio:device0 (adc) .* failed: No such device' "$(log node)")" = 2 ]
 echo "# plugged in again"
 plug_adc
-check "the input works" wait_until 10 input_register 4
-check "the output has its value again" wait_until 5 dac_is 250
-check "and takes another" wait_until 5 set_real 0 0.5
+check "the input works" wait_until input_register 4
+check "the output has its value again" wait_until dac_is 250
+check "and takes another" wait_until set_real 0 0.5
 expect "which it shows" 500 "$(cat $dac)"
 expect "the PWM was left alone" "10000 of 40000, 1" "$(shown)"
 before=$(io_process)

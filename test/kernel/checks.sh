@@ -3,19 +3,20 @@
 # Checks, waiting and background programs for scripts that test/kernel/run starts. To be sourced (gpio-sim.sh does).
 #   check TEXT CMD…           ok if CMD succeeds            refuse TEXT CMD…   ok if CMD fails
 #   expect TEXT WANTED GOT    ok if both are the same text
-#   wait_until SECONDS CMD…   tries CMD every 20 ms; fails, and shows the last try's output, if none succeeds by then
+#   wait_until CMD…           tries CMD every 20 ms; fails after a minute, and shows the last try's output
+#   within SECONDS CMD…       the same, where failing is no failure of the test
 #   start NAME CMD…           runs CMD in the background; its output goes to the file $(log NAME)
 #   pid NAME, log NAME        the process id, the file of its output
 #   running NAME              whether it still runs
 #   stop NAME [SIGNAL]        sends SIGNAL (default TERM), waits for the end, and gives its exit status
-#                             (128 + signal number if it died of a signal; 255 if it had to be killed after 5 s)
+#                             (128 + signal number if it died of a signal; 255 if it had to be killed after a minute)
 #   says NAME PATTERN [COUNT] whether at least COUNT lines (default 1) of its output match (grep -E)
 # Each check prints `ok - TEXT` or `not ok - TEXT`. When the script ends, a summary follows; its exit status is then 1
 # if a check failed or none was made, or the script's own if that is not 0. The output of every started program is shown
 # when something failed. Example:
 #   start watch gpiomon "$(sim_chip plant)" 0
 #   sim_pull plant 0 up
-#   check "gpiomon sees the edge" wait_until 2 says watch RISING
+#   check "gpiomon sees the edge" wait_until says watch RISING
 #   check "gpiomon ends well" stop watch INT
 #   status=0; stop other || status=$?; expect "the other one dies of the signal" 143 "$status"
 
@@ -48,7 +49,11 @@ expect() {
 
 microseconds() { echo "${EPOCHREALTIME/[.,]/}"; }
 
-wait_until() {
+readonly patience=60 # seconds: only tells what hangs from what works, also where two programs share a busy processor
+
+wait_until() { within "$patience" "$@"; }
+
+within() {
   local seconds=$1 end
   shift
   end=$(($(microseconds) + $(awk -v s="$seconds" 'BEGIN { printf "%d", s * 1000000 }')))
@@ -71,6 +76,7 @@ ended() { ! kill -0 "$1" 2>/dev/null || grep -q '^State:.*Z' "/proc/$1/status" 2
 start() {
   local name=$1
   shift
+  : >"$(log "$name")" # now, since what an earlier one said is not said by this one
   # A shell without job control lets its background programs ignore SIGINT; with it, they are as in a terminal.
   set -m
   "$@" >"$(log "$name")" 2>&1 </dev/null &
@@ -82,8 +88,8 @@ stop() {
   local name=$1 signal=${2:-TERM} process
   process=$(pid "$name")
   kill -s "$signal" "$process" 2>/dev/null || true
-  if ! wait_until 5 ended "$process"; then
-    echo "# $name did not end within 5 s after SIG$signal; killed"
+  if ! wait_until ended "$process"; then
+    echo "# $name did not end within $patience s after SIG$signal; killed"
     kill -KILL "$process"
     wait "$process" || true
     return 255

@@ -17,28 +17,28 @@ plant_chip
 plant_node plant.yaml
 
 start core roscore
-check "a roscore answers" wait_until 60 rosnode list
+check "a roscore answers" wait_until rosnode list
 start driver "$bin/coupler_driver" _address:=127.0.0.1 _port:=1502
-check "the driver connects, with the node's own map" wait_until 20 says driver 'connected'
+check "the driver connects, with the node's own map" wait_until says driver 'connected'
 
 echo "# pulling a line shows on its topic"
 start button rostopic echo /plant/button
-check "the topic tells that the line is low" wait_until 30 says button 'data: False'
+check "the topic tells that the line is low" wait_until says button 'data: False'
 sim_pull plant 2 up
-check "pulled up, it tells so" wait_until 5 says button 'data: True'
+check "pulled up, it tells so" wait_until says button 'data: True'
 
 echo "# publishing drives a line"
 sim_pull plant 0 down
 check "a message is published" rostopic pub --once /plant/lamp/write std_msgs/Bool 'data: true'
-check "the line is high, against its pull" wait_until 5 level_is 0 1
+check "the line is high, against its pull" wait_until level_is 0 1
 sim_pull plant 0 up
 check "another message" rostopic pub --once /plant/lamp/write std_msgs/Bool 'data: false'
-check "the line is low, against its pull" wait_until 5 level_is 0 0
+check "the line is low, against its pull" wait_until level_is 0 0
 
 echo "# unplugging the chip is told, and crashes nobody"
 sim_unplug plant
-check "the driver tells of exception 04" wait_until 10 says driver 'device failure'
-check "the node names the line" wait_until 10 says node 'BUTTON'
+check "the driver tells of exception 04" wait_until says driver 'device failure'
+check "the node names the line" wait_until says node 'BUTTON'
 check "the driver runs" running driver
 check "the node runs" running node
 check "the driver ends well on SIGINT" stop driver INT

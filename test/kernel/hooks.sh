@@ -14,11 +14,11 @@ io_process() { pgrep -P "$(pid gate)"; }
 hooks_called() { grep -E '^(motor|speed|safe) ' "$(log gate)" | cut -d' ' -f1,2 | paste -sd' '; }
 
 start gate "$bin/gate_firmware"
-check "the firmware serves" wait_until 5 says gate 'serving gate'
+check "the firmware serves" wait_until says gate 'serving gate'
 check "it begins in the process that serves" says gate "^began 0 in $(io_process)$"
-check "what its thread sets is read" wait_until 5 input_is 0 1
+check "what its thread sets is read" wait_until input_is 0 1
 sim_pull plant 2 up
-check "a line is read beside it" wait_until 5 input_is 1 1
+check "a line is read beside it" wait_until input_is 1 1
 
 echo "# one request, a hook and a line"
 sim_pull plant 0 down
@@ -35,10 +35,10 @@ check "the brake is released" set_coils 1 0
 expect "its line is low" 0 "$(sim_value plant 0)"
 before=$(io_process)
 kill -KILL "$before"
-check "the keeper makes the firmware safe, in its own process" wait_until 5 says gate "^safe 0 in $(pid gate)$"
-check "and drives the brake on, against its pull" wait_until 5 level_is 0 1
-check "another process begins" wait_until 10 says gate '^began 0 in' 2
-check "what its thread sets is read" wait_until 10 input_is 0 1
+check "the keeper makes the firmware safe, in its own process" wait_until says gate "^safe 0 in $(pid gate)$"
+check "and drives the brake on, against its pull" wait_until level_is 0 1
+check "another process begins" wait_until says gate '^began 0 in' 2
+check "what its thread sets is read" wait_until input_is 0 1
 expect "the brake has stayed" 1 "$(sim_value plant 0)"
 
 echo "# a line that cannot be driven"

@@ -39,23 +39,23 @@ write_outputs() { answered master -t 0 -r 0 127.0.0.1 -- "${written[@]}" >/dev/n
 sim_define plant 8
 sim_plug plant
 plant_node keeper.yaml
-check "there is an I/O process" wait_until 5 io_process
+check "there is an I/O process" wait_until io_process
 check "its name tells it from its keeper" grep -qx coupler-node-io "/proc/$(io_process)/comm"
 
 for signal in KILL STOP SEGV TERM; do
   echo "# SIG$signal to the I/O process"
   before=$(io_process)
-  check "the outputs are written" wait_until 15 write_outputs
+  check "the outputs are written" wait_until write_outputs
   check "and driven" wires_are written
   pull_away_from safe
   start wires watch_wires 2 5
-  check "the held lines are watched" wait_until 10 says wires armed
+  check "the held lines are watched" wait_until says wires armed
   kill -s "$signal" "$before"
-  check "every output is in its safe state, against its pull" wait_until 5 wires_are safe
-  check "another I/O process is started" wait_until 10 new_io_process "$before"
+  check "every output is in its safe state, against its pull" wait_until wires_are safe
+  check "another I/O process is started" wait_until new_io_process "$before"
   check "outputs are as they were left" wires_are safe
-  check "it serves, and its image shows them" wait_until 10 coils_are "${safe[*]}"
-  check "inputs work" wait_until 5 input_is 0 0
+  check "it serves, and its image shows them" wait_until coils_are "${safe[*]}"
+  check "inputs work" wait_until input_is 0 0
   stop wires KILL || true
   refuse "no held line moved meanwhile" says wires changed
 done
@@ -84,22 +84,22 @@ cat "$(log node)"
 
 echo "# the keeper is killed"
 plant_node keeper.yaml
-check "outputs are written" wait_until 5 write_outputs
+check "outputs are written" wait_until write_outputs
 io=$(io_process)
 status=0; stop node KILL || status=$?
 expect "it dies" 137 "$status"
-check "its I/O process drives the safe state and ends" wait_until 5 ended "$io"
+check "its I/O process drives the safe state and ends" wait_until ended "$io"
 check "and says so" says node 'Terminated: outputs are in their safe state'
 
 echo "# nobody reads the log"
 mkfifo "$check_folder/unread"
 exec 9<>"$check_folder/unread"
 start node sh -c 'exec "$@" 2>&9' sh "$bin/coupler-node" keeper.yaml
-check "the node serves" wait_until 10 write_outputs
+check "the node serves" wait_until write_outputs
 dd if=/dev/zero of="$check_folder/unread" bs=4096 count=200 oflag=nonblock 2>"$check_folder/dd" || true
 check "its pipe is full" grep -q 'temporarily unavailable' "$check_folder/dd"
 before=$(io_process)
 kill -s KILL "$before"
-check "every output is in its safe state" wait_until 5 wires_are safe
-check "another I/O process is started" wait_until 10 new_io_process "$before"
+check "every output is in its safe state" wait_until wires_are safe
+check "another I/O process is started" wait_until new_io_process "$before"
 check "the keeper ends at SIGTERM" stop node TERM

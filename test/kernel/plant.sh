@@ -20,7 +20,7 @@ plant_chip() {
 
 plant_node() {
   start node "$bin/coupler-node" "$@"
-  check "the node serves" wait_until 5 says node 'serving plant'
+  check "the node serves" wait_until says node 'serving plant'
 }
 
 master() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 1502 "$@"; }

@@ -21,7 +21,7 @@ reload_with() {
   cat >"$map"
   before=$(times "$said")
   kill -HUP "$(pid node)"
-  wait_until 10 says node "$said" $((before + 1))
+  wait_until says node "$said" $((before + 1))
 }
 taken='read the map again: serving plant'
 refused='the new map is refused; the old one goes on'
@@ -77,9 +77,9 @@ expect "the second, active-low, too" 0 "$(sim_value plant 1)"
 for _ in 1 2 3; do sim_pull plant 2 up; sleep 0.02; sim_pull plant 2 down; sleep 0.02; done
 expect "three presses are counted" 3 "$(read_one 3 0)"
 start wires watch_wires 0 1
-check "the kept lines are watched" wait_until 10 says wires armed
+check "the kept lines are watched" wait_until says wires armed
 start traffic traffic
-check "a master writes and reads" wait_until 30 says traffic going
+check "a master writes and reads" wait_until says traffic going
 
 echo "# maps that are refused"
 before=$(io_process)
@@ -117,7 +117,7 @@ sim_pull plant 7 up
 check "the new one is driven, against its pull" level_is 7 0
 refuse "what is gone is not served" coil 3
 expect "the input has its new polarity" 1 "$(input 0)"
-check "the master found out" wait_until 5 says traffic lost
+check "the master found out" wait_until says traffic lost
 
 echo "# again and again"
 before=$(times "$taken")
@@ -129,9 +129,9 @@ expect "twenty times" $((before + 20)) "$(times "$taken")"
 
 echo "# a map through standard input"
 start piped bash -c "exec '$bin/coupler-node' - --sim --port 1504 <reload.yaml"
-check "it is served" wait_until 5 says piped 'serving plant'
+check "it is served" wait_until says piped 'serving plant'
 kill -HUP "$(pid piped)"
-check "it cannot be read again" wait_until 5 says piped 'there is nothing to read again'
+check "it cannot be read again" wait_until says piped 'there is nothing to read again'
 refuse "and is not refused" says piped 'is refused'
 check "the node ends well" stop piped TERM
 
@@ -153,7 +153,7 @@ expired() { [ "$(read_one 3 $((0xFF0B)))" = 3 ]; }
 watched moves 0 0 >"$map"
 plant_node "$map"
 check "an output is written" set_coil 0 1
-check "the watchdog expires" wait_until 5 expired
+check "the watchdog expires" wait_until expired
 check "the map is taken" reload_with "$taken" < <(watched moves 0 1 new 1 3)
 for line in 1 3; do
   sim_pull plant "$line" up
@@ -167,7 +167,7 @@ plant_node "$map"
 refuse "there is no I/O process yet" io_process
 exec 8<>/dev/tcp/127.0.0.1/1502
 check "the map is taken" reload_with "$taken" < <(watched lamp 0 0 | sed '/watchdog/d')
-check "there is one now" wait_until 5 io_process
+check "there is one now" wait_until io_process
 printf '\0\1\0\0\0\6\1\5\0\0\0\0' >&8
 expect "a master that was there is answered" '00 01 00 00 00 06 01 05 00 00 00 00' "$(timeout 5 head -c 12 <&8 | od -An -tx1 | xargs)"
 check "and drives" level_is 0 0

@@ -9,9 +9,9 @@ export PYTHONUNBUFFERED=1  # what rostopic prints is looked for in a file while 
 . "$(dirname "$0")/checks.sh"
 
 start core roscore
-check "a roscore answers" wait_until 60 rosnode list
+check "a roscore answers" wait_until rosnode list
 start publisher rostopic pub --rate 10 /greeting std_msgs/String "data: 'hello'"
 start echo rostopic echo /greeting
-check "messages arrive" wait_until 30 says echo 'data: "hello"' 3
+check "messages arrive" wait_until says echo 'data: "hello"' 3
 check "the publisher ends on SIGINT" stop publisher INT
 check "the roscore ends on SIGINT" stop core INT

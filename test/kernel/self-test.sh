@@ -32,20 +32,20 @@ done
 
 sim_pull plain 5 down
 start output drive "$(sim_chip plain)" 5=1
-check "a driven output is seen on the wire against its pull" wait_until 5 wire_is plain 5 1
+check "a driven output is seen on the wire against its pull" wait_until wire_is plain 5 1
 refuse "a line that is in use is refused to another" get "$(sim_chip plain)" 5
 stop output KILL || true
-check "a line that nobody drives any more falls back to its pull" wait_until 5 wire_is plain 5 0
+check "a line that nobody drives any more falls back to its pull" wait_until wire_is plain 5 0
 
 start edges monitor "$(sim_chip plain)" 0
 sees_edges() { says edges "$rising" "$1" && says edges "$falling" "$2"; }
 # gpiomon does not say when it watches: pull until it reports.
 toggle() { sim_pull plain 0 up; sleep 0.02; sim_pull plain 0 down; sleep 0.02; sees_edges 1 1; }
-check "both edges are reported" wait_until 5 toggle
+check "both edges are reported" wait_until toggle
 before=$(grep -c . "$(log edges)")
 for _ in 1 2 3 4 5; do sim_pull plain 0 up; sleep 0.02; sim_pull plain 0 down; sleep 0.02; done
 reported() { [ "$(($(grep -c . "$(log edges)") - before))" = "$1" ]; }
-check "five pulses are ten edges" wait_until 5 reported 10
+check "five pulses are ten edges" wait_until reported 10
 sim_create other 2
 check "a second chip stands beside the first" sees "\[other\] (2 lines)" gpiodetect
 stop edges INT || true
@@ -60,7 +60,7 @@ expect "a hogged line is driven" 1 "$(sim_value named 3)"
 
 chip=$(sim_chip plain)
 start held drive "$chip" 6=1
-check "an output is held before the chip is unplugged" wait_until 5 wire_is plain 6 1
+check "an output is held before the chip is unplugged" wait_until wire_is plain 6 1
 check "a chip in use can be unplugged" timeout 10 bash -c "echo 0 >$sim_folder/plain/live"
 status=0; timeout 5 "$BASH" -c "$(declare -f get); get $chip 3" || status=$?
 refuse "reading an unplugged chip does not hang" test "$status" = 124

@@ -35,26 +35,26 @@ for round in 1 2; do
   chip=$(sim_chip plant)
   before=$(times "$lost")
   sim_unplug plant
-  check "the node notices, though nobody asks" wait_until 5 says node "$lost" $((before + requests))
+  check "the node notices, though nobody asks" wait_until says node "$lost" $((before + requests))
   check "reading an input is answered with exception 04" exception_04 master -t 1 -r 0 -c 1 127.0.0.1
   check "writing an output too" exception_04 master -t 0 -r 0 127.0.0.1 -- 0
   expect "what is not wired is served as ever" 1234 "$(register 0)"
   expect "an output shows what it was driven to" 1 "$(coil 0)"
   expect "each loss is told once" $((before + requests)) "$(times "$lost")"
-  check "nothing of the chip is held" wait_until 5 holds_no_line
+  check "nothing of the chip is held" wait_until holds_no_line
   [ "$round" = 1 ] || sim_create stranger 4
 
   before=$(times "$back")
   sim_plug plant
   sim_pull plant 0 down
   sim_pull plant 1 up
-  check "outputs are driven as they were, against their pull" wait_until 5 level_is 0 1
-  check "of both polarities" wait_until 5 level_is 1 0
-  check "inputs are read" wait_until 5 input_is 0 0
+  check "outputs are driven as they were, against their pull" wait_until level_is 0 1
+  check "of both polarities" wait_until level_is 1 0
+  check "inputs are read" wait_until input_is 0 0
   sim_pull plant 2 up
-  check "and follow" wait_until 5 input_is 0 1
+  check "and follow" wait_until input_is 0 1
   sim_pull plant 2 down
-  check "each return is told" wait_until 5 says node "$back" $((before + requests))
+  check "each return is told" wait_until says node "$back" $((before + requests))
   expect "once" $((before + requests)) "$(times "$back")"
   check "outputs can be written" set_coil 0 1
   counted=$(read_one 3 0)
@@ -66,11 +66,11 @@ done
 echo "# somebody else takes a line before the node does"
 before=$(times 'is busy')
 sim_unplug plant
-check "the node notices" wait_until 5 says node "$lost" $((3 * requests))
+check "the node notices" wait_until says node "$lost" $((3 * requests))
 sim_hog plant 0 output-low thief
 sim_plug plant
-check "who holds it is told" wait_until 5 says node "held by 'thief'"
-check "inputs work all the same" wait_until 5 input_is 0 0
+check "who holds it is told" wait_until says node "held by 'thief'"
+check "inputs work all the same" wait_until input_is 0 0
 check "the output's request is answered with exception 04" exception_04 master -t 0 -r 0 127.0.0.1 -- 1
 sleep 2
 expect "told once, not at each try" $((before + 1)) "$(times 'is busy')"

@@ -31,10 +31,10 @@ expect "a chip is root's" "root:root 600" "$(mode_of_chip)"
 
 echo "# installed"
 check "dpkg installs the package" quietly dpkg -i "$package"
-check "the chip that was there is given to group gpio" wait_until 5 mode_is "root:gpio 660"
+check "the chip that was there is given to group gpio" wait_until mode_is "root:gpio 660"
 sim_unplug plant
 sim_plug plant
-check "and so is one that comes later" wait_until 5 mode_is "root:gpio 660"
+check "and so is one that comes later" wait_until mode_is "root:gpio 660"
 expect "the service is not enabled" disabled "$(systemctl is-enabled "$unit" || true)"
 systemctl start "$unit"
 expect "without a map it does not start" "inactive no" "$(property ActiveState) $(property ConditionResult)"
@@ -60,9 +60,9 @@ for process in "$(keeper)" "$(io_process)"; do
   check "$name has at most 6 MiB resident: $resident" test "${resident% kB}" -le 6144
   expect "$name has a filter of system calls" 2 "$(of_process "$process" Seccomp)"
 done
-check "it answers on port 502" wait_until 5 serves
+check "it answers on port 502" wait_until serves
 sim_pull plant 2 up
-check "an input of the chip is read" wait_until 5 input_is 0 1
+check "an input of the chip is read" wait_until input_is 0 1
 sim_pull plant 0 up
 sim_pull plant 1 down
 check "an output is written" set_coil 0 0
@@ -80,11 +80,11 @@ echo "# reloaded"
 before=$(keeper)
 sed 's/^  coils:/&\n    spare: 5/' node.yaml >/etc/coupler/node.yaml
 check "systemd passes it on" systemctl reload "$unit"
-check "a point that is new is served" wait_until 10 set_coil 5 1
+check "a point that is new is served" wait_until set_coil 5 1
 check "the journal tells" in_journal '^read the map again: serving plant \(8 points'
 echo 'name: [' >/etc/coupler/node.yaml
 systemctl reload "$unit"
-check "a wrong map is refused" wait_until 10 in_journal '^the new map is refused; the old one goes on'
+check "a wrong map is refused" wait_until in_journal '^the new map is refused; the old one goes on'
 expect "the service is as active as before" "active running" "$(property ActiveState) $(property SubState)"
 check "and serves the map that it had" set_coil 5 0
 expect "outputs are as they were" "0 1" "$(sim_value plant 0) $(sim_value plant 1)"
@@ -103,21 +103,21 @@ journalctl -u sandbox.service -o cat --no-pager | grep -E '^(not )?ok' || true
 echo "# the I/O process dies"
 before=$(keeper)
 kill -KILL "$(io_process)"
-check "the keeper starts another" wait_until 10 serves
+check "the keeper starts another" wait_until serves
 expect "systemd has nothing to do" "$before 0" "$(keeper) $(property NRestarts)"
 expect "outputs are safe" "1 0" "$(sim_value plant 0) $(sim_value plant 1)"
 
 echo "# the keeper dies"
 check "an output is written" set_coil 0 0
 kill -KILL "$before"
-check "systemd starts both again" wait_until 10 is_another "$before"
+check "systemd starts both again" wait_until is_another "$before"
 expect "once" 1 "$(property NRestarts)"
 
 echo "# the keeper is stopped: nobody watches the I/O process any more"
 before=$(keeper)
 kill -STOP "$before"
 check "the I/O process serves meanwhile" serves
-check "systemd starts both again after its watchdog's 30 s" wait_until 60 is_another "$before"
+check "systemd starts both again after its watchdog's 30 s" within 120 is_another "$before"
 check "and says why" in_journal 'Watchdog timeout'
 
 echo "# stopped"
