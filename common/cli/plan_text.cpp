@@ -2,7 +2,6 @@
 #include "common/cli/plan_report.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <vector>
 
@@ -39,7 +38,7 @@ std::string group_text(const plan::GroupPlan& group, const Map& map, const plan:
                           milliseconds(cost.time), period, percent(plan::load(cost, group.rate)));
   if (group.spans.empty()) return text;
   const auto row = [&text](auto&&... cells) {
-    fmt::format_to(std::back_inserter(text), "  {:<17}  {:>14}  {:>15}  {:>6}  {}\n", cells...);
+    text += fmt::format("  {:<17}  {:>14}  {:>15}  {:>6}  {}\n", cells...);
   };
   row("table", "wire", "Modicon", "points", "ends because");
   for (const plan::ReadSpan& span : group.spans)
@@ -62,8 +61,7 @@ std::string not_read_text(const Map& map) {
   std::map<plan::NotRead, std::string> names;
   for (const Point& point : map.points)
     if (const auto reason = plan::why_not_read(map, point))
-      fmt::format_to(std::back_inserter(names[*reason]), "{}{}", names[*reason].empty() ? "" : ", ",
-                     point.name);
+      names[*reason] += fmt::format("{}{}", names[*reason].empty() ? "" : ", ", point.name);
   std::string text;
   for (const auto& [reason, list] : names) text += fmt::format("Not read, {}: {}\n", text_of(reason), list);
   return text.empty() ? text : "\n" + text;

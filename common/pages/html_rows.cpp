@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -102,13 +101,12 @@ std::vector<const Column*> used_columns(const Document& document) {
 /// Empty cells are there, so that columns stay columns. The numbers are for the page's search and sort.
 void put_row(const Document& document, const Row& row, const std::vector<const Column*>& used,
              std::string& out) {
-  fmt::format_to(std::back_inserter(out),
-                 "<tr id=\"point-{}\" data-table=\"{}\" data-first=\"{}\" data-last=\"{}\">", html(row.name),
-                 index(row.table), row.first, row.last);
+  out += fmt::format("<tr id=\"point-{}\" data-table=\"{}\" data-first=\"{}\" data-last=\"{}\">",
+                     html(row.name), index(row.table), row.first, row.last);
   for (const Column* column : used) {
     const Cell cell = column->cell(document, row);
-    fmt::format_to(std::back_inserter(out), "<td class=\"{}\">{}", column->key, cell.main);
-    if (!cell.below.empty()) fmt::format_to(std::back_inserter(out), "<small>{}</small>", cell.below);
+    out += fmt::format("<td class=\"{}\">{}", column->key, cell.main);
+    if (!cell.below.empty()) out += fmt::format("<small>{}</small>", cell.below);
     out += "</td>";
   }
   out += "</tr>\n";
@@ -120,8 +118,8 @@ std::string html_rows(const Document& document) {
   const auto used = used_columns(document);
   std::string out = "<table id=\"points\">\n<thead><tr>";
   for (const Column* column : used)
-    fmt::format_to(std::back_inserter(out), "<th scope=\"col\" class=\"{}\" data-key=\"{}\">{}</th>",
-                   column->key, column->key, column->title);
+    out += fmt::format("<th scope=\"col\" class=\"{}\" data-key=\"{}\">{}</th>", column->key, column->key,
+                       column->title);
   out += "</tr></thead>\n<tbody>\n";
   for (const Row& row : document.rows) put_row(document, row, used, out);
   return out + "</tbody>\n</table>\n";

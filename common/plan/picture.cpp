@@ -226,15 +226,13 @@ class Picture {
   }
 
   void box(const Box& b, std::string_view css, const std::string& attributes, const std::string& title) {
-    fmt::format_to(std::back_inserter(out_),
-                   "<rect x=\"{:.4g}\" y=\"{:.6g}\" width=\"{:.4g}\" height=\"{:.4g}\" class=\"{}\"{}", b.x,
-                   b.y, b.width, b.height, css, attributes);
+    out_ += fmt::format("<rect x=\"{:.4g}\" y=\"{:.6g}\" width=\"{:.4g}\" height=\"{:.4g}\" class=\"{}\"{}",
+                        b.x, b.y, b.width, b.height, css, attributes);
     out_ += title.empty() ? "/>\n" : fmt::format("><title>{}</title></rect>\n", escaped(title));
   }
 
   void text(double x, double y, std::string_view css, const std::string& what) {
-    fmt::format_to(std::back_inserter(out_), "<text x=\"{:.5g}\" y=\"{:.6g}\" class=\"{}\">{}</text>\n", x, y,
-                   css, escaped(what));
+    out_ += fmt::format("<text x=\"{:.5g}\" y=\"{:.6g}\" class=\"{}\">{}</text>\n", x, y, css, escaped(what));
   }
 
   const Map& map_;
