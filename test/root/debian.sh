@@ -23,6 +23,7 @@ outside() { nsenter --mount="/proc/self/fd/$outside_mounts" "$@"; }
 
 debian_roots=$PWD/build/.roots
 mkdir -p "$debian_roots"
+unset TMPDIR # no folder of the roots
 trap 'exit 130' INT
 trap 'exit 143' TERM HUP
 
