@@ -17,10 +17,17 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
 find_program(COUPLER_CCACHE ccache)
 if(COUPLER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # The sloppiness lets ccache serve files that use a precompiled header; the other two let clones share the cache.
+  # The sloppiness lets ccache serve files that use a precompiled header; the other two let clones share the cache, where
+  # paths are relative to the folder that holds sources and build: in a catkin workspace they are side by side.
+  set(base ${PROJECT_SOURCE_DIR})
+  file(RELATIVE_PATH build ${base} ${PROJECT_BINARY_DIR})
+  while(build MATCHES "^\\.\\./")
+    get_filename_component(base ${base} DIRECTORY)
+    file(RELATIVE_PATH build ${base} ${PROJECT_BINARY_DIR})
+  endwhile()
   set(CMAKE_CXX_COMPILER_LAUNCHER
       ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
-      CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+      CCACHE_BASEDIR=${base} CCACHE_NOHASHDIR=1
       ${COUPLER_CCACHE})
 endif()
 
