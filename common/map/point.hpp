@@ -40,8 +40,8 @@ struct Point {
   /// The value at start: range(point).count() registers as they stand on the wire, the bits of other points
   /// zero (for bit tables as many elements, 0 or 1). Empty: all zero.
   Span<const std::uint16_t> initial;
-  /// Outputs with hardware (a coil with a line, a register with `iio` or `pwm`), and what the driver leaves
-  /// behind under on_shutdown: safe.
+  /// Of outputs with hardware (a coil with a line, a register with `iio` or `pwm`) when the node stops, and
+  /// what the driver leaves behind under on_shutdown: safe, or when it is asked to.
   Safe safe = Safe::off;
   Line line;
   std::string_view description;

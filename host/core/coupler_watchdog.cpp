@@ -26,28 +26,16 @@ CouplerWatchdog::CouplerWatchdog(const Map& map, PacedTransport& transport, Cloc
       statistics_(statistics),
       sink_(sink) {}
 
-std::future<CouplerWatchdog::Answer> CouplerWatchdog::ask_reset() {
-  const std::lock_guard lock(mutex_);
-  is_asked_ = true;
-  return asked_.emplace_back().get_future();
-}
-
-void CouplerWatchdog::answer(const Answer& answer) {
-  const std::lock_guard lock(mutex_);
-  for (auto& asked : asked_) asked.set_value(answer);
-  asked_.clear();
-  is_asked_ = false;
-}
-
 Result<> CouplerWatchdog::connected() {
   connected_ = known_.present();
   if (!connected_) return {};
+  resets_.open();
   const auto done = bring_up(known_.recovery == Watchdog::Recovery::automatic);
   return done ? Result<>{} : tl::make_unexpected(done.error());
 }
 
 void CouplerWatchdog::disconnected(const std::string& why) {
-  if (is_asked_) answer({false, why});
+  resets_.close(why);
   if (!std::exchange(connected_, false)) return;
   if (status_.state == State::expired) return;  // it still is, as far as we know
   status_.state = State::not_fed;
@@ -57,7 +45,7 @@ void CouplerWatchdog::disconnected(const std::string& why) {
 
 Time CouplerWatchdog::due() const {
   if (!connected_) return Time::max();
-  if (is_asked_) return Time::min();
+  if (resets_.any()) return Time::min();
   if (status_.state != State::fed) return next_;
   if (known_.refusal && transport_.has_seen(*known_.refusal)) return Time::min();
   if (known_.feed.empty() && !known_.alarm) return transport_.last_answer() + known_.feed_every;
@@ -65,11 +53,13 @@ Time CouplerWatchdog::due() const {
 }
 
 Result<bool> CouplerWatchdog::step() {
-  if (!is_asked_) return serve(known_.recovery == Watchdog::Recovery::automatic);
+  if (!resets_.any()) return serve(known_.recovery == Watchdog::Recovery::automatic);
   auto is_back = bring_up(true);
   if (!is_back) return is_back;  // disconnected() tells them
   const bool success = status_.state == State::fed;
-  answer({success, !success ? status_.trouble : *is_back ? "reset, and fed again" : "it had not expired"});
+  resets_.answer({success, !success   ? status_.trouble
+                           : *is_back ? "reset, and fed again"
+                                      : "it had not expired"});
   return is_back;
 }
 

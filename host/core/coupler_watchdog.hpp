@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
-#include <future>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "common/map/map.hpp"
+#include "host/core/calls.hpp"
 #include "host/core/device_statistics.hpp"
 #include "host/core/paced_transport.hpp"
 #include "host/core/sink.hpp"
@@ -22,17 +19,12 @@ namespace coupler::driver {
 /// ask_reset() is for any thread. All others belong to the one who uses the transport.
 class CouplerWatchdog {
  public:
-  struct Answer {
-    bool success;
-    std::string text;
-  };
-
   /// What `map` views, and everything given by reference, must outlive it.
   CouplerWatchdog(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
                   Sink& sink);
 
   /// Resets it, whether or not the map wants that done automatically.
-  std::future<Answer> ask_reset();
+  std::future<Calls::Answer> ask_reset() { return resets_.ask(); }
 
   /// A new connection, on which nothing has been written. An error means that it is of no more use.
   Result<> connected();
@@ -55,7 +47,6 @@ class CouplerWatchdog {
   void expired();
   void trouble(State state, const std::string& what);
   void fed();
-  void answer(const Answer& answer);
 
   Map map_;
   WatchdogSequences known_;
@@ -67,10 +58,7 @@ class CouplerWatchdog {
   bool connected_ = false;
   std::size_t turn_ = 0;  ///< the next of WatchdogSequences::feed
   Time next_{};           ///< when to feed, or to try again
-
-  std::mutex mutex_;
-  std::vector<std::promise<Answer>> asked_;
-  std::atomic<bool> is_asked_{false};  ///< asked_ is not empty
+  Calls resets_;
 };
 
 }  // namespace coupler::driver

@@ -37,7 +37,6 @@ Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transpo
 Time Device::step() {
   if (!connected_) {
     writer_.disconnected(NotConnected{"not connected"});
-    watchdog_.disconnected("not connected");
     return clock_.now() < retry_at_ ? retry_at_ : connect();
   }
   if (const auto done = do_what_is_due(clock_.now()); !done) lost(done.error());
@@ -47,14 +46,16 @@ Time Device::step() {
 Result<> Device::do_what_is_due(Time now) {
   Result<> answer;
   const Time write_due = std::min(writer_.due(), watchdog_.due());
-  transport_.go_first(write_due <= now);
-  if (watchdog_.due() <= now && !writer_.awaits_answer())
+  transport_.rank(write_due <= now ? Rank::write : Rank::read);
+  if (writer_.awaits_answer() || writer_.is_safe_asked())
+    answer = write();
+  else if (watchdog_.due() <= now)
     answer = serve_watchdog();
   else if (writer_.due() <= now)
-    answer = writer_.step();
+    answer = is_read_first(now) && reader_.has_request(now) ? read_or_write() : write();
   else if (reader_.due() <= now)
-    answer = reader_.step(write_due);
-  else if (probe_due() <= now && transport_.await_turn(write_due))
+    answer = read(write_due);
+  else if (probe_due() <= now && transport_.await_turn(write_due) == Transport::Turn::read)
     answer = probe(map_, transport_);
   else
     return {};
@@ -62,6 +63,31 @@ Result<> Device::do_what_is_due(Time now) {
     identity_suffices_ = true;
     came_online();
   }
+  return answer;
+}
+
+Result<> Device::write() {
+  wrote_last_ = true;
+  return writer_.step();
+}
+
+/// A device by itself reads. One behind a gateway waits for both, and so for no more than one read of the
+/// others.
+Result<> Device::read_or_write() {
+  transport_.rank(Rank::read);
+  switch (transport_.await_turn(Time::max(), true)) {
+    case Transport::Turn::none: return {};
+    case Transport::Turn::read: return read(Time::max());
+    case Transport::Turn::write: break;
+  }
+  transport_.rank(Rank::write);
+  return write();
+}
+
+Result<> Device::read(Time until) {
+  const std::uint64_t replies = transport_.replies();
+  auto answer = reader_.step(until);
+  if (transport_.replies() != replies) wrote_last_ = false;
   return answer;
 }
 
@@ -83,18 +109,19 @@ void Device::arrived() {
   lost(TransportFailure{"the device closed the connection, or sent what nobody asked for"});
 }
 
-void Device::stop() {
-  transport_.go_first(true);
-  writer_.shut_down(connected_);
+bool Device::stop() {
+  const bool is_safe = writer_.shut_down(connected_);
   writer_.disconnected(NotConnected{"the driver ends"});
   watchdog_.disconnected("the driver ends");
   transport_.close();
   connected_ = linked_ = false;
   if (std::exchange(online_, false)) sink_.on_online(false);
+  return is_safe;
 }
 
 Time Device::connect() {
-  transport_.go_first(false);
+  transport_.rank(Rank::read);
+  wrote_last_ = false;
   Result<> result = linked_ ? Result<>{} : transport_.connect();
   linked_ = result.has_value();
   if (result && verify_ != Verify::off) result = prove_equal();

@@ -22,9 +22,9 @@ namespace coupler::driver {
 /// A unit that its gateway cannot reach is offline, too, and tried again after the back-off, but the
 /// connection to the gateway stays: others may use it.
 ///
-/// push(), refuse(), reset_watchdog(), statistics() and qualities() are for any thread. All others are for
-/// one at a time: the owner of the connection, or, for send_now() alone, one who has made sure that the owner
-/// only waits.
+/// push(), refuse(), reset_watchdog(), make_safe(), statistics() and qualities() are for any thread. All
+/// others are for one at a time: the owner of the connection, or, for send_now() alone, one who has made sure
+/// that the owner only waits.
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
@@ -36,19 +36,22 @@ class Device {
   void refuse(const Write& write, std::string_view why) { writer_.refuse(write, why); }
 
   /// Resets the coupler's own watchdog.
-  std::future<CouplerWatchdog::Answer> reset_watchdog() { return watchdog_.ask_reset(); }
+  std::future<Calls::Answer> reset_watchdog() { return watchdog_.ask_reset(); }
+  /// As Writer::ask_safe().
+  std::future<Calls::Answer> make_safe() { return writer_.ask_safe(); }
 
   /// Sends what is queued without waiting for anything, if that is possible now. If false, step() must be
   /// called.
-  bool send_now() { return connected_ && writer_.send_now(); }
+  bool send_now() { return connected_ && !is_read_first(clock_.now()) && writer_.send_now(); }
 
   /// Does what is due, at most one read or one write, and returns the time of what is due next: now or
   /// earlier if there is more to do. A write in the queue is always due while connected.
   Time step();
   /// Bytes have come while no step() ran: an answer to send_now(), or else the end of the connection.
   void arrived();
-  /// The program ends: outputs go where `on_shutdown` wants them, the connection is dropped for good.
-  void stop();
+  /// The program ends: outputs go where `on_shutdown` wants them, the connection is dropped for good. False
+  /// if an output should have its safe value and has not.
+  bool stop();
 
   /// Whether somebody wants the values of a point (index into Map::points).
   void want(std::uint32_t point, bool wanted) { reader_.want(point, wanted); }
@@ -63,6 +66,10 @@ class Device {
   Result<> judge(const Identity& identity);
   void explain_silence(const Error& error);
   Result<> do_what_is_due(Time now);
+  bool is_read_first(Time now) const { return wrote_last_ && reader_.is_overdue(now); }
+  Result<> write();
+  Result<> read_or_write();
+  Result<> read(Time until);
   Result<> serve_watchdog();
   Time due() const;
   Time probe_due() const { return transport_.last_answer() + map_.connection.timeout; }
@@ -82,9 +89,10 @@ class Device {
   Reader reader_;
   Backoff backoff_;
 
-  bool linked_ = false;     ///< there is a connection, to the device or to its gateway
-  bool connected_ = false;  ///< proven equal; reads and writes may go out
-  bool online_ = false;     ///< connected, and the device has answered
+  bool linked_ = false;      ///< there is a connection, to the device or to its gateway
+  bool connected_ = false;   ///< proven equal; reads and writes may go out
+  bool online_ = false;      ///< connected, and the device has answered
+  bool wrote_last_ = false;  ///< the last request was a write: an overdue read goes before the next one
   /// Of PacedTransport, when the connection had been proven equal.
   std::uint64_t replies_at_connect_ = 0;
   /// To be online; not of a device that the last time answered nothing after it: its online would flicker.

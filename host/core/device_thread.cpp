@@ -42,7 +42,13 @@ void DeviceThread::want(std::uint32_t point, bool wanted) {
   transport_.wake();
 }
 
-std::future<CouplerWatchdog::Answer> DeviceThread::reset_watchdog() {
+std::future<Calls::Answer> DeviceThread::make_safe() {
+  auto answer = device_.make_safe();
+  transport_.wake();
+  return answer;
+}
+
+std::future<Calls::Answer> DeviceThread::reset_watchdog() {
   auto answer = device_.reset_watchdog();
   transport_.wake();
   return answer;

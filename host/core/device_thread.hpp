@@ -36,7 +36,10 @@ class DeviceThread {
   /// Whether somebody wants the values of a point (index into Map::points).
   void want(std::uint32_t point, bool wanted);
   /// Resets the coupler's own watchdog. The answer comes after a few timeouts at most.
-  std::future<CouplerWatchdog::Answer> reset_watchdog();
+  std::future<Calls::Answer> reset_watchdog();
+  /// Writes what `on_shutdown: safe` would. The answer comes after the request in flight and these writes; at
+  /// once if there is no connection.
+  std::future<Calls::Answer> make_safe();
   DeviceSnapshot statistics() const { return device_.statistics(); }
   std::vector<PointQuality> qualities() const { return device_.qualities(); }
   PointQuality quality(std::uint32_t point) const { return device_.quality(point); }

@@ -27,10 +27,10 @@ class PacedTransport : public Transport {
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
-  void go_first(bool first) override { transport_.go_first(first); }
-  bool await_turn(Time until) override {
+  void rank(Rank rank) override { transport_.rank(rank); }
+  Turn await_turn(Time until, bool write_waits = false) override {
     pause();  // before the turn, which others wait for
-    return transport_.await_turn(until);
+    return transport_.await_turn(until, write_waits);
   }
   bool reserve() override { return transport_.reserve(); }
   Result<> send(const modbus::WriteRequest& request) override;

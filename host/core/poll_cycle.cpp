@@ -47,6 +47,12 @@ Time PollCycle::due() const {
   return earliest;
 }
 
+bool PollCycle::is_overdue(Time now) const {
+  return std::any_of(groups_.begin(), groups_.end(), [now](const Group& group) {
+    return !group.steps.empty() && group.schedule.due() + group.schedule.period() <= now;
+  });
+}
+
 const ReadSpan* PollCycle::select(Time now) {
   std::optional<std::size_t> chosen;
   for (std::size_t i = 0; i < groups_.size(); ++i) {

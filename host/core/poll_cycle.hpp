@@ -34,6 +34,8 @@ class PollCycle {
 
   /// When select() has a request; in the past while a cycle runs. Time::max() if nothing is left to read.
   Time due() const;
+  /// A deadline of one of the rates has passed by a whole period, and its cycle has not ended.
+  bool is_overdue(Time now) const;
   /// Chooses the request to make now: nullptr if none is due. It is current() until one of the next three
   /// functions tells how it went.
   const ReadSpan* select(Time now);

@@ -7,7 +7,7 @@
 
 namespace coupler::driver {
 
-Reader::Reader(const Map& map, Transport& transport, Clock& clock, const Writer& writer,
+Reader::Reader(const Map& map, Transport& transport, Clock& clock, Writer& writer,
                DeviceStatistics& statistics, PointQualities& qualities, Sink& sink)
     : map_(map),
       transport_(transport),
@@ -29,7 +29,7 @@ Result<> Reader::request(const ReadSpan& span) {
 }
 
 Result<> Reader::step(Time until) {
-  if (cycle_.select(clock_.now()) == nullptr || !transport_.await_turn(until)) return {};
+  if (!has_request(clock_.now()) || transport_.await_turn(until) != Transport::Turn::read) return {};
   const ReadSpan& span = cycle_.current();
   if (Result<> answer = request(span); !answer) {
     const ExceptionReply* exception = exception_in(answer.error());
@@ -53,20 +53,21 @@ Result<> Reader::step(Time until) {
 
 void Reader::publish(const ReadSpan& span) {
   const Time now = clock_.now();
-  const ReadSpan& fresh = writer_.any_pending() ? without_pending(span) : span;
+  const ReadSpan& fresh = writer_.hides_any() ? without_hidden(span) : span;
   if (holds_bits(span.table))
     sink_.on_bits(fresh, {bits_.data(), span.range.count()}, now);
   else
     sink_.on_registers(fresh, {registers_.data(), span.range.count()}, now);
+  writer_.shown(fresh.points);
   qualities_.good(span.points, now);  // last: nobody waits for it
 }
 
-const ReadSpan& Reader::without_pending(const ReadSpan& span) {
+const ReadSpan& Reader::without_hidden(const ReadSpan& span) {
   rest_.table = span.table;
   rest_.range = span.range;
   rest_.points.clear();
   for (const std::uint32_t point : span.points)
-    if (!writer_.is_pending(point)) rest_.points.push_back(point);
+    if (!writer_.hides(point)) rest_.points.push_back(point);
   return rest_;
 }
 

@@ -21,13 +21,17 @@ namespace coupler::driver {
 class Reader {
  public:
   /// What `map` views, and everything given by reference, must outlive it.
-  Reader(const Map& map, Transport& transport, Clock& clock, const Writer& writer,
-         DeviceStatistics& statistics, PointQualities& qualities, Sink& sink);
+  Reader(const Map& map, Transport& transport, Clock& clock, Writer& writer, DeviceStatistics& statistics,
+         PointQualities& qualities, Sink& sink);
 
   /// A new connection.
   void start();
   /// When step() has something to do.
   Time due() const { return cycle_.due(); }
+  /// A cycle should have been over for a whole period of its rate, and has not begun, or not ended.
+  bool is_overdue(Time now) const { return cycle_.is_overdue(now); }
+  /// Whether step() would make a request now.
+  bool has_request(Time now) { return cycle_.select(now) != nullptr; }
   /// Makes the request that is due, if there is one and its turn comes before `until`. An error means that
   /// the connection is of no more use, or that the unit is away; any other exception is none.
   Result<> step(Time until = Time::max());
@@ -37,7 +41,7 @@ class Reader {
  private:
   Result<> request(const ReadSpan& span);
   void publish(const ReadSpan& span);
-  const ReadSpan& without_pending(const ReadSpan& span);
+  const ReadSpan& without_hidden(const ReadSpan& span);
   void refused(modbus::Exception code);
   void report_refusals();
   std::string describe(const ReadSpan& span) const;
@@ -45,7 +49,7 @@ class Reader {
   Map map_;
   Transport& transport_;
   Clock& clock_;
-  const Writer& writer_;
+  Writer& writer_;
   DeviceStatistics& statistics_;
   PointQualities& qualities_;
   Sink& sink_;

@@ -21,6 +21,7 @@ class Schedule {
   /// The first deadline is `now`.
   void start(Time now) { due_ = now; }
   Time due() const { return due_; }
+  Duration period() const { return period_; }
 
   /// The cycle of the current deadline has ended at `now`.
   void advance(Time now) {

@@ -12,6 +12,13 @@
 
 namespace coupler::driver {
 
+/// Who goes first where units share a connection: writes before reads, in turn (host/modbus/turn_order.hpp).
+enum class Rank {
+  read,
+  write,  ///< also the read before a write, and the one that verifies it
+  safe    ///< before all others, until another rank is set
+};
+
 /// The port to one unit of a Modbus device. One request is in flight at a time; its reply is awaited for the
 /// device's timeout at most. It belongs to one thread; another may call send() while it knows, by a lock of
 /// its own, that the owner does nothing but wait_until(). interrupt() and wake() may come from anywhere.
@@ -34,11 +41,13 @@ class Transport {
 
   // For units that share a connection, and take turns.
 
-  /// Whether the reads that follow belong to a write: they go before other units' reads, as writes always do.
-  virtual void go_first(bool /*first*/) {}
-  /// Waits until a read would be sent at once. If true, a read must follow. False if it was woken meanwhile,
-  /// or at `until`: there may be something to do that comes before a read.
-  virtual bool await_turn(Time /*until*/) { return true; }
+  /// That of the reads that follow, and of the writes where it is Rank::safe. Else writes are Rank::write.
+  virtual void rank(Rank /*rank*/) {}
+  enum class Turn { none, read, write };
+  /// Waits until a read would be sent at once, or, if one waits too, a write: whichever comes first. It must
+  /// follow, or another call. None if it was woken meanwhile, or at `until`: there may be something to do
+  /// that comes before a read.
+  virtual Turn await_turn(Time /*until*/, bool /*write_waits*/ = false) { return Turn::read; }
   /// Whether a send() made now would wait for nobody else's request. If true, send() must follow.
   virtual bool reserve() { return true; }
 

@@ -17,7 +17,7 @@ struct Write {
   /// range(point).count() of them are used. Coils: bit i % 16 of element i / 16, so that one coil is the
   /// first, 0 or 1.
   std::array<std::uint16_t, modbus::max_read_registers> registers{};
-  bool alone = false;                 ///< sent by itself, whatever waits before and behind it
+  bool ordered = false;               ///< keeps its place in the queue: its caller waits for its own result
   bool of_deadman = false;            ///< made by the driver because no message came
   WriteListener* listener = nullptr;  ///< told what became of it; lives until then
 

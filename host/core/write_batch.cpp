@@ -17,7 +17,7 @@ bool is_neighbour(Range a, Range b) { return a.end() == b.start() || b.end() == 
 
 bool WriteBatch::merges(const Write& write) const {
   const Point& which = point(write);
-  return !write.alone && !is_partial(which) && which.host.write_function != Function::single &&
+  return !is_partial(which) && which.host.write_function != Function::single &&
          which.host.write_queue != HostOptions::WriteQueue::every;
 }
 

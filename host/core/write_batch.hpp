@@ -17,8 +17,8 @@ class WriteBatch {
   explicit WriteBatch(const Map& map) : map_(map) {}
 
   /// Takes the write if it is the first one or goes into the same request: a neighbour in the same table,
-  /// within the limits of a request, neither of them `write_function: single`, `write_queue: every`, part of
-  /// a register, or to be sent alone.
+  /// within the limits of a request, neither of them `write_function: single`, `write_queue: every` or part
+  /// of a register.
   bool add(const Write& write);
   void clear() { writes_.clear(); }
 

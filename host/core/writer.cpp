@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "host/core/read_back.hpp"
-#include "host/core/write_values.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -42,8 +41,13 @@ Writer::Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceSt
       queue_(map),
       deadmen_(map),
       values_(map.on_reconnect),
+      safe_values_(safe_values(map)),
+      is_safe_point_(map.points.size()),
+      acknowledged_(map.points.size()),
       batch_(map),
-      done_(map) {}
+      done_(map) {
+  for (const Write& write : safe_values_) is_safe_point_[write.point] = true;
+}
 
 void Writer::push(const Write& write) {
   deadmen_.fed(write.point, clock_.now());
@@ -57,6 +61,12 @@ void Writer::push(const Write& write) {
 
 void Writer::refuse(const Write& write, std::string_view why) {
   tell(write, with_reason(Outcome::refused, why), statistics_);
+}
+
+std::future<Calls::Answer> Writer::ask_safe() {
+  auto answer = safe_calls_.ask();
+  sink_.on_report(Level::info, "safe values are asked for");
+  return answer;
 }
 
 bool Writer::send_now() {
@@ -88,6 +98,7 @@ void Writer::fire_deadmen() {
 Result<> Writer::step() {
   if (send_error_) return finish(tl::make_unexpected(*std::exchange(send_error_, std::nullopt)));
   if (sent_) return finish(transport_.receive(*sent_));
+  if (is_safe_asked()) return make_safe();
   fire_deadmen();
   if (batch_.empty()) queue_.take(batch_, merges_);
   if (batch_.empty()) return {};
@@ -99,18 +110,17 @@ Result<> Writer::finish(const Result<>& answer) {
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   if (!answer && exception == nullptr) return answer;  // disconnected() tells them
   std::swap(batch_, done_);
-  const bool again = exception != nullptr && done_.writes().size() > 1 && may_be_of_merging(exception->code);
-  if (again && std::exchange(merges_, false))
+  Result<> link;
+  if (exception != nullptr && done_.writes().size() > 1 && may_be_of_merging(exception->code)) {
+    merges_ = false;
+    queue_.put_back(done_.writes());
     sink_.on_report(Level::info,
                     fmt::format("writes to {} and its neighbours were refused in one request: {}; they are "
                                 "written one by one while this connection lasts",
                                 name(done_.writes().front().point), to_string(answer.error())));
-  Result<> link;
-  for (const Write& write : done_.writes()) {
-    WriteBatch alone(map_);
-    if (again && link) alone.add(write);
-    const Result<> own = !link ? link : again ? exchange(alone, map_, transport_) : answer;
-    if (const auto finished = finish_one(write, own); !finished) link = finished;
+  } else {
+    for (const Write& write : done_.writes())
+      if (const auto finished = finish_one(write, link ? answer : link); !finished) link = finished;
   }
   done_.clear();
   return link;
@@ -119,6 +129,7 @@ Result<> Writer::finish(const Result<>& answer) {
 Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
   if (answer) {
     values_.remember(write);
+    acknowledged_[write.point] = true;
     if (map_.points[write.point].host.verify_write) return verify(write);
     settle(write, {Outcome::ok});
     return {};
@@ -150,6 +161,33 @@ Result<> Writer::verify(const Write& write) {
   return {};
 }
 
+Result<> Writer::make_safe() {
+  queue_.put_back(batch_.writes());
+  batch_.clear();
+  while (const auto write = queue_.take_one_of(is_safe_point_)) settle(*write, {Outcome::superseded});
+  transport_.rank(Rank::safe);
+  const auto refused = write_safe_values();
+  transport_.rank(Rank::write);
+  if (!refused) {
+    safe_calls_.answer(
+        {false, fmt::format("not all outputs have their safe values: {}", to_string(refused.error()))});
+    return tl::make_unexpected(refused.error());
+  }
+  std::string text = fmt::format("{} of {} outputs have their safe values",
+                                 safe_values_.size() - refused->size(), safe_values_.size());
+  for (const auto& [point, code] : *refused)
+    text += fmt::format("; {}: {}", name(point), to_string(Error(ExceptionReply{code})));
+  sink_.on_report(refused->empty() ? Level::info : Level::error, text);
+  safe_calls_.answer({refused->empty(), text});
+  return {};
+}
+
+/// `on_reconnect: restore` brings these back, and not what was written before them.
+Result<std::vector<RefusedValue>> Writer::write_safe_values() {
+  for (const Write& write : safe_values_) values_.remember(write);
+  return write_values(safe_values_, map_, transport_);
+}
+
 void Writer::settle(const Write& write, const WriteResult& result) {
   queue_.settled(write.point);
   tell(write, result, statistics_);
@@ -173,12 +211,14 @@ Result<> Writer::reconnected() {
                                                 to_string(Error(ExceptionReply{code}))));
   if (!values.empty())
     sink_.on_report(Level::info, fmt::format("{} outputs were restored", values.size() - refused->size()));
+  safe_calls_.open();
   return {};
 }
 
 void Writer::disconnected(const Error& why) {
   sent_.reset();
   send_error_.reset();
+  safe_calls_.close(to_string(why));
   std::swap(batch_, done_);
   for (const Write& write : done_.writes()) finish_one(write, tl::make_unexpected(why));
   done_.clear();
@@ -196,24 +236,25 @@ void Writer::drop(const Write& write) {
                                               name(write.point), to_string(result)));
 }
 
-void Writer::shut_down(bool connected) {
-  if (map_.on_shutdown != OnShutdown::safe) return;
-  const auto values = safe_values(map_);
+bool Writer::shut_down(bool connected) {
+  if (map_.on_shutdown != OnShutdown::safe || safe_values_.empty()) return true;
   if (!connected) {
-    if (!values.empty())
-      sink_.on_report(Level::error, "no output could be set to its safe value: not connected");
-    return;
+    sink_.on_report(Level::error, "no output could be set to its safe value: not connected");
+    return false;
   }
   if (sent_) finish(transport_.receive(*sent_));
-  const auto refused = write_values(values, map_, transport_);
+  transport_.rank(Rank::safe);
+  const auto refused = write_safe_values();
+  transport_.rank(Rank::write);
   if (!refused) {
     sink_.on_report(Level::error,
                     "not all outputs could be set to their safe values: " + to_string(refused.error()));
-    return;
+    return false;
   }
   for (const auto& [point, code] : *refused)
     sink_.on_report(Level::error, fmt::format("{} could not be set to its safe value: {}", name(point),
                                               to_string(Error(ExceptionReply{code}))));
+  return refused->empty();
 }
 
 }  // namespace coupler::driver

@@ -19,7 +19,7 @@ class WrittenValues {
     Write& value = values_[write.point];
     value = write;
     value.listener = nullptr;
-    value.alone = false;
+    value.ordered = false;
   }
   /// By point, in the order of the map.
   const std::map<std::uint32_t, Write>& all() const { return values_; }

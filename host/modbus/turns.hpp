@@ -2,7 +2,9 @@
 #pragma once
 
 #include <condition_variable>
+#include <initializer_list>
 #include <mutex>
+#include <optional>
 
 #include "host/core/clock.hpp"
 #include "host/modbus/turn_order.hpp"
@@ -14,14 +16,13 @@ namespace coupler::driver {
 class Turns {
  public:
   using Who = TurnOrder::Who;
-  using Rank = TurnOrder::Rank;
 
-  /// Waits for the turn. False if it has not come until `until`, or if `give_up()` was true, which is asked
-  /// at first and after each look_again().
+  /// Waits for a turn of one of these ranks, and returns which it is. None if none has come until `until`, or
+  /// if `give_up()` was true, which is asked at first and after each look_again().
   template <class GiveUp>
-  bool take(Who who, Rank rank, Time until, GiveUp give_up) {
+  std::optional<Rank> take(Who who, std::initializer_list<Rank> ranks, Time until, GiveUp give_up) {
     std::unique_lock lock(mutex_);
-    order_.come(who, rank);
+    for (const Rank rank : ranks) order_.come(who, rank);
     bool is_mine = false;
     changed_.wait_until(lock, until, [&] {
       const bool ends = give_up();
@@ -29,18 +30,26 @@ class Turns {
       return ends || is_mine;
     });
     if (is_mine) {
-      order_.serve(who);
       holder_ = who;
-    } else {
-      order_.leave(who);
-      changed_.notify_all();  // another may be the next now
+      return order_.serve();
     }
-    return is_mine;
+    order_.leave(who);
+    changed_.notify_all();  // another may be the next now
+    return std::nullopt;
+  }
+  /// TurnOrder::claim(), and its end.
+  void claim(Who who, bool claims) {
+    const std::lock_guard lock(mutex_);
+    if (claims)
+      order_.claim(who);
+    else
+      order_.give_up_claim(who);
+    changed_.notify_all();
   }
   /// Takes it if nobody has it or waits for it.
   bool try_take(Who who) {
     const std::lock_guard lock(mutex_);
-    if (holder_ != nullptr || order_.next() != nullptr) return false;
+    if (holder_ != nullptr || !order_.is_free_for(who)) return false;
     holder_ = who;
     return true;
   }

@@ -22,11 +22,16 @@ UnitTransport::UnitTransport(std::shared_ptr<SharedConnection> shared, const Con
       gap_(limits.request_gap),
       delay_(limits.connect_delay) {}
 
-Result<> UnitTransport::take(Turns::Rank rank) {
+Result<> UnitTransport::take(Rank rank) {
   if (std::exchange(has_turn_, false)) return {};
   const auto give_up = [this] { return interrupted_.is_set() || is_lost(); };
-  if (shared_->turns.take(this, rank, Time::max(), give_up)) return {};
+  if (shared_->turns.take(this, {rank}, Time::max(), give_up)) return {};
   return interrupted_.is_set() ? interrupted_error() : lost_error();
+}
+
+void UnitTransport::rank(Rank rank) {
+  const Rank before = std::exchange(rank_, rank);
+  if ((before == Rank::safe) != (rank == Rank::safe)) shared_->turns.claim(this, rank == Rank::safe);
 }
 
 void UnitTransport::release() {
@@ -50,7 +55,7 @@ Result<> UnitTransport::open() {
 
 Result<> UnitTransport::connect() {
   close();
-  if (auto taken = take(Turns::Rank::read); !taken) return taken;
+  if (auto taken = take(Rank::read); !taken) return taken;
   Result<> result = shared_->transport.select(unit_, timeout_);
   if (result && !shared_->open) result = open();
   if (result) {
@@ -114,7 +119,7 @@ Result<> UnitTransport::done(Result<> result) {
 
 template <class Request>
 Result<> UnitTransport::in_turn(Request&& request) {
-  if (auto taken = take(rank_of_reads_); !taken) return taken;
+  if (auto taken = take(rank_); !taken) return taken;
   if (auto prepared = prepare(); !prepared) {
     release();
     return prepared;
@@ -135,10 +140,14 @@ Result<> UnitTransport::read_file_record(std::uint16_t file, std::uint16_t recor
       [&](ModbusTransport& transport) { return transport.read_file_record(file, record, registers); });
 }
 
-bool UnitTransport::await_turn(Time until) {
+Transport::Turn UnitTransport::await_turn(Time until, bool write_waits) {
+  if (has_turn_) return Turn::read;
   const auto give_up = [this] { return woken_.exchange(false) || interrupted_.is_set() || is_lost(); };
-  has_turn_ = shared_->turns.take(this, Turns::Rank::read, until, give_up);
-  return has_turn_ || interrupted_.is_set() || is_lost();  // the read itself will fail, and say why
+  const auto turn = write_waits ? shared_->turns.take(this, {Rank::read, Rank::write}, until, give_up)
+                                : shared_->turns.take(this, {Rank::read}, until, give_up);
+  has_turn_ = turn.has_value();
+  if (turn) return *turn == Rank::read ? Turn::read : Turn::write;
+  return interrupted_.is_set() || is_lost() ? Turn::read : Turn::none;  // it will fail, and say why
 }
 
 bool UnitTransport::reserve() {
@@ -150,7 +159,7 @@ bool UnitTransport::reserve() {
 
 Result<> UnitTransport::send(const modbus::WriteRequest& request) {
   const bool reserved = has_turn_;
-  if (auto taken = take(Turns::Rank::write); !taken) return taken;
+  if (auto taken = take(Rank::write); !taken) return taken;
   if (auto prepared = prepare(); !prepared) {
     release();
     return prepared;

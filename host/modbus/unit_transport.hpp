@@ -43,8 +43,8 @@ class UnitTransport : public Transport {
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
-  void go_first(bool first) override { rank_of_reads_ = first ? Turns::Rank::write : Turns::Rank::read; }
-  bool await_turn(Time until) override;
+  void rank(Rank rank) override;
+  Turn await_turn(Time until, bool write_waits = false) override;
   bool reserve() override;
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;
@@ -52,7 +52,7 @@ class UnitTransport : public Transport {
   void wake() override;
 
  private:
-  Result<> take(Turns::Rank rank);
+  Result<> take(Rank rank);
   void release();
   bool is_lost() const { return connected_ && ended_ != shared_->ended; }
   template <class Request>
@@ -70,7 +70,7 @@ class UnitTransport : public Transport {
   Event interrupted_;
   Wakeup wakeup_;
   std::atomic<bool> woken_{false};  ///< since await_turn() last returned for it
-  Turns::Rank rank_of_reads_ = Turns::Rank::read;
+  Rank rank_ = Rank::read;
   bool connected_ = false;
   std::uint64_t ended_ = 0;  ///< SharedConnection::ended when it connected
   bool has_turn_ = false;    ///< for the request that follows

@@ -16,9 +16,6 @@ namespace {
 
 using Outcome = WriteResult::Outcome;
 
-/// As long as nothing calls; a call is answered at once.
-const ros::WallDuration idle_turn(1);
-
 std::uint8_t code_of(const std::optional<modbus::Exception>& exception) {
   return exception ? static_cast<std::uint8_t>(*exception) : 0;
 }
@@ -33,48 +30,39 @@ Duration patience(const Map& map, const Point& point) {
 
 }  // namespace
 
-template <class S, class Function>
-void DeviceServices::advertise(ros::NodeHandle& handle, const std::string& name, Function function) {
-  auto options = ros::AdvertiseServiceOptions::create<S>(
-      fmt::format("{}/{}", map_.name, name),
-      [function](typename S::Request& request, typename S::Response& response) {
-        function(request, response);
-        return true;
-      },
-      ros::VoidPtr(), &queue_);
-  servers_.push_back(handle.advertiseService(options));
-}
-
 void DeviceServices::offer(ros::NodeHandle& handle, Driver driver) {
   driver_ = std::move(driver);
-  advertise<coupler_driver::Write>(
-      handle, "write", [this](const auto& request, auto& response) { answer_write(request, response); });
-  advertise<coupler_driver::Read>(
-      handle, "read", [this](const auto& request, auto& response) { answer_read(request, response); });
+  const auto name = [this](std::string_view service) { return fmt::format("{}/{}", map_.name, service); };
+  calls_.advertise<coupler_driver::Write>(handle, name("write"), [this](const auto& request, auto& response) {
+    answer_write(request, response);
+  });
+  calls_.advertise<coupler_driver::Read>(
+      handle, name("read"), [this](const auto& request, auto& response) { answer_read(request, response); });
   if (map_.coupler_watchdog.present())
-    advertise<std_srvs::Trigger>(handle, "reset_watchdog",
-                                 [this](const auto&, auto& response) { answer_reset(response); });
+    calls_.advertise<std_srvs::Trigger>(handle, name("reset_watchdog"), [this](const auto&, auto& response) {
+      answer_call(&Driver::reset, response);
+    });
+  urgent_calls_.advertise<std_srvs::Trigger>(handle, name("safe"), [this](const auto&, auto& response) {
+    answer_call(&Driver::make_safe, response);
+  });
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)
     if (is_writable(map_.points[i]) && is_bit(map_.points[i]))
-      advertise<std_srvs::SetBool>(
-          handle, fmt::format("{}/set", map_.points[i].name),
+      calls_.advertise<std_srvs::SetBool>(
+          handle, name(fmt::format("{}/set", map_.points[i].name)),
           [this, i](const auto& request, auto& response) { answer_set(i, request.data != 0, response); });
-  thread_ = std::thread([this] {
-    while (queue_.isEnabled()) queue_.callOne(idle_turn);
-  });
+  calls_.start();
+  urgent_calls_.start();
 }
 
 void DeviceServices::withdraw() {
-  queue_.disable();
+  calls_.end();
+  urgent_calls_.end();
   next_value_.end();
   const std::lock_guard lock(mutex_);
   driver_.reset();
 }
 
-DeviceServices::~DeviceServices() {
-  withdraw();
-  if (thread_.joinable()) thread_.join();
-}
+DeviceServices::~DeviceServices() { withdraw(); }
 
 const Point* DeviceServices::find_point(const std::string& name, std::string& message) const {
   const Point* point = find(map_, name);
@@ -86,6 +74,7 @@ WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::
   WriteTicket ticket;
   Write write = make_write(map_, index, value);
   write.listener = &ticket;
+  write.ordered = true;
   {
     const std::lock_guard lock(mutex_);
     if (!driver_) return {Outcome::dropped, {}, "dropped: the driver ends"};
@@ -133,13 +122,14 @@ void DeviceServices::answer_set(std::uint32_t index, bool on, std_srvs::SetBool:
   response.message = outcome.text;
 }
 
-void DeviceServices::answer_reset(std_srvs::Trigger::Response& response) {
-  std::future<CouplerWatchdog::Answer> asked;
+void DeviceServices::answer_call(std::function<std::future<Calls::Answer>()> Driver::*call,
+                                 std_srvs::Trigger::Response& response) {
+  std::future<Calls::Answer> asked;
   {
     const std::lock_guard lock(mutex_);
-    if (driver_) asked = driver_->reset();
+    if (driver_) asked = ((*driver_).*call)();
   }
-  const auto answer = asked.valid() ? asked.get() : CouplerWatchdog::Answer{false, "the driver ends"};
+  const auto answer = asked.valid() ? asked.get() : Calls::Answer{false, "the driver ends"};
   response.success = answer.success;
   response.message = answer.text;
 }

@@ -3,7 +3,6 @@
 
 #include <coupler_driver/Read.h>
 #include <coupler_driver/Write.h>
-#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
@@ -12,21 +11,21 @@
 #include <future>
 #include <mutex>
 #include <optional>
-#include <thread>
-#include <vector>
 
-#include "host/core/coupler_watchdog.hpp"
+#include "host/core/calls.hpp"
 #include "host/core/device_statistics.hpp"
 #include "host/core/write_ticket.hpp"
 #include "host/ros/listeners.hpp"
 #include "host/ros/next_value.hpp"
 #include "host/ros/point_subscriber.hpp"
+#include "host/ros/service_thread.hpp"
 
 namespace coupler::driver {
 
-/// The services of a device: `<name>/write`, `<name>/read`, `<name>/<point>/set` for each writable bit, and
-/// `<name>/reset_watchdog` where the driver makes use of the coupler's own. They answer when the result is
-/// known, and therefore have a thread of their own.
+/// The services of a device: `<name>/write`, `<name>/read`, `<name>/<point>/set` for each writable bit,
+/// `<name>/reset_watchdog` where the driver makes use of the coupler's own, and `<name>/safe`. They answer
+/// when the result is known, and therefore have a thread of their own; `safe` has another, so that it waits
+/// for none of them.
 class DeviceServices {
  public:
   /// Nothing is offered yet. What `map` views, and the listeners, must outlive it.
@@ -39,7 +38,8 @@ class DeviceServices {
   /// What they call. None of it waits for anything.
   struct Driver {
     WriteHandler writes;
-    std::function<std::future<CouplerWatchdog::Answer>()> reset;  ///< of the coupler's own watchdog
+    std::function<std::future<Calls::Answer>()> reset;      ///< of the coupler's own watchdog
+    std::function<std::future<Calls::Answer>()> make_safe;  ///< all outputs
     std::function<DeviceSnapshot()> statistics;
   };
 
@@ -51,14 +51,13 @@ class DeviceServices {
   NextValue& next_value() { return next_value_; }
 
  private:
-  template <class S, class Function>
-  void advertise(ros::NodeHandle& handle, const std::string& name, Function function);
   WriteTicket::Outcome write(std::uint32_t index, Span<const std::uint16_t> value);
   void refuse(const Point& point, const std::string& why);
   void answer_write(const coupler_driver::Write::Request& request, coupler_driver::Write::Response& response);
   void answer_read(const coupler_driver::Read::Request& request, coupler_driver::Read::Response& response);
   void answer_set(std::uint32_t index, bool on, std_srvs::SetBool::Response& response);
-  void answer_reset(std_srvs::Trigger::Response& response);
+  void answer_call(std::function<std::future<Calls::Answer>()> Driver::*call,
+                   std_srvs::Trigger::Response& response);
   const Point* find_point(const std::string& name, std::string& message) const;
   std::string why_no_value(const Point& point);
 
@@ -67,9 +66,8 @@ class DeviceServices {
   std::mutex mutex_;
   std::optional<Driver> driver_;  ///< none after withdraw()
   NextValue next_value_;
-  ros::CallbackQueue queue_;
-  std::vector<ros::ServiceServer> servers_;
-  std::thread thread_;  // last: it uses the others
+  ServiceThread calls_;  // last: they use the others
+  ServiceThread urgent_calls_;
 };
 
 }  // namespace coupler::driver

@@ -53,7 +53,7 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater&
       subscribers_.push_back(
           subscribe(handle, topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
   services_.offer(handle, {writes_, [this] { return thread_.reset_watchdog(); },
-                           [this] { return thread_.statistics(); }});
+                           [this] { return thread_.make_safe(); }, [this] { return thread_.statistics(); }});
   if (poll == Poll::subscribed)
     listeners_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
 }

@@ -61,10 +61,7 @@ void read_safe(const Reader& reader, DraftPoint& draft, Context& context) {
   if (entry == nullptr) return;
   Point& point = draft.point;
   const bool is_output = is_analogue(point);
-  if (!is_output && !context.host_makes_safe) {
-    context.problems.error(entry->key_at, "'safe' is for a register with 'iio' or 'pwm', this one has none",
-                           "add one of them, or 'on_shutdown: safe' to the map, or remove it");
-  } else if (entry->kind == Entry::Kind::scalar && entry->text == "hold") {
+  if (entry->kind == Entry::Kind::scalar && entry->text == "hold") {
     point.safe = Safe::hold;
   } else if (draft.placed && !(is_output && entry->kind == Entry::Kind::scalar && entry->text == "off")) {
     point.safe = Safe::on;

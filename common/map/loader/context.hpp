@@ -17,7 +17,6 @@ struct Context {
   std::vector<int> point_lines{};  ///< LoadResult::point_lines
   Position filled_in{};            ///< where the first point stands whose address the text leaves out
   bool origin = false;             ///< may_be_of_the_origin: what the origin would ignore is a warning
-  bool host_makes_safe = false;    ///< on_shutdown: safe: any output may say what is safe for it
 
   void ignored(Position at, std::string what, std::string remedy) {
     if (origin)

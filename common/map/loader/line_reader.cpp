@@ -26,15 +26,11 @@ void read_options(const Reader& reader, Table table, Line& line) {
 }
 
 void refuse_without_line(const Reader& point, Table table, Context& context) {
-  const auto refuse = [&](std::string_view key, std::string_view also) {
+  for (const std::string_view key : option_keys(table))
     if (const Entry* entry = point.find(key))
-      context.problems.error(
-          entry->key_at, fmt::format("'{}' is for a point with a GPIO line, this one has none", key),
-          fmt::format("add 'line: {{chip: gpiochip0, offset: 17}}'{}, or remove it", also));
-  };
-  for (const std::string_view key : option_keys(table)) refuse(key, "");
-  if (table == Table::coils && !context.host_makes_safe)
-    refuse("safe", ", or 'on_shutdown: safe' to the map");
+      context.problems.error(entry->key_at,
+                             fmt::format("'{}' is for a point with a GPIO line, this one has none", key),
+                             "add 'line: {chip: gpiochip0, offset: 17}', or remove it");
 }
 
 /// One word for all of an array's coils, or a list.

@@ -138,7 +138,6 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   head.limits = read_limits(top, context);
   head.service = read_service(top, context);
   top.choice("on_shutdown", {OnShutdown::hold, OnShutdown::safe}, head.on_shutdown);
-  context.host_makes_safe = head.on_shutdown == OnShutdown::safe;
   const PointDefaults defaults = read_point_defaults(top, context);
   const Areas unreadable = read_areas(top, "unreadable", defaults.addressing, context);
   const Areas reserved = read_areas(top, "reserve", defaults.addressing, context);

@@ -14,15 +14,15 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using ::testing::ElementsAre;
 using State = WatchdogStatus::State;
-using Write = WatchdogSequences::Write;
+using Step = WatchdogSequences::Write;
 
-constexpr Write arm[] = {{Table::holding_registers, 1000, 3, false},
-                         {Table::holding_registers, 1003, 1, false},
+constexpr Step arm[] = {{Table::holding_registers, 1000, 3, false},
+                        {Table::holding_registers, 1003, 1, false},
+                        {Table::holding_registers, 1003, 2, false}};
+constexpr Step feed[] = {{Table::holding_registers, 1003, 1, false},
                          {Table::holding_registers, 1003, 2, false}};
-constexpr Write feed[] = {{Table::holding_registers, 1003, 1, false},
-                          {Table::holding_registers, 1003, 2, false}};
-constexpr Write reset[] = {{Table::holding_registers, 1007, 1, false}};
-constexpr Write clear[] = {{Table::coils, 4144, 0, false}};
+constexpr Step reset[] = {{Table::holding_registers, 1007, 1, false}};
+constexpr Step clear[] = {{Table::coils, 4144, 0, false}};
 
 /// A driver of a coupler with a watchdog of 300 ms, fed by register 1003, reset by 1007.
 struct CouplerWatchdogTest : test::DeviceTest {
@@ -253,7 +253,7 @@ TEST_F(CouplerWatchdogTest, An_alarm_is_looked_at_as_often_as_it_is_to_be_fed) {
   known.arm = known.feed = {};
   known.refusal = {};
   known.reset = clear;
-  known.alarm = Write{Table::coils, 4144, 1, false};
+  known.alarm = Step{Table::coils, 4144, 1, false};
   start_with_watchdog();
   push("valve", 1);
   run_for(milliseconds(50));

@@ -29,14 +29,51 @@ TEST_F(DeviceWriteTest, A_write_goes_out_although_no_read_is_due) {
 }
 
 TEST_F(DeviceWriteTest, Writes_go_before_the_reads_that_are_due_and_keep_their_order) {
-  start_online(MapBuilder().holding("a", 5).holding("b", 50));
-  clock.advance(milliseconds(200));
+  start_online(MapBuilder().coil("a", 5).coil("b", 50));
+  clock.advance(milliseconds(100));
   engine->step();
   push("b", 1);
   push("a", 2);
   for (int i = 0; i < 3; ++i) engine->step();
-  EXPECT_THAT(device.requests, ElementsAre("read holding_registers 5+1", "write register 50",
-                                           "write register 5", "read holding_registers 50+1"));
+  EXPECT_THAT(device.requests,
+              ElementsAre("read coils 5+1", "write coil 50", "write coil 5", "read coils 50+1"));
+}
+
+TEST_F(DeviceWriteTest, A_read_that_is_overdue_by_a_period_gets_every_second_transaction) {
+  start_online(MapBuilder().holding("a", 5).holding("b", 50));
+  clock.advance(milliseconds(200));
+  for (std::uint16_t i = 0; i < 5; ++i) {
+    push("a", i);
+    engine->step();
+  }
+  EXPECT_THAT(device.requests,
+              ElementsAre("write register 5", "read holding_registers 5+1", "write register 5",
+                          "read holding_registers 50+1", "write register 5"));
+}
+
+TEST_F(DeviceWriteTest, What_can_be_sent_at_once_waits_for_an_overdue_read_too) {
+  start_online(MapBuilder().holding("a", 5));
+  push("a", 1);
+  engine->step();
+  push("a", 2);
+  clock.advance(milliseconds(200));
+  EXPECT_FALSE(engine->send_now());
+  engine->step();
+  EXPECT_TRUE(engine->send_now());
+  EXPECT_EQ(device.requests.back(), "read holding_registers 5+1");
+}
+
+TEST_F(DeviceWriteTest, A_point_that_is_written_without_end_is_shown_after_each_write_that_was_acknowledged) {
+  start_online(MapBuilder().holding("a", 5));
+  sink->values.clear();
+  device.during_read = [this] { push("a", 99); };  // one always waits
+  for (std::uint16_t i = 1; i <= 3; ++i) {
+    push("a", i);
+    engine->step();
+    clock.advance(milliseconds(200));
+    engine->step();
+  }
+  EXPECT_THAT(sink->values["a"], ElementsAre(1, 2, 3));
 }
 
 TEST_F(DeviceWriteTest, A_write_that_comes_while_a_read_waits_for_its_turn_goes_first) {

@@ -32,6 +32,7 @@ class FakeDevice : public Transport {
   std::vector<std::thread::id> senders;  ///< of writes
   std::function<bool()> await_read;      ///< what happens while a read waits for its turn; whether it gets it
   std::function<void()> during_read;     ///< what happens while a read waits for its answer
+  bool refuse_send = false;              ///< it is somebody else's turn
   bool woken_by_call = false;            ///< how the last wait_until() ended
   bool missing_for_reads_only = false;   ///< writes to what is missing are acknowledged
 
@@ -47,7 +48,8 @@ class FakeDevice : public Transport {
   void interrupt() override {}
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
-  bool await_turn(Time) override { return !await_read || await_read(); }
+  Turn await_turn(Time, bool) override { return !await_read || await_read() ? Turn::read : Turn::none; }
+  bool reserve() override { return !refuse_send; }
   Result<> send(const modbus::WriteRequest&) override;
   /// Requests take effect when their answer is fetched.
   Result<> receive(const modbus::WriteRequest& request) override;

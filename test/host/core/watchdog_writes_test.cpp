@@ -13,11 +13,11 @@ using test::FakeDevice;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-using Write = WatchdogSequences::Write;
+using Step = WatchdogSequences::Write;
 
-constexpr Write steps[] = {{Table::holding_registers, 0x1008, 0xAA55, false},
-                           {Table::coils, 7, 1, false},
-                           {Table::holding_registers, 0x1009, 3, false}};
+constexpr Step steps[] = {{Table::holding_registers, 0x1008, 0xAA55, false},
+                          {Table::coils, 7, 1, false},
+                          {Table::holding_registers, 0x1009, 3, false}};
 
 struct WatchdogWrites : ::testing::Test {
   WatchdogWrites() {
@@ -46,7 +46,7 @@ TEST_F(WatchdogWrites, The_first_one_refused_ends_them) {
 }
 
 TEST_F(WatchdogWrites, What_has_its_value_already_is_left_alone) {
-  constexpr Write kept[] = {{Table::holding_registers, 0x1120, 500, true}};
+  constexpr Step kept[] = {{Table::holding_registers, 0x1120, 500, true}};
   ASSERT_TRUE(write_steps(kept, device));
   ASSERT_TRUE(write_steps(kept, device));
   EXPECT_THAT(device.requests, ElementsAre("read holding_registers 4384+1", "write register 4384",

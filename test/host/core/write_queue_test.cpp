@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <string>
+
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::driver {
@@ -15,16 +17,36 @@ struct WriteQueueTest : testing::Test {
   static MapPtr build() {
     fakes::MapBuilder builder;
     builder.many(Table::coils, 0, 10);
-    builder.add(Table::holding_registers, "every", 0, Type::UINT,
+    for (std::uint16_t i = 0; i < 10; ++i)
+      builder.add(Table::holding_registers, "n" + std::to_string(i), i, Type::UINT);
+    builder.add(Table::holding_registers, "every", 20, Type::UINT,
                 [](Point& point) { point.host.write_queue = HostOptions::WriteQueue::every; });
+    builder.add(Table::holding_registers, "flags", 21, Type::WORD);
     return builder.build();
   }
+  static constexpr std::uint32_t number = 10;  ///< the first of ten
+  static constexpr std::uint32_t every = 20;
+  static constexpr std::uint32_t flags = 21;
+
   static Write write_of(std::uint32_t point, std::uint16_t value = 0) {
     Write write;
     write.point = point;
     write.registers[0] = value;
     return write;
   }
+  static Write service_of(std::uint32_t point, std::uint16_t value) {
+    Write write = write_of(point, value);
+    write.ordered = true;
+    return write;
+  }
+  /// The value that was superseded, -1 if none was.
+  int push(const Write& write) {
+    const auto pushed = queue.push(write);
+    EXPECT_TRUE(pushed.accepted);
+    return pushed.superseded ? pushed.superseded->registers[0] : -1;
+  }
+  int push(std::uint32_t point, std::uint16_t value) { return push(write_of(point, value)); }
+  /// Points and values of the next request.
   std::vector<std::uint32_t> take() {
     WriteBatch batch(owned->map());
     queue.take(batch);
@@ -32,60 +54,109 @@ struct WriteQueueTest : testing::Test {
     for (const Write& write : batch.writes()) points.push_back(write.point);
     return points;
   }
+  using Value = std::pair<std::uint32_t, int>;
+  /// All that wait, one by one.
+  std::vector<Value> take_all() {
+    std::vector<Value> values;
+    while (const auto write = queue.take()) values.emplace_back(write->point, write->registers[0]);
+    return values;
+  }
   MapPtr owned = build();
-  static constexpr std::uint32_t every = 10;
   WriteQueue queue{owned->map()};
 };
 
-TEST_F(WriteQueueTest, Writes_come_out_in_the_order_they_went_in) {
-  for (const std::uint32_t point : {3U, 1U, 5U}) EXPECT_TRUE(queue.push(write_of(point)).accepted);
-  for (const std::uint32_t point : {3U, 1U, 5U}) EXPECT_EQ(queue.take()->point, point);
-  EXPECT_FALSE(queue.take());
+TEST_F(WriteQueueTest, Ordered_writes_come_out_in_the_order_they_went_in) {
+  for (const std::uint32_t point : {3U, every, 5U, flags}) push(point, 1);
+  EXPECT_THAT(take_all(), ElementsAre(Value(3, 1), Value(every, 1), Value(5, 1), Value(flags, 1)));
   EXPECT_TRUE(queue.empty());
 }
 
-TEST_F(WriteQueueTest, Order_is_kept_while_it_grows_and_wraps) {
+TEST_F(WriteQueueTest, Order_is_kept_while_it_grows_and_shrinks) {
   std::uint16_t in = 0;
   std::uint16_t out = 0;
   for (int round = 0; round < 40; ++round) {
-    for (int i = 0; i < 7; ++i, ++in) queue.push(write_of(in % 2U, in));
+    for (int i = 0; i < 7; ++i, ++in) push(in % 2U, in);
     for (int i = 0; i < 5; ++i, ++out) ASSERT_EQ(queue.take()->registers[0], out);
   }
 }
 
-TEST_F(WriteQueueTest, A_full_queue_takes_no_more) {
-  for (std::uint32_t i = 0; i < WriteQueue::capacity; ++i) ASSERT_TRUE(queue.push(write_of(i % 2)).accepted);
+TEST_F(WriteQueueTest, A_full_queue_takes_no_more_ordered_writes_and_every_number) {
+  for (std::uint32_t i = 0; i < WriteQueue::capacity; ++i)
+    ASSERT_TRUE(queue.push(write_of(1, static_cast<std::uint16_t>(i))).accepted);
   EXPECT_FALSE(queue.push(write_of(5)).accepted);
+  for (std::uint32_t i = 0; i < 10; ++i) push(number + i, 1);
   queue.take();
   EXPECT_TRUE(queue.push(write_of(5)).accepted);
+  EXPECT_FALSE(queue.push(write_of(6)).accepted);
 }
 
-TEST_F(WriteQueueTest, A_newer_value_replaces_the_last_one_of_the_same_point) {
-  queue.push(write_of(1, 7));
-  const auto pushed = queue.push(write_of(1, 8));
-  ASSERT_TRUE(pushed.superseded);
-  EXPECT_EQ(pushed.superseded->registers[0], 7);
-  EXPECT_EQ(queue.take()->registers[0], 8);
-  EXPECT_TRUE(queue.empty());
+TEST_F(WriteQueueTest, A_number_has_one_place_that_its_newest_value_takes) {
+  push(number, 1);
+  push(number + 5, 7);
+  EXPECT_EQ(push(number, 2), 1);
+  EXPECT_EQ(push(number, 3), 2);
+  EXPECT_THAT(take_all(), ElementsAre(Value(number, 3), Value(number + 5, 7)));
 }
 
-TEST_F(WriteQueueTest, A_value_behind_which_another_point_waits_is_not_replaced) {
-  queue.push(write_of(1, 1));
-  queue.push(write_of(5, 1));
-  EXPECT_FALSE(queue.push(write_of(1, 0)).superseded);
+TEST_F(WriteQueueTest, A_number_does_not_overtake_an_ordered_write_made_before_it) {
+  push(number, 1);
+  push(3, 1);
+  EXPECT_EQ(push(number, 2), 1);
+  EXPECT_EQ(push(number, 3), 2);
+  EXPECT_THAT(take_all(), ElementsAre(Value(3, 1), Value(number, 3)));
+}
+
+TEST_F(WriteQueueTest, Numbers_never_wait_at_more_places_than_there_are_points) {
+  for (std::uint16_t i = 0; i < 100; ++i) {
+    push(3, i);
+    push(number, i);
+    push(number + 1, i);
+  }
+  EXPECT_EQ(take_all().size(), 102U);
+}
+
+TEST_F(WriteQueueTest, A_value_that_waits_already_is_not_queued_again) {
+  push(3, 1);
+  push(4, 1);
+  EXPECT_EQ(push(3, 1), 1);
+  EXPECT_EQ(push(3, 0), -1);
+  EXPECT_EQ(push(3, 1), -1) << "only the newest one counts: 0 goes between";
+  EXPECT_THAT(take_all(), ElementsAre(Value(3, 1), Value(4, 1), Value(3, 0), Value(3, 1)));
 }
 
 TEST_F(WriteQueueTest, Every_value_is_kept_where_the_map_asks_for_it) {
-  queue.push(write_of(every, 1));
-  EXPECT_FALSE(queue.push(write_of(every, 2)).superseded);
+  for (const int value : {1, 2, 2}) EXPECT_EQ(push(every, static_cast<std::uint16_t>(value)), -1);
+  EXPECT_THAT(take_all(), ElementsAre(Value(every, 1), Value(every, 2), Value(every, 2)));
 }
 
-TEST_F(WriteQueueTest, A_write_that_goes_alone_neither_replaces_nor_is_replaced) {
-  Write service = write_of(1, 5);
-  service.alone = true;
-  queue.push(write_of(1, 1));
-  EXPECT_FALSE(queue.push(service).superseded);
-  EXPECT_FALSE(queue.push(write_of(1, 2)).superseded);
+TEST_F(WriteQueueTest, A_service_neither_replaces_nor_is_replaced) {
+  push(number, 1);
+  EXPECT_EQ(push(service_of(number, 2)), -1);
+  EXPECT_EQ(push(service_of(number, 2)), -1);
+  EXPECT_EQ(push(number, 3), 1);
+  EXPECT_EQ(push(number, 4), 3);
+  EXPECT_THAT(take_all(), ElementsAre(Value(number, 2), Value(number, 2), Value(number, 4)));
+}
+
+TEST_F(WriteQueueTest, What_is_put_back_is_first_again_and_pending_all_the_while) {
+  for (const std::uint32_t point : {3U, 4U, 9U}) push(point, 1);
+  WriteBatch batch(owned->map());
+  queue.take(batch);
+  queue.put_back(batch.writes());
+  EXPECT_THAT(take_all(), ElementsAre(Value(3, 1), Value(4, 1), Value(9, 1)));
+  for (const std::uint32_t point : {3U, 4U, 9U}) queue.settled(point);
+  EXPECT_FALSE(queue.any_pending());
+}
+
+TEST_F(WriteQueueTest, Writes_to_some_points_are_taken_out_wherever_they_stand) {
+  std::uint16_t value = 0;
+  for (const std::uint32_t point : {3U, number, 4U, 3U}) push(point, value++);
+  std::vector<bool> some(owned->map().points.size());
+  some[3] = some[number] = true;
+  std::vector<std::uint32_t> taken;
+  while (const auto write = queue.take_one_of(some)) taken.push_back(write->point);
+  EXPECT_THAT(taken, ElementsAre(3, number, 3));
+  EXPECT_THAT(take_all(), ElementsAre(Value(4, 2)));
 }
 
 TEST_F(WriteQueueTest, Neighbours_in_the_queue_and_in_the_device_are_taken_together) {
@@ -96,20 +167,25 @@ TEST_F(WriteQueueTest, Neighbours_in_the_queue_and_in_the_device_are_taken_toget
 }
 
 TEST_F(WriteQueueTest, A_point_that_comes_twice_is_not_in_one_request_twice) {
-  for (const std::uint32_t point : {4U, 5U, 4U}) queue.push(write_of(point));
+  for (const std::uint32_t point : {4U, 5U}) push(point, 1);
+  push(4, 0);
   EXPECT_THAT(take(), ElementsAre(4, 5));
   EXPECT_THAT(take(), ElementsAre(4));
 }
 
 TEST_F(WriteQueueTest, A_value_is_on_its_way_from_push_to_result) {
   EXPECT_FALSE(queue.any_pending());
-  queue.push(write_of(1, 1));
-  queue.push(write_of(1, 2));
-  EXPECT_TRUE(queue.is_pending(1));
+  push(number, 1);
+  push(number, 2);
+  push(3, 1);
+  push(number, 3);
+  EXPECT_TRUE(queue.is_pending(number));
   take();
-  EXPECT_TRUE(queue.is_pending(1));
-  queue.settled(1);
-  EXPECT_FALSE(queue.is_pending(1));
+  take();
+  EXPECT_TRUE(queue.is_pending(number));
+  queue.settled(number);
+  EXPECT_FALSE(queue.is_pending(number));
+  queue.settled(3);
   EXPECT_FALSE(queue.any_pending());
 }
 

@@ -8,8 +8,6 @@
 namespace coupler::driver {
 namespace {
 
-using Rank = TurnOrder::Rank;
-
 struct TurnOrderTest : testing::Test {
   TurnOrder order;
   const std::string units = "ABC";
@@ -21,7 +19,7 @@ struct TurnOrderTest : testing::Test {
   std::string rest() {
     std::string all;
     while (const auto* const next = static_cast<const char*>(order.next())) {
-      order.serve(next);
+      order.serve();
       all += *next;
     }
     return all;
@@ -59,7 +57,7 @@ TEST_F(TurnOrderTest, Two_that_never_stop_writing_do_not_keep_a_read_waiting_for
   for (int turn = 0; turn < 3; ++turn) {
     const char unit = *static_cast<const char*>(order.next());
     all += unit;
-    order.serve(who(unit));
+    order.serve();
     if (unit != 'C') write(unit);
   }
   EXPECT_EQ(all, "ABC");
@@ -81,10 +79,25 @@ TEST_F(TurnOrderTest, A_read_that_made_room_for_a_write_of_its_unit_keeps_its_pl
   order.leave(who('A'));
   write('A');
   ASSERT_EQ(order.next(), who('A'));
-  order.serve(who('A'));
+  order.serve();
   EXPECT_EQ(order.next(), who('B'));
   read('A');
   EXPECT_EQ(rest(), "AB");
+}
+
+TEST_F(TurnOrderTest, Who_waits_for_both_writes_once_between_reads_and_reads_in_the_order_of_coming) {
+  write('A');
+  order.serve();
+  read('B');
+  read('C');
+  std::string all;
+  for (int turn = 0; turn < 5; ++turn) {
+    read('A');
+    write('A');
+    const char unit = *static_cast<const char*>(order.next());
+    all += order.serve() == Rank::read ? unit : static_cast<char>(unit + ('a' - 'A'));
+  }
+  EXPECT_EQ(all, "BaCaA") << "small letters write";
 }
 
 TEST_F(TurnOrderTest, Who_has_left_is_not_next) {
@@ -93,6 +106,20 @@ TEST_F(TurnOrderTest, Who_has_left_is_not_next) {
   order.leave(who('A'));
   order.leave(who('B'));
   EXPECT_EQ(order.next(), nullptr);
+}
+
+TEST_F(TurnOrderTest, Who_claims_all_turns_has_each_until_the_claim_ends) {
+  write('A');
+  read('B');
+  order.claim(who('C'));
+  EXPECT_EQ(order.next(), nullptr) << "between two of his requests, too";
+  EXPECT_TRUE(order.is_free_for(who('C')));
+  EXPECT_FALSE(order.is_free_for(who('B')));
+  order.come(who('C'), Rank::safe);
+  ASSERT_EQ(order.next(), who('C'));
+  order.serve();
+  order.give_up_claim(who('C'));
+  EXPECT_EQ(rest(), "AB");
 }
 
 }  // namespace

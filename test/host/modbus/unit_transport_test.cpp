@@ -189,10 +189,10 @@ TEST_F(UnitTransportTest, A_read_that_waits_for_its_turn_makes_room_when_its_uni
   ASSERT_TRUE(unit(1).send(request));
   auto waiting = std::async(std::launch::async, [this] { return unit(2).await_turn(Time::max()); });
   unit(2).wake();
-  EXPECT_FALSE(waiting.get());
-  EXPECT_FALSE(unit(2).await_turn(std::chrono::steady_clock::now() + milliseconds(1)));
+  EXPECT_EQ(waiting.get(), Transport::Turn::none);
+  EXPECT_EQ(unit(2).await_turn(std::chrono::steady_clock::now() + milliseconds(1)), Transport::Turn::none);
   EXPECT_TRUE(unit(1).receive(request));
-  ASSERT_TRUE(unit(2).await_turn(Time::max()));
+  ASSERT_EQ(unit(2).await_turn(Time::max()), Transport::Turn::read);
   EXPECT_FALSE(unit(3).reserve());
   EXPECT_TRUE(read(2));
   EXPECT_TRUE(read(3));
@@ -219,6 +219,23 @@ TEST_F(UnitTransportTest, An_interrupt_ends_the_wait_for_a_turn) {
   EXPECT_FALSE(waiting.get());
   EXPECT_TRUE(unit(1).receive(request));
   EXPECT_TRUE(read(3));
+}
+
+TEST_F(UnitTransportTest, Who_writes_safe_values_has_every_turn_until_they_are_written) {
+  connect_all();
+  const auto request = WriteRequest::register_value(1, 7);
+  ASSERT_TRUE(unit(1).send(request));
+  unit(2).rank(Rank::safe);
+  auto others = std::async(std::launch::async, [this] { return read(3); });
+  EXPECT_TRUE(unit(1).receive(request));
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(unit(2).send(request));
+    EXPECT_FALSE(unit(1).reserve());
+    EXPECT_TRUE(unit(2).receive(request));
+    EXPECT_EQ(others.wait_for(milliseconds(20)), std::future_status::timeout);
+  }
+  unit(2).rank(Rank::read);
+  EXPECT_TRUE(others.get());
 }
 
 TEST_F(UnitTransportTest, A_unit_that_modbus_does_not_have_is_told) {

@@ -144,11 +144,11 @@ TEST(Link, What_becomes_of_outputs_and_which_points_are_read_is_said_at_the_top)
   EXPECT_EQ(load_clean(map_of("coils", "p: 1"))->map().poll, Poll::all);
 }
 
-TEST(Manners, Where_the_driver_makes_safe_any_output_may_say_what_is_safe_for_it) {
-  const MapPtr coils = load_clean(map_of("coils", "p: {address: 1, safe: on}", "on_shutdown: safe"));
+TEST(Manners, Any_output_may_say_what_is_safe_for_it) {
+  const MapPtr coils = load_clean(map_of("coils", "p: {address: 1, safe: on}"));
   EXPECT_EQ(coils->map().points[0].safe, Safe::on);
-  const MapPtr registers = load_clean(
-      map_of("holding_registers", "p: {address: 1, type: UINT, scale: 0.5, safe: 4}", "on_shutdown: safe"));
+  const MapPtr registers =
+      load_clean(map_of("holding_registers", "p: {address: 1, type: UINT, scale: 0.5, safe: 4}"));
   EXPECT_EQ(registers->map().points[0].safe, Safe::on);
   EXPECT_EQ(registers->map().points[0].safe_value[0], 8);
 }
