@@ -2,6 +2,7 @@
 #include "common/vectors/cases.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/vectors/elements.hpp"
 
@@ -12,6 +13,13 @@ std::vector<Element> elements_of(const Point& point) {
   if (holds_bits(point.table)) return {{0}, {1}};
   return point.format.type == codec::Type::STRING ? text_elements(point.format)
                                                   : number_elements(point.format);
+}
+
+/// No driver and no client writes others.
+bool is_finite(const codec::Value& value) {
+  if (const auto* single = std::get_if<float>(&value)) return std::isfinite(*single);
+  if (const auto* real = std::get_if<double>(&value)) return std::isfinite(*real);
+  return true;
 }
 
 /// `pick(i)`: which element is the i-th value.
@@ -26,7 +34,7 @@ Case make_case(const Point& point, const std::vector<Element>& elements, Pick pi
   std::vector<std::uint16_t> written(made.raw.size());
   const std::size_t width = codec::registers(point.format);
   for (std::size_t i = 0; i < point.count; ++i)
-    made.only_read |= !encode(made.values[i], point, &written[i * width]);
+    made.only_read |= !is_finite(made.values[i]) || !encode(made.values[i], point, &written[i * width]);
   made.only_read |= written != made.raw;
   return made;
 }

@@ -16,8 +16,8 @@ struct Case {
   std::vector<std::uint16_t> raw;
   /// point.count of them; in the point's units, as double, if it has a scale.
   std::vector<codec::Value> values;
-  /// Writing the values gives other registers, or is refused: NaN of a point with a scale, a text with
-  /// something behind its end.
+  /// Writing the values gives other registers, or is refused: NaN and infinities, a text with something
+  /// behind its end.
   bool only_read = false;
 };
 

@@ -31,7 +31,7 @@ Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transpo
       qualities_(map),
       transport_(transport, clock, map.limits, statistics_),
       watchdog_(map, transport_, clock, statistics_, sink),
-      writer_(map, transport_, clock, statistics_, sink),
+      writer_(map, transport_, clock, statistics_, qualities_, sink),
       reader_(map, transport_, clock, writer_, statistics_, qualities_, sink) {}
 
 Time Device::step() {

@@ -22,9 +22,9 @@ namespace coupler::driver {
 /// A unit that its gateway cannot reach is offline, too, and tried again after the back-off, but the
 /// connection to the gateway stays: others may use it.
 ///
-/// push(), refuse(), reset_watchdog(), make_safe(), statistics() and qualities() are for any thread. All
-/// others are for one at a time: the owner of the connection, or, for send_now() alone, one who has made sure
-/// that the owner only waits.
+/// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), statistics() and qualities() are for
+/// any thread. All others are for one at a time: the owner of the connection, or, for send_now() alone, one
+/// who has made sure that the owner only waits.
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
@@ -34,6 +34,9 @@ class Device {
   void push(const Write& write) { writer_.push(write); }
   /// A value that is none of its point: counted, and told to the listener.
   void refuse(const Write& write, std::string_view why) { writer_.refuse(write, why); }
+
+  /// As Writer's.
+  void report_held_back() { writer_.report_held_back(); }
 
   /// Resets the coupler's own watchdog.
   std::future<Calls::Answer> reset_watchdog() { return watchdog_.ask_reset(); }

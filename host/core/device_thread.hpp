@@ -33,6 +33,8 @@ class DeviceThread {
   void write(const Write& write);
   /// Counts a value that is none of its point, and tells the listener.
   void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
+  /// As Writer's. To be called a few times a second.
+  void report_held_back() { device_.report_held_back(); }
   /// Whether somebody wants the values of a point (index into Map::points).
   void want(std::uint32_t point, bool wanted);
   /// Resets the coupler's own watchdog. The answer comes after a few timeouts at most.

@@ -37,6 +37,13 @@ void PointQualities::exception(Span<const std::uint32_t> points, modbus::Excepti
   }
 }
 
+void PointQualities::wrote(std::uint32_t point, const WriteResult& result) {
+  if (result.outcome == WriteResult::Outcome::superseded) return;
+  const std::lock_guard lock(mutex_);
+  points_[point].last_write = result.outcome;
+  points_[point].last_write_text = to_string(result);
+}
+
 void PointQualities::rejected(Span<const std::uint32_t> points, modbus::Exception code) {
   exception(points, code);
   const std::lock_guard lock(mutex_);
@@ -62,19 +69,23 @@ State PointQualities::state_of(const Entry& entry, const Point& point, Time now)
   return now - *entry.last_good > patience ? State::stale : State::good;
 }
 
+PointQuality PointQualities::quality_of(const Entry& entry, const Point& point, Time now) const {
+  return {state_of(entry, point, now), entry.last_good, entry.last_exception, entry.last_write,
+          entry.last_write_text};
+}
+
 std::vector<PointQuality> PointQualities::snapshot(Time now) const {
   const std::lock_guard lock(mutex_);
   std::vector<PointQuality> result;
+  result.reserve(points_.size());
   for (std::size_t i = 0; i < points_.size(); ++i)
-    result.push_back(
-        {state_of(points_[i], map_.points[i], now), points_[i].last_good, points_[i].last_exception});
+    result.push_back(quality_of(points_[i], map_.points[i], now));
   return result;
 }
 
 PointQuality PointQualities::of(std::uint32_t point, Time now) const {
   const std::lock_guard lock(mutex_);
-  const Entry& entry = points_[point];
-  return {state_of(entry, map_.points[point], now), entry.last_good, entry.last_exception};
+  return quality_of(points_[point], map_.points[point], now);
 }
 
 }  // namespace coupler::driver

@@ -3,6 +3,7 @@
 
 #include <mutex>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,10 +11,11 @@
 #include "common/map/map.hpp"
 #include "common/modbus/exception.hpp"
 #include "host/core/clock.hpp"
+#include "host/core/write_result.hpp"
 
 namespace coupler::driver {
 
-/// How far the last value of a point can be trusted.
+/// How far the last value of a point can be trusted, and what became of the last write to it.
 struct PointQuality {
   enum class State : std::uint8_t {
     good,
@@ -27,6 +29,8 @@ struct PointQuality {
   State state = State::never_read;
   std::optional<Time> last_good{};                    ///< of the last value
   std::optional<modbus::Exception> last_exception{};  ///< the last one there was, however long ago
+  std::optional<WriteResult::Outcome> last_write{};   ///< of the last one that no newer one superseded
+  std::string last_write_text{};                      ///< to_string() of its result
 };
 
 /// "good", "never read" …
@@ -40,6 +44,7 @@ class PointQualities {
 
   void good(Span<const std::uint32_t> points, Time at);
   void exception(Span<const std::uint32_t> points, modbus::Exception code);
+  void wrote(std::uint32_t point, const WriteResult& result);
   void rejected(Span<const std::uint32_t> points, modbus::Exception code);
   /// All that an earlier connection rejected may be there now.
   void connected();
@@ -53,9 +58,12 @@ class PointQualities {
   struct Entry {
     std::optional<Time> last_good{};
     std::optional<modbus::Exception> last_exception{};
+    std::optional<WriteResult::Outcome> last_write{};
+    std::string last_write_text{};
     bool failing = false;
     bool rejected = false;
   };
+  PointQuality quality_of(const Entry& entry, const Point& point, Time now) const;
   PointQuality::State state_of(const Entry& entry, const Point& point, Time now) const;
 
   Map map_;

@@ -11,11 +11,11 @@ std::string to_string(const Refusal& refusal) {
   const unsigned last = refusal.range.last();
   if (refusal.between_points)
     return fmt::format(
-        "{0} {1} to {2}, between points, are refused and left out while this connection lasts; to spare the "
+        "{0} {1} to {2}, between points, are rejected and left out while this connection lasts; to spare the "
         "attempt add to the map (addresses on the wire): unreadable: [{{table: {0}, from: {1}, to: {2}}}]",
         table, first, last);
   return fmt::format(
-      "{} {} to {} are refused in one request and read in parts; if the device takes fewer than {} in one, "
+      "{} {} to {} are rejected in one request and read in parts; if the device takes fewer than {} in one, "
       "say so in the map: limits: {{{}: …}}",
       table, first, last, refusal.range.count(), holds_bits(refusal.table) ? "read_bits" : "read_registers");
 }

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+
+#include "common/codec/number.hpp"
 
 namespace coupler::driver {
 
@@ -17,6 +20,27 @@ Write make_write(const Map& map, std::uint32_t point, Span<const std::uint16_t> 
     std::copy(value.begin(), value.end(), write.registers.begin());
   }
   return write;
+}
+
+namespace {
+
+template <class T>
+bool are_finite(const Point& point, const std::uint16_t* registers) {
+  const std::size_t width = codec::registers(point.format);
+  for (std::size_t i = 0; i < point.count; ++i)
+    if (!std::isfinite(codec::take<T>(point.format, registers + i * width))) return false;
+  return true;
+}
+
+}  // namespace
+
+bool is_finite(const Point& point, const Write& write) {
+  if (holds_bits(point.table)) return true;
+  switch (point.format.type) {
+    case codec::Type::REAL: return are_finite<float>(point, write.registers.data());
+    case codec::Type::LREAL: return are_finite<double>(point, write.registers.data());
+    default: return true;
+  }
 }
 
 }  // namespace coupler::driver

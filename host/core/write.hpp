@@ -31,4 +31,7 @@ struct Write {
 /// all zero.
 Write make_write(const Map& map, std::uint32_t point, Span<const std::uint16_t> value);
 
+/// Whether none of its floats is NaN or infinite.
+bool is_finite(const Point& point, const Write& write);
+
 }  // namespace coupler::driver

@@ -21,8 +21,8 @@ std::string exception_text(const WriteResult& result) {
 
 std::string not_taken_text(const WriteResult& result) {
   if (result.found.empty())
-    return fmt::format("was acknowledged, but cannot be read back: {}", exception_text(result));
-  return fmt::format("was acknowledged, but not taken: {} was written, {} reads back",
+    return fmt::format("not taken: acknowledged, but it cannot be read back: {}", exception_text(result));
+  return fmt::format("not taken: acknowledged, but {} was written and {} reads back",
                      registers_text(result.written), registers_text(result.found));
 }
 
@@ -44,9 +44,9 @@ std::string_view to_string(Outcome outcome) {
 
 std::string to_string(const WriteResult& result) {
   switch (result.outcome) {
-    case Outcome::exception: return "refused: " + exception_text(result);
+    case Outcome::exception: return exception_text(result);
     case Outcome::not_taken: return not_taken_text(result);
-    case Outcome::kept: return "kept until the device is back";
+    case Outcome::kept: return "kept: it is written when the device is back";
     case Outcome::ok:
     case Outcome::superseded: return std::string(to_string(result.outcome));
     case Outcome::lost:

@@ -15,8 +15,8 @@ namespace coupler::driver {
 struct WriteResult {
   enum class Outcome : std::uint8_t {
     ok,          ///< acknowledged by the device, and read back where the map asks for that
-    superseded,  ///< a newer value of the same point took its place before it was sent
-    exception,   ///< the device said no
+    superseded,  ///< a newer value of the same point took its place before it was sent, or its safe value
+    exception,   ///< the device answered with an exception
     not_taken,   ///< acknowledged, but something else (or nothing) reads back
     lost,        ///< sent, and the link broke before the answer: it may have been carried out or not
     dropped,     ///< never sent: not connected, or too many writes wait
@@ -32,10 +32,16 @@ struct WriteResult {
   Span<const std::uint16_t> found{};  ///< not_taken: what reads back; empty if nothing could be read
 };
 
-/// "ok", "superseded" …
+/// As messages have it, where 0 is none.
+constexpr std::uint8_t outcome_number(WriteResult::Outcome outcome) {
+  return static_cast<std::uint8_t>(static_cast<std::uint8_t>(outcome) + 1);
+}
+
+/// "ok", "superseded", …, "not taken"; each is another word.
 std::string_view to_string(WriteResult::Outcome outcome);
 
-/// What happened, in words that follow the point's name: "refused: exception 02 (illegal data address)".
+/// What happened; it begins with the outcome's word: "exception 02 (illegal data address)", "lost: no reply
+/// …".
 std::string to_string(const WriteResult& result);
 
 /// Waits for the result of a write.

@@ -17,11 +17,6 @@ bool may_be_of_merging(modbus::Exception code) {
          code == modbus::Exception::illegal_data_value;
 }
 
-void tell(const Write& write, const WriteResult& result, DeviceStatistics& statistics) {
-  statistics.wrote(result.outcome);
-  if (write.listener != nullptr) write.listener->on_result(result);
-}
-
 WriteResult with_reason(Outcome outcome, std::string_view why) {
   WriteResult result;
   result.outcome = outcome;
@@ -32,11 +27,12 @@ WriteResult with_reason(Outcome outcome, std::string_view why) {
 }  // namespace
 
 Writer::Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
-               Sink& sink)
+               PointQualities& qualities, Sink& sink)
     : map_(map),
       transport_(transport),
       clock_(clock),
       statistics_(statistics),
+      qualities_(qualities),
       sink_(sink),
       queue_(map),
       deadmen_(map),
@@ -50,17 +46,24 @@ Writer::Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceSt
 }
 
 void Writer::push(const Write& write) {
+  if (!is_finite(map_.points[write.point], write)) {
+    const WriteResult wrong =
+        with_reason(Outcome::refused, "a number that is not finite (NaN or infinity); send a finite one");
+    tell(write, wrong);
+    report(write, wrong);
+    return;
+  }
   deadmen_.fed(write.point, clock_.now());
   const WriteQueue::Pushed pushed = queue_.push(write);
-  if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded}, statistics_);
+  if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
   if (pushed.accepted) return;
   const WriteResult full = with_reason(Outcome::dropped, "too many writes wait already; write less often");
-  tell(write, full, statistics_);
+  tell(write, full);
   report(write, full);
 }
 
 void Writer::refuse(const Write& write, std::string_view why) {
-  tell(write, with_reason(Outcome::refused, why), statistics_);
+  tell(write, with_reason(Outcome::refused, why));
 }
 
 std::future<Calls::Answer> Writer::ask_safe() {
@@ -85,7 +88,7 @@ void Writer::fire_deadmen() {
     Write write = make_write(map_, *point, deadman.value);
     write.of_deadman = true;
     const WriteQueue::Pushed pushed = queue_.push(write);
-    if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded}, statistics_);
+    if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
     if (!pushed.accepted) {  // it goes when there is room: the queue is being emptied
       deadmen_.put_back(*point);
       return;
@@ -115,7 +118,7 @@ Result<> Writer::finish(const Result<>& answer) {
     merges_ = false;
     queue_.put_back(done_.writes());
     sink_.on_report(Level::info,
-                    fmt::format("writes to {} and its neighbours were refused in one request: {}; they are "
+                    fmt::format("writes to {} and its neighbours were rejected in one request: {}; they are "
                                 "written one by one while this connection lasts",
                                 name(done_.writes().front().point), to_string(answer.error())));
   } else {
@@ -188,14 +191,27 @@ Result<std::vector<RefusedValue>> Writer::write_safe_values() {
   return write_values(safe_values_, map_, transport_);
 }
 
+void Writer::tell(const Write& write, const WriteResult& result) {
+  statistics_.wrote(result.outcome);
+  qualities_.wrote(write.point, result);
+  if (write.listener != nullptr) write.listener->on_result(result);
+}
+
 void Writer::settle(const Write& write, const WriteResult& result) {
   queue_.settled(write.point);
-  tell(write, result, statistics_);
+  tell(write, result);
   if (result.outcome != Outcome::ok && result.outcome != Outcome::kept) report(write, result);
 }
 
 void Writer::report(const Write& write, const WriteResult& result) {
-  sink_.on_report(Level::warning, fmt::format("write to {} {}", name(write.point), to_string(result)));
+  const auto line = lines_[static_cast<std::size_t>(result.outcome)].say(
+      fmt::format("write to {}: {}", name(write.point), to_string(result)), clock_.now());
+  if (line) sink_.on_report(Level::warning, *line);
+}
+
+void Writer::report_held_back() {
+  for (LineLimit& lines : lines_)
+    if (const auto line = lines.due(clock_.now())) sink_.on_report(Level::warning, *line);
 }
 
 Result<> Writer::reconnected() {
@@ -228,11 +244,13 @@ void Writer::disconnected(const Error& why) {
 void Writer::drop(const Write& write) {
   values_.remember(write);
   if (write.of_deadman) deadmen_.put_back(write.point);
-  const auto result = with_reason(values_.are_kept() ? Outcome::kept : Outcome::dropped, "not connected");
+  const auto result = with_reason(
+      values_.are_kept() ? Outcome::kept : Outcome::dropped,
+      "not connected; with 'on_reconnect: restore' in the map it would be written when the device is there");
   queue_.settled(write.point);
-  tell(write, result, statistics_);
+  tell(write, result);
   if (values_.are_kept() || dropped_++ > 0) return;
-  sink_.on_report(Level::warning, fmt::format("write to {} {}, as all until the device is back",
+  sink_.on_report(Level::warning, fmt::format("write to {}: {}, as all until the device is back",
                                               name(write.point), to_string(result)));
 }
 

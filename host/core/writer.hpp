@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <utility>
 
 #include "host/core/calls.hpp"
 #include "host/core/deadmen.hpp"
 #include "host/core/device_statistics.hpp"
+#include "host/core/line_limit.hpp"
 #include "host/core/paced_transport.hpp"
+#include "host/core/point_quality.hpp"
 #include "host/core/sink.hpp"
 #include "host/core/write_queue.hpp"
 #include "host/core/write_values.hpp"
@@ -23,14 +26,18 @@ namespace coupler::driver {
 class Writer {
  public:
   /// What `map` views, and everything given by reference, must outlive it.
-  Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics, Sink& sink);
+  Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
+         PointQualities& qualities, Sink& sink);
 
+  /// NaN and infinity are refused.
   void push(const Write& write);
   /// A value that is none of its point.
   void refuse(const Write& write, std::string_view why);
   /// Writes what `on_shutdown: safe` would, whatever that says: after the request in flight, and before all
   /// that waits. What waits for these points is superseded.
   std::future<Calls::Answer> ask_safe();
+  /// Lines about writes of which there were too many to say them at once. From any thread, now and then.
+  void report_held_back();
   bool is_safe_asked() const { return safe_calls_.any(); }
 
   /// Sends the next writes without waiting for the answer, if nothing is in flight and no pause or reading
@@ -75,6 +82,7 @@ class Writer {
   Result<> verify(const Write& write);
   Result<> make_safe();
   Result<std::vector<RefusedValue>> write_safe_values();
+  void tell(const Write& write, const WriteResult& result);
   void settle(const Write& write, const WriteResult& result);
   void report(const Write& write, const WriteResult& result);
   void drop(const Write& write);
@@ -84,6 +92,7 @@ class Writer {
   PacedTransport& transport_;
   Clock& clock_;
   DeviceStatistics& statistics_;
+  PointQualities& qualities_;
   Sink& sink_;
   WriteQueue queue_;
   Deadmen deadmen_;
@@ -98,6 +107,7 @@ class Writer {
   std::optional<Error> send_error_;           ///< it could not be sent
   bool merges_ = true;                        ///< the device takes several values in one request
   std::uint64_t dropped_ = 0;
+  std::array<LineLimit, WriteResult::outcomes> lines_;  ///< by outcome
 };
 
 }  // namespace coupler::driver

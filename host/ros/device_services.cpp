@@ -16,6 +16,17 @@ namespace {
 
 using Outcome = WriteResult::Outcome;
 
+using Reply = coupler_driver::Write::Response;
+
+static_assert(outcome_number(Outcome::ok) == Reply::OK &&
+              outcome_number(Outcome::superseded) == Reply::SUPERSEDED &&
+              outcome_number(Outcome::exception) == Reply::EXCEPTION &&
+              outcome_number(Outcome::not_taken) == Reply::NOT_TAKEN &&
+              outcome_number(Outcome::lost) == Reply::LOST &&
+              outcome_number(Outcome::dropped) == Reply::DROPPED &&
+              outcome_number(Outcome::kept) == Reply::KEPT &&
+              outcome_number(Outcome::refused) == Reply::REFUSED);
+
 std::uint8_t code_of(const std::optional<modbus::Exception>& exception) {
   return exception ? static_cast<std::uint8_t>(*exception) : 0;
 }
@@ -83,34 +94,31 @@ WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::
   return ticket.wait();
 }
 
-void DeviceServices::refuse(const Point& point, const std::string& why) {
+void DeviceServices::refuse(const std::string& name, const Point* point, const std::string& why,
+                            Reply& reply) {
+  reply.outcome = Reply::REFUSED;
+  reply.message = "refused: " + why;
   const std::lock_guard lock(mutex_);
-  if (driver_)
-    driver_->writes.refuse(static_cast<std::uint32_t>(&point - map_.points.data()),
-                           fmt::format("{} by the service {}/write: {}", point.name, map_.name, why));
+  if (!driver_) return;
+  driver_->writes.refuse(point != nullptr ? std::optional(index_of(*point)) : std::nullopt,
+                         fmt::format("{} by the service {}/write: {}", name, map_.name, why));
 }
 
-void DeviceServices::answer_write(const coupler_driver::Write::Request& request,
-                                  coupler_driver::Write::Response& response) {
-  const Point* point = find_point(request.point, response.message);
-  if (point == nullptr) {
-    log(Level::warning, fmt::format("{}: dropped a write by the service {}/write: {}", map_.name, map_.name,
-                                    response.message));
-    return;
+void DeviceServices::answer_write(const coupler_driver::Write::Request& request, Reply& reply) {
+  std::string why;
+  const Point* point = find_point(request.point, why);
+  std::vector<std::uint16_t> value;
+  if (point != nullptr && !is_writable(*point)) why = fmt::format("{} cannot be written", point->name);
+  if (why.empty()) {
+    value.resize(range(*point).count());
+    if (const auto parsed = parse_value(request.value, *point, value.data()); !parsed) why = parsed.error();
   }
-  std::vector<std::uint16_t> value(range(*point).count());
-  if (!is_writable(*point))
-    response.message = fmt::format("{} cannot be written", point->name);
-  else if (const auto parsed = parse_value(request.value, *point, value.data()); !parsed)
-    response.message = parsed.error();
-  if (!response.message.empty()) {
-    refuse(*point, response.message);
-    return;
-  }
-  const auto outcome = write(static_cast<std::uint32_t>(point - map_.points.data()), value);
-  response.success = outcome.outcome == Outcome::ok;
-  response.exception = code_of(outcome.exception);
-  response.message = outcome.text;
+  if (!why.empty()) return refuse(request.point, point, why, reply);
+  const auto outcome = write(index_of(*point), value);
+  reply.success = outcome.outcome == Outcome::ok;
+  reply.outcome = outcome_number(outcome.outcome);
+  reply.exception = code_of(outcome.exception);
+  reply.message = outcome.text;
 }
 
 void DeviceServices::answer_set(std::uint32_t index, bool on, std_srvs::SetBool::Response& response) {
@@ -142,7 +150,7 @@ void DeviceServices::answer_read(const coupler_driver::Read::Request& request,
     response.message = fmt::format("{} is never read", point->name);
     return;
   }
-  const auto index = static_cast<std::uint32_t>(point - map_.points.data());
+  const std::uint32_t index = index_of(*point);
   const auto deadline = std::chrono::steady_clock::now() + patience(map_, *point);
   listeners_.came(index);
   const auto value = next_value_.wait(index, deadline);

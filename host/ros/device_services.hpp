@@ -52,12 +52,16 @@ class DeviceServices {
 
  private:
   WriteTicket::Outcome write(std::uint32_t index, Span<const std::uint16_t> value);
-  void refuse(const Point& point, const std::string& why);
-  void answer_write(const coupler_driver::Write::Request& request, coupler_driver::Write::Response& response);
+  void refuse(const std::string& name, const Point* point, const std::string& why,
+              coupler_driver::Write::Response& reply);
+  void answer_write(const coupler_driver::Write::Request& request, coupler_driver::Write::Response& reply);
   void answer_read(const coupler_driver::Read::Request& request, coupler_driver::Read::Response& response);
   void answer_set(std::uint32_t index, bool on, std_srvs::SetBool::Response& response);
   void answer_call(std::function<std::future<Calls::Answer>()> Driver::*call,
                    std_srvs::Trigger::Response& response);
+  std::uint32_t index_of(const Point& point) const {
+    return static_cast<std::uint32_t>(&point - map_.points.data());
+  }
   const Point* find_point(const std::string& name, std::string& message) const;
   std::string why_no_value(const Point& point);
 

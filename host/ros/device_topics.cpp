@@ -47,7 +47,7 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater&
       transport_(std::move(transport)),
       thread_(map, verify, load_map, *transport_, *this, poll),
       writes_{[this](const Write& write) { thread_.write(write); },
-              [this](std::uint32_t point, const std::string& what) { refuse(point, what); }} {
+              [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)
     if (is_writable(map_.points[i]))
       subscribers_.push_back(
@@ -66,6 +66,8 @@ bool DeviceTopics::report(Time now) {
                                             (state == State::stale || state == State::never_read))
       points[i].state = State::not_wanted;
   status_.update(device, points, now);
+  thread_.report_held_back();
+  if (const auto line = refused_lines_.due(now)) on_report(Level::warning, *line);
   return diagnostics_.update(device, points);
 }
 
@@ -97,11 +99,15 @@ void DeviceTopics::on_report(Level level, const std::string& text) {
   log(level, fmt::format("{}: {}", map_.name, text));
 }
 
-void DeviceTopics::refuse(std::uint32_t point, const std::string& what) {
-  Write refused;
-  refused.point = point;
-  thread_.refuse(refused, what);
-  on_report(Level::warning, "dropped a write to " + what);
+void DeviceTopics::refuse(std::optional<std::uint32_t> point, const std::string& what) {
+  if (point) {
+    Write refused;
+    refused.point = *point;
+    thread_.refuse(refused, what);
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (const auto line = refused_lines_.say("refused a write to " + what, now))
+    on_report(Level::warning, *line);
 }
 
 }  // namespace coupler::driver

@@ -38,7 +38,7 @@ class DeviceTopics : public Sink {
   void on_report(Level level, const std::string& text) override;
 
  private:
-  void refuse(std::uint32_t point, const std::string& what);
+  void refuse(std::optional<std::uint32_t> point, const std::string& what);
 
   Map map_;
   Listeners listeners_;
@@ -51,6 +51,7 @@ class DeviceTopics : public Sink {
   std::unique_ptr<Transport> transport_;
   DeviceThread thread_;
   WriteHandler writes_;
+  LineLimit refused_lines_;
   std::vector<ros::Subscriber> subscribers_;
 };
 

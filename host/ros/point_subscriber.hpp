@@ -4,6 +4,7 @@
 #include <ros/node_handle.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "host/core/write.hpp"
@@ -13,8 +14,8 @@ namespace coupler::driver {
 /// What the subscriptions of a device share.
 struct WriteHandler {
   std::function<void(const Write&)> accept;
-  /// The value cannot be written: the point's index, what was wrong and the remedy.
-  std::function<void(std::uint32_t point, const std::string& what)> refuse;
+  /// The value cannot be written: the point's index, if there is such a point, what was wrong and the remedy.
+  std::function<void(std::optional<std::uint32_t> point, const std::string& what)> refuse;
 };
 
 /// Subscribes to `topic` with the message type of `map.points[index]`. The handler is called in ROS's network

@@ -10,6 +10,7 @@ namespace {
 
 using State = PointQuality::State;
 using coupler_driver::PointStatus;
+using Outcome = WriteResult::Outcome;
 
 constexpr auto longest_interval = std::chrono::seconds(1);
 
@@ -20,6 +21,19 @@ static_assert(static_cast<int>(State::good) == PointStatus::GOOD &&
               static_cast<int>(State::rejected) == PointStatus::REJECTED &&
               static_cast<int>(State::offline) == PointStatus::OFFLINE &&
               static_cast<int>(State::not_wanted) == PointStatus::NOT_WANTED);
+
+std::uint8_t number_of(const std::optional<Outcome>& outcome) {
+  return outcome ? outcome_number(*outcome) : std::uint8_t{PointStatus::NOT_WRITTEN};
+}
+
+static_assert(outcome_number(Outcome::ok) == PointStatus::WRITE_OK &&
+              outcome_number(Outcome::superseded) == PointStatus::WRITE_SUPERSEDED &&
+              outcome_number(Outcome::exception) == PointStatus::WRITE_EXCEPTION &&
+              outcome_number(Outcome::not_taken) == PointStatus::WRITE_NOT_TAKEN &&
+              outcome_number(Outcome::lost) == PointStatus::WRITE_LOST &&
+              outcome_number(Outcome::dropped) == PointStatus::WRITE_DROPPED &&
+              outcome_number(Outcome::kept) == PointStatus::WRITE_KEPT &&
+              outcome_number(Outcome::refused) == PointStatus::WRITE_REFUSED);
 
 template <class T, class U>
 bool assign(T& field, const U& value) {
@@ -55,6 +69,8 @@ bool StatusPublisher::fill(const DeviceSnapshot& device, const std::vector<Point
     const PointQuality& quality = points[i];
     const auto code = static_cast<std::uint8_t>(quality.last_exception.value_or(modbus::Exception{}));
     status.age = quality.last_good ? std::chrono::duration<double>(now - *quality.last_good).count() : -1;
+    news |= assign(status.write_outcome, number_of(quality.last_write));
+    news |= assign(status.write_text, quality.last_write_text);
     const bool other = assign(status.quality, static_cast<std::uint8_t>(quality.state));
     if (!(assign(status.exception, code) || other)) continue;
     status.text = in_words(quality);

@@ -61,7 +61,7 @@ class Identity(testing.RosTest):
         self.assertIn("~ speed: type INT -> UINT", driver.output)
         self.assertNotRegex(driver.output, r"[~+-] (clamp|closed):")
         self.publisher("/press/clamp/write", Bool).publish(True)
-        driver.wait_for("write to clamp dropped")
+        driver.wait_for("write to clamp: dropped")
         clamp.stays_quiet()
         self.assertEqual(clamp.ever, [])
 

@@ -64,7 +64,7 @@ class Reconnect(testing.RosTest):
         with process.Driver(f"_map:={self.map}", f"_port:={port}") as driver:
             driver.wait_for("Connection refused")
             self.publisher("/reconnect/lamp/write", Bool).publish(True)
-            driver.wait_for("write to lamp dropped")
+            driver.wait_for("write to lamp: dropped")
             with Peer(port) as peer:
                 driver.wait_for("connected; 1 writes were dropped meanwhile")
                 self.assertFalse(peer.get("coils", 3)[0])

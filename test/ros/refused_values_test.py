@@ -29,17 +29,17 @@ class RefusedValues(testing.RosTest):
     def test_a_bool_array_of_the_wrong_length(self):
         publisher = self.publisher("/refused/flags/write", BoolArray)
         publisher.publish([True] * 8)
-        self.device.wait_for("dropped a write to refused/flags/write: 8 elements; send 16, element i is bit i")
+        self.device.wait_for("refused a write to refused/flags/write: 8 elements; send 16, element i is bit i")
         publisher.publish([True] + [False] * 15)
         wait_until(lambda: self.peer.get("holding_registers", 0) == [1], "bit 0 at the peer")
 
     def test_a_text_that_is_too_long_or_not_in_the_encoding(self):
         label, code = (self.publisher(f"/refused/{name}/write", String) for name in ("label", "code"))
         label.publish("lange")
-        self.device.wait_for("dropped a write to refused/label/write: 'lange' is longer than 4 bytes")
+        self.device.wait_for("refused a write to refused/label/write: 'lange' is longer than 4 bytes")
         code.publish("für")
         # How the log shows the letter is the locale's affair.
-        self.device.wait_for("dropped a write to refused/code/write: 'f")
+        self.device.wait_for("refused a write to refused/code/write: 'f")
         self.device.wait_for("has a character that ascii has not")
         code.publish("fur")
         wait_until(lambda: self.peer.get("holding_registers", 3) == [0x7566], "'fu' at the peer")

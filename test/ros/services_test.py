@@ -3,13 +3,14 @@
 import time
 
 import rospy
-from coupler_driver.srv import Read, Write
-from std_msgs.msg import Bool
+from coupler_driver.msg import PointStatus
+from coupler_driver.srv import Read, Write, WriteResponse
+from std_msgs.msg import Bool, Float32
 from std_srvs.srv import SetBool
 
 from support import process, testing
 from support.device import ILLEGAL_ADDRESS, Device, Refuse
-from support.latest import LatestDiagnostics, values
+from support.latest import LatestDiagnostics, LatestStatus, values
 from support.patience import NO_TIMEOUT, PATIENCE
 
 MAP = """
@@ -25,6 +26,8 @@ mapping:
     level: {address: 4, type: INT}
     speeds: {address: 10, type: UINT, count: 3}
     label: {address: 20, type: STRING, length: 6}
+    gain: {address: 40, type: REAL}
+    gains: {address: 50, type: REAL, count: 2}
     seldom: {address: 30, type: INT, rate: 0.001}
 """
 
@@ -38,6 +41,8 @@ class ServicesTest(testing.RosTest):
         path = process.write_map(MAP.replace("{timeout}", str(self.timeout)))
         self.program = self.driver(f"_map:={path}", f"_port:={self.device.port}")
         self.program.wait_for("connected")
+        self.status = LatestStatus("served")
+        self.addCleanup(self.status.close)
 
     def call(self, name, kind, *arguments):
         rospy.wait_for_service(f"/served/{name}", PATIENCE)
@@ -49,7 +54,9 @@ class ServicesTest(testing.RosTest):
 
 class Services(ServicesTest):
     def test_a_write_answers_once_the_device_has_it(self):
-        self.assertTrue(self.write("level", "-5").success)
+        result = self.write("level", "-5")
+        self.assertEqual((result.success, result.outcome, result.message), (True, WriteResponse.OK, "ok"))
+        self.status.wait_for(lambda known: "level" in known and known["level"].write_outcome == PointStatus.WRITE_OK)
         self.assertEqual(self.device.tables["holding_registers"][4], 0xFFFB)
         self.assertTrue(self.write("speeds", "[1, 2, 3]").success)
         self.assertEqual(self.device.tables["holding_registers"][10:13], [1, 2, 3])
@@ -65,11 +72,13 @@ class Services(ServicesTest):
 
         self.device.answer = answer
         result = self.write("locked", "true")
-        self.assertEqual((result.success, result.exception), (False, 2))
-        self.assertIn("illegal data address", result.message)
+        self.assertEqual((result.success, result.outcome, result.exception), (False, WriteResponse.EXCEPTION, 2))
+        self.assertEqual(result.message, "exception 02 (illegal data address)")
         result = self.call("locked/set", SetBool, True)
         self.assertFalse(result.success)
-        self.assertIn("illegal data address", result.message)
+        self.assertEqual(result.message, "exception 02 (illegal data address)")
+        locked = self.status.wait_for(lambda known: "locked" in known and known["locked"].write_outcome == PointStatus.WRITE_EXCEPTION)["locked"]
+        self.assertEqual(locked.write_text, "exception 02 (illegal data address)")
 
     def test_a_bit_is_set_by_the_usual_service(self):
         for on in (True, False):
@@ -82,18 +91,38 @@ class Services(ServicesTest):
                                        ("level", "70000", "-32768 … 32767"), ("level", "full", "is not a number"),
                                        ("speeds", "[1]", "give 3")):
             result = self.write(point, value)
-            self.assertFalse(result.success)
+            self.assertEqual((result.success, result.outcome), (False, WriteResponse.REFUSED))
+            self.assertTrue(result.message.startswith("refused: "), result.message)
             self.assertIn(expected, result.message)
+
+    def test_what_is_no_number_is_refused_by_service_and_topic(self):
+        for value in ("nan", "-inf"):
+            result = self.write("gain", value)
+            self.assertEqual((result.outcome, self.device.seen(16)), (WriteResponse.REFUSED, []))
+            self.assertIn("not finite", result.message)
+        self.assertEqual(self.write("gains", "[1, inf]").outcome, WriteResponse.REFUSED)
+        self.publisher("/served/gain/write", Float32).publish(float("nan"))
+        self.program.wait_for("served: write to gain: refused: a number that is not finite (NaN or infinity)")
+        self.assertTrue(self.write("gain", "1.5").success)
+        self.assertEqual([request.count for request in self.device.seen(16)], [2])
+
+    def test_a_flood_of_refused_writes_is_one_line_a_second_with_a_count(self):
+        began = time.monotonic()
+        for _ in range(300):
+            self.write("level", "70000")
+        self.program.wait_for("more of this kind)")
+        lines = self.program.output.count("served: refused a write to level")
+        self.assertLess(lines, 2 + time.monotonic() - began)
 
     def test_what_is_refused_is_logged_and_counted(self):
         diagnostics = LatestDiagnostics("served")
         self.addCleanup(diagnostics.close)
         self.write("level", "70000")
-        self.program.wait_for("served: dropped a write to level by the service served/write: 70000 does not fit")
+        self.program.wait_for("served: refused a write to level by the service served/write: 70000 does not fit")
         self.write("pressure", "1")
-        self.program.wait_for("served: dropped a write to pressure by the service served/write: ")
+        self.program.wait_for("served: refused a write to pressure by the service served/write: ")
         self.write("nothing", "1")
-        self.program.wait_for("served: dropped a write by the service served/write: there is no point 'nothing'")
+        self.program.wait_for("served: refused a write to nothing by the service served/write: there is no point 'nothing'")
         self.write("level", "1e3")
         self.assertEqual(self.device.tables["holding_registers"][4], 1000)
         known = diagnostics.wait_for(lambda known: "writes" in known and values(known["writes"])["ok"] == "1")

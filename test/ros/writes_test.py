@@ -102,7 +102,7 @@ class Writes(testing.RosTest):
             driver = self.drive(one(", read_address: 105, verify_write: true"), device.port)
             device.tables["holding_registers"][105] = 3
             self.speed().publish(4)
-            driver.wait_for("write to speed was acknowledged, but not taken: 0x0004 was written, 0x0003 reads back")
+            driver.wait_for("write to speed: not taken: acknowledged, but 0x0004 was written and 0x0003 reads back")
 
     def test_a_device_that_refuses_the_function_for_several_gets_single_ones(self):
         with Device() as device:

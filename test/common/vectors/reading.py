@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the registers of a vector mean, by Python's struct and docs/generated.md: no code of this project has a hand in it."""
+import math
 import struct
 
 LETTERS = {"BYTE": "B", "WORD": "H", "DWORD": "I", "LWORD": "Q", "SINT": "b", "INT": "h", "DINT": "i", "LINT": "q",
@@ -65,6 +66,8 @@ def encode(point, value):
         return [swap(word) if order == "BA" else word]
     if kind == "STRING":
         return text(point, value)
+    if isinstance(value, float) and not math.isfinite(value):
+        raise NoValue
     data = number_bytes(LETTERS[kind], raw_number(point, value) if "scale" in point else value)
     if len(data) == 1:
         data = data + b"\0" if point["offset"] == "high" else b"\0" + data

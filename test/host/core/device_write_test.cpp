@@ -93,7 +93,7 @@ TEST_F(DeviceWriteTest, A_refused_write_is_reported_and_keeps_the_connection) {
   device.next_errors.push_back(ExceptionReply{modbus::Exception::server_device_failure});
   push("a", 1);
   run_for(milliseconds(200));
-  EXPECT_EQ(sink->reported("write to a refused: exception 04 (server device failure)"), 1);
+  EXPECT_EQ(sink->reported("write to a: exception 04 (server device failure)"), 1);
   EXPECT_EQ(device.count("connect"), 0U);
 }
 
@@ -102,7 +102,7 @@ TEST_F(DeviceWriteTest, A_write_without_an_answer_is_reported_as_lost_and_not_re
   device.next_errors.push_back(Timeout{milliseconds(3000)});
   push("a", 1);
   run_for(milliseconds(500));
-  EXPECT_EQ(sink->reported("write to a lost: no reply within 3000 ms"), 1);
+  EXPECT_EQ(sink->reported("write to a: lost: no reply within 3000 ms"), 1);
   EXPECT_EQ(device.count("write coil 5"), 1U);
   EXPECT_THAT(sink->online, ElementsAre(true, false, true));
 }
@@ -114,7 +114,7 @@ TEST_F(DeviceWriteTest, Writes_while_offline_are_dropped_and_reported_once_with_
     push("a", 1);
     run_for(milliseconds(50));
   }
-  EXPECT_EQ(sink->reported("write to a dropped"), 1);
+  EXPECT_EQ(sink->reported("write to a: dropped"), 1);
   device.refuse_connect.reset();
   run_for(milliseconds(500));
   EXPECT_EQ(device.count("write coil 5"), 0U);

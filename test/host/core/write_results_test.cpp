@@ -167,7 +167,7 @@ TEST_F(WriteResultsTest, A_value_that_does_not_read_back_is_told_with_both) {
   engine->step();
   EXPECT_THAT(results.outcomes, ElementsAre(Outcome::not_taken, Outcome::ok));
   EXPECT_EQ(
-      sink->reported("write to r1 was acknowledged, but not taken: 0x0004 was written, 0x0003 reads back"),
+      sink->reported("write to r1: not taken: acknowledged, but 0x0004 was written and 0x0003 reads back"),
       1);
 }
 
@@ -177,7 +177,8 @@ TEST_F(WriteResultsTest, A_value_that_cannot_be_read_back_is_not_called_taken) {
   device.missing_for_reads_only = true;
   push("k0", 1, &results);
   engine->step();
-  EXPECT_EQ(results.text, "was acknowledged, but cannot be read back: exception 02 (illegal data address)");
+  EXPECT_EQ(results.text,
+            "not taken: acknowledged, but it cannot be read back: exception 02 (illegal data address)");
 }
 
 TEST_F(WriteResultsTest, A_value_that_is_none_of_its_point_is_refused) {

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host/core/clock.hpp"
+
+namespace coupler::driver {
+
+/// Of lines of one kind, one a second: at once where there was none, else the newest when the second is over,
+/// and how many came before it. Any thread may call.
+class LineLimit {
+ public:
+  static constexpr auto interval = std::chrono::seconds(1);
+
+  /// What is to be said now.
+  std::optional<std::string> say(std::string text, Time now) {
+    const std::lock_guard lock(mutex_);
+    left_out_ += waiting_ ? 1 : 0;
+    waiting_ = std::move(text);
+    return take(now);
+  }
+  /// What waits, where its time has come.
+  std::optional<std::string> due(Time now) {
+    const std::lock_guard lock(mutex_);
+    return take(now);
+  }
+
+ private:
+  std::optional<std::string> take(Time now) {
+    if (!waiting_ || (said_ && now - *said_ < interval)) return std::nullopt;
+    said_ = now;
+    if (left_out_ > 0) *waiting_ += fmt::format(" (and {} more of this kind)", std::exchange(left_out_, 0));
+    return std::exchange(waiting_, std::nullopt);
+  }
+
+  std::mutex mutex_;
+  std::optional<std::string> waiting_;
+  std::optional<Time> said_;
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace coupler::driver
