@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <set>
 #include <thread>
 #include <utility>
@@ -21,6 +22,7 @@
 #include "host/ros/arguments.hpp"
 #include "host/ros/device_topics.hpp"
 #include "host/ros/map_source.hpp"
+#include "host/ros/master_watch.hpp"
 #include "host/ros/ros_parameters.hpp"
 
 namespace coupler::driver {
@@ -155,6 +157,7 @@ int run(const Devices& devices) {
     topics.push_back(std::make_unique<DeviceTopics>(handle, diagnostics, source.map, std::move(*transport++),
                                                     settings.verify.value_or(Verify::require),
                                                     source.map.poll));
+  std::optional<MasterWatch> master(std::in_place);
   for (Time diagnosed = Time::min(); ros::ok(); std::this_thread::sleep_for(report_interval)) {
     const Time now = std::chrono::steady_clock::now();
     bool due = diagnosed == Time::min() || now - diagnosed >= diagnostics_interval;
@@ -163,6 +166,7 @@ int run(const Devices& devices) {
     diagnosed = now;
     diagnostics.force_update();
   }
+  master.reset();
   ros::shutdown();
   end_all(topics);
   return 0;

@@ -3,13 +3,13 @@
 # Checks, waiting and background programs for scripts that test/kernel/run starts. To be sourced (gpio-sim.sh does).
 #   check TEXT CMD…           ok if CMD succeeds            refuse TEXT CMD…   ok if CMD fails
 #   expect TEXT WANTED GOT    ok if both are the same text
-#   wait_until CMD…           tries CMD every 20 ms; fails after a minute, and shows the last try's output
+#   wait_until CMD…           tries CMD every 20 ms; fails after three minutes, and shows the last try's output
 #   within SECONDS CMD…       the same, where failing is no failure of the test
 #   start NAME CMD…           runs CMD in the background; its output goes to the file $(log NAME)
 #   pid NAME, log NAME        the process id, the file of its output
 #   running NAME              whether it still runs
 #   stop NAME [SIGNAL]        sends SIGNAL (default TERM), waits for the end, and gives its exit status
-#                             (128 + signal number if it died of a signal; 255 if it had to be killed after a minute)
+#                             (128 + signal number if it died of a signal; 255 if it had to be killed after three minutes)
 #   says NAME PATTERN [COUNT] whether at least COUNT lines (default 1) of its output match (grep -E)
 # Each check prints `ok - TEXT` or `not ok - TEXT`. When the script ends, a summary follows; its exit status is then 1
 # if a check failed or none was made, or the script's own if that is not 0. The output of every started program is shown
@@ -49,7 +49,7 @@ expect() {
 
 microseconds() { echo "${EPOCHREALTIME/[.,]/}"; }
 
-readonly patience=60 # seconds: only tells what hangs from what works, also where two programs share a busy processor
+readonly patience=180 # seconds: only tells what hangs from what works, also where four programs share two busy processors
 
 wait_until() { within "$patience" "$@"; }
 

@@ -22,11 +22,11 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 class Process:
     """A program of the build, and everything it prints."""
 
-    def __init__(self, name, *arguments):
+    def __init__(self, name, *arguments, environment=None):
         self._lines = []
         self._child = subprocess.Popen(
             [str(BUILD / "bin" / name), *map(str, arguments)],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", env=environment)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 

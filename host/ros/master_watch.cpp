@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/ros/master_watch.hpp"
+
+#include <ros/master.h>
+#include <ros/this_node.h>
+
+#include <chrono>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host/ros/ros_log.hpp"
+
+namespace coupler::driver {
+namespace {
+
+using Known = Registrations::Known;
+
+/// A restarted master finds the node again within this and what the registration takes.
+constexpr auto interval = std::chrono::seconds(2);
+
+std::string master_uri() { return fmt::format("the ROS master at {}", ros::master::getURI()); }
+
+}  // namespace
+
+MasterWatch::MasterWatch() : thread_([this] { run(); }) {}
+
+MasterWatch::~MasterWatch() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  ends_.notify_one();
+  thread_.join();
+}
+
+void MasterWatch::run() {
+  std::unique_lock lock(mutex_);
+  do {
+    lock.unlock();
+    look();
+    lock.lock();
+  } while (!ends_.wait_for(lock, interval, [this] { return ended_; }));
+}
+
+void MasterWatch::look() {
+  const Known before = std::exchange(known_, Registrations::ask());
+  switch (known_) {
+    case Known::yes: return registrations_.learn();
+    case Known::no_master:
+      if (before == Known::yes)
+        log(Level::warning,
+            master_uri() + " does not answer; devices are polled and fed, and topics that are connected go on");
+      return;
+    case Known::by_another:
+      if (before != Known::by_another)
+        log(Level::error,
+            fmt::format("{} knows another node as {}; new subscribers do not find this one. End one of the two",
+                        master_uri(), ros::this_node::getName()));
+      return;
+    case Known::no: break;
+  }
+  if (registrations_.tell())
+    log(Level::warning, master_uri() + " has started again; topics, services and parameters are registered anew");
+  else
+    known_ = before == Known::yes ? Known::no_master : before;  // it went again; the next look tells
+}
+
+}  // namespace coupler::driver

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <XmlRpcValue.h>
+
+namespace coupler::driver {
+
+/// What the ROS master knows of this node: topics, services and the node's parameters. roscpp registers them
+/// once; a master that starts again knows nothing of them.
+class Registrations {
+ public:
+  enum class Known { yes, no, by_another, no_master };
+
+  /// Asks the master whether it knows this node. `by_another`: another node has its name now.
+  static Known ask();
+  /// Takes over what the master knows. What it does not say is kept as it was.
+  void learn();
+  /// Tells it to a master that does not. False if it did not take all.
+  bool tell() const;
+
+ private:
+  using Topics = std::map<std::string, std::string>;  ///< with their types
+
+  std::vector<std::string> published_;
+  std::vector<std::string> subscribed_;
+  std::vector<std::string> services_;
+  Topics types_;
+  XmlRpc::XmlRpcValue parameters_;  ///< of the node's namespace
+};
+
+}  // namespace coupler::driver

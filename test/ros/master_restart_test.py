@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The ROS master starts again: the driver is found again, and the device notices nothing."""
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+import xmlrpc.client
+
+from support import process
+from support.device import Device
+from support.patience import NO_TIMEOUT, PATIENCE
+from support.topics import wait_until
+
+MASTER = pathlib.Path(__file__).resolve().parents[1] / "support/ros-master"
+MAP = f"""
+name: kept
+address: 127.0.0.1
+rate: 20
+timeout: {NO_TIMEOUT}
+mapping:
+  input_registers: {{level: {{address: 0, type: INT}}}}
+  holding_registers: {{goal: {{address: 4, type: INT, access: write}}}}
+"""
+NODE = "/kept_driver"
+
+
+class MasterRestart(unittest.TestCase):
+    """With a master of its own, and no rospy in this process: that belongs to another master."""
+
+    def start_master(self, *port):
+        master = subprocess.Popen([MASTER, *map(str, port)], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(master.wait)
+        self.addCleanup(master.terminate)
+        uri = master.stdout.readline().strip()
+        self.assertTrue(uri, "the master did not start")
+        return master, uri
+
+    def in_ros(self, *command):
+        child = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=self.environment)
+        self.addCleanup(child.wait)
+        self.addCleanup(child.terminate)
+        return child
+
+    def of_node(self):
+        """Topics and services that the master knows of the driver."""
+        state = self.master.getSystemState("/test")[2]
+        return [sorted(name for name, nodes in names if NODE in nodes) for names in state]
+
+    def publish_until_written(self, value):
+        publisher = self.in_ros("rostopic", "pub", "-r", "5", "/kept/goal/write", "std_msgs/Int16", str(value))
+        wait_until(lambda: self.device.tables["holding_registers"][4] == value, "the value at the device")
+        publisher.terminate()
+
+    def test_topics_services_and_parameters_come_back_and_polling_goes_on(self):
+        self.device = Device().start()
+        self.addCleanup(self.device.stop)
+        running, uri = self.start_master()
+        self.master = xmlrpc.client.ServerProxy(uri)
+        self.environment = {**os.environ, "ROS_MASTER_URI": uri}
+        with process.Process("coupler_driver", f"_map:={process.write_map(MAP)}", f"_port:={self.device.port}",
+                             environment=self.environment) as driver:
+            driver.wait_for("connected")
+            self.publish_until_written(7)
+            before = self.of_node()
+            self.assertIn("/kept/level", before[0])
+            self.assertIn("/kept/goal/write", before[1])
+            self.assertIn("/kept/safe", before[2])
+            parameters = self.master.getParam("/test", NODE)[2]
+
+            running.terminate()
+            driver.wait_for(f"the ROS master at {uri} does not answer; devices are polled")
+            polls = len(self.device.requests)
+            wait_until(lambda: len(self.device.requests) > polls + 10, "polls without a master")
+
+            _, again = self.start_master(uri.rstrip("/").rsplit(":", 1)[1])
+            self.assertEqual(again, uri)
+            publisher = self.in_ros("rostopic", "pub", "-r", "5", "/kept/goal/write", "std_msgs/Int16", "8")
+            driver.wait_for(f"the ROS master at {uri} has started again; topics, services and parameters are registered")
+            self.assertEqual(self.of_node(), before)
+            self.assertEqual(self.master.getParam("/test", NODE)[2], parameters)
+            wait_until(lambda: self.device.tables["holding_registers"][4] == 8, "a value of one who came before")
+            publisher.terminate()
+            self.publish_until_written(9)
+            echo = self.in_ros("rostopic", "echo", "-n", "1", "/kept/level")
+            self.assertIn("data: 0", echo.communicate(timeout=PATIENCE)[0])
+            answer = self.in_ros("rosservice", "call", "/kept/safe").communicate(timeout=PATIENCE)[0]
+            self.assertIn("success: True", answer)
+            self.assertEqual(driver.output.count("has started again"), 1)
+            self.assertEqual(self.device.accepted, 1, "the device has noticed nothing")
+
+
+if __name__ == "__main__":
+    sys.exit(0 if unittest.main(exit=False, verbosity=2, warnings="ignore").result.wasSuccessful() else 1)
