@@ -76,7 +76,9 @@ Json value_schema(const Key& key) {
     // A plain scalar that looks like a number is text to the loader.
     case ValueKind::text: return {{"type", {"string", "number"}}};
     case ValueKind::ros_name: return text(ros_name, ros_name_rule);
-    case ValueKind::host: return text(R"(^[^ \t\r\n]*$)", "write a host name or an IP address");
+    case ValueKind::host:  // With a colon it is IPv6, which has two at least.
+      return text(R"(^([\w.-]*|\[?[0-9A-Fa-f]*:[0-9A-Fa-f.]*:[0-9A-Fa-f:.]*(%[\w.-]+)?\]?)$)",
+                  "write a host name or an IP address, without scheme and port");
     case ValueKind::ip_address: return text(ip_address, "write an IP address of the node");
     case ValueKind::choice: return choice(key);
     case ValueKind::preset: return preset();

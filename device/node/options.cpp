@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "common/base/version.hpp"
 #include "common/command_line/command_line.hpp"
 
 namespace coupler::node {
@@ -19,6 +20,7 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
   Options options;
   command_line::Program app(
       "Serves the points of a map as a Modbus/TCP device: GPIO lines, or simulated ones.", program);
+  app.version(program + " " + std::string(version));
   app.footer("Example, without hardware, for any Modbus master on this machine:\n  " + program + map +
              " --sim --port 1502" +
              (source == MapSource::argument

@@ -21,13 +21,15 @@ DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Transp
   thread_ = std::thread([this] { run(); });
 }
 
-DeviceThread::~DeviceThread() {
+bool DeviceThread::end() {
+  if (!thread_.joinable()) return ended_safely_;
   stopping_ = true;
   transport_.wake();
   if (ends_safely_) stopped_.get_future().wait_for(longest_farewell);
   clock_.stop();
   transport_.interrupt();
   thread_.join();
+  return ended_safely_;
 }
 
 void DeviceThread::write(const Write& write) {
@@ -69,7 +71,7 @@ void DeviceThread::run() {
   }
   {
     const std::lock_guard turn(turn_);
-    device_.stop();
+    ended_safely_ = device_.stop();
   }
   stopped_.set_value();
 }

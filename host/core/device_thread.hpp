@@ -22,9 +22,11 @@ class DeviceThread {
                Poll poll = Poll::all);
   /// Ends the request in progress and waits for the thread: milliseconds, or, where outputs are to go to
   /// their safe values, most of a second at the worst.
-  ~DeviceThread();
+  ~DeviceThread() { end(); }
   DeviceThread(const DeviceThread&) = delete;
   DeviceThread& operator=(const DeviceThread&) = delete;
+  /// What the destructor does, once. False if an output should have its safe value and has not.
+  bool end();
 
   // From any thread; none of them waits for a request.
 
@@ -59,7 +61,8 @@ class DeviceThread {
   std::atomic<bool> stopping_{false};
   std::atomic<std::thread::id> owner_{};  ///< has its turn while it calls the sink
   std::promise<void> stopped_;
-  std::thread thread_;  // begins when the others are there: it uses them
+  bool ended_safely_ = true;  ///< once the thread has ended
+  std::thread thread_;        // begins when the others are there: it uses them
 };
 
 }  // namespace coupler::driver

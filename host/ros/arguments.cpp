@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/version.hpp"
 #include "common/command_line/command_line.hpp"
 
 namespace coupler::driver {
@@ -94,6 +95,7 @@ Arguments parse_arguments(Span<char* const> arguments) {
   result.names_the_node = given.names_the_node;
   result.for_ros = std::move(given.for_ros);
   command_line::Program app(description, "coupler_driver");
+  app.version(fmt::format("coupler_driver {}", version));
   app.footer(examples);
   std::array<std::string, setting_keys.size()> texts;
   std::vector<command_line::Option> options;

@@ -58,6 +58,11 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater&
     listeners_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
 }
 
+bool DeviceTopics::end() {
+  services_.withdraw();
+  return thread_.end();
+}
+
 bool DeviceTopics::report(Time now) {
   const DeviceSnapshot device = thread_.statistics();
   std::vector<PointQuality> points = thread_.qualities();

@@ -28,6 +28,10 @@ class DeviceTopics : public Sink {
                std::unique_ptr<Transport> transport, Verify verify, Poll poll);
   ~DeviceTopics() override { services_.withdraw(); }
 
+  /// The last thing, once ROS has been shut down: the driver's thread ends. False if an output should have
+  /// its safe value and has not.
+  bool end();
+
   /// Publishes the status where it is due, and says what diagnostics are to tell next: true if at once. To be
   /// called about ten times a second.
   bool report(Time now);

@@ -2,6 +2,8 @@
 #include "host/ros/map_source.hpp"
 
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
@@ -23,10 +25,22 @@ using Source = tl::expected<MapSource, int>;
 
 void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", text); }
 
+/// A relative path that leads nowhere: roslaunch has its programs start in another folder than its own.
+void explain_relative(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (fs::path(path).is_absolute() || fs::exists(path, ignored)) return;
+  print(fmt::format(
+      "a relative path counts from {}; roslaunch starts programs there (in ROS_HOME): give the whole path, "
+      "as in map:=$PWD/{} or $(find PACKAGE)/{}",
+      fs::current_path(ignored).string(), path, path));
+}
+
 /// `name` is that of a map that says none.
 Source from_file(const std::string& path, std::string_view name) {
   const LoadResult loaded = load_map_file(path, LockUse::read, name);
   coupler::print(loaded.diagnostics);
+  if (!loaded.map) explain_relative(path);
   if (!loaded.map) return tl::make_unexpected(wrong_input);
   return MapSource{loaded.map, loaded.map->map()};
 }

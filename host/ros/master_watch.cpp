@@ -43,25 +43,41 @@ void MasterWatch::run() {
   } while (!ends_.wait_for(lock, interval, [this] { return ended_; }));
 }
 
+void MasterWatch::warn_of_rivals() {
+  std::set<std::string> now;
+  for (const auto& [topic, node] : registrations_.rivals()) {
+    now.insert(topic + node);
+    if (warned_of_.count(topic + node) == 0)
+      log(Level::warning, fmt::format("{} publishes {}, too: two drivers of one device, whose writes mix, or "
+                                      "two devices of one name. End "
+                                      "one of them, or give its device another name by _name:=",
+                                      node, topic));
+  }
+  warned_of_ = std::move(now);
+}
+
 void MasterWatch::look() {
   const Known before = std::exchange(known_, Registrations::ask());
   switch (known_) {
-    case Known::yes: return registrations_.learn();
+    case Known::yes: registrations_.learn(); return warn_of_rivals();
     case Known::no_master:
       if (before == Known::yes)
         log(Level::warning,
-            master_uri() + " does not answer; devices are polled and fed, and topics that are connected go on");
+            master_uri() +
+                " does not answer; devices are polled and fed, and topics that are connected go on");
       return;
     case Known::by_another:
       if (before != Known::by_another)
         log(Level::error,
-            fmt::format("{} knows another node as {}; new subscribers do not find this one. End one of the two",
-                        master_uri(), ros::this_node::getName()));
+            fmt::format(
+                "{} knows another node as {}; new subscribers do not find this one. End one of the two",
+                master_uri(), ros::this_node::getName()));
       return;
     case Known::no: break;
   }
   if (registrations_.tell())
-    log(Level::warning, master_uri() + " has started again; topics, services and parameters are registered anew");
+    log(Level::warning,
+        master_uri() + " has started again; topics, services and parameters are registered anew");
   else
     known_ = before == Known::yes ? Known::no_master : before;  // it went again; the next look tells
 }

@@ -3,6 +3,8 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <set>
+#include <string>
 #include <thread>
 
 #include "host/ros/registrations.hpp"
@@ -23,8 +25,10 @@ class MasterWatch {
  private:
   void run();
   void look();
+  void warn_of_rivals();
 
   Registrations registrations_;
+  std::set<std::string> warned_of_;
   Registrations::Known known_ = Registrations::Known::yes;
   std::mutex mutex_;
   std::condition_variable ends_;

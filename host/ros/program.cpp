@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <deque>
+#include <future>
 #include <memory>
 #include <optional>
 #include <set>
@@ -23,6 +24,7 @@
 #include "host/ros/device_topics.hpp"
 #include "host/ros/map_source.hpp"
 #include "host/ros/master_watch.hpp"
+#include "host/ros/ros_log.hpp"
 #include "host/ros/ros_parameters.hpp"
 
 namespace coupler::driver {
@@ -30,6 +32,7 @@ namespace {
 
 constexpr int wrong_input = 1;
 constexpr int wrong_call = 2;
+constexpr int not_safe = 3;
 constexpr auto report_interval = std::chrono::milliseconds(100);
 constexpr auto diagnostics_interval = std::chrono::seconds(1);
 
@@ -78,11 +81,16 @@ struct Configured {
 };
 using Devices = std::deque<Configured>;  // each stays where it is
 
-/// A line for each name that no map has and arguments are for.
-std::string strangers(const std::vector<MapSource>& sources, const Arguments& arguments) {
+std::vector<std::string_view> names_of(const std::vector<MapSource>& sources) {
   std::vector<std::string_view> names;
   names.reserve(sources.size());
   for (const MapSource& source : sources) names.push_back(source.map.name);
+  return names;
+}
+
+/// A line for each name that no map has and arguments are for.
+std::string strangers(const std::vector<MapSource>& sources, const Arguments& arguments) {
+  const std::vector<std::string_view> names = names_of(sources);
   std::string told;
   for (const auto& [name, settings] : arguments.of_devices)
     if (std::find(names.begin(), names.end(), name) == names.end())
@@ -98,12 +106,16 @@ tl::expected<Devices, int> configure(std::vector<MapSource> sources, const Argum
     print(wrong);
     return tl::make_unexpected(wrong_call);
   }
+  const bool several = sources.size() > 1;
+  for (const std::string& line :
+       unknown_parameters(several ? names_of(sources) : std::vector<std::string_view>()))
+    log(Level::warning, line);
   const auto common = parameters_of(ros::NodeHandle("~"));
   if (!common) return tl::make_unexpected(common.error());
   Devices devices;
   for (MapSource& source : sources) {
     Settings settings = *common;
-    if (sources.size() > 1) {
+    if (several) {
       const auto own = parameters_of(ros::NodeHandle("~" + std::string(source.map.name)));
       if (!own) return tl::make_unexpected(own.error());
       settings = overlay(settings, *own);
@@ -132,12 +144,15 @@ std::string why_not(const Devices& devices) {
   return {};
 }
 
-/// All at once: each may take most of a second for its safe values.
-void end_all(std::vector<std::unique_ptr<DeviceTopics>>& devices) {
-  std::vector<std::thread> ends;
+/// All at once: each may take most of a second for its safe values. Whether all have them that should.
+bool end_all(const std::vector<std::unique_ptr<DeviceTopics>>& devices) {
+  std::vector<std::future<bool>> ends;
   ends.reserve(devices.size());
-  for (auto& device : devices) ends.emplace_back([&device] { device.reset(); });
-  for (std::thread& end : ends) end.join();
+  for (const auto& device : devices)
+    ends.push_back(std::async(std::launch::async, [&device] { return device->end(); }));
+  bool safe = true;
+  for (auto& end : ends) safe &= end.get();
+  return safe;
 }
 
 int run(const Devices& devices) {
@@ -168,8 +183,7 @@ int run(const Devices& devices) {
   }
   master.reset();
   ros::shutdown();
-  end_all(topics);
-  return 0;
+  return end_all(topics) ? 0 : not_safe;
 }
 
 }  // namespace

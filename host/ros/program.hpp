@@ -6,7 +6,8 @@
 namespace coupler::driver {
 
 /// The whole of a driver program: coupler_driver (without a built-in map) and generated ones. Returns the
-/// exit code: 0 after SIGINT or SIGTERM, 1 the map or a parameter is wrong, 2 the call is wrong.
+/// exit code: 0 after SIGINT or SIGTERM, 1 the map or a parameter is wrong, 2 the call is wrong, 3 an output
+/// should have its safe value at the end and has not.
 int main_with(const Map* built_in, int argc, char** argv);
 
 }  // namespace coupler::driver

@@ -51,6 +51,23 @@ std::vector<std::string> own_of(XmlRpcValue& all) {
   return own;
 }
 
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+std::vector<Registrations::Rival> rivals_for(const std::vector<std::string>& own, XmlRpcValue& published) {
+  std::vector<Registrations::Rival> rivals;
+  for (int i = 0; i < published.size(); ++i) {
+    const auto& topic = static_cast<std::string&>(published[i][0]);
+    if (!ends_with(topic, "/online") || std::find(own.begin(), own.end(), topic) == own.end()) continue;
+    XmlRpcValue& nodes = published[i][1];
+    for (int n = 0; n < nodes.size(); ++n)
+      if (const auto& node = static_cast<std::string&>(nodes[n]); node != ros::this_node::getName())
+        rivals.push_back({topic, node});
+  }
+  return rivals;
+}
+
 /// As the master does when a publisher comes: this node connects to those that it does not know yet.
 void tell_publishers(const std::string& topic, const XmlRpcValue& publishers) {
   std::string host;
@@ -70,8 +87,7 @@ Registrations::Known Registrations::ask() {
   XmlRpcValue ignored;
   const std::string name = ros::this_node::getName();
   const bool known = ros::master::execute("lookupNode", call(name), response, ignored, false);
-  if (known)
-    return static_cast<std::string&>(response[2]) == own_uri() ? Known::yes : Known::by_another;
+  if (known) return static_cast<std::string&>(response[2]) == own_uri() ? Known::yes : Known::by_another;
   const bool answered = response.valid() && response.getType() == XmlRpcValue::TypeArray;
   return answered ? Known::no : Known::no_master;
 }
@@ -81,6 +97,7 @@ void Registrations::learn() {
   auto types = ask_master("getTopicTypes", call());
   if (!state || !types) return;
   published_ = own_of((*state)[0]);
+  rivals_ = rivals_for(published_, (*state)[0]);
   subscribed_ = own_of((*state)[1]);
   services_ = own_of((*state)[2]);
   for (int i = 0; i < types->size(); ++i)

@@ -20,6 +20,13 @@ class Registrations {
   static Known ask();
   /// Takes over what the master knows. What it does not say is kept as it was.
   void learn();
+  /// Another node that publishes `<name>/online`, as this one does: two drivers of one device, or of one
+  /// name.
+  struct Rival {
+    std::string topic;
+    std::string node;
+  };
+  const std::vector<Rival>& rivals() const { return rivals_; }
   /// Tells it to a master that does not. False if it did not take all.
   bool tell() const;
 
@@ -30,6 +37,7 @@ class Registrations {
   std::vector<std::string> subscribed_;
   std::vector<std::string> services_;
   Topics types_;
+  std::vector<Rival> rivals_;       ///< at the last learn()
   XmlRpc::XmlRpcValue parameters_;  ///< of the node's namespace
 };
 

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/ros_parameters.hpp"
 
+#include <ros/param.h>
+#include <ros/this_node.h>
+
+#include <algorithm>
+
 #include <fmt/format.h>
+
+#include "common/map/loader/nearest.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -30,7 +37,41 @@ std::optional<std::string> as_text(XmlRpc::XmlRpcValue& value) {
   }
 }
 
+/// Those of the libraries that the driver uses.
+constexpr std::string_view of_others[] = {"diagnostic_period", "diagnostic_updater_fast"};
+
+std::vector<std::string_view> known_names() {
+  std::vector<std::string_view> names;
+  for (const SettingKey& key : setting_keys) {
+    names.push_back(key.key);
+    if (!key.alias.empty()) names.push_back(key.alias);
+  }
+  return names;
+}
+
+void add_unknown(XmlRpc::XmlRpcValue& tree, const std::string& place,
+                 const std::vector<std::string_view>& devices, std::vector<std::string>& lines) {
+  if (tree.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
+  std::vector<std::string_view> names = known_names();
+  for (auto& [name, value] : tree) {
+    if (std::find(std::begin(of_others), std::end(of_others), name) != std::end(of_others)) continue;
+    if (std::find(devices.begin(), devices.end(), name) != devices.end())
+      add_unknown(value, place + "/" + name, {}, lines);
+    else if (std::find(names.begin(), names.end(), name) == names.end())
+      lines.push_back(fmt::format("parameter {}/{} is no setting and does nothing; {}", place, name,
+                                  loader::nearest_or(name, names, "coupler_driver --help shows them")));
+  }
+}
+
 }  // namespace
+
+std::vector<std::string> unknown_parameters(const std::vector<std::string_view>& devices) {
+  std::vector<std::string> lines;
+  XmlRpc::XmlRpcValue tree;
+  if (ros::param::get(ros::this_node::getName(), tree))
+    add_unknown(tree, ros::this_node::getName(), devices, lines);
+  return lines;
+}
 
 tl::expected<Settings, std::string> read_parameters(const ros::NodeHandle& handle) {
   Settings settings;

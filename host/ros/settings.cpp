@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "common/map/host.hpp"
+
 namespace coupler::driver {
 namespace {
 
@@ -76,6 +78,15 @@ Outcome set_text(std::optional<std::string>& field, std::string_view key, const 
   return {};
 }
 
+Outcome set_address(Settings& settings, const std::string& text) {
+  const auto host = parse_host(text);
+  if (!host)
+    return tl::make_unexpected(
+        fmt::format("address: '{}' {}; {}", text, host.error().what, host.error().remedy));
+  settings.address = std::string(*host);
+  return {};
+}
+
 std::string_view without(std::string_view text, std::string_view front, std::string_view back) {
   const std::size_t from = text.find_first_not_of(front);
   if (from == std::string_view::npos) return {};
@@ -125,7 +136,7 @@ Outcome set(Settings& settings, std::string_view key, const std::string& text) {
   if (key == "map") return set_text(settings.map, key, text);
   if (key == "maps") return set_list(settings.maps, key, text);
   if (key == "name") return set_text(settings.name, key, text);
-  if (key == "address") return set_text(settings.address, key, text);
+  if (key == "address") return set_address(settings, text);
   if (key == "port") return set_whole(settings.port, key, text, 1);
   if (key == "unit") return set_whole(settings.unit, key, text, 0);
   if (key == "rate") return set_rate(settings, text);

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the driver's settings come from, in the origin's spellings too, and what it says of wrong ones."""
+import os
+import socket
 
 import rospy
 from std_msgs.msg import Int16
 
 from support import process, testing
+from support.patience import PATIENCE
 from support.peer import Peer
 from support.ports import free_port
 
@@ -85,14 +88,39 @@ class Settings(testing.RosTest):
         self.assert_ends(2, "--speed", "--speed", 5)
         self.assert_ends(2, "rate: 'fast' is not a rate", f"_map:={self.map()}", "_rate:=fast")
         self.assert_ends(2, "port: '70000' is not a whole number from 1 to 65535", "_port:=70000")
+        self.assert_ends(2, "address: '10.0.0.7:502' has a port; say 'port: 502' beside it", "_address:=10.0.0.7:502")
         self.assert_ends(2, "verify: 'maybe' is not require, warn or off", "_verify:=maybe")
 
     def test_a_wrong_map_ends_with_1_and_says_where(self):
         path = process.write_map("name: broken\nmapping:\n  coils: {a: 70000}\n")
         self.assert_ends(1, f"{path}:3:", f"_map:={path}", "_address:=localhost")
         self.assert_ends(1, "/nowhere.yaml", "_map:=/nowhere.yaml")
+        self.assert_ends(1, f"a relative path counts from {os.getcwd()}; roslaunch starts programs there", "_map:=nowhere.yaml")
         path = process.write_map("name: homeless\nmapping:\n  coils: {a: 7}\n")
         self.assert_ends(1, "the map has no address; add 'address: HOST' or give _address:=HOST", f"_map:={path}")
+
+    def test_a_misspelt_parameter_is_told_with_the_nearest_name(self):
+        rospy.set_param("/settings_driver/raet", 20)
+        with process.Driver(f"_map:={self.map()}") as driver:
+            driver.wait_for("parameter /settings_driver/raet is no setting and does nothing; did you mean 'rate'?")
+            driver.wait_for("connected")
+            self.assertEqual(driver.output.count("is no setting"), 1)
+
+    def test_a_second_driver_of_the_same_name_is_noticed_by_both(self):
+        with process.Driver(f"_map:={self.map()}") as one:
+            one.wait_for("connected")
+            with process.Driver(f"_map:={self.map()}", "__name:=other") as other:
+                one.wait_for("/other publishes /settings/online, too: two drivers of one device")
+                other.wait_for("/settings_driver publishes /settings/online, too: two drivers of one device")
+
+    def test_an_ipv6_address_may_stand_in_brackets(self):
+        with socket.create_server(("::1", 0), family=socket.AF_INET6) as server:
+            server.settimeout(PATIENCE)
+            with process.Driver(f"_map:={self.map()}", "_address:=[::1]", f"_port:={server.getsockname()[1]}"):
+                server.accept()[0].close()
+
+    def test_its_version_needs_no_master(self):
+        self.assert_ends(0, "coupler_driver 0.", "--version")
 
     def test_help_needs_no_master_and_has_examples(self):
         self.assert_ends(0, "coupler_driver _map:=device.yaml", "--help")

@@ -20,6 +20,9 @@ mapping:
 """
 
 
+NOT_SAFE = 3  # the exit status
+
+
 def silent_server():
     server = socket.create_server(("127.0.0.1", 0))
     server.settimeout(PATIENCE)  # of accept()
@@ -30,9 +33,9 @@ class Shutdown(unittest.TestCase):
     def setUp(self):
         self.map = process.write_map(MAP.replace("{timeout}", str(NO_TIMEOUT)))
 
-    def assert_ends_soon(self, driver):
+    def assert_ends_soon(self, driver, status=0):
         """It is waited for a tenth of what the driver waits for a reply; it needs a tenth of a second."""
-        self.assertEqual(driver.interrupt(), 0, driver.output)
+        self.assertEqual(driver.interrupt(), status, driver.output)
 
     def test_while_polling(self):
         with Peer() as peer, process.Driver(f"_map:={self.map}", f"_port:={peer.port}") as driver:
@@ -62,7 +65,7 @@ class Shutdown(unittest.TestCase):
             driver = stack.enter_context(process.Driver(f"_maps:=[{','.join(maps)}]"))
             for server in silent:
                 stack.enter_context(server.accept()[0]).recv(12)
-            self.assert_ends_soon(driver)
+            self.assert_ends_soon(driver, NOT_SAFE)
 
     def test_what_becomes_of_safe_values_is_told_though_ros_has_ended(self):
         path = process.write_map("name: shutdown\naddress: 127.0.0.1\non_shutdown: safe\nmapping:\n"
@@ -78,12 +81,12 @@ class Shutdown(unittest.TestCase):
         device.answer = answer
         with process.Driver(f"_map:={path}", f"_port:={device.port}") as driver:
             driver.wait_for("connected")
-            self.assert_ends_soon(driver)
+            self.assert_ends_soon(driver, NOT_SAFE)
             self.assertIn("lamp could not be set to its safe value: exception 04", driver.output)
             self.assertEqual(device.tables["coils"][7], 1)
         with process.Driver(f"_map:={path}", f"_port:={free_port()}") as driver:
             driver.wait_for("Connection refused")
-            self.assert_ends_soon(driver)
+            self.assert_ends_soon(driver, NOT_SAFE)
             self.assertIn("no output could be set to its safe value: not connected", driver.output)
 
     def test_while_it_waits_for_a_nodes_map(self):

@@ -133,7 +133,7 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   const Reader top(root, Section::map, context);
   Map head;
   head.name = read_name(top, root, context);
-  head.connection = read_connection(top);
+  head.connection = read_connection(top, context);
   head.polling = read_polling(top);
   head.limits = read_limits(top, context);
   head.service = read_service(top, context);

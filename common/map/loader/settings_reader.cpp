@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/map/loader/settings_reader.hpp"
 
+#include <fmt/format.h>
+
+#include "common/map/host.hpp"
+
 namespace coupler::loader {
 
-Connection read_connection(const Reader& top) {
+Connection read_connection(const Reader& top, Context& context) {
   Connection connection;
   top.text("address", connection.address);
-  if (connection.address.find_first_of(" \t\r\n") != std::string_view::npos)
-    top.wrong("address", "a host name or an IP address");
+  if (!connection.address.empty()) {
+    if (const auto host = parse_host(connection.address))
+      connection.address = *host;
+    else
+      context.problems.error(top.find("address")->at,
+                             fmt::format("'address': '{}' {}", connection.address, host.error().what),
+                             host.error().remedy);
+  }
   top.integer("port", connection.port);
   top.integer("unit", connection.unit);
   top.duration("timeout", connection.timeout);

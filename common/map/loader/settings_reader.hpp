@@ -7,7 +7,7 @@
 namespace coupler::loader {
 
 /// What the top of the file says about the coupler, not about its points.
-Connection read_connection(const Reader& top);
+Connection read_connection(const Reader& top, Context& context);
 Polling read_polling(const Reader& top);
 Limits read_limits(const Reader& top, Context& context);
 

@@ -35,7 +35,7 @@ TEST(Settings, A_bare_timeout_means_seconds) {
 }
 
 TEST(Settings, An_address_is_text_even_if_it_looks_like_a_number) {
-  EXPECT_EQ(test::load_with("address: 10.0")->map().connection.address, "10.0");
+  EXPECT_EQ(test::load_with("address: 1e3")->map().connection.address, "1e3");
 }
 
 TEST(Settings, The_rate_may_be_a_fraction) {
