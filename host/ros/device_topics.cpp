@@ -10,6 +10,7 @@
 
 #include "common/map/loader/load.hpp"
 #include "host/ros/ros_log.hpp"
+#include "host/ros/traced_transport.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -44,7 +45,7 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater&
       status_(handle, map),
       diagnostics_(map, updater),
       services_(map, listeners_),
-      transport_(std::move(transport)),
+      transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport))),
       thread_(map, verify, load_map, *transport_, *this, poll),
       writes_{[this](const Write& write) { thread_.write(write); },
               [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {

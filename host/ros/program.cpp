@@ -22,6 +22,7 @@
 #include "host/modbus/make_transports.hpp"
 #include "host/ros/arguments.hpp"
 #include "host/ros/device_topics.hpp"
+#include "host/ros/logger_service.hpp"
 #include "host/ros/map_source.hpp"
 #include "host/ros/master_watch.hpp"
 #include "host/ros/ros_log.hpp"
@@ -161,6 +162,7 @@ int run(const Devices& devices) {
     return wrong_input;
   }
   ros::NodeHandle handle;
+  const ros::ServiceServer loggers = advertise_loggers();
   diagnostic_updater::Updater diagnostics;
   diagnostics.setHardwareID("coupler_driver");  // each device has its own
   std::vector<std::unique_ptr<DeviceTopics>> topics;

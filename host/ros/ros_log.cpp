@@ -34,4 +34,11 @@ void log(Level level, const std::string& text) {
   }
 }
 
+bool is_debug_logged() {
+  ROSCONSOLE_DEFINE_LOCATION(true, ros::console::levels::Debug, ROSCONSOLE_DEFAULT_NAME);
+  return __rosconsole_define_location__enabled;
+}
+
+void log_debug(const std::string& text) { ROS_DEBUG("%s", text.c_str()); }
+
 }  // namespace coupler::driver

@@ -10,4 +10,8 @@ namespace coupler::driver {
 /// Writes to rosout and the console.
 void log(Level level, const std::string& text);
 
+/// Whether log_debug() says anything; costs nothing.
+bool is_debug_logged();
+void log_debug(const std::string& text);
+
 }  // namespace coupler::driver

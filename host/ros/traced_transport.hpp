@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "host/core/transport.hpp"
+
+namespace coupler::driver {
+
+/// Shows each request at ROS's debug level: what it was, its result, and how long it took. `rosservice call
+/// /NODE/set_logger_level ros.coupler_driver debug` switches that on.
+class TracedTransport : public Transport {
+ public:
+  TracedTransport(std::string name, std::unique_ptr<Transport> transport)
+      : name_(std::move(name)), transport_(std::move(transport)) {}
+
+  Result<> connect() override;
+  void close() override { transport_->close(); }
+  void interrupt() override { transport_->interrupt(); }
+  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
+  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
+  Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
+  void rank(Rank rank) override { transport_->rank(rank); }
+  Turn await_turn(Time until, bool write_waits = false) override {
+    return transport_->await_turn(until, write_waits);
+  }
+  bool reserve() override { return transport_->reserve(); }
+  Result<> send(const modbus::WriteRequest& request) override;
+  Result<> receive(const modbus::WriteRequest& request) override;
+  Woken wait_until(Time time) override { return transport_->wait_until(time); }
+  void wake() override { transport_->wake(); }
+
+ private:
+  template <class Describe>
+  Result<> told(Result<> result, Time begun, Describe describe);
+
+  std::string name_;
+  std::unique_ptr<Transport> transport_;
+  Time sent_{};
+};
+
+}  // namespace coupler::driver
