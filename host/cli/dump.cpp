@@ -62,7 +62,7 @@ void show_changes(const Map& map, const Snapshot* before, const Snapshot& now) {
 Exit once(const Map& map, const DumpWish& wish) {
   driver::ModbusTransport transport(map.connection);
   driver::SteadyClock clock;
-  DeviceReader reader(map, wish.chosen, transport, clock, load_map);
+  DeviceReader reader(map, wish.chosen, transport, clock, load_served_map);
   const Snapshot now = reader.look();
   const bool nothing = std::none_of(now.readings.begin(), now.readings.end(), [](const Reading& reading) {
     return reading.state == Reading::State::good;
@@ -87,7 +87,7 @@ Exit again_and_again(const Map& map, const DumpWish& wish) {
     transport.interrupt();
     clock.stop();
   });
-  DeviceReader reader(map, wish.chosen, transport, clock, load_map);
+  DeviceReader reader(map, wish.chosen, transport, clock, load_served_map);
   driver::Backoff backoff;
   const bool terminal = !wish.json && is_screen();
   const auto show = wish.json ? show_json : terminal ? show_frame : show_changes;

@@ -28,7 +28,7 @@ tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where) {
     return none(failed, "no answer of a node: " + driver::to_string(served.error()),
                 fmt::format("see that a node serves port {} there, as unit {}", where.port, where.unit));
   if (!*served) return none(bad_input, "a foreign coupler, which serves no map", give_a_file);
-  auto map = driver::load_node_map((*served)->text, (*served)->head, load_map);
+  auto map = driver::load_node_map((*served)->text, (*served)->head, load_served_map);
   if (!map) return none(bad_input, "the node's map cannot be used: " + map.error(), give_a_file);
   return *map;
 }

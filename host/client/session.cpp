@@ -26,7 +26,7 @@ std::unique_ptr<driver::Transport> make_transport(const Map& map) {
 
 struct Session::Link {
   Link(const Map& map, Verify verify, driver::Sink& sink)
-      : transport(make_transport(map)), thread(map, verify, load_map, *transport, sink) {}
+      : transport(make_transport(map)), thread(map, verify, load_served_map, *transport, sink) {}
 
   std::unique_ptr<driver::Transport> transport;
   driver::DeviceThread thread;

@@ -12,7 +12,7 @@
 
 namespace coupler::driver {
 
-/// load_map(), passed in so that the core needs no YAML.
+/// load_served_map(), passed in so that the core needs no YAML.
 using MapLoader = std::function<LoadResult(std::string_view text, std::string_view file)>;
 
 /// nullopt: a foreign coupler, which answers with an exception or with something else.

@@ -46,7 +46,7 @@ DeviceTopics::DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater&
       diagnostics_(map, updater),
       services_(map, listeners_),
       transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport))),
-      thread_(map, verify, load_map, *transport_, *this, poll),
+      thread_(map, verify, load_served_map, *transport_, *this, poll),
       writes_{[this](const Write& write) { thread_.write(write); },
               [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)

@@ -80,7 +80,7 @@ Source from_node(const Settings& settings, std::string_view address) {
     print(where + " serves no map: it is a foreign coupler; give its map by _map:=MAP");
     return tl::make_unexpected(wrong_input);
   }
-  const auto owner = load_node_map(served->text, served->head, load_map);
+  const auto owner = load_node_map(served->text, served->head, load_served_map);
   if (!owner) {
     print(fmt::format("the map of {} cannot be used: {}", where, owner.error()));
     return tl::make_unexpected(wrong_input);

@@ -17,9 +17,10 @@ struct Context {
   std::vector<int> point_lines{};  ///< LoadResult::point_lines
   Position filled_in{};            ///< where the first point stands whose address the text leaves out
   bool origin = false;             ///< may_be_of_the_origin: what the origin would ignore is a warning
+  bool served = false;             ///< by a node, which may be newer than this program: it knows more keys
 
   void ignored(Position at, std::string what, std::string remedy) {
-    if (origin)
+    if (origin || served)
       problems.warning(at, what + ", ignored", std::move(remedy));
     else
       problems.error(at, std::move(what), std::move(remedy));

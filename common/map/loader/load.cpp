@@ -54,14 +54,8 @@ void check_filled_in(const Map& map, loader::Position first, loader::Problems& p
                  "write them into the map");
 }
 
-}  // namespace
-
-LoadResult load_map(std::string_view text, std::string_view file) {
-  return load_map_with_lock(text, file, LockFile{});
-}
-
-LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock,
-                              std::string_view name) {
+LoadResult load(std::string_view text, std::string_view file, LockFile lock, std::string_view name,
+                bool served) {
   lock::Parsed known;
   const std::string lock_text = lock.text.value_or("");
   if (lock.text) known = lock::parse(*lock.text, lock.path);
@@ -74,6 +68,7 @@ LoadResult load_map_with_lock(std::string_view text, std::string_view file, Lock
   const auto map = std::make_shared<OwnedMap>();
   loader::Context context{problems, *map};
   context.name = name;
+  context.served = served;
   if (const auto root = loader::parse_document(text, problems))
     loader::read_map(*root, text, placement, context);
   if (!problems.has_errors() && context.filled_in.line > 0)
@@ -89,6 +84,21 @@ LoadResult load_map_with_lock(std::string_view text, std::string_view file, Lock
   quote(of_map, loader::without_byte_order_mark(text));
   for (Diagnostic& diagnostic : of_map) result.diagnostics.push_back(std::move(diagnostic));
   return result;
+}
+
+}  // namespace
+
+LoadResult load_map(std::string_view text, std::string_view file) {
+  return load(text, file, LockFile{}, {}, false);
+}
+
+LoadResult load_served_map(std::string_view text, std::string_view file) {
+  return load(text, file, LockFile{}, {}, true);
+}
+
+LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock,
+                              std::string_view name) {
+  return load(text, file, std::move(lock), name, false);
 }
 
 LoadResult load_map_file(const std::string& path, LockUse use, std::string_view name) {

@@ -62,7 +62,8 @@ TEST(JsonComments, What_has_no_end_is_reported_where_it_begins) {
 }
 
 TEST(JsonComments, A_document_in_yaml_keeps_its_slashes) {
-  const auto owned = test::load_clean("name: press\nmapping: {coils: {valve: {address: 0, description: a//b}}}\n");
+  const auto owned =
+      test::load_clean("name: press\nmapping: {coils: {valve: {address: 0, description: a//b}}}\n");
   EXPECT_EQ(owned->map().points[0].description, "a//b");
 }
 

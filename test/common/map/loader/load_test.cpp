@@ -78,6 +78,19 @@ TEST(Load, Problems_come_in_the_order_of_the_file) {
   EXPECT_EQ(result.map, nullptr);
 }
 
+TEST(Load, A_node_may_serve_a_map_with_keys_of_a_later_version) {
+  const std::string text =
+      "name: press\nmood: good\nmapping: {coils: {valve: {address: 0, line: GPIO4, hue: 3, debounce: "
+      "5ms}}}\n";
+  EXPECT_FALSE(load_map(text, "map.yaml").map);
+  const LoadResult served = load_served_map(text, "map.yaml");
+  ASSERT_TRUE(served.map);
+  EXPECT_EQ(served.map->map().points[0].name, "valve");
+  ASSERT_EQ(served.diagnostics.size(), 3U);
+  EXPECT_EQ(served.diagnostics[0].what, "unknown key 'mood' of the map, ignored");
+  EXPECT_FALSE(load_served_map("name: press\nmapping: {coils: {valve: 70000}}\n", "map.yaml").map);
+}
+
 TEST(Load, A_file_that_cannot_be_read_is_a_diagnostic) {
   const LoadResult missing = load_map_file("/no/such/map.yaml");
   EXPECT_EQ(missing.map, nullptr);
