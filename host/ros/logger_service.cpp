@@ -17,9 +17,9 @@ namespace {
 namespace levels = ros::console::levels;
 
 /// One logger, asked level by level: that needs no list.
-class Logger {
+class OneLogger {
  public:
-  explicit Logger(std::string name) : name_(std::move(name)) {
+  explicit OneLogger(std::string name) : name_(std::move(name)) {
     for (int i = 0; i < levels::Count; ++i)
       ros::console::initializeLogLocation(&locations_[static_cast<std::size_t>(i)], name_,
                                           static_cast<ros::console::Level>(i));
@@ -42,8 +42,8 @@ class Logger {
 };
 
 bool answer(roscpp::GetLoggers::Request& /*request*/, roscpp::GetLoggers::Response& response) {
-  static Logger& all = *new Logger(ROSCONSOLE_ROOT_LOGGER_NAME);
-  static Logger& own = *new Logger(ROSCONSOLE_DEFAULT_NAME);
+  static OneLogger& all = *new OneLogger(ROSCONSOLE_ROOT_LOGGER_NAME);
+  static OneLogger& own = *new OneLogger(ROSCONSOLE_DEFAULT_NAME);
   response.loggers = {all.describe(), own.describe()};
   return true;
 }

@@ -85,7 +85,7 @@ void tell_publishers(const std::string& topic, const XmlRpcValue& publishers) {
 Registrations::Known Registrations::ask() {
   XmlRpcValue response;
   XmlRpcValue ignored;
-  const std::string name = ros::this_node::getName();
+  const std::string& name = ros::this_node::getName();
   const bool known = ros::master::execute("lookupNode", call(name), response, ignored, false);
   if (known) return static_cast<std::string&>(response[2]) == own_uri() ? Known::yes : Known::by_another;
   const bool answered = response.valid() && response.getType() == XmlRpcValue::TypeArray;

@@ -56,7 +56,7 @@ void add_unknown(XmlRpc::XmlRpcValue& tree, const std::string& place,
   for (auto& [name, value] : tree) {
     if (std::find(std::begin(of_others), std::end(of_others), name) != std::end(of_others)) continue;
     if (std::find(devices.begin(), devices.end(), name) != devices.end())
-      add_unknown(value, place + "/" + name, {}, lines);
+      add_unknown(value, fmt::format("{}/{}", place, name), {}, lines);
     else if (std::find(names.begin(), names.end(), name) == names.end())
       lines.push_back(fmt::format("parameter {}/{} is no setting and does nothing; {}", place, name,
                                   loader::nearest_or(name, names, "coupler_driver --help shows them")));

@@ -24,8 +24,8 @@ struct LoadResult {
 /// first one (after a syntax error only that one). Never throws.
 LoadResult load_map(std::string_view text, std::string_view file);
 
-/// A map that a node serves. The node may be newer than this program: keys that are unknown here, or unknown at
-/// their place, are warnings.
+/// A map that a node serves. The node may be newer than this program: keys that are unknown here, or unknown
+/// at their place, are warnings.
 LoadResult load_served_map(std::string_view text, std::string_view file);
 
 /// The same; the lock has the addresses that the map leaves out. `name`, if it is not empty, is that of a map
