@@ -12,8 +12,8 @@ namespace coupler {
 /// Outputs go to their safe state when a master that has written falls silent.
 struct Watchdog {
   enum class FedBy : std::uint8_t {
-    any,   ///< every request of a connection that has written
-    write  ///< only their writes
+    any,   ///< every request that is carried out, of a connection that has written an output
+    write  ///< only their writes to outputs
   };
   enum class Recovery : std::uint8_t {
     automatic,  ///< the next write is carried out and arms it again

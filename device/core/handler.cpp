@@ -25,18 +25,6 @@ Table table_of(Function read) {
   }
 }
 
-bool is_write(Function function) {
-  switch (function) {
-    case Function::write_single_coil:
-    case Function::write_single_register:
-    case Function::write_multiple_coils:
-    case Function::write_multiple_registers:
-    case Function::mask_write_register:
-    case Function::read_write_multiple_registers: return true;
-    default: return false;
-  }
-}
-
 }  // namespace
 
 Handler::Handler(const Map& map, Image& image, Hardware hardware, Statistics& statistics,
@@ -55,9 +43,12 @@ std::size_t Handler::handle(modbus::Bytes request, Peer& peer, TimePoint now, Sp
   tick(now);
   hardware_.take_news(now, edge_points_);
   ++statistics_.requests;
+  wrote_output_ = false;
   const Answer done = answer({request, now, reply});
-  watchdog_.request(peer, done && is_write(static_cast<Function>(request[0])), now);
-  if (done) return *done;
+  if (done) {
+    watchdog_.request(peer, wrote_output_, now);
+    return *done;
+  }
   ++statistics_.exceptions;
   ++statistics_.exceptions_of[static_cast<std::size_t>(done.error()) - 1];
   return modbus::reply_exception(request[0], done.error(), reply);
@@ -117,7 +108,10 @@ tl::expected<void, Exception> Handler::store(Table table, modbus::Range range, S
     return driven;
   }
   std::copy(next.begin(), next.end(), cells.begin());
-  if (watchdog_.is_present() && hardware_.driven(table, range, cells)) watchdog_.arm(now);
+  if (watchdog_.is_present() && hardware_.driven(table, range, cells)) {
+    wrote_output_ = true;
+    watchdog_.arm(now);
+  }
   return {};
 }
 

@@ -75,6 +75,7 @@ class Handler {
   Statistics& statistics_;
   OutputWatchdog& watchdog_;
   EdgePoints edge_points_;
+  bool wrote_output_ = false;                                 ///< the request that is being answered has
   std::array<std::uint16_t, modbus::max_write_bits> next_{};  ///< what a write stores, before it is committed
 };
 

@@ -5,7 +5,7 @@ namespace coupler::node {
 
 /// What the node remembers of a connection: one for each, made anew when it is opened.
 struct Peer {
-  bool has_written = false;  ///< a write of it was carried out
+  bool has_written = false;  ///< a write of it to an output was carried out
 };
 
 }  // namespace coupler::node

@@ -11,9 +11,9 @@ void OutputWatchdog::arm(TimePoint now) {
   deadline_ = now + settings_.timeout;
 }
 
-void OutputWatchdog::request(Peer& peer, bool wrote, TimePoint now) {
-  peer.has_written |= wrote;
-  const bool feeds = wrote || (peer.has_written && settings_.fed_by == Watchdog::FedBy::any);
+void OutputWatchdog::request(Peer& peer, bool wrote_output, TimePoint now) {
+  peer.has_written |= wrote_output;
+  const bool feeds = wrote_output || (peer.has_written && settings_.fed_by == Watchdog::FedBy::any);
   if (feeds && state_ == State::armed) deadline_ = now + settings_.timeout;
 }
 

@@ -12,7 +12,8 @@
 namespace coupler::node {
 
 /// Tells when the master has been silent for too long. A write to an output arms it; requests of connections
-/// that have written feed it, so a monitor cannot keep a dead master's outputs on.
+/// that have written one feed it, so neither a monitor nor an HMI that writes something else can keep a dead
+/// master's outputs on.
 class OutputWatchdog {
  public:
   /// What the identity area shows at at_watchdog_state.
@@ -30,8 +31,8 @@ class OutputWatchdog {
 
   /// A master has written to an output that has a line.
   void arm(TimePoint now);
-  /// A request of this client was answered; `wrote`: it was a write and carried out.
-  void request(Peer& peer, bool wrote, TimePoint now);
+  /// A request of this client was carried out; `wrote_output`: it was a write to an output.
+  void request(Peer& peer, bool wrote_output, TimePoint now);
   /// The operator has seen that it expired.
   void reset();
 

@@ -82,15 +82,35 @@ TEST_F(GuardedOutputs, Nothing_expires_before_an_output_was_written) {
   EXPECT_EQ(shown(), std::make_pair(1, 0));
 }
 
-TEST_F(GuardedOutputs, Every_request_of_a_connection_that_has_written_keeps_them) {
+TEST_F(GuardedOutputs, Requests_of_a_connection_that_has_written_one_keep_them) {
   node_.ask(all_on_);
   for (int i = 0; i < 5; ++i) {
-    pass(timeout / 2);
-    node_.ask(any_read);
-    pass(timeout / 2);
-    node_.ask(pdu(3, {1000, 1}));  // an exception is a sign of life too
+    pass(timeout - milliseconds(1));
+    node_.ask(i % 2 == 0 ? any_read : pdu(6, {0, 1}));
   }
   EXPECT_EQ(trips(), 0);
+}
+
+TEST_F(GuardedOutputs, Requests_that_are_not_carried_out_do_not_keep_them) {
+  node_.ask(all_on_);
+  for (int i = 0; i < 4; ++i) {
+    pass(timeout / 4);
+    node_.ask(pdu(3, {1000, 1}));
+    node_.ask(pdu(6, {1000, 1}));
+    node_.ask(pdu(90, {}));
+  }
+  EXPECT_EQ(trips(), 1);
+}
+
+TEST_F(GuardedOutputs, Who_writes_something_else_does_not_keep_them) {
+  node_.ask(all_on_);
+  for (int i = 0; i < 4; ++i) {
+    pass(timeout / 4);
+    node_.ask(monitor_, pdu(6, {0, 1}));
+    node_.ask(monitor_, pdu(5, {4, 0xFF00}));  // a coil without a line
+    node_.ask(monitor_, any_read);
+  }
+  EXPECT_EQ(trips(), 1);
 }
 
 TEST_F(GuardedOutputs, A_connection_that_only_reads_does_not_keep_them) {
@@ -156,12 +176,21 @@ TEST_F(FedByWrites, Reads_do_not_keep_them) {
   EXPECT_EQ(trips(), 1);
 }
 
-TEST_F(FedByWrites, Writes_do_whatever_they_write) {
+TEST_F(FedByWrites, Writes_to_something_else_do_not_keep_them_either) {
   node_.ask(all_on_);
   for (const Pdu& write : {pdu(6, {0, 1}), pdu(16, {0, 1}, {2, 0, 0}), pdu(22, {0, 0, 0}),
                            pdu(23, {0, 1, 0, 1}, {2, 0, 0}), pdu(5, {4, 0})}) {
-    pass(timeout - milliseconds(1));
+    pass(timeout / 5);
     node_.ask(write);
+  }
+  EXPECT_EQ(trips(), 1);
+}
+
+TEST_F(FedByWrites, Writes_to_outputs_do) {
+  node_.ask(all_on_);
+  for (int i = 0; i < 5; ++i) {
+    pass(timeout - milliseconds(1));
+    node_.ask(i % 2 == 0 ? pdu(5, {0, 0}) : all_on_);
   }
   EXPECT_EQ(trips(), 0);
 }

@@ -79,10 +79,12 @@ TEST(HandingOver, Who_may_not_connect_any_more_is_not_taken_over) {
   EXPECT_EQ(other.node.statistics.refusals, 1U);
 }
 
-TEST(HandingOver, Who_has_written_feeds_the_watchdog_of_the_next) {
+TEST(HandingOver, Who_has_written_an_output_feeds_the_watchdog_of_the_next) {
   TcpUnderTest one;
+  one.node.watchdog = OutputWatchdog(Watchdog{std::chrono::hours(1), {}, {}});
+  one.node.lines.outputs = {{0, {0, 0}}};
   Client client = one.connect();
-  client.send(adu(1, pdu(6, {0, 5})));
+  client.send(adu(1, pdu(5, {0, 0xFF00})));
   one.settle();
   const auto clients = one.tcp.release();
   ASSERT_EQ(clients.size(), 1U);
