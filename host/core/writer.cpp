@@ -86,7 +86,7 @@ void Writer::fire_deadmen() {
   while (const auto point = deadmen_.take_expired(clock_.now())) {
     const HostOptions::Deadman& deadman = map_.points[*point].host.deadman;
     Write write = make_write(map_, *point, deadman.value);
-    write.of_deadman = true;
+    write.of_deadman = write.ordered = true;
     const WriteQueue::Pushed pushed = queue_.push(write);
     if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
     if (!pushed.accepted) {  // it goes when there is room: the queue is being emptied

@@ -28,7 +28,7 @@ class DeviceTopics : public Sink {
                std::unique_ptr<Transport> transport, Verify verify, Poll poll);
   ~DeviceTopics() override { services_.withdraw(); }
 
-  /// The last thing, once ROS has been shut down: the driver's thread ends. False if an output should have
+  /// The driver's thread ends; what comes from ROS afterwards does nothing. False if an output should have
   /// its safe value and has not.
   bool end();
 

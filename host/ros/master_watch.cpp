@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/master_watch.hpp"
 
+#include <ros/init.h>
 #include <ros/master.h>
 #include <ros/this_node.h>
 
@@ -18,6 +19,7 @@ using Known = Registrations::Known;
 
 /// A restarted master finds the node again within this and what the registration takes.
 constexpr auto interval = std::chrono::seconds(2);
+constexpr unsigned looks_to_learn = 5;
 
 std::string master_uri() { return fmt::format("the ROS master at {}", ros::master::getURI()); }
 
@@ -43,6 +45,13 @@ void MasterWatch::run() {
   } while (!ends_.wait_for(lock, interval, [this] { return ended_; }));
 }
 
+/// What the master knows changes seldom, and may be much.
+void MasterWatch::learn() {
+  if (looks_++ % looks_to_learn != 0) return;
+  registrations_.learn();
+  warn_of_rivals();
+}
+
 void MasterWatch::warn_of_rivals() {
   std::set<std::string> now;
   for (const auto& [topic, node] : registrations_.rivals()) {
@@ -57,9 +66,10 @@ void MasterWatch::warn_of_rivals() {
 }
 
 void MasterWatch::look() {
-  const Known before = std::exchange(known_, Registrations::ask());
+  const Known before = std::exchange(known_, registrations_.ask());
+  if (ros::isShuttingDown()) return;  // and has said good-bye to the master
   switch (known_) {
-    case Known::yes: registrations_.learn(); return warn_of_rivals();
+    case Known::yes: return learn();
     case Known::no_master:
       if (before == Known::yes)
         log(Level::warning,

@@ -25,9 +25,11 @@ class MasterWatch {
  private:
   void run();
   void look();
+  void learn();
   void warn_of_rivals();
 
   Registrations registrations_;
+  unsigned looks_ = 0;
   std::set<std::string> warned_of_;
   Registrations::Known known_ = Registrations::Known::yes;
   std::mutex mutex_;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <deque>
@@ -42,6 +43,15 @@ void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", t
 /// Until ROS is there nothing has been started that would have to be ended.
 void end_at_once_on_signals() {
   const auto end = [](int) { ::_exit(0); };
+  std::signal(SIGINT, end);
+  std::signal(SIGTERM, end);
+}
+
+std::atomic<bool> is_ending{false};
+
+/// roscpp would begin to shut down in a thread of its own.
+void end_in_order_on_signals() {
+  const auto end = [](int) { is_ending = true; };
   std::signal(SIGINT, end);
   std::signal(SIGTERM, end);
 }
@@ -174,8 +184,9 @@ int run(const Devices& devices) {
     topics.push_back(std::make_unique<DeviceTopics>(handle, diagnostics, source.map, std::move(*transport++),
                                                     settings.verify.value_or(Verify::require),
                                                     source.map.poll));
+  end_in_order_on_signals();
   std::optional<MasterWatch> master(std::in_place);
-  for (Time diagnosed = Time::min(); ros::ok(); std::this_thread::sleep_for(report_interval)) {
+  for (Time diagnosed = Time::min(); ros::ok() && !is_ending; std::this_thread::sleep_for(report_interval)) {
     const Time now = std::chrono::steady_clock::now();
     bool due = diagnosed == Time::min() || now - diagnosed >= diagnostics_interval;
     for (const auto& device : topics) due |= device->report(now);
@@ -183,9 +194,10 @@ int run(const Devices& devices) {
     diagnosed = now;
     diagnostics.force_update();
   }
+  const bool safe = end_all(topics);  // first: a master that is away may hold up what follows
   master.reset();
   ros::shutdown();
-  return end_all(topics) ? 0 : not_safe;
+  return safe ? 0 : not_safe;
 }
 
 }  // namespace

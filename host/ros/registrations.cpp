@@ -3,6 +3,7 @@
 
 #include <XmlRpcClient.h>
 #include <ros/connection_manager.h>
+#include <ros/init.h>
 #include <ros/master.h>
 #include <ros/network.h>
 #include <ros/param.h>
@@ -19,8 +20,6 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
-std::string own_uri() { return ros::XMLRPCManager::instance()->getServerURI(); }
-
 /// The arguments of a call: this node's name, and these.
 template <class... Texts>
 XmlRpcValue call(const Texts&... texts) {
@@ -35,7 +34,8 @@ XmlRpcValue call(const Texts&... texts) {
 std::optional<XmlRpcValue> ask_master(const std::string& method, const XmlRpcValue& arguments) {
   XmlRpcValue response;
   XmlRpcValue answer;
-  if (!ros::master::execute(method, arguments, response, answer, false)) return std::nullopt;
+  if (ros::isShuttingDown() || !ros::master::execute(method, arguments, response, answer, false))
+    return std::nullopt;
   return answer;
 }
 
@@ -69,10 +69,10 @@ std::vector<Registrations::Rival> rivals_for(const std::vector<std::string>& own
 }
 
 /// As the master does when a publisher comes: this node connects to those that it does not know yet.
-void tell_publishers(const std::string& topic, const XmlRpcValue& publishers) {
+void tell_publishers(const std::string& own_uri, const std::string& topic, const XmlRpcValue& publishers) {
   std::string host;
   std::uint32_t port = 0;
-  if (!ros::network::splitURI(own_uri(), host, port)) return;
+  if (!ros::network::splitURI(own_uri, host, port)) return;
   XmlRpcValue arguments = call(topic);
   arguments[2] = publishers;
   XmlRpcValue ignored;
@@ -82,12 +82,17 @@ void tell_publishers(const std::string& topic, const XmlRpcValue& publishers) {
 
 }  // namespace
 
-Registrations::Known Registrations::ask() {
+Registrations::Registrations()
+    : own_uri_(ros::XMLRPCManager::instance()->getServerURI()),
+      service_uri_(fmt::format("rosrpc://{}:{}", ros::network::getHost(),
+                               ros::ConnectionManager::instance()->getTCPPort())) {}
+
+Registrations::Known Registrations::ask() const {
   XmlRpcValue response;
   XmlRpcValue ignored;
   const std::string& name = ros::this_node::getName();
   const bool known = ros::master::execute("lookupNode", call(name), response, ignored, false);
-  if (known) return static_cast<std::string&>(response[2]) == own_uri() ? Known::yes : Known::by_another;
+  if (known) return static_cast<std::string&>(response[2]) == own_uri_ ? Known::yes : Known::by_another;
   const bool answered = response.valid() && response.getType() == XmlRpcValue::TypeArray;
   return answered ? Known::no : Known::no_master;
 }
@@ -115,16 +120,14 @@ bool Registrations::tell() const {
   // First: who waits for the topics may read them then.
   if (parameters_.valid() && !ros::param::has(ros::this_node::getName()))
     ros::param::set(ros::this_node::getName(), parameters_);
-  const std::string service_uri = fmt::format("rosrpc://{}:{}", ros::network::getHost(),
-                                              ros::ConnectionManager::instance()->getTCPPort());
   for (const std::string& service : services_)
-    all &= ask_master("registerService", call(service, service_uri, own_uri())).has_value();
+    all &= ask_master("registerService", call(service, service_uri_, own_uri_)).has_value();
   for (const std::string& topic : published_)
-    all &= ask_master("registerPublisher", call(topic, type_of(topic), own_uri())).has_value();
+    all &= ask_master("registerPublisher", call(topic, type_of(topic), own_uri_)).has_value();
   for (const std::string& topic : subscribed_) {
-    const auto publishers = ask_master("registerSubscriber", call(topic, type_of(topic), own_uri()));
+    const auto publishers = ask_master("registerSubscriber", call(topic, type_of(topic), own_uri_));
     all &= publishers.has_value();
-    if (publishers) tell_publishers(topic, *publishers);
+    if (publishers) tell_publishers(own_uri_, topic, *publishers);
   }
   return all;
 }

@@ -16,8 +16,11 @@ class Registrations {
  public:
   enum class Known { yes, no, by_another, no_master };
 
+  /// Once ROS has started.
+  Registrations();
+
   /// Asks the master whether it knows this node. `by_another`: another node has its name now.
-  static Known ask();
+  Known ask() const;
   /// Takes over what the master knows. What it does not say is kept as it was.
   void learn();
   /// Another node that publishes `<name>/online`, as this one does: two drivers of one device, or of one
@@ -27,12 +30,16 @@ class Registrations {
     std::string node;
   };
   const std::vector<Rival>& rivals() const { return rivals_; }
-  /// Tells it to a master that does not. False if it did not take all.
+  /// Tells it to a master that does not know it. False if it did not take all. Not while ROS shuts down, when
+  /// the master has been told that this node goes.
   bool tell() const;
 
  private:
   using Topics = std::map<std::string, std::string>;  ///< with their types
 
+  // Kept: roscpp does not give them any more once it shuts down.
+  std::string own_uri_;
+  std::string service_uri_;
   std::vector<std::string> published_;
   std::vector<std::string> subscribed_;
   std::vector<std::string> services_;
