@@ -48,10 +48,14 @@ void end_at_once_on_signals() {
 }
 
 std::atomic<bool> is_ending{false};
+std::atomic<bool> is_running{false};
 
-/// roscpp would begin to shut down in a thread of its own.
+/// roscpp would shut down in a thread of its own, which only helps one who still waits for the master.
 void end_in_order_on_signals() {
-  const auto end = [](int) { is_ending = true; };
+  const auto end = [](int) {
+    is_ending = true;
+    if (!is_running) ros::requestShutdown();
+  };
   std::signal(SIGINT, end);
   std::signal(SIGTERM, end);
 }
@@ -171,6 +175,7 @@ int run(const Devices& devices) {
     print(wrong);
     return wrong_input;
   }
+  end_in_order_on_signals();
   ros::NodeHandle handle;
   const ros::ServiceServer loggers = advertise_loggers();
   diagnostic_updater::Updater diagnostics;
@@ -184,8 +189,9 @@ int run(const Devices& devices) {
     topics.push_back(std::make_unique<DeviceTopics>(handle, diagnostics, source.map, std::move(*transport++),
                                                     settings.verify.value_or(Verify::require),
                                                     source.map.poll));
-  end_in_order_on_signals();
-  std::optional<MasterWatch> master(std::in_place);
+  is_running = true;
+  std::optional<MasterWatch> master;
+  if (!is_ending) master.emplace();
   for (Time diagnosed = Time::min(); ros::ok() && !is_ending; std::this_thread::sleep_for(report_interval)) {
     const Time now = std::chrono::steady_clock::now();
     bool due = diagnosed == Time::min() || now - diagnosed >= diagnostics_interval;

@@ -5,11 +5,14 @@ import os
 import socket
 import unittest
 
+import rospy
+
 from support import process, testing
 from support.device import FAILURE, Device, Refuse
 from support.patience import NO_TIMEOUT, PATIENCE
 from support.peer import Peer
 from support.ports import free_port
+from support.topics import wait_until
 
 MAP = """
 name: shutdown
@@ -41,6 +44,15 @@ class Shutdown(unittest.TestCase):
         with Peer() as peer, process.Driver(f"_map:={self.map}", f"_port:={peer.port}") as driver:
             driver.wait_for("connected")
             self.assert_ends_soon(driver)
+
+    def test_while_it_tells_the_master_of_many_topics(self):
+        points = "".join(f"    p{i}: {i}\n" for i in range(1000))
+        path = process.write_map("name: large\naddress: 127.0.0.1\nmapping:\n  coils:\n" + points)
+        for _ in range(5):
+            with process.Driver(f"_map:={path}", f"_port:={free_port()}") as driver:
+                wait_until(lambda: "/large/p0" in dict(rospy.get_published_topics()), "the first topic")
+                self.assert_ends_soon(driver)
+            wait_until(lambda: "/large/p0" not in dict(rospy.get_published_topics()), "the good-bye")
 
     def test_while_nobody_is_there(self):
         with process.Driver(f"_map:={self.map}", f"_port:={free_port()}") as driver:
