@@ -50,11 +50,11 @@ void end_at_once_on_signals() {
 std::atomic<bool> is_ending{false};
 std::atomic<bool> is_running{false};
 
-/// roscpp would shut down in a thread of its own, which only helps one who still waits for the master.
+/// roscpp would shut down in a thread of its own, while this one still uses it. The second signal is for one
+/// who waits for a master that went away at the start; nothing has been driven then.
 void end_in_order_on_signals() {
   const auto end = [](int) {
-    is_ending = true;
-    if (!is_running) ros::requestShutdown();
+    if (is_ending.exchange(true) && !is_running) ::_exit(0);
   };
   std::signal(SIGINT, end);
   std::signal(SIGTERM, end);
@@ -185,10 +185,12 @@ int run(const Devices& devices) {
   for (const auto& [settings, source] : devices) maps.push_back(source.map);
   auto transports = make_transports(maps);
   auto transport = transports.begin();
-  for (const auto& [settings, source] : devices)
+  for (const auto& [settings, source] : devices) {
+    if (is_ending) break;
     topics.push_back(std::make_unique<DeviceTopics>(handle, diagnostics, source.map, std::move(*transport++),
                                                     settings.verify.value_or(Verify::require),
                                                     source.map.poll));
+  }
   is_running = true;
   std::optional<MasterWatch> master;
   if (!is_ending) master.emplace();
