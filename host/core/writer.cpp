@@ -168,9 +168,7 @@ Result<> Writer::make_safe() {
   queue_.put_back(batch_.writes());
   batch_.clear();
   while (const auto write = queue_.take_one_of(is_safe_point_)) settle(*write, {Outcome::superseded});
-  transport_.rank(Rank::safe);
   const auto refused = write_safe_values();
-  transport_.rank(Rank::write);
   if (!refused) {
     safe_calls_.answer(
         {false, fmt::format("not all outputs have their safe values: {}", to_string(refused.error()))});
@@ -188,7 +186,10 @@ Result<> Writer::make_safe() {
 /// `on_reconnect: restore` brings these back, and not what was written before them.
 Result<std::vector<RefusedValue>> Writer::write_safe_values() {
   for (const Write& write : safe_values_) values_.remember(write);
-  return write_values(safe_values_, map_, transport_);
+  transport_.rank(Rank::safe);
+  auto refused = write_values(safe_values_, map_, transport_);
+  transport_.rank(Rank::write);
+  return refused;
 }
 
 void Writer::tell(const Write& write, const WriteResult& result) {
@@ -261,9 +262,7 @@ bool Writer::shut_down(bool connected) {
     return false;
   }
   if (sent_) finish(transport_.receive(*sent_));
-  transport_.rank(Rank::safe);
   const auto refused = write_safe_values();
-  transport_.rank(Rank::write);
   if (!refused) {
     sink_.on_report(Level::error,
                     "not all outputs could be set to their safe values: " + to_string(refused.error()));
