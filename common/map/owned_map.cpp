@@ -11,27 +11,31 @@ namespace coupler {
 OwnedMap::OwnedMap() = default;
 OwnedMap::~OwnedMap() = default;
 
-std::string_view OwnedMap::keep(std::string text) { return texts_.emplace_back(std::move(text)); }
-
-Span<const std::uint16_t> OwnedMap::keep(std::vector<std::uint16_t> registers) {
-  return registers_.emplace_back(std::move(registers));
+std::shared_ptr<OwnedMap> OwnedMap::make() {
+  return std::allocate_shared<OwnedMap>(std::pmr::polymorphic_allocator<OwnedMap>());
 }
 
-Span<const std::string_view> OwnedMap::keep(std::vector<std::string_view> list) {
-  return lists_.emplace_back(std::move(list));
+std::string_view OwnedMap::keep(const std::string& text) { return texts_.emplace_back(text); }
+
+Span<const std::uint16_t> OwnedMap::keep(const std::vector<std::uint16_t>& registers) {
+  return registers_.emplace_back(registers.begin(), registers.end());
 }
 
-Span<const Unreadable> OwnedMap::keep(std::vector<Unreadable> areas) {
-  return areas_.emplace_back(std::move(areas));
+Span<const std::string_view> OwnedMap::keep(const std::vector<std::string_view>& list) {
+  return lists_.emplace_back(list.begin(), list.end());
 }
 
-Span<const WatchdogSequences::Write> OwnedMap::keep(std::vector<WatchdogSequences::Write> sequence) {
-  return sequences_.emplace_back(std::move(sequence));
+Span<const Unreadable> OwnedMap::keep(const std::vector<Unreadable>& areas) {
+  return areas_.emplace_back(areas.begin(), areas.end());
 }
 
-void OwnedMap::finish(Map head, std::vector<Point> points, std::vector<SimWire> sim) {
-  points_ = std::move(points);
-  sim_ = std::move(sim);
+Span<const WatchdogSequences::Write> OwnedMap::keep(const std::vector<WatchdogSequences::Write>& sequence) {
+  return sequences_.emplace_back(sequence.begin(), sequence.end());
+}
+
+void OwnedMap::finish(Map head, const std::vector<Point>& points, const std::vector<SimWire>& sim) {
+  points_.assign(points.begin(), points.end());
+  sim_.assign(sim.begin(), sim.end());
   std::sort(points_.begin(), points_.end(), canonical_less);
   map_ = head;
   map_.points = points_;

@@ -76,7 +76,7 @@ MapBuilder& MapBuilder::square(const std::string& to, std::chrono::microseconds 
 }
 
 MapBuilder& MapBuilder::text(std::string text) {
-  head_.text = owned_->keep(std::move(text));
+  head_.text = owned_->keep(text);
   return *this;
 }
 
@@ -91,7 +91,7 @@ MapBuilder& MapBuilder::watchdog(Watchdog watchdog) {
 }
 
 Span<const std::uint16_t> MapBuilder::keep(std::vector<std::uint16_t> registers) {
-  return owned_->keep(std::move(registers));
+  return owned_->keep(registers);
 }
 
 MapPtr MapBuilder::build() const {

@@ -54,7 +54,7 @@ class Resolver {
       writes.push_back(resolved(write));
       check_free(writes.back(), points);
     }
-    return context_.map.keep(std::move(writes));
+    return context_.map.keep(writes);
   }
 
   Write resolved(const PresetWatchdog::Write& known) {

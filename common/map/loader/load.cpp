@@ -2,11 +2,11 @@
 #include "common/map/loader/load.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
@@ -20,24 +20,33 @@
 namespace coupler {
 namespace {
 
-std::string read_all(std::istream& in) { return {std::istreambuf_iterator<char>(in), {}}; }
+/// EFBIG: it has more than max_file_size bytes; not all of them were read.
+tl::expected<std::string, int> read_all(std::istream& in) {
+  std::string text;
+  std::array<char, 65536> piece{};
+  do {
+    in.read(piece.data(), piece.size());
+    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+    if (text.size() > max_file_size) return tl::make_unexpected(EFBIG);
+  } while (in);
+  return text;
+}
 
 /// The text, or the system's error number.
 tl::expected<std::string, int> read_file(const std::string& path) {
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) return tl::make_unexpected(errno);
-  try {
-    return read_all(in);
-  } catch (const std::exception&) {  // a folder: libstdc++'s buffer throws on a failed read
-    return tl::make_unexpected(EISDIR);
-  }
+  auto text = read_all(in);
+  if (in.bad()) return tl::make_unexpected(EISDIR);  // or another failed read, of which no number is left
+  return text;
 }
 
 LoadResult unreadable(const std::string& path, int error, std::string remedy) {
-  return {nullptr,
-          {{Diagnostic::Severity::error, path, 0, 0,
-            std::string("the file cannot be read: ") + std::strerror(error), std::move(remedy)}}};
+  const std::string what =
+      error == EFBIG ? fmt::format("the file has more than {} MiB, and no map has", max_file_size >> 20)
+                     : fmt::format("the file cannot be read: {}", std::strerror(error));
+  return {nullptr, {{Diagnostic::Severity::error, path, 0, 0, what, std::move(remedy)}}};
 }
 
 /// The text that a node serves is the same map. Where addresses go is known for texts that somebody would
@@ -65,7 +74,7 @@ LoadResult load(std::string_view text, std::string_view file, LockFile lock, std
   placement.problems = std::move(known.diagnostics);
 
   loader::Problems problems(file);
-  const auto map = std::make_shared<OwnedMap>();
+  const auto map = OwnedMap::make();
   loader::Context context{problems, *map};
   context.name = name;
   context.served = served;
@@ -102,7 +111,11 @@ LoadResult load_map_with_lock(std::string_view text, std::string_view file, Lock
 }
 
 LoadResult load_map_file(const std::string& path, LockUse use, std::string_view name) {
-  if (path == "-") return load_map_with_lock(read_all(std::cin), "<stdin>", LockFile{}, name);
+  if (path == "-") {
+    const auto text = read_all(std::cin);
+    if (!text) return unreadable("<stdin>", text.error(), "give it a map");
+    return load_map_with_lock(*text, "<stdin>", LockFile{}, name);
+  }
   const auto text = read_file(path);
   if (!text) return unreadable(path, text.error(), "give the path of a map");
   LockFile lock{path + ".lock", std::nullopt, use};

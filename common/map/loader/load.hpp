@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,9 @@ struct LoadResult {
   /// map means.
   std::vector<int> point_lines{};
 };
+
+/// A larger file is refused, without reading on: it is no map.
+constexpr std::size_t max_file_size = std::size_t{16} << 20;
 
 /// Reads a map from YAML or JSON text; `file` names it in the diagnostics. Every problem is reported, not the
 /// first one (after a syntax error only that one). Never throws.

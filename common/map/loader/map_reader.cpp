@@ -166,7 +166,7 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   std::vector<Point> finished;
   finished.reserve(drafts.size());
   for (const DraftPoint& draft : drafts) finished.push_back(draft.point);
-  context.map.finish(head, std::move(finished), std::move(sim));
+  context.map.finish(head, finished, sim);
   context.point_lines = lines_of(context.map.map().points, drafts);
 }
 

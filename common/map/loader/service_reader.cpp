@@ -48,7 +48,7 @@ Span<const std::string_view> read_allow(const Reader& top, Context& context) {
       networks.push_back(context.map.keep(child.text));
     }
   }
-  return context.map.keep(std::move(networks));
+  return context.map.keep(networks);
 }
 
 }  // namespace

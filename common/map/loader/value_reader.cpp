@@ -121,7 +121,7 @@ Span<const std::uint16_t> read_value(std::string_view key, const Entry& entry, c
   }
   for (std::size_t i = 0; i < point.count; ++i)
     if (!writer.write(list ? entry.children[i] : entry, &registers[i * step])) return {};
-  return context.map.keep(std::move(registers));
+  return context.map.keep(registers);
 }
 
 }  // namespace coupler::loader

@@ -36,7 +36,7 @@ MapPtr scattered() {
   Map head;
   head.name = "scattered";
   head.polling.discrete_continuous = head.polling.register_continuous = true;
-  owned->finish(head, std::move(points), {});
+  owned->finish(head, points, {});
   return owned;
 }
 

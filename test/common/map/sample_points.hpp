@@ -41,8 +41,8 @@ inline std::vector<Point> sample_points() {
 inline MapPtr map_of(std::vector<Point> points, std::string text = "name: press\n") {
   auto owned = std::make_shared<OwnedMap>();
   Map head;
-  head.text = owned->keep(std::move(text));
-  owned->finish(head, std::move(points), {});
+  head.text = owned->keep(text);
+  owned->finish(head, points, {});
   return owned;
 }
 

@@ -102,6 +102,11 @@ TEST(Load, A_file_that_cannot_be_read_is_a_diagnostic) {
       test::in_tree("test") + ": error: the file cannot be read: Is a directory; give the path of a map\n");
 }
 
+TEST(Load, A_file_without_end_is_refused) {
+  EXPECT_EQ(to_string(load_map_file("/dev/zero").diagnostics.at(0)),
+            "/dev/zero: error: the file has more than 16 MiB, and no map has; give the path of a map");
+}
+
 TEST(Load, A_json_map_may_name_its_schema) {
   const auto result =
       load_map(R"({"$schema": "map.schema.json", "name": "m", "mapping": {"coils": {"a": 0}}})", "m.json");
