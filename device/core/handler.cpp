@@ -68,9 +68,10 @@ std::optional<std::chrono::milliseconds> Handler::patience(TimePoint now) const 
 }
 
 void Handler::show_outputs() {
-  for (const Point& point : map_.points)
-    if (point.table == Table::coils)
-      hardware_.driven(point.table, range(point), image_.find(point.table, range(point)));
+  for (const Image::Area& area : image_.mapped(Table::coils)) {
+    const auto range = modbus::Range::of(area.start, area.end - area.start);
+    hardware_.driven(Table::coils, range, image_.find(Table::coils, range));
+  }
 }
 
 Handler::Answer Handler::hardware_failed() {

@@ -50,11 +50,12 @@ class Hardware {
     return driven;
   }
 
-  /// Every output to its safe state. Tries all of them; false if one cannot be driven.
+  /// Every output to its safe state. Tries all of them, a firmware's code last, which may take
+  /// its time; false if one cannot be driven.
   [[nodiscard]] bool drive_safe() {
-    if (hooked_ != nullptr) hooked_->make_safe();
     const bool lines_are = lines_->drive_safe();
     const bool channels_are = analogue_ == nullptr || analogue_->drive_safe();
+    if (hooked_ != nullptr) hooked_->make_safe();
     return lines_are && channels_are;
   }
 

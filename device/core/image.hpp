@@ -31,6 +31,9 @@ class Image {
   /// Holds initial values. The storage is at least as large as size_for() says and outlives the image.
   Image(const Map& map, Span<Area> areas, Span<std::uint16_t> cells);
 
+  /// The addresses of a table that are mapped, sorted.
+  Span<const Area> mapped(Table table) const { return mapped_[index(table)]; }
+
   /// The cells of the range; empty if one of its addresses is not mapped.
   Span<std::uint16_t> find(Table table, modbus::Range range) const;
 

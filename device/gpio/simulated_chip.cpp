@@ -5,6 +5,9 @@
 #include <cassert>
 #include <type_traits>
 #include <utility>
+#include <vector>
+
+#include "common/map/lookup_by_name.hpp"
 
 namespace coupler::node {
 namespace {
@@ -12,20 +15,22 @@ namespace {
 using modbus::Range;
 
 /// The lines whose address is in the range.
-template <class Lines>
-auto in_range(Lines& lines, Range range) {
+template <class Line>
+Span<Line> in_range(Span<Line> lines, Range range) {
   const auto below = [](const auto& line, std::uint32_t address) { return line.point->address < address; };
   const auto first = std::lower_bound(lines.begin(), lines.end(), std::uint32_t{range.start()}, below);
   const auto last = std::lower_bound(first, lines.end(), range.end(), below);
-  return Span<std::remove_reference_t<decltype(*first)>>(lines).sub(
-      static_cast<std::size_t>(first - lines.begin()), static_cast<std::size_t>(last - first));
+  return lines.sub(static_cast<std::size_t>(first - lines.begin()), static_cast<std::size_t>(last - first));
 }
 
-template <class Lines>
-auto* named(Lines& lines, std::string_view name) {
-  const auto found =
-      std::find_if(lines.begin(), lines.end(), [&](const auto& l) { return l.point->name == name; });
-  return found == lines.end() ? nullptr : &*found;
+template <class Line>
+auto by_name(Span<Line> lines) {
+  return LookupByName(lines, [](const Line& line) { return line.point->name; });
+}
+
+template <class Line>
+Line* named(Span<Line> lines, std::string_view name) {
+  return by_name(lines).find(name);
 }
 
 bool starts_on(const Point& point) { return !point.initial.empty() && point.initial[0] != 0; }
@@ -34,25 +39,40 @@ bool is_safe_on(const Point& point) {
   return point.safe == Safe::on && (point.safe_value.empty() || point.safe_value[0] != 0);
 }
 
+std::vector<const Point*> outputs_of(const Map& map) {
+  std::vector<const Point*> all;
+  for (const Point& point : map.points)
+    if (point.table == Table::coils && !point.latched.present()) all.push_back(&point);
+  return all;
+}
+
+auto wires_by_input(const Map& map) {
+  return LookupByName(map.sim, [](const SimWire& wire) { return wire.to; });
+}
+
+std::vector<const Point*> inputs_of(const Map& map) {
+  auto wires = wires_by_input(map);
+  std::vector<const Point*> all;
+  for (const Point& point : map.points)
+    if (point.table == Table::discrete_inputs && (point.line.present() || wires.find(point.name) != nullptr))
+      all.push_back(&point);
+  return all;
+}
+
 }  // namespace
 
-SimulatedChip::SimulatedChip(const Map& map, TimePoint now) : start_(now), told_(now) {
-  for (const Point& point : map.points) {
-    if (point.table == Table::coils && !point.latched.present())
-      outputs_.push_back({&point, starts_on(point)});
-    if (point.table == Table::discrete_inputs)
-      inputs_.push_back({&point, starts_on(point), nullptr, nullptr, {}});
+SimulatedChip::SimulatedChip(const Map& map, TimePoint now)
+    : outputs_(outputs_of(map).size()), inputs_(inputs_of(map).size()), start_(now) {
+  state_[0].told = now;
+  Output* output = outputs_.all().begin();
+  for (const Point* point : outputs_of(map)) *output++ = {point, starts_on(*point)};
+  auto wires = wires_by_input(map);
+  auto outputs = by_name(outputs_.all());
+  Input* input = inputs_.all().begin();
+  for (const Point* point : inputs_of(map)) {
+    const SimWire* wire = wires.find(point->name);
+    *input++ = {point, starts_on(*point), wire, wire == nullptr ? nullptr : outputs.find(wire->from), {}};
   }
-  for (const SimWire& wire : map.sim) {
-    Input* to = named(inputs_, wire.to);
-    if (to == nullptr) continue;
-    to->wire = &wire;
-    to->from = named(outputs_, wire.from);
-  }
-  const auto has_no_line = [](const Input& input) {
-    return input.wire == nullptr && !input.point->line.present();
-  };
-  inputs_.erase(std::remove_if(inputs_.begin(), inputs_.end(), has_no_line), inputs_.end());
 }
 
 std::uint16_t SimulatedChip::level_of(const Input& input, TimePoint now) const {
@@ -70,8 +90,8 @@ Edges SimulatedChip::edges_of_square(const SimWire& wire, TimePoint now) const {
   const std::chrono::nanoseconds period = wire.square;
   const std::chrono::nanoseconds off = wire.square - wire.square / 2;
   const auto since_told = [&](std::chrono::nanoseconds lead) {
-    return static_cast<std::uint32_t>((std::max(now, told_) - start_ + lead) / period -
-                                      (told_ - start_ + lead) / period);
+    return static_cast<std::uint32_t>((std::max(now, state_[0].told) - start_ + lead) / period -
+                                      (state_[0].told - start_ + lead) / period);
   };
   Edges edges{since_told(std::chrono::nanoseconds(0)), since_told(off), 0};
   if (wire.invert) std::swap(edges.rising, edges.falling);
@@ -79,38 +99,38 @@ Edges SimulatedChip::edges_of_square(const SimWire& wire, TimePoint now) const {
 }
 
 void SimulatedChip::take_edges(TimePoint now, EdgeSink& sink) {
-  if (!plugged_) return;
-  for (Input& input : inputs_) {
+  if (!state_[0].plugged) return;
+  for (Input& input : inputs_.all()) {
     Edges edges = std::exchange(input.edges, {});
     if (input.wire != nullptr && input.wire->square.count() > 0) edges = edges_of_square(*input.wire, now);
     if (edges.any()) sink.add(input.point->address, edges);
   }
-  told_ = std::max(told_, now);
+  state_[0].told = std::max(state_[0].told, now);
 }
 
 bool SimulatedChip::read(Range inputs, Span<std::uint16_t> levels, TimePoint now) {
-  if (!plugged_) return false;
-  for (const Input& input : in_range(inputs_, inputs))
+  if (!state_[0].plugged) return false;
+  for (const Input& input : in_range(inputs_.all(), inputs))
     levels[input.point->address - inputs.start()] = level_of(input, now);
   return true;
 }
 
 bool SimulatedChip::drive(Range coils, Span<const std::uint16_t> levels) {
-  if (!plugged_) return false;
-  for (Output& output : in_range(outputs_, coils))
+  if (!state_[0].plugged) return false;
+  for (Output& output : in_range(outputs_.all(), coils))
     set(output, levels[output.point->address - coils.start()] != 0);
   return true;
 }
 
 bool SimulatedChip::driven(Range coils, Span<std::uint16_t> levels) const {
-  const auto outputs = in_range(outputs_, coils);
+  const auto outputs = in_range(outputs_.all(), coils);
   for (const Output& output : outputs) levels[output.point->address - coils.start()] = output.level ? 1 : 0;
   return !outputs.empty();
 }
 
 bool SimulatedChip::drive_safe() {
-  if (!plugged_) return false;
-  for (Output& output : outputs_)
+  if (!state_[0].plugged) return false;
+  for (Output& output : outputs_.all())
     if (output.point->safe != Safe::hold) set(output, is_safe_on(*output.point));
   return true;
 }
@@ -118,31 +138,33 @@ bool SimulatedChip::drive_safe() {
 void SimulatedChip::set(Output& output, bool level) {
   if (output.level == level) return;
   output.level = level;
-  for (Input& input : inputs_)
+  for (Input& input : inputs_.all())
     if (input.from == &output) ++(level != input.wire->invert ? input.edges.rising : input.edges.falling);
 }
 
 void SimulatedChip::succeed(const SimulatedChip& before) {
   start_ = before.start_;
-  told_ = before.told_;
-  for (Output& output : outputs_)
-    if (const Output* old = named(before.outputs_, output.point->name)) output.level = old->level;
-  for (Input& input : inputs_)
-    if (const Input* old = named(before.inputs_, input.point->name)) {
+  state_[0].told = before.state_[0].told;
+  auto outputs = by_name(before.outputs_.all());
+  for (Output& output : outputs_.all())
+    if (const Output* old = outputs.find(output.point->name)) output.level = old->level;
+  auto inputs = by_name(before.inputs_.all());
+  for (Input& input : inputs_.all())
+    if (const Input* old = inputs.find(input.point->name)) {
       input.level = old->level;
       input.edges = old->edges;
     }
 }
 
 void SimulatedChip::pull(std::string_view input, bool level) {
-  Input* line = named(inputs_, input);
+  Input* line = named(inputs_.all(), input);
   assert(line != nullptr && line->wire == nullptr);
   if (line->level != level) ++(level ? line->edges.rising : line->edges.falling);
   line->level = level;
 }
 
 bool SimulatedChip::level(std::string_view output) const {
-  const Output* line = named(outputs_, output);
+  const Output* line = named(outputs_.all(), output);
   assert(line != nullptr);
   return line->level;
 }

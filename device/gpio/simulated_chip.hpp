@@ -3,17 +3,18 @@
 
 #include <cstdint>
 #include <string_view>
-#include <vector>
 
 #include "common/map/map.hpp"
 #include "device/core/lines.hpp"
+#include "device/keeper/shared_array.hpp"
 
 namespace coupler::node {
 
 /// Hardware without hardware (`--sim`): every coil of the map has a line here (but latched ones, which have
 /// none), and so has every discrete input with a line or a wire, wired as the map's `sim:` says; any other is
 /// its firmware's. An input with no wire keeps the level that it was given. Nothing bounces, so nothing is
-/// debounced. No edge is missed: those of square waves are computed.
+/// debounced. No edge is missed: those of square waves are computed. Processes forked from this one use the
+/// same chip.
 class SimulatedChip : public Lines {
  public:
   /// Outputs and unwired inputs are at their initial levels; square waves begin now, with their `on` half.
@@ -31,7 +32,7 @@ class SimulatedChip : public Lines {
   /// What a test does from outside. Names are those of points of the map.
   void pull(std::string_view input, bool level);  ///< an unwired input
   bool level(std::string_view output) const;
-  void plug(bool in) { plugged_ = in; }  ///< unplugged, nothing can be read or driven
+  void plug(bool in) { state_[0].plugged = in; }  ///< unplugged, nothing can be read or driven
 
  private:
   struct Output {
@@ -46,15 +47,19 @@ class SimulatedChip : public Lines {
     Edges edges;          ///< not told yet
   };
 
+  struct State {
+    TimePoint told{};  ///< edges until then
+    bool plugged = true;
+  };
+
   std::uint16_t level_of(const Input& input, TimePoint now) const;
   Edges edges_of_square(const SimWire& wire, TimePoint now) const;
   void set(Output& output, bool level);
 
-  std::vector<Output> outputs_;  ///< ascending addresses
-  std::vector<Input> inputs_;    ///< ascending addresses
+  SharedArray<Output> outputs_;  ///< ascending addresses
+  SharedArray<Input> inputs_;    ///< ascending addresses
+  SharedArray<State> state_{1};
   TimePoint start_;
-  TimePoint told_;  ///< edges until then
-  bool plugged_ = true;
 };
 
 }  // namespace coupler::node

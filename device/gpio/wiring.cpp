@@ -32,16 +32,17 @@ using Simulated = Own<SimulatedChip>;
 
 class NextSimulated : public NextWiring {
  public:
-  NextSimulated(const Map& map, Wiring* before) : map_(map), before_(before) {}
+  NextSimulated(const Map& map, Wiring* before)
+      : before_(dynamic_cast<Simulated*>(before)),
+        next_(std::make_unique<Simulated>(map, TimePoint::clock::now())) {}
   std::unique_ptr<Wiring> take_over() override {
-    auto next = std::make_unique<Simulated>(map_, TimePoint::clock::now());
-    if (auto* before = dynamic_cast<Simulated*>(before_)) next->hardware().succeed(before->hardware());
-    return next;
+    if (before_ != nullptr) next_->hardware().succeed(before_->hardware());
+    return std::move(next_);
   }
 
  private:
-  const Map& map_;
-  Wiring* before_;
+  Simulated* before_;
+  std::unique_ptr<Simulated> next_;
 };
 
 #ifndef COUPLER_WITH_GPIOD

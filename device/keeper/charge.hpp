@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
 #include <vector>
 
 #include "device/core/time.hpp"
@@ -9,24 +11,29 @@
 
 namespace coupler::node {
 
-/// What a keeper keeps, and what its I/O processes do with it. All but serve() is called in the keeper.
+/// What a keeper keeps, and what its I/O processes do with it. It is called in the keeper unless it says
+/// otherwise, and waits for nothing there.
 class Charge {
  public:
   /// The life of an I/O process: answers masters, beginning with `clients`, until a signal asks to stop or
-  /// the superior to make room; then it gives the superior its clients. Returns the exit status.
+  /// the superior to make room; then it gives the superior its clients. After a signal it tries to leave its
+  /// outputs in their safe state. Returns the exit status: 0 if it was asked to end.
   virtual int serve(Superior& superior, std::vector<OpenConnection> clients) = 0;
 
-  /// Somebody asked to reload (SIGHUP). True: change() is to be called.
-  virtual bool reload() = 0;
-  /// Called every second or so. True: change() is to be called.
+  /// That process (0: unknown) asked to reload, by SIGHUP. look_after() tells when it is done.
+  virtual void reload(pid_t asker) = 0;
+  /// Called every 100 ms or so. True: change() is to be called.
   virtual bool look_after(TimePoint now) = 0;
   /// There is no I/O process: what reload() or look_after() prepared comes into force. Outputs stay as they
   /// are. Closes those of the clients that have to find out.
   virtual void change(std::vector<OpenConnection>& clients) = 0;
 
-  /// There is no I/O process, and nobody knows how it ended: drives the outputs to their safe state. False:
-  /// one of them could not be driven.
-  virtual bool make_safe() = 0;
+  /// There is no I/O process. Drives the outputs to their safe state, in a process of its own, since lines
+  /// can hang; in the keeper if there is none to be had. False: one of them could not be driven.
+  virtual bool drive_safe() = 0;
+  /// The same for what a firmware's code is behind, never in the keeper.
+  virtual bool make_firmware_safe() = 0;
+  virtual bool has_firmware() const = 0;
 
  protected:
   ~Charge() = default;

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/keeper/io_process.hpp"
 
-#include <fmt/format.h>
 #include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cassert>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <utility>
 
 #include "device/keeper/channel.hpp"
@@ -17,20 +14,13 @@
 namespace coupler::node {
 namespace {
 
-/// The life of the child.
+/// The life of the child. Its end of the channel is closed by the kernel, when its exit status is settled.
 [[noreturn]] void live(const IoProcess::Work& work, Descriptor channel, pid_t parent) {
   ::prctl(PR_SET_NAME, "coupler-node-io");
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  // The parent may have died before the kernel was asked to tell of it.
-  if (::getppid() != parent) ::_exit(0);
+  ::setpgid(0, 0);
+  if (!end_with_parent(parent, SIGTERM)) ::_exit(0);
   Superior superior(std::move(channel));
   ::_exit(work(superior));
-}
-
-std::string describe(int status) {
-  if (WIFSIGNALED(status))
-    return fmt::format("was killed by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
-  return fmt::format("exited with status {}", WEXITSTATUS(status));
 }
 
 }  // namespace
@@ -39,18 +29,17 @@ tl::expected<std::unique_ptr<IoProcess>, int> IoProcess::start(Loop& loop, const
   auto pair = channel::open();
   if (!pair) return tl::unexpected(errno);
   const pid_t parent = ::getpid();
-  const pid_t pid = ::fork();
-  if (pid < 0) return tl::unexpected(errno);
-  if (pid == 0) {
+  auto child = Child::start([&]() -> int {
     pair->one.close();
     live(work, std::move(pair->other), parent);
-  }
-  return std::unique_ptr<IoProcess>(new IoProcess(loop, pid, std::move(pair->one), heard));
+  });
+  if (!child) return tl::unexpected(child.error());
+  return std::unique_ptr<IoProcess>(new IoProcess(loop, *std::move(child), std::move(pair->one), heard));
 }
 
-IoProcess::IoProcess(Loop& loop, pid_t pid, Descriptor channel, Pulse* heard)
+IoProcess::IoProcess(Loop& loop, Child child, Descriptor channel, Pulse* heard)
     : loop_(loop),
-      pid_(pid),
+      child_(std::move(child)),
       channel_(std::move(channel)),
       heard_(heard),
       last_beat_(TimePoint::clock::now()) {
@@ -76,14 +65,15 @@ void IoProcess::ready(TimePoint now) {
 
 void IoProcess::make_room() { channel::send(channel_.get(), channel::MakeRoom{}); }
 
-void IoProcess::terminate() { ::kill(pid_, SIGTERM); }
+void IoProcess::beat() { channel::send(channel_.get(), channel::Beat{}); }
+
+void IoProcess::terminate(int signal) { child_.signal(signal); }
 
 IoProcess::End IoProcess::end() {
-  ::kill(pid_, SIGKILL);
-  int status = 0;
-  while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-  }
-  return {WIFEXITED(status) && WEXITSTATUS(status) == 0, describe(status)};
+  const auto status = child_.kill();
+  if (!status)
+    return {false, false, "does not end when it is killed (it is in a call of the kernel that hangs)"};
+  return {ended_well(*status), true, describe_end(*status)};
 }
 
 }  // namespace coupler::node

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <functional>
 #include <memory>
 #include <string>
@@ -10,13 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "device/keeper/child.hpp"
 #include "device/keeper/superior.hpp"
 #include "device/net/loop.hpp"
 
 namespace coupler::node {
 
 /// The process that drives lines and answers masters: a child with this process's memory and descriptors.
-/// When this process dies, it gets SIGTERM.
+/// When this process dies, it gets SIGTERM; its process group, which is its own, is an orphan then, so if it
+/// was stopped the kernel makes it go on.
 class IoProcess : public Watcher {
  public:
   /// What it does; this process is its superior.
@@ -33,7 +33,10 @@ class IoProcess : public Watcher {
   /// Of its last beat, or of its start.
   TimePoint last_beat() const { return last_beat_; }
 
-  void terminate();
+  /// The signal that asks it to end: SIGINT or SIGTERM.
+  void terminate(int signal);
+  /// Lets it know that this process is alive.
+  void beat();
   /// Asks it to give its clients away and end.
   void make_room();
   /// Those that it gave away so far.
@@ -41,18 +44,22 @@ class IoProcess : public Watcher {
 
   struct End {
     bool in_order;    ///< of its own accord, with status 0
+    bool is_gone;     ///< false: killed, but in a call of the kernel that does not end; what that drives, it
+                      ///< drives
     std::string how;  ///< "exited with status 1", "was killed by signal 9 (Killed)"
   };
-  /// Kills it unless it has ended, and waits until it is gone: it drives no line any more.
+  /// Kills it unless it has ended.
   End end();
+  /// What is left of one that is not gone.
+  Child take_child() { return std::move(child_); }
 
   void ready(TimePoint now) override;
 
  private:
-  IoProcess(Loop& loop, pid_t pid, Descriptor channel, Pulse* heard);
+  IoProcess(Loop& loop, Child child, Descriptor channel, Pulse* heard);
 
   Loop& loop_;
-  pid_t pid_;
+  Child child_;
   Descriptor channel_;  ///< at its end when the process is
   Pulse* heard_;
   TimePoint last_beat_;

@@ -4,42 +4,56 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstring>
 #include <utility>
 
 #include "device/keeper/backoff.hpp"
+#include "device/keeper/safety.hpp"
 
 namespace coupler::node {
 namespace {
 
 constexpr std::chrono::milliseconds glance{100};
-constexpr std::chrono::seconds look_period{1};
 
 }  // namespace
 
-bool Keeper::run(std::vector<OpenConnection> clients) {
-  for (Backoff backoff;;) {
+bool Keeper::run() {
+  Clients clients;
+  for (Backoff backoff; signals_.stop() == 0;) {
     const TimePoint started = TimePoint::clock::now();
-    const auto work = [&](Superior& superior) { return charge_.serve(superior, std::move(clients)); };
-    auto process = IoProcess::start(loop_, work, heard_);
-    clients.clear();
-    const IoProcess::End end =
-        process ? watch_over(**process)
-                : IoProcess::End{false, fmt::format("cannot be started: {}", std::strerror(process.error()))};
-    const bool makes_room = to_change_ && end.in_order && signals_.stop() == 0;
-    const bool safe = makes_room || charge_.make_safe();
-    if (signals_.stop() != 0) return safe;
-    if (makes_room) clients = (*process)->take_clients();
+    const bool makes_room = run_one(clients);
+    if (signals_.stop() != 0) break;
     if (std::exchange(to_change_, false)) charge_.change(clients);
     if (makes_room) continue;
     const auto pause = backoff.after(TimePoint::clock::now() - started);
     log_.warn(fmt::format(
-        "the I/O process {}; {}; starting it again in {} ms", end.how,
-        safe ? "outputs are in their safe state" : "not every output could be driven to its safe state",
+        "the I/O process {}; {}; starting it again in {} ms", how_it_ended_,
+        is_safe_ ? "outputs are in their safe state" : "not every output could be driven to its safe state",
         pause.count()));
     rest(pause);
-    if (signals_.stop() != 0) return charge_.make_safe();
+    if (signals_.stop() != 0) make_safe(true);
   }
+  return is_safe_;
+}
+
+bool Keeper::run_one(Clients& clients) {
+  const auto work = [&](Superior& superior) { return charge_.serve(superior, std::move(clients)); };
+  auto process = IoProcess::start(loop_, work, heard_);
+  clients.clear();
+  if (!process) {
+    how_it_ended_ = fmt::format("cannot be started: {}", std::strerror(process.error()));
+    make_safe(true);
+    return false;
+  }
+  const IoProcess::End end = watch_over(**process);
+  how_it_ended_ = end.how;
+  const bool makes_room = to_change_ && end.in_order && signals_.stop() == 0;
+  if (makes_room)
+    clients = (*process)->take_clients();
+  else
+    make_safe(!end.in_order);
+  return makes_room;
 }
 
 IoProcess::End Keeper::watch_over(IoProcess& process) {
@@ -47,22 +61,33 @@ IoProcess::End Keeper::watch_over(IoProcess& process) {
   // other said meanwhile still waits to be heard. Nor for longer than it took: a signal cuts it short.
   using std::chrono::nanoseconds;
   TimePoint heard = process.last_beat();
+  TimePoint next_beat{};
   for (nanoseconds silence{0}; silence < patience; heard = process.last_beat()) {
     const TimePoint before = TimePoint::clock::now();
+    if (before >= next_beat) {
+      process.beat();
+      next_beat = before + glance;
+    }
     const TimePoint now = loop_.run_once(glance);
     if (signals_.stop() != 0) {
-      process.terminate();
+      process.terminate(signals_.stop() == SIGINT ? SIGINT : SIGTERM);
       return wait_for(process);
     }
-    if (process.has_ended()) return process.end();
+    if (process.has_ended()) return end(process);
     if (is_to_change(now)) {
       process.make_room();
       return wait_for(process);
     }
+    if (has_lost_one_ended()) {
+      IoProcess::End end = this->end(process);
+      end.in_order = false;
+      end.how = "was replaced, since one before it, which hung, may have moved lines when it ended";
+      return end;
+    }
     const bool is_silent = process.last_beat() == heard;
     silence = is_silent ? silence + std::min<nanoseconds>(glance, now - before) : nanoseconds(0);
   }
-  IoProcess::End end = process.end();
+  IoProcess::End end = this->end(process);
   end.how = fmt::format("was silent for {} s and {}", patience.count(), end.how);
   return end;
 }
@@ -71,17 +96,32 @@ IoProcess::End Keeper::wait_for(IoProcess& process) {
   TimePoint now = TimePoint::clock::now();
   for (const TimePoint until = now + patience; now < until && !process.has_ended();)
     now = loop_.run_once(glance);
-  return process.end();
+  return end(process);
+}
+
+IoProcess::End Keeper::end(IoProcess& process) {
+  IoProcess::End end = process.end();
+  if (!end.is_gone) lost_.push_back(process.take_child());
+  return end;
 }
 
 bool Keeper::is_to_change(TimePoint now) {
-  if (signals_.take_reload()) to_change_ = charge_.reload();
-  if (!to_change_ && now >= next_look_) {
-    next_look_ = now + look_period;
-    to_change_ = charge_.look_after(now);
-  }
+  if (signals_.take_suspend())
+    log_.warn("Ctrl-Z is not obeyed: a stopped node could not keep its outputs safe; Ctrl-C ends it");
+  if (const auto asker = signals_.take_reload()) charge_.reload(*asker);
+  to_change_ = to_change_ || charge_.look_after(now);
   return to_change_;
 }
+
+bool Keeper::has_lost_one_ended() {
+  const auto ended = [](Child& child) { return child.wait(std::chrono::milliseconds(0)).has_value(); };
+  const auto first = std::remove_if(lost_.begin(), lost_.end(), ended);
+  const bool any = first != lost_.end();
+  lost_.erase(first, lost_.end());
+  return any;
+}
+
+void Keeper::make_safe(bool firmware_too) { is_safe_ = node::make_safe(charge_, firmware_too, lost_); }
 
 void Keeper::rest(std::chrono::milliseconds pause) {
   TimePoint now = TimePoint::clock::now();

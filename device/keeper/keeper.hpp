@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "device/core/log.hpp"
 #include "device/keeper/charge.hpp"
 #include "device/keeper/io_process.hpp"
@@ -9,9 +11,10 @@
 namespace coupler::node {
 
 /// Holds the lines while another process works with them. Lines that nobody holds fall back to whatever pulls
-/// them, so the process that holds them does as little as it can that could fail: when the I/O process dies,
-/// or its loop stands still, the keeper drives the outputs to their safe state and starts it anew. When lines
-/// or the map change, it replaces the I/O process by one that knows, while outputs stay as they are.
+/// them, so the process that holds them does as little as it can that could fail or wait: when the I/O
+/// process dies, or its loop stands still, the keeper has the outputs driven to their safe state and starts
+/// it anew. When lines or the map change, it replaces the I/O process by one that knows, while outputs stay
+/// as they are.
 class Keeper {
  public:
   /// An I/O process that has not beaten for so long is killed.
@@ -21,15 +24,23 @@ class Keeper {
   Keeper(Loop& loop, Signals& signals, Charge& charge, Log& log, Pulse* heard)
       : loop_(loop), signals_(signals), charge_(charge), log_(log), heard_(heard) {}
 
-  /// Runs I/O processes, the first one with `clients`, until a signal asks to stop; then the outputs are in
-  /// their safe state. False: one of them could not be driven.
-  bool run(std::vector<OpenConnection> clients);
+  /// Runs I/O processes until a signal asks to stop; then the outputs are in their safe state. False: one of
+  /// them could not be driven.
+  bool run();
 
  private:
+  using Clients = std::vector<OpenConnection>;
+
+  /// One I/O process, which begins with `clients`; they are those of the next one then. True: it made room,
+  /// with its outputs as they are.
+  bool run_one(Clients& clients);
   /// Until it ends, misses its beat, a signal asks to stop, or it has to make room for another one.
   IoProcess::End watch_over(IoProcess& process);
   IoProcess::End wait_for(IoProcess& process);
+  IoProcess::End end(IoProcess& process);
   bool is_to_change(TimePoint now);
+  bool has_lost_one_ended();
+  void make_safe(bool firmware_too);
   void rest(std::chrono::milliseconds pause);
 
   Loop& loop_;
@@ -37,8 +48,10 @@ class Keeper {
   Charge& charge_;
   Log& log_;
   Pulse* heard_;
-  bool to_change_ = false;  ///< the charge waits for change()
-  TimePoint next_look_{};
+  bool to_change_ = false;    ///< the charge waits for change()
+  bool is_safe_ = false;      ///< at the end of the last I/O process
+  std::string how_it_ended_;  ///< of the same
+  std::vector<Child> lost_;   ///< killed, but not gone
 };
 
 }  // namespace coupler::node

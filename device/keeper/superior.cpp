@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/keeper/superior.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "device/keeper/channel.hpp"
 
@@ -17,8 +19,16 @@ void Superior::beat() { channel::send(channel_.get(), channel::Beat{}); }
 
 void Superior::give(const OpenConnection& client) { channel::send(channel_.get(), client); }
 
+/// A turn counts for no longer than it may last: this process may have been stopped itself.
+bool Superior::is_silent(TimePoint now) {
+  const auto turn = std::min<std::chrono::nanoseconds>(now - std::exchange(asked_, now), Pulse::period);
+  silence_ = std::exchange(heard_, false) ? std::chrono::nanoseconds(0) : silence_ + turn;
+  return silence_ >= patience;
+}
+
 void Superior::ready(TimePoint) {
   const channel::Message message = channel::receive(channel_.get());
+  heard_ |= std::holds_alternative<channel::Beat>(message);
   if (std::holds_alternative<channel::MakeRoom>(message)) wants_room_ = true;
   // The kernel sends SIGTERM when the keeper dies; until then there is nothing to be heard.
   if (std::holds_alternative<channel::Ended>(message))

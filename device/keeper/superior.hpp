@@ -7,8 +7,8 @@
 
 namespace coupler::node {
 
-/// The keeper, as its I/O process knows it: hears that its loop turns, may ask it to make room for another
-/// one, and takes its clients over.
+/// The keeper, as its I/O process knows it: hears that its loop turns, tells the same of its own, may ask it
+/// to make room for another one, and takes its clients over.
 class Superior : public Pulse, public Watcher {
  public:
   /// `channel` is a connected socket that keeps messages apart.
@@ -22,12 +22,20 @@ class Superior : public Pulse, public Watcher {
   bool wants_room() const { return wants_room_; }
   void give(const OpenConnection& client);
 
+  /// A keeper that was not heard of for so long is stopped, or hangs, and would not see its I/O process die.
+  static constexpr std::chrono::seconds patience{5};
+  /// To be asked in each turn of the loop.
+  bool is_silent(TimePoint now);
+
   void ready(TimePoint now) override;
 
  private:
   Descriptor channel_;
   Loop* loop_ = nullptr;
   bool wants_room_ = false;
+  bool heard_ = true;  ///< since is_silent() was asked
+  TimePoint asked_ = TimePoint::clock::now();
+  std::chrono::nanoseconds silence_{0};
 };
 
 }  // namespace coupler::node

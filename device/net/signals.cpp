@@ -24,6 +24,7 @@ Signals::Signals(Loop& loop) : loop_(loop), has_terminal_(has_terminal()) {
   sigemptyset(&signals_);
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);
+  sigaddset(&signals_, SIGTSTP);
   if (!is_ignored(SIGHUP)) sigaddset(&signals_, SIGHUP);
   ::sigprocmask(SIG_BLOCK, &signals_, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
@@ -40,8 +41,10 @@ Signals::~Signals() {
 void Signals::ready(TimePoint) {
   signalfd_siginfo info{};
   if (::read(descriptor_.get(), &info, sizeof info) != sizeof info) return;
-  if (info.ssi_signo == SIGHUP && (!has_terminal_ || has_terminal()))
-    reload_ = true;
+  if (info.ssi_signo == SIGTSTP)
+    suspend_ = true;
+  else if (info.ssi_signo == SIGHUP && (!has_terminal_ || has_terminal()))
+    reload_ = static_cast<pid_t>(info.ssi_pid);
   else
     stop_ = static_cast<int>(info.ssi_signo);
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
 #include <csignal>
+#include <optional>
 #include <utility>
 
 #include "device/net/loop.hpp"
@@ -10,7 +13,7 @@ namespace coupler::node {
 
 /// Turns SIGINT and SIGTERM into a request to stop and SIGHUP into one to reload, which the loop sees in its
 /// own time. The SIGHUP of a terminal that is closed is a request to stop. A SIGHUP that is ignored at the
-/// start (nohup) stays ignored; SIGPIPE is. To be made before any
+/// start (nohup) stays ignored; SIGPIPE is. SIGTSTP, which Ctrl-Z sends, is only noted. To be made before any
 /// thread is started.
 class Signals : public Watcher {
  public:
@@ -21,8 +24,10 @@ class Signals : public Watcher {
 
   /// The signal that asked to stop; 0: none did.
   int stop() const { return stop_; }
-  /// Whether SIGHUP came since the last call.
-  bool take_reload() { return std::exchange(reload_, false); }
+  /// The process that sent the last SIGHUP since the last call; 0: the kernel.
+  std::optional<pid_t> take_reload() { return std::exchange(reload_, std::nullopt); }
+  /// Whether SIGTSTP came since the last call.
+  bool take_suspend() { return std::exchange(suspend_, false); }
 
   void ready(TimePoint now) override;
 
@@ -32,7 +37,8 @@ class Signals : public Watcher {
   sigset_t signals_{};
   Descriptor descriptor_;
   int stop_ = 0;
-  bool reload_ = false;
+  std::optional<pid_t> reload_;
+  bool suspend_ = false;
 };
 
 }  // namespace coupler::node

@@ -33,26 +33,22 @@ IoService::IoService(const Duty& duty, Loop& loop, Log& log)
 
 void IoService::adopt(std::vector<OpenConnection> clients) { tcp_.adopt(std::move(clients), now_); }
 
-void IoService::run(const std::function<bool()>& is_over, Pulse* pulse) {
-  for (TimePoint next_beat = now_; !is_over();) {
-    if (pulse != nullptr && now_ >= next_beat) {
-      pulse->beat();
-      next_beat = now_ + Pulse::period;
-    }
-    turn(pulse != nullptr ? Patience(Pulse::period) : std::nullopt);
+void IoService::run(const std::function<bool(TimePoint)>& is_over, Pulse& pulse) {
+  for (TimePoint next_beat = now_; !is_over(now_); turn()) {
+    if (now_ < next_beat) continue;
+    pulse.beat();
+    next_beat = now_ + Pulse::period;
   }
 }
 
 std::vector<OpenConnection> IoService::release() { return tcp_.release(); }
 
-bool IoService::end(int signal) {
-  const bool safe = hardware_.drive_safe();
-  log_.write(farewell(signal, safe, statistics_, TimePoint::clock::now()));
-  return safe;
+void IoService::end(int signal) {
+  log_.write(farewell(signal, make_safe(), statistics_, TimePoint::clock::now()));
 }
 
-void IoService::turn(Patience at_most) {
-  now_ = loop_.run_once(shorter(at_most, shorter(tcp_.patience(), node_.handler().patience(now_))));
+void IoService::turn() {
+  now_ = loop_.run_once(shorter(Pulse::period, shorter(tcp_.patience(), node_.handler().patience(now_))));
   tcp_.tick(now_);
   node_.handler().tick(now_);
   log_trips();

@@ -22,15 +22,17 @@ class IoService {
 
   /// Goes on with clients that another one let go.
   void adopt(std::vector<OpenConnection> clients);
-  /// Serves until `is_over`, asked at each turn, says so. `pulse` (may be null) is told that the loop turns.
-  void run(const std::function<bool()>& is_over, Pulse* pulse);
+  /// Serves until `is_over`, asked at each turn, says so. `pulse` is told that the loop turns.
+  void run(const std::function<bool(TimePoint)>& is_over, Pulse& pulse);
   /// Lets go of its clients, outputs as they are.
   std::vector<OpenConnection> release();
-  /// The end after a signal: drives the outputs to their safe state. False: one of them could not be driven.
-  bool end(int signal);
+  /// The end after a signal: drives the outputs to their safe state and says what there was.
+  void end(int signal);
+  /// Drives them there for another reason. False: one of them could not be driven.
+  bool make_safe() { return hardware_.drive_safe(); }
 
  private:
-  void turn(std::optional<std::chrono::milliseconds> at_most);
+  void turn();
   void log_trips();
 
   Hardware hardware_;

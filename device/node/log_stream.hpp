@@ -17,6 +17,8 @@ class LogStream {
 
   /// Returns how much of the text was written: what stderr takes at once.
   std::size_t write(std::string_view text) const;
+  /// That write() needs besides stderr; -1: none.
+  int descriptor() const { return own_.get(); }
 
  private:
   std::size_t write_some(std::string_view text) const;

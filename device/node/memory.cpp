@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/node/memory.hpp"
 
-#include <map>
 #include <tuple>
+#include <utility>
+
+#include "common/map/lookup_by_name.hpp"
 
 namespace coupler::node {
 namespace {
@@ -28,13 +30,6 @@ bool may_change(const Point& point) {
   return is_writable(point) || point.counter.present() || point.latched.present();
 }
 
-/// A point that shares its register leaves the others' bits alone.
-void copy(const Point& point, Span<const std::uint16_t> from, Span<std::uint16_t> to) {
-  const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
-  for (std::size_t i = 0; i < to.size(); ++i)
-    to[i] = static_cast<std::uint16_t>((to[i] & ~mask) | (from[i] & mask));
-}
-
 }  // namespace
 
 Memory::Memory(const Map& map, TimePoint now) : Memory(map, now, Image::size_for(map)) {}
@@ -47,16 +42,26 @@ Memory::Memory(const Map& map, TimePoint now, Image::Size size)
       lasting_(1, {started_at(now), OutputWatchdog(map.service.watchdog)}),
       links_(EdgePoints::links_for(map)) {}
 
+void Memory::prepare_carry_over(const Memory& before) {
+  LookupByName known(before.map_.points, [](const Point& point) { return point.name; });
+  for (const Point& point : map_.points) {
+    if (!may_change(point)) continue;
+    const Point* old = known.find(point.name);
+    if (old == nullptr || !same_value(*old, point)) continue;
+    // A point that shares its register leaves the others' bits alone.
+    const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
+    carried_.push_back(
+        {before.image_.find(point.table, range(*old)), image_.find(point.table, range(point)), mask});
+  }
+}
+
 void Memory::carry_over(const Memory& before, TimePoint now) {
   statistics() = before.lasting_[0].statistics;
   watchdog().go_on_from(before.lasting_[0].watchdog, now);
-  std::map<std::string_view, const Point*> known;
-  for (const Point& point : before.map_.points) known.emplace(point.name, &point);
-  for (const Point& point : map_.points) {
-    const auto old = known.find(point.name);
-    if (!may_change(point) || old == known.end() || !same_value(*old->second, point)) continue;
-    copy(point, before.image_.find(point.table, range(*old->second)), image_.find(point.table, range(point)));
-  }
+  for (const Carried& carried : std::exchange(carried_, {}))
+    for (std::size_t i = 0; i < carried.to.size(); ++i)
+      carried.to[i] =
+          static_cast<std::uint16_t>((carried.to[i] & ~carried.mask) | (carried.from[i] & carried.mask));
 }
 
 }  // namespace coupler::node

@@ -18,8 +18,11 @@ class Memory {
   /// Initial values. The map outlives it.
   Memory(const Map& map, TimePoint now);
 
-  /// Takes over from the memory of another map what both have: statistics, the watchdog's state, and the
-  /// value of every point that has the same name, table, type and layout in both.
+  /// Finds out what carry_over() from this other memory, of another map, is to copy: that takes its time if
+  /// there are many points.
+  void prepare_carry_over(const Memory& before);
+  /// Takes over from the other memory what both have: statistics, the watchdog's state, and the value of
+  /// every point that has the same name, table, type and layout in both.
   void carry_over(const Memory& before, TimePoint now);
 
   Image& image() { return image_; }
@@ -32,6 +35,12 @@ class Memory {
     Statistics statistics;
     OutputWatchdog watchdog;
   };
+  /// Cells of a point in the other image and in this one.
+  struct Carried {
+    Span<const std::uint16_t> from;
+    Span<std::uint16_t> to;
+    std::uint16_t mask;
+  };
   Memory(const Map& map, TimePoint now, Image::Size size);
 
   const Map& map_;
@@ -40,6 +49,7 @@ class Memory {
   Image image_;
   SharedArray<Lasting> lasting_;
   std::vector<EdgePoints::Link> links_;
+  std::vector<Carried> carried_;
 };
 
 }  // namespace coupler::node

@@ -26,8 +26,18 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
              (source == MapSource::argument
                   ? "\nSIGHUP makes it read MAP again; one that cannot be served is refused."
                   : ""));
-  if (source == MapSource::argument)
-    app.add_option("MAP", options.map, "The map file, YAML or JSON; - is standard input").required();
+  if (source == MapSource::argument) {
+    const auto file = app.add_option("MAP", options.map, "The map file, YAML or JSON; - is standard input");
+    app.add_option(
+           "--reload", options.reload,
+           "Instead: make the coupler-node with this process id read its map again, wait, and tell how it "
+           "ended (exit status 0: taken, 1: refused)")
+        .type_name("PID")
+        .excludes(file);
+    app.callback([&options, file] {
+      if (options.map.empty() && options.reload == 0) file.refuse_missing();
+    });
+  }
   app.add_option(
       "--listen", options.listen,
       "IP address to listen on (default: the map's 'listen', or every interface; with --sim 127.0.0.1)");

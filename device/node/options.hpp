@@ -16,6 +16,7 @@ struct Options {
   std::string listen;                 ///< empty: as address_for() says
   std::optional<std::uint16_t> port;  ///< default: the map's
   bool simulated = false;
+  std::uint32_t reload = 0;  ///< process id of a node that is to read its map again; 0: serve
 };
 
 /// The address to listen on: the option's, the map's, loopback when simulated, otherwise (empty) every

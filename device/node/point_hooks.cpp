@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/node/point_hooks.hpp"
 
+#include <unistd.h>
+
 namespace coupler::node {
+
+void PointHooks::allow_setting() { process_ = ::getpid(); }
+
+std::string PointHooks::wrong_process() const {
+  if (process_ == ::getpid()) return {};
+  return "this process does not answer masters; values are set in serving_began(), in threads that it "
+         "starts, or later";
+}
 
 void PointHooks::keep(std::uint32_t point, const std::uint16_t* registers) {
   const std::size_t count = range(map_.points[point]).count();

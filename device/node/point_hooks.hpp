@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
 #include <array>
 #include <mutex>
 #include <string>
@@ -19,6 +21,7 @@ namespace coupler::node {
 class PointHooks : public Hooks {
  public:
   void put_new_values(Image& image) final;
+  void allow_setting() final;
   [[nodiscard]] bool accept(std::uint32_t, const std::uint16_t*) override { return true; }
 
  protected:
@@ -30,12 +33,14 @@ class PointHooks : public Hooks {
     return TypedValue<T>::decode(registers, map_.points[point]);
   }
 
-  /// From any thread: masters read the value from their next request on. The error says what is wrong with
-  /// it.
+  /// From any thread of the process that serves: masters read the value from their next request on. The error
+  /// says what is wrong with it, or that this is another process.
   template <class T>
   tl::expected<void, std::string> set(std::uint32_t point, const T& value) {
     std::array<std::uint16_t, modbus::max_read_bits> registers{};
-    std::string wrong = TypedValue<T>::encode(value, map_.points[point], registers.data());
+    std::string wrong = wrong_process();
+    if (!wrong.empty()) return tl::unexpected(std::move(wrong));
+    wrong = TypedValue<T>::encode(value, map_.points[point], registers.data());
     if (!wrong.empty()) return tl::unexpected(std::move(wrong));
     keep(point, registers.data());
     return {};
@@ -43,8 +48,10 @@ class PointHooks : public Hooks {
 
  private:
   void keep(std::uint32_t point, const std::uint16_t* registers);
+  std::string wrong_process() const;
 
   const Map& map_;
+  pid_t process_ = 0;  ///< the one that serves
   std::mutex mutex_;
   std::vector<std::vector<std::uint16_t>> set_;  ///< by point; empty: not set since it was put into the image
   std::vector<std::uint32_t> points_;            ///< those that are not empty

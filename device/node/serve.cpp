@@ -4,15 +4,12 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include "device/keeper/keeper.hpp"
 
 namespace coupler::node {
 
-int serve(const Map& map, const Options& options, StderrLog& log, const ReadAgain& read_again, Hooks* hooks) {
+int serve(const Map& map, const Options& options, StderrLog& log, const ReadAgain& again, Hooks* hooks) {
   const auto failed = [&](const Refusal& refusal) {
     tell(log, refusal);
     return refusal.reason;
@@ -22,12 +19,10 @@ int serve(const Map& map, const Options& options, StderrLog& log, const ReadAgai
   Signals signals(loop);
   log.never_wait();
   ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"));
-  Station station(options, read_again, manager, log, hooks);
+  Station station(loop, options, again, manager, log, hooks);
   if (const auto started = station.start(map); !started) return failed(started.error());
   Pulse* const managed = manager.is_there() ? &manager : nullptr;
-  std::vector<OpenConnection> clients;
-  const std::optional<bool> alone = station.serve_alone(loop, signals, clients);
-  const bool safe = alone ? *alone : Keeper(loop, signals, station, log, managed).run(std::move(clients));
+  const bool safe = Keeper(loop, signals, station, log, managed).run();
   manager.stopping();
   if (safe) return 0;
   return failed({Refusal::device_failed, "ended, and not every output could be driven to its safe state"});

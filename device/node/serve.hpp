@@ -9,10 +9,10 @@
 namespace coupler::node {
 
 /// Serves the map until a signal asks to stop, then drives the outputs to their safe state. SIGHUP makes it
-/// read the map again, unless `read_again` is empty. `hooks`, which may be null, are behind its points. Says
+/// read the map again, unless `again` is empty. `hooks`, which may be null, are behind its points. Says
 /// in the log what it does, which waits for nobody from then on. Returns the exit status: 0 stopped, 1 a node
 /// cannot serve this map, 3 network or hardware cannot be had, or an output could not be driven to its safe
 /// state at the end.
-int serve(const Map& map, const Options& options, StderrLog& log, const ReadAgain& read_again, Hooks* hooks);
+int serve(const Map& map, const Options& options, StderrLog& log, const ReadAgain& again, Hooks* hooks);
 
 }  // namespace coupler::node

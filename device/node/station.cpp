@@ -2,9 +2,11 @@
 #include "device/node/station.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -34,7 +36,17 @@ void tell(Log& log, const Refusal& refusal) {
   }
 }
 
+Station::Station(Loop& loop, const Options& options, ReadAgain again, ServiceManager& manager, Log& log,
+                 Hooks* hooks)
+    : loop_(loop),
+      options_(options),
+      again_(std::move(again)),
+      manager_(manager),
+      log_(log),
+      firmware_(hooks) {}
+
 tl::expected<void, Refusal> Station::start(const Map& map) {
+  if (firmware_ != nullptr) hooks_ = std::make_unique<GuardedHooks>(*firmware_, map, log_);
   auto first = prepare(map, nullptr);
   if (!first) return tl::unexpected(std::move(first).error());
   duty_ = *std::move(first);
@@ -65,6 +77,7 @@ tl::expected<std::unique_ptr<Duty>, Refusal> Station::prepare(const Map& map, Ma
   duty->listener = *std::move(listener);
   duty->listener.guests = *std::move(guests);
   duty->memory = std::make_unique<Memory>(map, TimePoint::clock::now());
+  if (duty_) duty->memory->prepare_carry_over(*duty_->memory);
   if (!options_.simulated) {
     auto channels = open_channels(map, log_);
     if (!channels) return tl::unexpected(Refusal{Refusal::device_failed, std::move(channels).error()});
@@ -72,7 +85,7 @@ tl::expected<std::unique_ptr<Duty>, Refusal> Station::prepare(const Map& map, Ma
   }
   if (duty->channels)
     duty->analogue = std::make_unique<AnaloguePoints>(map, duty->memory->image(), *duty->channels);
-  if (hooks_ != nullptr) duty->hooked = std::make_unique<HookedPoints>(map, duty->memory->image(), *hooks_);
+  if (hooks_) duty->hooked = std::make_unique<HookedPoints>(map, duty->memory->image(), *hooks_);
   const bool safe = duty_ && duty_->has_expired() && map.service.watchdog.present();
   auto wiring = prepare_wiring(map, options_.simulated, duty_ ? duty_->wiring.get() : nullptr, safe, log_);
   if (!wiring) return tl::unexpected(Refusal{Refusal::device_failed, std::move(wiring).error()});
@@ -97,30 +110,6 @@ std::string Station::greeting() const {
                      duty_->listener.name, options_.simulated ? ", simulated" : "");
 }
 
-bool Station::needs_keeper() const {
-  const auto is_wired = [](const Point& point) { return point.line.present() || is_analogue(point); };
-  return !options_.simulated && std::any_of(duty_->map->points.begin(), duty_->map->points.end(), is_wired);
-}
-
-std::optional<bool> Station::serve_alone(Loop& loop, Signals& signals, std::vector<OpenConnection>& clients) {
-  Pulse* const managed = manager_.is_there() ? &manager_ : nullptr;
-  if (hooks_ != nullptr && !needs_keeper()) hooks_->serving_began();
-  for (; !needs_keeper(); change(clients)) {
-    IoService service(*duty_, loop, log_);
-    service.adopt(std::move(clients));
-    bool to_change = false;
-    service.run(
-        [&] {
-          if (signals.take_reload()) to_change = reload();
-          return to_change || signals.stop() != 0;
-        },
-        managed);
-    if (signals.stop() != 0) return service.end(signals.stop());
-    clients = service.release();
-  }
-  return std::nullopt;
-}
-
 int Station::serve(Superior& superior, std::vector<OpenConnection> clients) {
   Loop loop;
   if (!loop.is_open()) {
@@ -129,41 +118,92 @@ int Station::serve(Superior& superior, std::vector<OpenConnection> clients) {
   }
   const Signals signals(loop);
   superior.watch(loop);
-  if (hooks_ != nullptr) hooks_->serving_began();
+  if (hooks_ && !hooks_->begin()) return Refusal::device_failed;
   std::optional<Sampler> sampler;
   if (duty_->channels) sampler.emplace(*duty_->channels, Sampler::period_for(duty_->map->polling.rate));
   IoService service(*duty_, loop, log_);
   service.adopt(std::move(clients));
-  service.run([&] { return signals.stop() != 0 || superior.wants_room(); }, &superior);
+  service.run(
+      [&](TimePoint now) { return signals.stop() != 0 || superior.wants_room() || superior.is_silent(now); },
+      superior);
   if (signals.stop() != 0)
     service.end(signals.stop());
-  else
+  else if (superior.wants_room())
     for (const OpenConnection& client : service.release()) superior.give(client);
+  else
+    return end_without_keeper(service);
   return 0;
 }
 
-bool Station::reload() {
-  if (!read_again_) {
-    log_.write(
-        "SIGHUP: the map of this node is built in or came through standard input; there is nothing to read "
-        "again");
-    return false;
-  }
-  manager_.reloading(TimePoint::clock::now());
-  if (const MapPtr map = read_again_()) {
-    auto next = prepare(map->map(), map);
-    if (next) {
-      next_ = *std::move(next);
-      return true;
-    }
-    tell(log_, next.error());
-  }
-  log_.fail(fmt::format("the new map is refused; the old one goes on: {}", greeting()));
-  manager_.ready(greeting());
-  return false;
+/// Were this process to die now, nobody would drive the outputs. Whoever started the node starts it again.
+int Station::end_without_keeper(IoService& service) {
+  const bool safe = service.make_safe();
+  log_.fail(fmt::format(
+      "the keeper, process {}, was silent for {} s and is killed; {}", ::getppid(),
+      Superior::patience.count(),
+      safe ? "outputs are in their safe state" : "not every output could be driven to its safe state"));
+  ::kill(::getppid(), SIGKILL);
+  return Refusal::device_failed;
 }
 
-bool Station::look_after(TimePoint) {
+void Station::reload(pid_t asker) {
+  askers_.add(asker);
+  if (!again_.read) {
+    const auto why =
+        "SIGHUP: the map of this node is built in or came through standard input; there is nothing to read "
+        "again";
+    log_.write(why);
+    askers_.tell(false, why);
+    return;
+  }
+  const TimePoint now = TimePoint::clock::now();
+  manager_.reloading(now);
+  // What is being read may have been changed since: it is read once more.
+  begin_reading(now);
+}
+
+void Station::begin_reading(TimePoint now) {
+  reading_ = nullptr;
+  auto reading = MapReading::start(loop_, again_, now);
+  if (reading)
+    reading_ = *std::move(reading);
+  else
+    refuse({Refusal::device_failed, std::move(reading).error()});
+}
+
+bool Station::look_after(TimePoint now) {
+  former_ = nullptr;
+  const bool taken = reading_ != nullptr && reading_->is_over(now) && take_map();
+  return mend(now) || taken;
+}
+
+bool Station::take_map() {
+  auto map = std::exchange(reading_, nullptr)->take();
+  if (!map) {
+    refuse({Refusal::map_is_wrong, std::move(map).error()});
+    return false;
+  }
+  auto next = prepare((*map)->map(), *map);
+  if (!next) {
+    refuse(next.error());
+    return false;
+  }
+  next_ = *std::move(next);
+  return true;
+}
+
+void Station::refuse(const Refusal& refusal) {
+  tell(log_, refusal);
+  const std::string text = fmt::format("the new map is refused; the old one goes on: {}", greeting());
+  log_.fail(text);
+  askers_.tell(false, text);
+  manager_.ready(greeting());
+}
+
+/// Chips that were unplugged and are back, once a second.
+bool Station::mend(TimePoint now) {
+  if (now < next_look_) return false;
+  next_look_ = now + std::chrono::seconds(1);
   const bool safe = duty_->has_expired();
   const bool lines = duty_->wiring->mend(safe);
   const bool channels = duty_->mend_channels(safe);
@@ -182,16 +222,21 @@ void Station::change(std::vector<OpenConnection>& clients) {
   // It may have expired since the new lines were requested.
   if (safe) next_->memory->watchdog().expire(next_->hardware().drive_safe(), TimePoint::clock::now());
   if (!same) clients.clear();
-  duty_ = std::exchange(next_, nullptr);
-  log_.write(
-      fmt::format("read the map again: {}{}", greeting(), same ? "" : "; masters have to connect again"));
+  // To free what a large map had takes its time, and masters wait.
+  former_ = std::exchange(duty_, std::exchange(next_, nullptr));
+  const std::string text =
+      fmt::format("read the map again: {}{}", greeting(), same ? "" : "; masters have to connect again");
+  log_.write(text);
+  askers_.tell(true, text);
   manager_.ready(greeting());
 }
 
-bool Station::make_safe() {
-  const bool safe = duty_->hardware().drive_safe();
+bool Station::drive_safe() {
+  const bool safe = Hardware(duty_->wiring->lines(), duty_->analogue.get()).drive_safe();
   duty_->memory->watchdog().disarm();
   return safe;
 }
+
+bool Station::make_firmware_safe() { return hooks_->end(duty_->memory->image()); }
 
 }  // namespace coupler::node

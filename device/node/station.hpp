@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,13 +10,14 @@
 #include "device/keeper/charge.hpp"
 #include "device/net/signals.hpp"
 #include "device/node/duty.hpp"
+#include "device/node/guarded_hooks.hpp"
+#include "device/node/io_service.hpp"
+#include "device/node/map_reading.hpp"
 #include "device/node/options.hpp"
+#include "device/node/reload.hpp"
 #include "device/node/service_manager.hpp"
 
 namespace coupler::node {
-
-/// Reads the map again; null after telling what is wrong with it.
-using ReadAgain = std::function<MapPtr()>;
 
 /// Why a map is not served.
 struct Refusal {
@@ -32,39 +32,45 @@ void tell(Log& log, const Refusal& refusal);
 /// A node with the map in force, which may be replaced by another one while masters are served.
 class Station final : public Charge {
  public:
-  /// `read_again` is empty if the map is built in, `hooks` null if no code is bound to its points. All of
-  /// them outlive it.
-  Station(const Options& options, ReadAgain read_again, ServiceManager& manager, Log& log,
-          Hooks* hooks = nullptr)
-      : options_(options), read_again_(std::move(read_again)), manager_(manager), log_(log), hooks_(hooks) {}
+  /// `loop` is the keeper's. `again` is empty if the map is built in, `hooks` null if no code is bound to its
+  /// points. All of them outlive it.
+  Station(Loop& loop, const Options& options, ReadAgain again, ServiceManager& manager, Log& log,
+          Hooks* hooks = nullptr);
 
   /// Puts the first map in force; it outlives the station.
   tl::expected<void, Refusal> start(const Map& map);
 
-  /// Whether somebody has to hold its lines: simulated ones fall nowhere.
-  bool needs_keeper() const;
-  /// Answers masters in this process until a signal asks to stop; then whether every output is in its safe
-  /// state. nullopt: the map, or one that came meanwhile, needs a keeper, and `clients` are connected.
-  std::optional<bool> serve_alone(Loop& loop, Signals& signals, std::vector<OpenConnection>& clients);
-
   int serve(Superior& superior, std::vector<OpenConnection> clients) override;
-  bool reload() override;
+  void reload(pid_t asker) override;
   bool look_after(TimePoint now) override;
   void change(std::vector<OpenConnection>& clients) override;
-  bool make_safe() override;
+  bool drive_safe() override;
+  bool make_firmware_safe() override;
+  bool has_firmware() const override { return firmware_ != nullptr; }
 
  private:
   tl::expected<std::unique_ptr<Duty>, Refusal> prepare(const Map& map, MapPtr owner);
   tl::expected<Listener, std::string> listen(const std::string& address, std::uint16_t port);
   std::string greeting() const;
+  void begin_reading(TimePoint now);
+  bool take_map();
+  void refuse(const Refusal& refusal);
+  bool mend(TimePoint now);
+  int end_without_keeper(IoService& service);
 
+  Loop& loop_;
   const Options& options_;
-  ReadAgain read_again_;
+  ReadAgain again_;
   ServiceManager& manager_;
   Log& log_;
-  Hooks* hooks_;
+  Hooks* firmware_;
+  std::unique_ptr<GuardedHooks> hooks_;  ///< null: there is no firmware
   std::unique_ptr<Duty> duty_;
-  std::unique_ptr<Duty> next_;  ///< waits for change()
+  std::unique_ptr<Duty> next_;           ///< waits for change()
+  std::unique_ptr<Duty> former_;         ///< waits to be freed
+  std::unique_ptr<MapReading> reading_;  ///< null: no map is being read
+  Askers askers_;
+  TimePoint next_look_{};
 };
 
 }  // namespace coupler::node

@@ -29,6 +29,8 @@ class StderrLog : public Log {
   /// and the next one that can is preceded by one that tells how many were. So it is in processes forked from
   /// this one, which count together.
   void never_wait();
+  /// That it needs besides stderr; -1: none.
+  int descriptor() const { return stream_.descriptor(); }
 
  private:
   struct Dropped {

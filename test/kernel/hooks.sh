@@ -10,7 +10,7 @@ cd "$(dirname "$0")"
 plant_chip
 
 set_coils() { answered master -t 0 -r 0 127.0.0.1 -- "$@" >/dev/null; }
-io_process() { pgrep -P "$(pid gate)"; }
+io_process() { pgrep -P "$(pid gate)" -x coupler-node-io; }
 hooks_called() { grep -E '^(motor|speed|safe) ' "$(log gate)" | cut -d' ' -f1,2 | paste -sd' '; }
 
 start gate "$bin/gate_firmware"
@@ -35,7 +35,9 @@ check "the brake is released" set_coils 1 0
 expect "its line is low" 0 "$(sim_value plant 0)"
 before=$(io_process)
 kill -KILL "$before"
-check "the keeper makes the firmware safe, in its own process" wait_until says gate "^safe 0 in $(pid gate)$"
+check "the firmware is made safe" wait_until says gate '^safe 0 in'
+refuse "not in the keeper, which runs no code of a firmware" says gate "^safe 0 in $(pid gate)$"
+refuse "nor in the process that died" says gate "^safe 0 in $before$"
 check "and drives the brake on, against its pull" wait_until level_is 0 1
 check "another process begins" wait_until says gate '^began 0 in' 2
 check "what its thread sets is read" wait_until input_is 0 1
@@ -52,5 +54,7 @@ expect "masters read what it was" 1 "$(coil 0)"
 check "the hook alone goes on" set_coil 0 0
 
 echo "# it ends"
+before=$(io_process)
 stop gate TERM || true
-check "the firmware is made safe" says gate '^safe 0 in' 2
+check "the firmware is made safe, once, by the process that served" says gate "^safe 0 in $before$" 1
+expect "and by no other" 2 "$(grep -c '^safe 0 in' "$(log gate)")"

@@ -15,7 +15,7 @@ written=(1 0 1 1 0 1)
 safe=(0 1 1 0 1 1)
 
 wire_of() { if [ "$1" -ge 3 ]; then echo $((1 - $2)); else echo "$2"; fi; }
-io_process() { pgrep -P "$(pid node)"; }
+io_process() { pgrep -P "$(pid node)" -x coupler-node-io; }
 new_io_process() { local now; now=$(io_process) && [ "$now" != "$1" ] && [[ "$(cat "/proc/$now/stat")" != *" Z "* ]]; }
 wires_are() {
   local line
@@ -89,6 +89,26 @@ io=$(io_process)
 status=0; stop node KILL || status=$?
 expect "it dies" 137 "$status"
 check "its I/O process drives the safe state and ends" wait_until ended "$io"
+check "and says so" says node 'Terminated: outputs are in their safe state'
+
+echo "# the keeper is stopped: its I/O process, after which nobody would look, ends safely"
+plant_node keeper.yaml
+check "outputs are written" wait_until write_outputs
+io=$(io_process)
+kill -s STOP "$(pid node)"
+check "its I/O process ends" wait_until ended "$io"
+check "and tells why" says node 'the keeper, process [0-9]+, was silent for 5 s and is killed; outputs are in their safe state'
+status=0; stop node CONT || status=$?
+expect "the keeper was killed, stopped as it was" 137 "$status"
+
+echo "# the I/O process is stopped, and before that is noticed the keeper is killed"
+plant_node keeper.yaml
+check "outputs are written" wait_until write_outputs
+io=$(io_process)
+kill -s STOP "$io"
+status=0; stop node KILL || status=$?
+expect "the keeper dies" 137 "$status"
+check "the I/O process, which the kernel makes go on, drives the safe state and ends" wait_until ended "$io"
 check "and says so" says node 'Terminated: outputs are in their safe state'
 
 echo "# nobody reads the log"

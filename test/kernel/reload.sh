@@ -12,9 +12,10 @@ plant_chip
 map="$check_folder/map.yaml"
 cp reload.yaml "$map"
 
-io_process() { pgrep -P "$(pid node)"; }
+io_process() { pgrep -P "$(pid node)" -x coupler-node-io; }
 # How often the node said so before.
 times() { grep -cE -- "$1" "$(log node)" || true; }
+new_io_process() { local now; now=$(io_process) && [ "$now" != "$1" ] && [[ "$(cat "/proc/$now/stat")" != *" Z "* ]]; }
 # Gives the node the map on stdin; the rest is check's: what it says then, and how often it said so before.
 reload_with() {
   local said=$1 before
@@ -135,6 +136,14 @@ check "it cannot be read again" wait_until says piped 'there is nothing to read 
 refuse "and is not refused" says piped 'is refused'
 check "the node ends well" stop piped TERM
 
+echo "# who asks hears the answer"
+check "a map that is taken is status 0" "$bin/coupler-node" --reload "$(pid node)"
+echo 'name: [' >"$map"
+status=0; "$bin/coupler-node" --reload "$(pid node)" || status=$?
+expect "one that is refused is status 1" 1 "$status"
+status=0; "$bin/coupler-node" --reload $$ || status=$?
+expect "another program is left alone" 3 "$status"
+
 echo "# the end"
 check "the traffic ends" stop traffic TERM
 refuse "no answer was wrong" says traffic wrong
@@ -164,12 +173,29 @@ check "the node ends well" stop node TERM
 echo "# the first line of a map comes by a reload"
 sed '/watchdog/d; s/, line: {[^}]*}//' <(watched lamp 0 0) >"$map"
 plant_node "$map"
-refuse "there is no I/O process yet" io_process
 exec 8<>/dev/tcp/127.0.0.1/1502
 check "the map is taken" reload_with "$taken" < <(watched lamp 0 0 | sed '/watchdog/d')
-check "there is one now" wait_until io_process
 printf '\0\1\0\0\0\6\1\5\0\0\0\0' >&8
 expect "a master that was there is answered" '00 01 00 00 00 06 01 05 00 00 00 00' "$(timeout 5 head -c 12 <&8 | od -An -tx1 | xargs)"
 check "and drives" level_is 0 0
 exec 8<&-
-check "the node ends well" stop node TERM
+
+echo "# a map that never comes, while the process that drives dies"
+check "the output is written" set_coil 0 1
+sim_pull plant 0 up
+mv "$map" "$map.kept"; mkfifo "$map"
+before=$(io_process)
+kill -HUP "$(pid node)"
+check "a pipe is refused" wait_until says node 'map.yaml: error: it is not a regular file'
+rm "$map"; mv "$map.kept" "$map"
+yes '  a_point_of_a_long_map: {address: 0, type: INT, description: nothing but text}' | head -c 4000000 >"$map.long"
+mv "$map.long" "$map"
+kill -HUP "$(pid node)"
+check "a long one is being read" wait_until pgrep -x coupler-map
+kill -KILL "$before"
+check "the output is safe meanwhile, against its pull" wait_until level_is 0 0
+check "the map is still being read" pgrep -x coupler-map
+check "another I/O process is started" wait_until new_io_process "$before"
+reader=$(pgrep -x coupler-map)
+check "the node ends well at SIGTERM, at once" stop node TERM
+check "and so does the process that reads" wait_until ended "$reader"

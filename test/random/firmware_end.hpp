@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -15,6 +16,8 @@ class FirmwareEnd {
  public:
   virtual ~FirmwareEnd() = default;
   virtual node::Hooks& hooks() = 0;
+  /// Called in serving_began().
+  std::function<void()> when_serving;
   /// set_POINT(value); false if it is refused, or no such function is there.
   virtual bool put(std::uint32_t point, const Values& values) = 0;
 

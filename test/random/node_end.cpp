@@ -52,6 +52,14 @@ class NodeEnd::Bell : public node::Watcher {
   std::optional<std::packaged_task<void()>> work_;
 };
 
+namespace {
+
+struct Unheard : node::Pulse {
+  void beat() override {}
+};
+
+}  // namespace
+
 NodeEnd::NodeEnd(const Map& map, node::Hooks* hooks)
     : simulated_(std::any_of(map.points.begin(), map.points.end(), has_hardware)) {
   auto listener = node::listen_on("127.0.0.1", 0);
@@ -60,6 +68,7 @@ NodeEnd::NodeEnd(const Map& map, node::Hooks* hooks)
   duty_.map = &map;
   duty_.listener = *std::move(listener);
   duty_.memory = std::make_unique<node::Memory>(map, node::TimePoint::clock::now());
+  if (hooks != nullptr) hooks->allow_setting();
   if (hooks != nullptr)
     duty_.hooked = std::make_unique<node::HookedPoints>(map, duty_.memory->image(), *hooks);
   duty_.wiring = (*wiring)->take_over();
@@ -75,7 +84,8 @@ NodeEnd::~NodeEnd() {
 
 void NodeEnd::run() {
   node::IoService service(duty_, loop_, log_);
-  service.run([this] { return bell_->is_over.load(); }, nullptr);
+  Unheard pulse;
+  service.run([this](node::TimePoint) { return bell_->is_over.load(); }, pulse);
 }
 
 std::uint16_t NodeEnd::port() const {

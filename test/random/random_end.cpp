@@ -7,6 +7,7 @@
 //   random_end firmware NAME OPTIONS…     a node; "show ROUND": what masters read of points with hooks
 #include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <iostream>
 #include <sstream>
 #include <thread>
@@ -84,23 +85,25 @@ int run_client(const Subject& subject, const char* port) {
   return 0;
 }
 
+/// For as long as the process that serves lives.
+[[noreturn]] void show(const Subject& subject, FirmwareEnd& firmware) {
+  obey([&](const Command& command) {
+    std::string wrong;
+    for (std::uint32_t i = 0; i < subject.map->points.size(); ++i) {
+      const vectors::Cases cases = vectors::cases_of(subject.map->points[i]);
+      const vectors::Case& shown = pick(cases, i, command.round);
+      if (is_set_by_firmware(subject.map->points[i]) && !shown.only_read && !firmware.put(i, shown.values))
+        wrong += std::string(subject.map->points[i].name) + " is refused; ";
+    }
+    return wrong;
+  });
+  for (;;) std::this_thread::sleep_for(1h);
+}
+
 int run_firmware(const Subject& subject, int argc, char** argv) {
   const auto firmware = subject.firmware();
-  std::thread shows([&] {
-    obey([&](const Command& command) {
-      std::string wrong;
-      for (std::uint32_t i = 0; i < subject.map->points.size(); ++i) {
-        const vectors::Cases cases = vectors::cases_of(subject.map->points[i]);
-        const vectors::Case& shown = pick(cases, i, command.round);
-        if (is_set_by_firmware(subject.map->points[i]) && !shown.only_read && !firmware->put(i, shown.values))
-          wrong += std::string(subject.map->points[i].name) + " is refused; ";
-      }
-      return wrong;
-    });
-  });
-  const int status = node::main_with(*subject.map, firmware->hooks(), argc, argv);
-  shows.join();
-  return status;
+  firmware->when_serving = [&] { std::thread(show, std::cref(subject), std::ref(*firmware)).detach(); };
+  return node::main_with(*subject.map, firmware->hooks(), argc, argv);
 }
 
 }  // namespace

@@ -60,7 +60,8 @@ std::string firmware(const std::string& name, const Map& map) {
   }
   return fmt::format(
       "class Firmware_{0} : public maps::{0}::NodeHooks, public FirmwareEnd {{\n"
-      "  node::Hooks& hooks() override {{ return *this; }}\n{1}"
+      "  node::Hooks& hooks() override {{ return *this; }}\n"
+      "  void serving_began() override {{ if (when_serving) when_serving(); }}\n{1}"
       "  bool put(std::uint32_t point, [[maybe_unused]] const Values& values) override {{\n"
       "    switch (point) {{\n{2}      default: return false;\n    }}\n  }}\n}};\n"
       "const Registered registered_{0}({{\"{0}\", &maps::{0}::map, make_client<maps::{0}::Client>, "

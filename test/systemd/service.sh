@@ -16,7 +16,7 @@ property() { systemctl show --value -p "$1" "$unit"; }
 is() { [ "$(property "$1")" = "$2" ]; }
 in_journal() { grep -qE -- "$1" <<<"$(journalctl -u "$unit" -o cat --no-pager "${@:2}")"; }
 keeper() { property MainPID; }
-io_process() { pgrep -P "$(keeper)"; }
+io_process() { pgrep -P "$(keeper)" -x coupler-node-io; }
 of_process() { sed -nE "s/^$2:[[:space:]]*(.*)/\1/p" "/proc/$1/status"; }
 serves() { answered master -t 1 -r 0 -c 1 127.0.0.1 >/dev/null; }
 is_another() { [ "$(property MainPID)" != "$1" ] && is ActiveState active && serves; }
@@ -80,11 +80,11 @@ echo "# reloaded"
 before=$(keeper)
 sed 's/^  coils:/&\n    spare: 5/' node.yaml >/etc/coupler/node.yaml
 check "systemd passes it on" systemctl reload "$unit"
-check "a point that is new is served" wait_until set_coil 5 1
+check "a point that is new is served at once" set_coil 5 1
 check "the journal tells" in_journal '^read the map again: serving plant \(8 points'
 echo 'name: [' >/etc/coupler/node.yaml
-systemctl reload "$unit"
-check "a wrong map is refused" wait_until in_journal '^the new map is refused; the old one goes on'
+refuse "a reload with a wrong map fails" systemctl reload "$unit"
+check "the map is refused" wait_until in_journal '^the new map is refused; the old one goes on'
 expect "the service is as active as before" "active running" "$(property ActiveState) $(property SubState)"
 check "and serves the map that it had" set_coil 5 0
 expect "outputs are as they were" "0 1" "$(sim_value plant 0) $(sim_value plant 1)"

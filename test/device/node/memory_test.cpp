@@ -60,6 +60,7 @@ TEST(NodeMemory, Values_of_points_that_mean_the_same_go_over_wherever_they_stand
   before.statistics().requests = 42;
 
   Memory after(new_map->map(), TimePoint(std::chrono::seconds(9)));
+  after.prepare_carry_over(before);
   after.carry_over(before, TimePoint(std::chrono::seconds(9)));
   EXPECT_EQ(cell(after, holding, 10), 0x1234);
   EXPECT_EQ(cell(after, holding, 11), 0x5678);
@@ -84,6 +85,7 @@ TEST(NodeMemory, What_nobody_can_change_is_as_the_new_map_says) {
   Memory before(old_map->map(), {});
   cell(before, inputs, 1) = 9;
   Memory after(new_map->map(), {});
+  after.prepare_carry_over(before);
   after.carry_over(before, {});
   EXPECT_EQ(cell(after, inputs, 0), 4);
   EXPECT_EQ(cell(after, inputs, 1), 9) << "a counter goes on";
@@ -102,15 +104,18 @@ TEST(NodeMemory, The_watchdog_waits_anew_and_what_expired_stays_expired) {
   Memory before(quick->map(), now);
   before.watchdog().arm(now);
   Memory after(slow->map(), now);
+  after.prepare_carry_over(before);
   after.carry_over(before, now + std::chrono::milliseconds(50));
   EXPECT_EQ(after.watchdog().left(now), std::chrono::milliseconds(550));
 
   before.watchdog().expire(true, now);
+  after.prepare_carry_over(before);
   after.carry_over(before, now);
   EXPECT_TRUE(after.watchdog().is_locked());
 
   const MapPtr none = MapBuilder().many(Table::coils, 0, 1).build();
   Memory without(none->map(), now);
+  without.prepare_carry_over(before);
   without.carry_over(before, now);
   EXPECT_FALSE(without.watchdog().is_present());
 }

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "device/node/map_reading.hpp"
+#include "device/node/stderr_log.hpp"
+
+namespace coupler::node {
+
+/// The map file of a node. What is wrong with it is said in the log.
+class MapInput {
+ public:
+  /// `path` may be "-", standard input, which can be read once. The log outlives it.
+  MapInput(std::string path, StderrLog& log) : path_(std::move(path)), log_(log) {}
+
+  /// Null after telling what is wrong. Any file will do, a pipe too.
+  MapPtr read() const;
+  /// For a node that runs: only a regular file is opened, others may have no end, or none that comes soon.
+  ReadAgain again() const;
+
+ private:
+  bool is_regular(const std::string& path) const;
+
+  std::string path_;
+  StderrLog& log_;
+};
+
+}  // namespace coupler::node

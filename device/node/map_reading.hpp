@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "common/map/owned_map.hpp"
+#include "device/keeper/child.hpp"
+#include "device/keeper/shared_arena.hpp"
+#include "device/keeper/shared_array.hpp"
+#include "device/net/loop.hpp"
+
+namespace coupler::node {
+
+/// How a node reads its map again. It is called in a process of its own, which has none of the node's lines
+/// and sockets, and may take its time.
+struct ReadAgain {
+  std::function<MapPtr()> read;  ///< null after telling what is wrong; empty: there is nothing to read again
+  int descriptor = -1;           ///< that it needs besides 0 to 2: the log's
+};
+
+/// A map that is being read in a process of its own. It dies with this one.
+class MapReading : public Watcher {
+ public:
+  /// A slow board reads the largest map in a third of it.
+  static constexpr std::chrono::seconds patience{60};
+
+  /// `loop` wakes up when it is done. The error says why it cannot be done.
+  static tl::expected<std::unique_ptr<MapReading>, std::string> start(Loop& loop, const ReadAgain& again,
+                                                                      TimePoint now);
+  MapReading(const MapReading&) = delete;
+  MapReading& operator=(const MapReading&) = delete;
+  ~MapReading();
+
+  /// It has ended, or its time is over.
+  bool is_over(TimePoint now);
+  /// Once it is over. The error says what went wrong; it is empty if the process has told.
+  tl::expected<MapPtr, std::string> take();
+
+  void ready(TimePoint) override;
+
+ private:
+  /// More than the largest map file (loader) needs.
+  static constexpr std::size_t room = std::size_t{256} << 20;
+  MapReading(Loop& loop, TimePoint now);
+  int read(const ReadAgain& again, pid_t parent);
+
+  Loop& loop_;
+  TimePoint deadline_;
+  std::shared_ptr<SharedArena> arena_;
+  SharedArray<const OwnedMap*> map_{1};
+  std::optional<Child> child_;
+  std::optional<int> status_;
+  bool is_watched_ = false;
+};
+
+}  // namespace coupler::node
