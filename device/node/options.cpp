@@ -44,6 +44,9 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
   app.add_option("--port", options.port, "TCP port (default: the map's, usually 502; 0: any free one)");
   app.add_flag("--sim", options.simulated,
                "Simulate every coil and discrete input, wired as the map's sim: section says");
+  app.add_flag("--realtime", options.realtime,
+               "Ahead of other programs (SCHED_FIFO), with memory locked; ends with status 3 if the system "
+               "refuses that");
   if (const auto done = app.parse(argc, argv)) return *done;
   return options;
 }

@@ -3,6 +3,8 @@
 
 #include <unistd.h>
 
+#include <mutex>
+
 namespace coupler::node {
 
 void PointHooks::allow_setting() { process_ = ::getpid(); }

@@ -4,7 +4,6 @@
 #include <sys/types.h>
 
 #include <array>
-#include <mutex>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "common/map/typed_value.hpp"
 #include "common/modbus/limits.hpp"
 #include "device/core/hooks.hpp"
+#include "device/node/urgent_mutex.hpp"
 
 namespace coupler::node {
 
@@ -52,7 +52,7 @@ class PointHooks : public Hooks {
 
   const Map& map_;
   pid_t process_ = 0;  ///< the one that serves
-  std::mutex mutex_;
+  UrgentMutex mutex_;
   std::vector<std::vector<std::uint16_t>> set_;  ///< by point; empty: not set since it was put into the image
   std::vector<std::uint32_t> points_;            ///< those that are not empty
 };

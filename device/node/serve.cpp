@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "device/keeper/keeper.hpp"
+#include "device/node/realtime.hpp"
 
 namespace coupler::node {
 
@@ -14,6 +15,9 @@ int serve(const Map& map, const Options& options, StderrLog& log, const ReadAgai
     tell(log, refusal);
     return refusal.reason;
   };
+  if (options.realtime)
+    if (const auto had = become_realtime(RealtimePriority::supervisor); !had)
+      return failed({Refusal::device_failed, had.error()});
   Loop loop;
   if (!loop.is_open()) return failed({Refusal::device_failed, std::strerror(errno)});
   Signals signals(loop);

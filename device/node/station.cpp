@@ -15,6 +15,7 @@
 #include "device/analogue/open_channels.hpp"
 #include "device/analogue/sampler.hpp"
 #include "device/node/io_service.hpp"
+#include "device/node/realtime.hpp"
 #include "device/node/servable.hpp"
 
 namespace coupler::node {
@@ -111,6 +112,11 @@ std::string Station::greeting() const {
 }
 
 int Station::serve(Superior& superior, std::vector<OpenConnection> clients) {
+  if (options_.realtime)
+    if (const auto had = become_realtime(RealtimePriority::io_process); !had) {
+      tell(log_, {Refusal::device_failed, had.error()});
+      return Refusal::device_failed;
+    }
   Loop loop;
   if (!loop.is_open()) {
     tell(log_, {Refusal::device_failed, std::strerror(errno)});

@@ -100,6 +100,24 @@ systemctl daemon-reload
 check "it keeps what it promises" systemctl start sandbox.service
 journalctl -u sandbox.service -o cat --no-pager | grep -E '^(not )?ok' || true
 
+echo "# ahead of other programs"
+drop_in=/run/systemd/system/$unit.d
+mkdir "$drop_in"
+cp /usr/share/doc/coupler-node/examples/realtime.conf "$drop_in"
+systemctl daemon-reload
+check "with realtime.conf it starts" quietly systemctl restart "$unit"
+check "and serves" wait_until serves
+is_locked() { [ "$(of_process "$1" VmLck)" != "0 kB" ]; }
+policy_of() { chrt -p "$1" | sed -n 's/.*policy: //p; s/.*priority: //p' | paste -sd ' '; }
+expect "the keeper has real-time priority" "SCHED_FIFO|SCHED_RESET_ON_FORK 11" "$(policy_of "$(keeper)")"
+expect "so has the I/O process" "SCHED_FIFO|SCHED_RESET_ON_FORK 10" "$(policy_of "$(io_process)")"
+check "the keeper's memory is locked" is_locked "$(keeper)"
+check "so is the I/O process's" is_locked "$(io_process)"
+rm -r "$drop_in"
+systemctl daemon-reload
+check "without it, it starts again" quietly systemctl restart "$unit"
+check "and serves" wait_until serves
+
 echo "# the I/O process dies"
 before=$(keeper)
 kill -KILL "$(io_process)"

@@ -24,13 +24,15 @@ int status(std::vector<std::string> arguments, MapSource source = MapSource::arg
 }
 
 TEST(NodeOptions, They_are_read) {
-  const auto parsed = parse({"device.yaml", "--listen", "127.0.0.1", "--port", "1502", "--sim"});
+  const auto parsed =
+      parse({"device.yaml", "--listen", "127.0.0.1", "--port", "1502", "--sim", "--realtime"});
   ASSERT_TRUE(std::holds_alternative<Options>(parsed));
   const auto& options = std::get<Options>(parsed);
   EXPECT_EQ(options.map, "device.yaml");
   EXPECT_EQ(options.listen, "127.0.0.1");
   EXPECT_EQ(options.port, 1502);
   EXPECT_TRUE(options.simulated);
+  EXPECT_TRUE(options.realtime);
 }
 
 TEST(NodeOptions, The_address_is_the_options_then_the_maps_then_loopback_when_simulated) {
@@ -52,6 +54,7 @@ TEST(NodeOptions, Without_them_the_map_decides) {
   EXPECT_EQ(options.port, std::nullopt);
   EXPECT_EQ(options.listen, "");
   EXPECT_FALSE(options.simulated);
+  EXPECT_FALSE(options.realtime);
 }
 
 TEST(NodeOptions, A_wrong_call_is_status_2) {
