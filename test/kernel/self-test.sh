@@ -22,6 +22,9 @@ fi
 sees() { "${@:2}" | grep -- "$1" >/dev/null; }
 wire_is() { [ "$(sim_value "$1" "$2")" = "$3" ]; }
 
+read -r _ _ turns </proc/self/schedstat
+check "the kernel counts how long a process waits for the CPU" [ "$turns" -gt 0 ]
+
 sim_create plain 8
 check "gpiodetect lists the chip by its label" sees "$(sim_chip plain) \[plain\] (8 lines)" gpiodetect
 
