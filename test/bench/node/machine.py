@@ -8,24 +8,27 @@ import subprocess
 class Machine:
     def __init__(self):
         cores = sorted(os.sched_getaffinity(0))
+        self.cores = cores
         self._server_core, self._client_core = cores[0], cores[-1]
-        self._goes_first = subprocess.run(["chrt", "--fifo", "1", "true"], stderr=subprocess.DEVNULL,
-                                          check=False).returncode == 0
+        self.permits_priority = subprocess.run(["chrt", "--fifo", "1", "true"], stderr=subprocess.DEVNULL,
+                                               check=False).returncode == 0
 
-    def as_server(self, *command):
-        """The command line that runs the command there."""
-        return self._on(self._server_core, command)
+    def as_server(self, *command, priority=1):
+        """The command line that runs the command there; priority 0 is that of other programs."""
+        return self._on(self._server_core, command, priority)
 
-    def as_client(self, *command):
-        return self._on(self._client_core, command)
+    def as_client(self, *command, priority=1):
+        return self._on(self._client_core, command, priority)
 
     def __str__(self):
         cores = (f"server on core {self._server_core}, clients on core {self._client_core}"
                  if self._server_core != self._client_core else "server and clients on one core")
-        others = ("ahead of other programs" if self._goes_first else
-                  "beside other programs (real-time priority is not permitted: figures are steady on an idle machine only)")
-        return f"{cores}, {others}; load average {os.getloadavg()[0]:.1f}"
+        return f"{cores}; load average {os.getloadavg()[0]:.1f}"
 
-    def _on(self, core, command):
-        first = ["chrt", "--fifo", "1"] if self._goes_first else []
+    def order(self):
+        return ("ahead of other programs" if self.permits_priority else
+                "beside other programs (real-time priority is not permitted: figures are steady on an idle machine only)")
+
+    def _on(self, core, command, priority):
+        first = ["chrt", "--fifo", str(priority)] if priority and self.permits_priority else []
         return [*first, "taskset", "--cpu-list", str(core), *map(str, command)]
