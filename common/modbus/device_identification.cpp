@@ -14,18 +14,25 @@ using Access = ReadDeviceIdentification::Access;
 using Objects = Span<const IdentificationObject>;
 
 constexpr std::size_t header_size = 7;
-constexpr std::uint8_t conformity = 0x82;  ///< regular, by stream and individually
 constexpr std::uint8_t last_basic = 2;
+constexpr std::uint8_t last_regular = 0x7F;
+// Conformity levels: by stream and individually.
+constexpr std::uint8_t is_regular = 0x82;
+constexpr std::uint8_t is_extended = 0x83;
 
 std::size_t size_of(const IdentificationObject& object) {
   return std::min(object.value.size(), max_identification_size);
 }
 
+Objects up_to(std::uint8_t last, Objects objects) {
+  return objects.first(static_cast<std::size_t>(
+      std::count_if(objects.begin(), objects.end(), [last](const auto& o) { return o.id <= last; })));
+}
+
 /// Those of the category, from the wanted one on.
 Objects selected(ReadDeviceIdentification wanted, Objects objects) {
-  if (wanted.access == Access::basic)
-    objects = objects.first(static_cast<std::size_t>(
-        std::count_if(objects.begin(), objects.end(), [](const auto& o) { return o.id <= last_basic; })));
+  if (wanted.access == Access::basic) objects = up_to(last_basic, objects);
+  if (wanted.access == Access::regular) objects = up_to(last_regular, objects);
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (objects[i].id == wanted.object) return objects.from(i);
   return wanted.access == Access::individual ? Objects() : objects;
@@ -65,7 +72,7 @@ tl::expected<std::size_t, Exception> reply_device_identification(ReadDeviceIdent
   pdu[0] = static_cast<std::uint8_t>(Function::encapsulated_interface);
   pdu[1] = mei_device_identification;
   pdu[2] = static_cast<std::uint8_t>(wanted.access);
-  pdu[3] = conformity;
+  pdu[3] = objects.back().id > last_regular ? is_extended : is_regular;
   pdu[4] = rest.empty() ? 0x00 : 0xFF;
   pdu[5] = rest.empty() ? 0x00 : rest.front().id;
   pdu[6] = count;

@@ -32,10 +32,11 @@ struct IdentificationObject {
 /// The object's number, its size and itself in a PDU of their own.
 constexpr std::size_t max_identification_size = 244;
 
-/// The reply of a device whose identification is basic and regular (conformity 0x82). `objects`, sorted by
-/// id, holds 0, 1 and 2 at least; ids are below 0x80. A stream that does not fit goes on in further requests;
-/// one that begins at an object that is not there begins at the first. `pdu` holds at least max_pdu_size
-/// bytes. Error: 02 no such individual object.
+/// The reply of a device whose identification is basic and regular (conformity level 0x82), and extended
+/// (0x83) if it has an object from 0x80 on. `objects`, sorted by id, holds 0, 1 and 2 at least. The extended
+/// stream of a device that has none is the regular one. A stream that does not fit goes on in further
+/// requests; one that begins at an object that is not there begins at the first. `pdu` holds at least
+/// max_pdu_size bytes. Error: 02 no such individual object.
 tl::expected<std::size_t, Exception> reply_device_identification(ReadDeviceIdentification wanted,
                                                                  Span<const IdentificationObject> objects,
                                                                  Span<std::uint8_t> pdu);

@@ -55,6 +55,17 @@ TEST(DeviceIdentification, The_regular_stream_goes_on_and_the_extended_has_no_mo
   EXPECT_EQ(extended, regular);
 }
 
+TEST(DeviceIdentification, A_device_with_an_extended_object_says_so_and_gives_it_where_it_is_asked_for) {
+  const std::array<IdentificationObject, 5> more{{{0, "AB"}, {1, "C"}, {2, "1.0"}, {6, "x"}, {0x80, "yz"}}};
+  EXPECT_THAT(reply_to(Access::basic, 2, more), ElementsAre(43, 14, 1, 0x83, 0, 0, 1, 2, 3, '1', '.', '0'));
+  EXPECT_THAT(reply_to(Access::regular, 6, more), ElementsAre(43, 14, 2, 0x83, 0, 0, 1, 6, 1, 'x'));
+  EXPECT_THAT(reply_to(Access::extended, 6, more),
+              ElementsAre(43, 14, 3, 0x83, 0, 0, 2, 6, 1, 'x', 0x80, 2, 'y', 'z'));
+  EXPECT_THAT(reply_to(Access::individual, 0x80, more),
+              ElementsAre(43, 14, 4, 0x83, 0, 0, 1, 0x80, 2, 'y', 'z'));
+  EXPECT_EQ(reply_to(Access::regular, 0x80, more), reply_to(Access::regular, 0, more));
+}
+
 TEST(DeviceIdentification, A_stream_from_an_object_that_is_not_there_begins_at_the_first) {
   EXPECT_EQ(reply_to(Access::regular, 3), reply_to(Access::regular, 0));
   EXPECT_EQ(reply_to(Access::basic, 4), reply_to(Access::basic, 0));
