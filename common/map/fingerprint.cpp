@@ -33,6 +33,17 @@ std::string scale(const Point& point) {
 
 }  // namespace
 
+std::uint64_t hash64(std::string_view text) {
+  std::array<std::uint8_t, SHA256_DIGEST_LENGTH> digest{};
+  SHA2_CTX context;
+  SHA256Init(&context);
+  SHA256Update(&context, reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  SHA256Final(digest.data(), &context);
+  std::uint64_t first = 0;
+  for (std::size_t i = 0; i < sizeof first; ++i) first = first << 8 | digest[i];
+  return first;
+}
+
 std::string canonical_line(const Point& point) {
   const bool text = point.format.type == codec::Type::STRING;
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", to_string(point.table), point.address,
@@ -49,17 +60,7 @@ std::string canonical_text(Span<const Point> sorted_points) {
   return text;
 }
 
-std::uint64_t fingerprint(Span<const Point> sorted_points) {
-  const std::string text = canonical_text(sorted_points);
-  std::array<std::uint8_t, SHA256_DIGEST_LENGTH> digest{};
-  SHA2_CTX context;
-  SHA256Init(&context);
-  SHA256Update(&context, reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  SHA256Final(digest.data(), &context);
-  std::uint64_t first = 0;
-  for (std::size_t i = 0; i < sizeof first; ++i) first = first << 8 | digest[i];
-  return first;
-}
+std::uint64_t fingerprint(Span<const Point> sorted_points) { return hash64(canonical_text(sorted_points)); }
 
 std::string fingerprint_text(std::uint64_t fingerprint) { return fmt::format("{:016x}", fingerprint); }
 

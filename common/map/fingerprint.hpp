@@ -5,11 +5,15 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "common/base/span.hpp"
 #include "common/map/point.hpp"
 
 namespace coupler {
+
+/// The first 64 bits, most significant first, of the text's SHA-256.
+std::uint64_t hash64(std::string_view text);
 
 /// The point's line of the canonical text, without the newline:
 ///   TABLE ADDRESS PART NAME TYPE ORDER COUNT LENGTH ENCODING IGNORE_BYTEORDER SCALE ACCESS
@@ -20,7 +24,7 @@ std::string canonical_line(const Point& point);
 /// All lines in the order of canonical_less(), each ended by "\n".
 std::string canonical_text(Span<const Point> sorted_points);
 
-/// The first 64 bits, most significant first, of the SHA-256 of the canonical text.
+/// hash64() of the canonical text.
 std::uint64_t fingerprint(Span<const Point> sorted_points);
 
 /// Sixteen lower-case hexadecimal digits.

@@ -6,7 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
+#include "common/base/span.hpp"
 #include "common/map/map.hpp"
 #include "common/modbus/file_record.hpp"
 #include "common/modbus/limits.hpp"
@@ -44,7 +46,10 @@ enum : std::uint16_t {
   at_foreign_units = 39,  ///< requests for another unit id
   at_bad_frames = 41,     ///< connections closed for what they sent
   at_timeouts = 43,       ///< connections closed for what they did not send or read in time
-  size = 45,
+  at_further = 45,   ///< how many registers of further fields follow; the first nodes do not have this one
+  at_serial = 46,    ///< of the machine, a hash, 4 registers, most significant first; 0: unknown
+  at_hostname = 50,  ///< 32 registers, ASCII, two characters each, the first one high; zeros behind it
+  size = 82,
 };
 
 constexpr std::uint32_t magic = 0x4F43504C;  // "OCPL"
@@ -52,6 +57,12 @@ constexpr std::uint16_t layout = 1;
 
 /// Registers that the driver reads at connect: up to the statistics.
 constexpr std::uint16_t head_size = at_statistics;
+/// Registers that every node has. A driver takes any other layout version for a foreign coupler, so fields
+/// are only ever appended, and a reader asks first how many there are and ignores those that it does not
+/// know.
+constexpr std::uint16_t report_size = at_further;
+/// Registers of the further fields that this program knows.
+constexpr std::uint16_t further_size = size - at_serial;
 
 struct Head {
   std::uint64_t fingerprint = 0;
@@ -68,6 +79,61 @@ void write_head(const Head& head, std::uint16_t* area);
 /// nullopt if the registers do not begin with the magic and a layout that this program knows: a foreign
 /// coupler.
 std::optional<Head> read_head(const std::array<std::uint16_t, head_size>& area);
+
+/// What at_watchdog_state holds, by value.
+constexpr std::array<std::string_view, 4> watchdog_states{"not configured", "idle", "armed", "expired"};
+
+/// A counter of the statistics.
+struct Counter {
+  std::uint16_t at;
+  std::string_view key;   ///< for programs
+  std::string_view text;  ///< for people
+};
+constexpr std::array<Counter, 15> counters{{
+    {at_requests, "requests", "requests answered"},
+    {at_exceptions, "exceptions", "of these, with an exception"},
+    {at_exceptions_of, "exceptions_01", "exception 01 (illegal function)"},
+    {at_exceptions_of + 2, "exceptions_02", "exception 02 (illegal data address)"},
+    {at_exceptions_of + 4, "exceptions_03", "exception 03 (illegal data value)"},
+    {at_exceptions_of + 6, "exceptions_04", "exception 04 (server device failure)"},
+    {at_foreign_units, "foreign_units", "requests for another unit id"},
+    {at_connections, "connections", "connections accepted"},
+    {at_refusals, "connections_refused", "connections refused by 'allow'"},
+    {at_evictions, "connections_evicted", "connections closed to make room"},
+    {at_bad_frames, "connections_bad_frames", "connections closed for a bad frame"},
+    {at_timeouts, "connections_timed_out", "connections closed by a timeout"},
+    {at_hardware_errors, "hardware_errors", "hardware errors"},
+    {at_events_lost, "events_lost", "events lost"},
+    {at_watchdog_trips, "watchdog_trips", "times the watchdog expired"},
+}};
+
+/// What every node says of itself.
+struct Report {
+  Head head;
+  std::uint16_t watchdog_state = 0;
+  std::uint16_t watchdog_left = 0;                      ///< ms
+  std::uint32_t uptime = 0;                             ///< s
+  std::array<std::uint32_t, counters.size()> counts{};  ///< in the order of `counters`
+};
+
+/// nullopt: as read_head().
+std::optional<Report> read_report(const std::array<std::uint16_t, report_size>& area);
+
+/// Which machine a node runs on: two nodes with one map are told apart by it.
+struct Machine {
+  std::uint64_t serial = 0;         ///< a hash; 0: unknown
+  std::array<char, 64> hostname{};  ///< zeros behind it, if it is shorter; empty: unknown
+};
+
+/// A name that is too long is cut off.
+Machine machine_of(std::string_view hostname, std::uint64_t serial);
+std::string_view hostname_of(const Machine& machine);
+
+/// Registers at_further … size.
+void write_machine(const Machine& machine, std::uint16_t* area);
+
+/// `further` is from at_serial on, as many registers as the node has; what it does not have stays unknown.
+Machine read_machine(Span<const std::uint16_t> further);
 
 /// Where a piece of the map's text is, for FC 20: two bytes a record, most significant first,
 /// records_per_file records a file, files from 1 upward; an odd last byte is followed by a zero.

@@ -35,8 +35,13 @@ Handler::Handler(const Map& map, Image& image, Hardware hardware, Statistics& st
       statistics_(statistics),
       watchdog_(watchdog),
       edge_points_(map, image, statistics, links) {
-  write_identity(map, image);
+  write_identity(map, machine_, image);
   show_outputs();
+}
+
+void Handler::set_machine(const identity::Machine& machine) {
+  machine_ = machine;
+  write_identity(map_, machine_, image_);
 }
 
 std::size_t Handler::handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply) {
@@ -190,7 +195,7 @@ Handler::Answer Handler::carry_out(const modbus::Echo&, const Call& call) {
 }
 
 Handler::Answer Handler::carry_out(const modbus::ReadDeviceIdentification& wanted, const Call& call) {
-  return identify(map_, wanted, call.reply);
+  return identify(map_, machine_, wanted, call.reply);
 }
 
 }  // namespace coupler::node

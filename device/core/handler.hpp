@@ -7,6 +7,7 @@
 #include <optional>
 #include <tl/expected.hpp>
 
+#include "common/map/identity.hpp"
 #include "common/modbus/limits.hpp"
 #include "common/modbus/request.hpp"
 #include "device/core/edge_points.hpp"
@@ -26,6 +27,9 @@ class Handler {
   /// EdgePoints::links_for() elements.
   Handler(const Map& map, Image& image, Hardware hardware, Statistics& statistics, OutputWatchdog& watchdog,
           Span<EdgePoints::Link> links);
+
+  /// Which machine the node says that it runs on; until then it says that it does not know.
+  void set_machine(const identity::Machine& machine);
 
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
   /// returns its size; `peer` sent it. Exceptions: those of parse_request(); 02 an address that is not
@@ -70,6 +74,7 @@ class Handler {
   void show_outputs();
 
   const Map& map_;
+  identity::Machine machine_{};
   Image& image_;
   Hardware hardware_;
   Statistics& statistics_;

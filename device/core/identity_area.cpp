@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "common/codec/number.hpp"
-#include "common/map/identity.hpp"
 
 namespace coupler::node {
 namespace {
@@ -15,8 +14,10 @@ Span<std::uint16_t> area_of(Image& image) {
 
 }  // namespace
 
-void write_identity(const Map& map, Image& image) {
-  identity::write_head(identity::head_of(map), area_of(image).data());
+void write_identity(const Map& map, const identity::Machine& machine, Image& image) {
+  const auto area = area_of(image);
+  identity::write_head(identity::head_of(map), area.data());
+  identity::write_machine(machine, area.data());
 }
 
 void write_statistics(const Statistics& statistics, TimePoint now, Image& image) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/map/identity.hpp"
 #include "device/core/image.hpp"
 #include "device/core/statistics.hpp"
 #include "device/core/watchdog.hpp"
@@ -9,7 +10,7 @@ namespace coupler::node {
 
 /// Writes what the node says of itself (common/map/identity.hpp) into its area of the image: what never
 /// changes.
-void write_identity(const Map& map, Image& image);
+void write_identity(const Map& map, const identity::Machine& machine, Image& image);
 
 /// The same for counters and watchdog, which are brought up to date whenever a master reads there.
 void write_statistics(const Statistics& statistics, TimePoint now, Image& image);

@@ -32,15 +32,17 @@ bool may_change(const Point& point) {
 
 }  // namespace
 
-Memory::Memory(const Map& map, TimePoint now) : Memory(map, now, Image::size_for(map)) {}
+Memory::Memory(const Map& map, TimePoint now, const identity::Machine& machine)
+    : Memory(map, now, Image::size_for(map), machine) {}
 
-Memory::Memory(const Map& map, TimePoint now, Image::Size size)
+Memory::Memory(const Map& map, TimePoint now, Image::Size size, const identity::Machine& machine)
     : map_(map),
       areas_(size.areas),
       cells_(size.cells),
       image_(map, areas_, cells_.all()),
       lasting_(1, {started_at(now), OutputWatchdog(map.service.watchdog)}),
-      links_(EdgePoints::links_for(map)) {}
+      links_(EdgePoints::links_for(map)),
+      machine_(machine) {}
 
 void Memory::prepare_carry_over(const Memory& before) {
   LookupByName known(before.map_.points, [](const Point& point) { return point.name; });

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "common/map/identity.hpp"
 #include "device/core/edge_points.hpp"
 #include "device/core/image.hpp"
 #include "device/core/statistics.hpp"
@@ -16,7 +17,7 @@ namespace coupler::node {
 class Memory {
  public:
   /// Initial values. The map outlives it.
-  Memory(const Map& map, TimePoint now);
+  Memory(const Map& map, TimePoint now, const identity::Machine& machine = {});
 
   /// Finds out what carry_over() from this other memory, of another map, is to copy: that takes its time if
   /// there are many points.
@@ -29,6 +30,7 @@ class Memory {
   Statistics& statistics() { return lasting_[0].statistics; }
   OutputWatchdog& watchdog() { return lasting_[0].watchdog; }
   Span<EdgePoints::Link> links() { return links_; }
+  const identity::Machine& machine() const { return machine_; }
 
  private:
   struct Lasting {
@@ -41,7 +43,7 @@ class Memory {
     Span<std::uint16_t> to;
     std::uint16_t mask;
   };
-  Memory(const Map& map, TimePoint now, Image::Size size);
+  Memory(const Map& map, TimePoint now, Image::Size size, const identity::Machine& machine);
 
   const Map& map_;
   std::vector<Image::Area> areas_;
@@ -50,6 +52,7 @@ class Memory {
   SharedArray<Lasting> lasting_;
   std::vector<EdgePoints::Link> links_;
   std::vector<Carried> carried_;
+  identity::Machine machine_;
 };
 
 }  // namespace coupler::node

@@ -12,7 +12,9 @@ class Node {
   /// All of them outlive the node; the memory is of this map.
   Node(const Map& map, Hardware hardware, Memory& memory)
       : handler_(map, memory.image(), hardware, memory.statistics(), memory.watchdog(), memory.links()),
-        server_(map.connection.unit, handler_, memory.statistics()) {}
+        server_(map.connection.unit, handler_, memory.statistics()) {
+    handler_.set_machine(memory.machine());
+  }
 
   Handler& handler() { return handler_; }
   Server& server() { return server_; }

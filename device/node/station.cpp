@@ -17,6 +17,7 @@
 #include "device/node/io_service.hpp"
 #include "device/node/realtime.hpp"
 #include "device/node/servable.hpp"
+#include "device/node/this_machine.hpp"
 
 namespace coupler::node {
 namespace {
@@ -77,7 +78,7 @@ tl::expected<std::unique_ptr<Duty>, Refusal> Station::prepare(const Map& map, Ma
   if (!listener) return tl::unexpected(Refusal{Refusal::device_failed, std::move(listener).error()});
   duty->listener = *std::move(listener);
   duty->listener.guests = *std::move(guests);
-  duty->memory = std::make_unique<Memory>(map, TimePoint::clock::now());
+  duty->memory = std::make_unique<Memory>(map, TimePoint::clock::now(), machine_);
   if (duty_) duty->memory->prepare_carry_over(*duty_->memory);
   if (!options_.simulated) {
     auto channels = open_channels(map, log_);

@@ -64,6 +64,7 @@ class Station final : public Charge {
   ServiceManager& manager_;
   Log& log_;
   Hooks* firmware_;
+  identity::Machine machine_;
   std::unique_ptr<GuardedHooks> hooks_;  ///< null: there is no firmware
   std::unique_ptr<Duty> duty_;
   std::unique_ptr<Duty> next_;           ///< waits for change()

@@ -96,12 +96,16 @@ void answer_all() {
       {0, 4, 0, 0, 0, 6, 1, 3, 0, 0, 0, 3},        // speed and ratio
       {0, 5, 0, 0, 0, 6, 1, 4, 0xFF, 0, 0, 3},     // the identity area: "OCPL", layout 1
       {0, 6, 0, 0, 0, 6, 1, 3, 0x12, 0x34, 0, 1},  // an address that is not mapped
+      {0, 7, 0, 0, 0, 6, 1, 4, 0xFF, 0x2D, 0,
+       8},  // which machine it is: how many registers, serial, "board-"
   };
   Ports ports;
   static Statistics statistics;
   Image image(map, areas, cells);
   static OutputWatchdog watchdog(map.service.watchdog);
   static Handler handler(map, image, ports, statistics, watchdog, links);
+  // Of a chip: its unique number, hashed, and a name that somebody gave it.
+  handler.set_machine(identity::machine_of("board-1", 0x0011223344556677));
   static Server server(map.connection.unit, handler, statistics);
   static modbus::Framer framer;
   Peer master;

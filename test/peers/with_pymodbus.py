@@ -5,6 +5,7 @@
     with_pymodbus.py MAP NODE_COMMAND…
 """
 import pathlib
+import socket
 import sys
 
 import peer
@@ -121,7 +122,16 @@ def the_node_identifies_itself(client, checks):
     checks.equal("FC 43/14 vendor", basic[0], "OpenCoupler")
     checks.equal("FC 43/14 product", basic[1], "peers")
     regular = objects(2)
-    checks.equal("FC 43/14 regular", regular, {**basic, 4: "peers", 5: fingerprint})
+    further = client.read_input_registers(IDENTITY + 45, 37, 1).registers
+    serial = "".join(f"{word:04x}" for word in further[1:5])
+    checks.equal("registers of further fields", further[0], 36)
+    hostname = b"".join(word.to_bytes(2, "big") for word in further[5:]).rstrip(b"\0").decode()
+    checks.equal("hostname", hostname, socket.gethostname())
+    checks.equal("FC 43/14 regular", regular, {**basic, 4: "peers", 5: fingerprint, 6: hostname})
+    private = {} if int(serial, 16) == 0 else {0x80: serial}  # a machine may have nothing to tell it by
+    checks.equal("FC 43/14 extended", objects(3), {**regular, **private})
+    for number, text in private.items():
+        checks.equal(f"FC 43/14 object {number}", objects(4, number), {number: text})
     checks.equal("FC 43/14 regular, from 2", objects(2, 2), {n: text for n, text in regular.items() if n >= 2})
     for number, text in regular.items():
         checks.equal(f"FC 43/14 object {number}", objects(4, number), {number: text})

@@ -22,12 +22,13 @@ def words(function, *fields, rest=b""):
 
 # Every function code of the node, good requests and such that are answered with an exception.
 REQUESTS = [
-    words(1, 0, 10), words(1, 20, 1), words(2, 0, 4), words(3, 0, 17), words(4, 0, 5), words(4, 0xFF00, 25),
+    words(1, 0, 10), words(1, 20, 1), words(2, 0, 4), words(3, 0, 17), words(4, 0, 5), words(4, 0xFF00, 82),
     words(5, 3, 0xFF00), words(5, 3, 0), words(6, 0, 0x1234),
     words(15, 0, 10, rest=b"\x02\xcd\x01"), words(16, 0, 2, rest=b"\x04\x12\x34\x56\x78"),
     b"\x14\x07\x06" + struct.pack(">HHH", 1, 0, 100),
     b"\x14\x0e\x06" + struct.pack(">HHH", 1, 0, 10) + b"\x06" + struct.pack(">HHH", 1, 20, 30),
     words(8, 0, 0xA537), words(8, 1, 0), b"\x2b\x0e\x01\x00", b"\x2b\x0e\x02\x00", b"\x2b\x0e\x04\x05",
+    b"\x2b\x0e\x03\x00", b"\x2b\x0e\x03\x80", b"\x2b\x0e\x04\x06", b"\x2b\x0e\x04\x80",
     b"\x2b\x0e\x04\x03", words(22, 0, 0xF2, 0x25), words(23, 0, 3, 1, 1, rest=b"\x02\x00\x07"),
     words(1, 10, 1), words(2, 4, 1), words(3, 17, 1), words(4, 5, 1), words(5, 10, 0), words(6, 17, 0),
     words(15, 9, 2, rest=b"\x01\x03"), words(16, 16, 2, rest=b"\x04\x00\x00\x00\x00"),

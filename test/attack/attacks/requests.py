@@ -97,7 +97,8 @@ def unknown_functions(node):
     are_refused(node, ILLEGAL_FUNCTION, [*(modbus.pdu(8, sub, 0) for sub in (1, 2, 4, 10, 0x00FF, 0xFFFF)),
                                          *(bytes([43, interface, 1, 0]) for interface in range(256) if interface != 14)])
     are_refused(node, ILLEGAL_VALUE, [bytes([43, 14, access, 0]) for access in (0, *range(5, 256))])
-    are_refused(node, ILLEGAL_ADDRESS, [bytes([43, 14, 4, number]) for number in (3, *range(6, 256))])
+    there = (0, 1, 2, 4, 5, 6, 0x80)  # docs/node.md; the last two if the machine has them
+    are_refused(node, ILLEGAL_ADDRESS, [bytes([43, 14, 4, number]) for number in range(256) if number not in there])
 
 
 @attack("function codes of 128 and above are no functions")

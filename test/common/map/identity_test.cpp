@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <vector>
+
 #include "test/common/map/sample_points.hpp"
 
 namespace coupler::identity {
@@ -40,6 +43,71 @@ TEST(Identity, Without_the_magic_or_with_another_layout_it_is_a_foreign_coupler)
   auto other_magic = area_of({});
   other_magic[at_magic + 1] ^= 1;
   EXPECT_FALSE(read_head(other_magic).has_value());
+}
+
+/// The area as a node fills it.
+std::vector<std::uint16_t> whole_area(const Machine& machine) {
+  std::vector<std::uint16_t> area(size);
+  write_head({0x0123456789ABCDEF, 0, 0}, area.data());
+  write_machine(machine, area.data());
+  return area;
+}
+
+Machine read_further(const std::vector<std::uint16_t>& area, std::size_t registers) {
+  return read_machine({area.data() + at_serial, registers});
+}
+
+TEST(Identity, The_machine_stands_behind_the_statistics_as_documented) {
+  const auto area = whole_area(machine_of("cell-7", 0x0011223344556677));
+  ASSERT_EQ(area.size(), 82U);
+  const std::vector<std::uint16_t> further(area.begin() + 45, area.begin() + 54);
+  EXPECT_EQ(further,
+            (std::vector<std::uint16_t>{36, 0x0011, 0x2233, 0x4455, 0x6677, 0x6365, 0x6C6C, 0x2D37, 0}));
+}
+
+TEST(Identity, A_machine_that_is_written_is_read_again) {
+  for (const std::string& name : {std::string(), std::string("a"), std::string(64, 'x')}) {
+    const Machine again = read_further(whole_area(machine_of(name, 7)), further_size);
+    EXPECT_EQ(hostname_of(again), name);
+    EXPECT_EQ(again.serial, 7U);
+  }
+}
+
+TEST(Identity, A_hostname_that_is_too_long_is_cut_off) {
+  EXPECT_EQ(hostname_of(machine_of(std::string(65, 'x'), 0)), std::string(64, 'x'));
+}
+
+TEST(Identity, Further_fields_that_are_not_there_are_unknown_and_those_that_nobody_knows_are_ignored) {
+  auto area = whole_area(machine_of("cell-7", 7));
+  EXPECT_EQ(read_further(area, 0).serial, 0U);
+  EXPECT_EQ(read_further(area, 3).serial, 0U) << "a part of it";
+  EXPECT_EQ(read_further(area, 4).serial, 7U);
+  EXPECT_EQ(hostname_of(read_further(area, 4)), "");
+  EXPECT_EQ(hostname_of(read_further(area, 5)), "ce");
+  area.resize(200, 0xFFFF);
+  const Machine machine = read_further(area, 100);
+  EXPECT_EQ(hostname_of(machine), "cell-7");
+  EXPECT_EQ(machine.serial, 7U);
+}
+
+TEST(Identity, The_report_holds_each_counter_of_the_area_once) {
+  std::array<std::uint16_t, report_size> area{};
+  write_head({1, 2, 3}, area.data());
+  for (std::uint16_t at = head_size; at < report_size; ++at) area[at] = at;
+  area[at_watchdog_state] = 2;
+  area[at_watchdog_left] = 345;
+  const auto report = read_report(area);
+  ASSERT_TRUE(report.has_value());
+  EXPECT_EQ(report->head.map_crc, 3U);
+  EXPECT_EQ(report->watchdog_state, 2);
+  EXPECT_EQ(report->watchdog_left, 345);
+  EXPECT_EQ(report->uptime, 13U << 16U | 14U);
+  std::set<std::uint32_t> counts(report->counts.begin(), report->counts.end());
+  std::set<std::uint32_t> expected;
+  for (std::uint32_t at = at_uptime + 2; at < report_size; at += 2) expected.insert(at << 16U | (at + 1));
+  EXPECT_EQ(counts, expected);
+  area[at_layout] = 2;
+  EXPECT_FALSE(read_report(area).has_value());
 }
 
 TEST(Identity, A_piece_of_the_map_stays_in_its_file_and_in_the_text) {

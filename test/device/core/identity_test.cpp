@@ -77,6 +77,35 @@ TEST(Identity, What_happens_to_connections_is_counted) {
   EXPECT_THAT(area, ElementsAre(0, 1, 0, 2, 0, 3, 0, 4, 5, 0));
 }
 
+TEST(Identity, A_node_that_was_told_its_machine_tells_it) {
+  NodeUnderTest node(MapBuilder().build());
+  node.handler.set_machine(identity::machine_of("cell-7", 0x0123456789ABCDEF));
+  const auto further =
+      registers(node.ask(pdu(4, {0xFF00 + identity::at_further, 1 + identity::further_size})));
+  ASSERT_EQ(further.size(), 37U);
+  EXPECT_EQ(further[0], 36U);
+  const identity::Machine machine = identity::read_machine({further.data() + 1, 36});
+  EXPECT_EQ(machine.serial, 0x0123456789ABCDEFU);
+  EXPECT_EQ(identity::hostname_of(machine), "cell-7");
+  EXPECT_THAT(node.ask(pdu(4, {0xFF00 + identity::size, 1})), ElementsAre(0x84, 2)) << "the end of the area";
+  EXPECT_THAT(node.ask({43, 14, 4, 6}),
+              ElementsAre(43, 14, 4, 0x83, 0, 0, 1, 6, 6, 'c', 'e', 'l', 'l', '-', '7'));
+  EXPECT_THAT(node.ask({43, 14, 4, 0x80}),
+              ElementsAre(43, 14, 4, 0x83, 0, 0, 1, 0x80, 16, '0', '1', '2', '3', '4', '5', '6', '7', '8',
+                          '9', 'a', 'b', 'c', 'd', 'e', 'f'));
+}
+
+TEST(Identity, A_node_that_was_told_nothing_says_that_it_knows_nothing) {
+  NodeUnderTest node(MapBuilder().build());
+  const auto further =
+      registers(node.ask(pdu(4, {0xFF00 + identity::at_further, 1 + identity::further_size})));
+  ASSERT_EQ(further.size(), 37U);
+  EXPECT_EQ(further[0], 36U);
+  EXPECT_EQ(std::count(further.begin() + 1, further.end(), 0), 36);
+  EXPECT_THAT(node.ask({43, 14, 4, 6}), ElementsAre(0xAB, 2));
+  EXPECT_THAT(node.ask({43, 14, 4, 0x80}), ElementsAre(0xAB, 2));
+}
+
 TEST(MapFile, The_text_is_read_two_bytes_a_register_and_padded_with_a_zero) {
   NodeUnderTest node(MapBuilder().text("abcde").build());
   EXPECT_THAT(node.ask({0x14, 7, 6, 0, 1, 0, 0, 0, 3}),

@@ -35,6 +35,13 @@ TEST(NodeMemory, A_process_that_dies_leaves_what_it_knew) {
   EXPECT_EQ(memory.statistics().events_lost, 3U);
 }
 
+TEST(NodeMemory, A_node_tells_which_machine_it_was_started_on) {
+  const MapPtr map = MapBuilder().build();
+  Memory memory(map->map(), {}, identity::machine_of("cell-7", 7));
+  EXPECT_EQ(identity::hostname_of(memory.machine()), "cell-7");
+  EXPECT_EQ(memory.machine().serial, 7U);
+}
+
 TEST(NodeMemory, Values_of_points_that_mean_the_same_go_over_wherever_they_stand) {
   const auto bit = [](std::uint8_t number) { return [=](Point& p) { p.format.bit = number; }; };
   const MapPtr old_map = MapBuilder()
