@@ -145,7 +145,11 @@ Result<> Device::prove_equal() {
     return tl::make_unexpected(identity.error());
   }
   explains_silence_ = false;
-  statistics_.identified(identity->verdict);
+  Result<identity::Machine> machine;
+  if (identity->verdict != Identity::Verdict::foreign) machine = read_machine(transport_);
+  if (!machine) return tl::make_unexpected(machine.error());
+  peer_ = to_string(*machine);
+  statistics_.identified(identity->verdict, *machine);
   return judge(*identity);
 }
 
@@ -181,10 +185,11 @@ void Device::came_online() {
   statistics_.online();
   qualities_.online(true);
   sink_.on_online(true);
+  const std::string connected = peer_.empty() ? "connected" : "connected to " + peer_;
   if (const std::uint64_t dropped = writer_.take_dropped(); dropped > 0)
-    sink_.on_report(Level::warning, fmt::format("connected; {} writes were dropped meanwhile", dropped));
+    sink_.on_report(Level::warning, fmt::format("{}; {} writes were dropped meanwhile", connected, dropped));
   else
-    sink_.on_report(Level::info, "connected");
+    sink_.on_report(Level::info, connected);
 }
 
 void Device::lost(const Error& error) {

@@ -103,6 +103,7 @@ class Device {
   Time retry_at_ = Time::min();
   std::string last_trouble_;               ///< why the last attempt failed, so that it is told once
   bool explains_silence_ = true;           ///< until the identity has been answered, or the remedy told
+  std::string peer_;                       ///< which machine it is, as far as a node says
   std::uint64_t refused_fingerprint_ = 0;  ///< whose differences have been told
 };
 

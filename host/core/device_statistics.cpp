@@ -35,9 +35,10 @@ void DeviceStatistics::watchdog(const WatchdogStatus& status) {
   now_.watchdog = status;
 }
 
-void DeviceStatistics::identified(Identity::Verdict verdict) {
+void DeviceStatistics::identified(Identity::Verdict verdict, const identity::Machine& machine) {
   const std::lock_guard lock(mutex_);
   now_.identity = verdict;
+  now_.machine = machine;
 }
 
 void DeviceStatistics::online() {

@@ -20,6 +20,7 @@ struct DeviceSnapshot {
   bool online = false;
   std::string trouble;                        ///< why it is not online
   std::optional<Identity::Verdict> identity;  ///< at the last connect; nullopt: not asked
+  identity::Machine machine{};                ///< of a node, at the last connect, as far as it says
   std::uint64_t connections = 0;              ///< that were made and proven; all but the first are reconnects
   std::uint64_t requests = 0;
   std::uint64_t timeouts = 0;
@@ -45,7 +46,7 @@ class DeviceStatistics {
   void cycle_ended(Duration after, std::uint64_t overruns);
   void rejected();
   void watchdog(const WatchdogStatus& status);
-  void identified(Identity::Verdict verdict);
+  void identified(Identity::Verdict verdict, const identity::Machine& machine);
   void online();
   void offline(const std::string& trouble);
 

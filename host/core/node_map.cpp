@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/core/node_map.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -13,6 +14,26 @@ namespace {
 
 /// No map is as large; a device that says so is not to be believed.
 constexpr std::uint32_t largest_map = 16U << 20U;
+
+/// False: the device refuses them, as a foreign coupler does and a node that is older than the fields.
+Result<bool> read_if_mapped(Transport& transport, std::uint32_t first, Span<std::uint16_t> registers) {
+  const auto range =
+      modbus::Range::of(identity::reserved.start() + first, static_cast<std::uint32_t>(registers.size()));
+  const auto read = transport.read_registers(Table::input_registers, range, registers.data());
+  if (read) return true;
+  if (exception_in(read.error()) != nullptr && !is_unit_away(read.error())) return false;
+  return tl::make_unexpected(read.error());
+}
+
+/// The first registers of the area, as `parse` understands them.
+template <class Area, class Parse>
+auto read_area(Transport& transport, Parse parse) -> Result<decltype(parse(Area{}))> {
+  Area area{};
+  const auto given = read_if_mapped(transport, 0, area);
+  if (!given) return tl::make_unexpected(given.error());
+  if (!*given) return std::nullopt;
+  return parse(area);
+}
 
 Result<std::optional<ServedMap>> fetch_both(Transport& transport) {
   if (auto connected = transport.connect(); !connected) return tl::make_unexpected(connected.error());
@@ -27,13 +48,33 @@ Result<std::optional<ServedMap>> fetch_both(Transport& transport) {
 }  // namespace
 
 Result<std::optional<identity::Head>> read_identity(Transport& transport) {
-  std::array<std::uint16_t, identity::head_size> area{};
-  const auto range = modbus::Range::of(identity::reserved.start(), identity::head_size);
-  if (auto read = transport.read_registers(Table::input_registers, range, area.data()); !read) {
-    if (exception_in(read.error()) != nullptr && !is_unit_away(read.error())) return std::nullopt;
-    return tl::make_unexpected(read.error());
-  }
-  return identity::read_head(area);
+  return read_area<std::array<std::uint16_t, identity::head_size>>(transport, identity::read_head);
+}
+
+Result<std::optional<identity::Report>> read_report(Transport& transport) {
+  return read_area<std::array<std::uint16_t, identity::report_size>>(transport, identity::read_report);
+}
+
+Result<identity::Machine> read_machine(Transport& transport) {
+  std::uint16_t count = 0;
+  const auto counted = read_if_mapped(transport, identity::at_further, Span<std::uint16_t>(&count, 1));
+  if (!counted) return tl::make_unexpected(counted.error());
+  std::array<std::uint16_t, identity::further_size> area{};
+  const Span<std::uint16_t> known(area.data(), std::min<std::size_t>(count, area.size()));
+  if (!*counted || known.empty()) return identity::Machine{};
+  const auto given = read_if_mapped(transport, identity::at_serial, known);
+  if (!given) return tl::make_unexpected(given.error());
+  if (!*given) return identity::Machine{};
+  identity::Machine machine = identity::read_machine(known);
+  for (char& c : machine.hostname)
+    if (c != '\0' && (c < ' ' || c > '~')) c = '?';
+  return machine;
+}
+
+std::string to_string(const identity::Machine& machine) {
+  std::string text(hostname_of(machine));
+  if (machine.serial == 0) return text;
+  return fmt::format("{}{}serial {:016x}", text, text.empty() ? "" : ", ", machine.serial);
 }
 
 Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size) {

@@ -18,6 +18,15 @@ using MapLoader = std::function<LoadResult(std::string_view text, std::string_vi
 /// nullopt: a foreign coupler, which answers with an exception or with something else.
 Result<std::optional<identity::Head>> read_identity(Transport& transport);
 
+/// All that a node of any age has in its identity area; nullopt as above.
+Result<std::optional<identity::Report>> read_report(Transport& transport);
+
+/// Which machine a node runs on, hostname in printable ASCII. Empty: the node is older than these fields.
+Result<identity::Machine> read_machine(Transport& transport);
+
+/// "cell-7, serial 0123456789abcdef", as far as it is known.
+std::string to_string(const identity::Machine& machine);
+
 /// The text of the map by FC 20, unchecked.
 Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size);
 

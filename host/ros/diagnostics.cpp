@@ -54,6 +54,9 @@ void Diagnostics::connection(Wrapper& status) {
   summarize(status, connection_health(now_));
   status.add("online", now_.online);
   status.add("identity", std::string(to_string(now_.identity)));
+  if (const auto hostname = hostname_of(now_.machine); !hostname.empty())
+    status.add("hostname", std::string(hostname));
+  if (now_.machine.serial != 0) status.add("serial", fmt::format("{:016x}", now_.machine.serial));
   status.add("connections", now_.connections);
   status.add("requests", now_.requests);
   status.add("timeouts", now_.timeouts);

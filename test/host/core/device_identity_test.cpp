@@ -24,6 +24,26 @@ TEST_F(DeviceIdentityTest, Equal_maps_are_quiet) {
   EXPECT_THAT(sink->reports, ElementsAre("connected"));
 }
 
+TEST_F(DeviceIdentityTest, A_node_that_says_which_machine_it_is_is_named) {
+  serve(here());
+  std::array<std::uint16_t, identity::size> area{};
+  identity::write_machine(identity::machine_of("cell-7", 0xAB), area.data());
+  for (std::uint32_t at = identity::at_further; at < identity::size; ++at)
+    device.values[{Table::input_registers, identity::reserved.start() + at}] = area[at];
+  start(here());
+  run_for(milliseconds(150));
+  EXPECT_THAT(sink->reports, ElementsAre("connected to cell-7, serial 00000000000000ab"));
+  EXPECT_EQ(hostname_of(engine->statistics().machine), "cell-7");
+}
+
+TEST_F(DeviceIdentityTest, A_node_that_is_older_is_connected_all_the_same) {
+  serve(here());
+  device.missing.insert({Table::input_registers, 0xFF2D});
+  start(here());
+  run_for(milliseconds(150));
+  EXPECT_THAT(sink->reports, ElementsAre("connected"));
+}
+
 TEST_F(DeviceIdentityTest, A_foreign_coupler_is_quiet) {
   device.missing.insert({Table::input_registers, 0xFF00});
   start(here());
