@@ -20,5 +20,6 @@ void add_init(Program& program, Exit& exit);
 void add_plan(Program& program, Exit& exit);
 void add_probe(Program& program, Exit& exit);
 void add_schema(Program& program, Exit& exit);
+void add_status(Program& program, Exit& exit);
 
 }  // namespace coupler::cli

@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   coupler::cli::add_plan(program, exit);
   coupler::cli::add_probe(program, exit);
   coupler::cli::add_schema(program, exit);
+  coupler::cli::add_status(program, exit);
   if (const auto done = program.parse(argc, argv)) return *done;
   return exit;
 }

@@ -16,9 +16,10 @@ driver::Result<> ModbusMaster::read(Table table, modbus::Range range, std::uint1
   return result;
 }
 
-driver::Result<survey::IdentificationPage> ModbusMaster::identify(modbus::ReadDeviceIdentification wanted) {
+driver::Result<survey::IdentificationPage> read_identification(driver::ModbusTransport& transport,
+                                                               modbus::ReadDeviceIdentification wanted) {
   const auto pdu = modbus::build_device_identification(wanted);
-  const auto reply = transport_.exchange(pdu);
+  const auto reply = transport.exchange(pdu);
   if (!reply) return tl::make_unexpected(reply.error());
   std::array<modbus::IdentificationObject, modbus::max_identification_objects> objects{};
   const auto taken = modbus::take_device_identification(*reply, objects);

@@ -6,6 +6,10 @@
 
 namespace coupler::cli {
 
+/// FC 43/14.
+driver::Result<survey::IdentificationPage> read_identification(driver::ModbusTransport& transport,
+                                                               modbus::ReadDeviceIdentification wanted);
+
 /// A survey's master over Modbus/TCP.
 class ModbusMaster : public survey::Master {
  public:
@@ -15,7 +19,9 @@ class ModbusMaster : public survey::Master {
   void close() override { transport_.close(); }
   void select(std::uint8_t unit) override { transport_.select(unit, timeout_); }
   driver::Result<> read(Table table, modbus::Range range, std::uint16_t* values) override;
-  driver::Result<survey::IdentificationPage> identify(modbus::ReadDeviceIdentification wanted) override;
+  driver::Result<survey::IdentificationPage> identify(modbus::ReadDeviceIdentification wanted) override {
+    return read_identification(transport_, wanted);
+  }
 
   /// From any thread: the request in progress and all later ones fail.
   void interrupt() { transport_.interrupt(); }

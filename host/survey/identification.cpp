@@ -11,24 +11,33 @@ namespace {
 using Access = modbus::ReadDeviceIdentification::Access;
 
 /// Whether the device has this category.
-bool read_stream(Inquiry& inquiry, Access access, std::map<std::uint8_t, std::string>& objects) {
+bool read_stream(const AskIdentification& ask, Access access, std::map<std::uint8_t, std::string>& objects) {
   for (std::optional<std::uint8_t> from = std::uint8_t{0}; from;) {
-    IdentificationPage page;
-    if (!inquiry.identify({access, *from}, page).is_given()) return false;
-    objects.merge(page.objects);
+    auto page = ask({access, *from});
+    if (!page) return false;
+    objects.merge(page->objects);
     // A stream that does not go forward would never end.
-    from = page.next && *page.next > *from ? page.next : std::nullopt;
+    from = page->next && *page->next > *from ? page->next : std::nullopt;
   }
   return true;
 }
 
 }  // namespace
 
-std::map<std::uint8_t, std::string> read_identification(Inquiry& inquiry) {
+std::map<std::uint8_t, std::string> read_identification(const AskIdentification& ask) {
   std::map<std::uint8_t, std::string> objects;
   for (const Access access : {Access::basic, Access::regular, Access::extended})
-    if (!read_stream(inquiry, access, objects)) break;
+    if (!read_stream(ask, access, objects)) break;
   return objects;
+}
+
+std::map<std::uint8_t, std::string> read_identification(Inquiry& inquiry) {
+  return read_identification(
+      [&](modbus::ReadDeviceIdentification wanted) -> std::optional<IdentificationPage> {
+        IdentificationPage page;
+        if (!inquiry.identify(wanted, page).is_given()) return std::nullopt;
+        return page;
+      });
 }
 
 std::string object_name(std::uint8_t id) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,8 +12,12 @@
 
 namespace coupler::survey {
 
+/// Asks for one reply; nullopt: there is none.
+using AskIdentification = std::function<std::optional<IdentificationPage>(modbus::ReadDeviceIdentification)>;
+
 /// The objects of FC 43/14 by id, basic, regular and extended, as the device has them: any bytes. Empty if
 /// the device has none.
+std::map<std::uint8_t, std::string> read_identification(const AskIdentification& ask);
 std::map<std::uint8_t, std::string> read_identification(Inquiry& inquiry);
 
 /// "VendorName" … for those that MAP 6.21 names, "object 80" for others.
