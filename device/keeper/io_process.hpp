@@ -29,6 +29,7 @@ class IoProcess : public Watcher {
   IoProcess& operator=(const IoProcess&) = delete;
   ~IoProcess();
 
+  pid_t pid() const { return child_.pid(); }
   bool has_ended() const { return ended_; }
   /// Of its last beat, or of its start.
   TimePoint last_beat() const { return last_beat_; }

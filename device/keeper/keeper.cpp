@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "device/keeper/backoff.hpp"
+#include "device/keeper/cpu_time.hpp"
 #include "device/keeper/safety.hpp"
+#include "device/keeper/silence.hpp"
 
 namespace coupler::node {
 namespace {
@@ -57,18 +59,15 @@ bool Keeper::run_one(Clients& clients) {
 }
 
 IoProcess::End Keeper::watch_over(IoProcess& process) {
-  // A glance counts for no longer than it lasts: this process may have been stopped itself, and what the
-  // other said meanwhile still waits to be heard. Nor for longer than it took: a signal cuts it short.
-  using std::chrono::nanoseconds;
-  TimePoint heard = process.last_beat();
-  TimePoint next_beat{};
-  for (nanoseconds silence{0}; silence < patience; heard = process.last_beat()) {
-    const TimePoint before = TimePoint::clock::now();
-    if (before >= next_beat) {
+  TimePoint now = TimePoint::clock::now();
+  CpuWait cpu_wait(process.pid());
+  Silence silence(now, glance, cpu_wait.sample(now));
+  for (TimePoint heard = process.last_beat(), next_beat{}; !silence.is_too_long();) {
+    if (now >= next_beat) {
       process.beat();
-      next_beat = before + glance;
+      next_beat = now + glance;
     }
-    const TimePoint now = loop_.run_once(glance);
+    now = loop_.run_once(glance);
     if (signals_.stop() != 0) {
       process.terminate(signals_.stop() == SIGINT ? SIGINT : SIGTERM);
       return wait_for(process);
@@ -84,11 +83,12 @@ IoProcess::End Keeper::watch_over(IoProcess& process) {
       end.how = "was replaced, since one before it, which hung, may have moved lines when it ended";
       return end;
     }
-    const bool is_silent = process.last_beat() == heard;
-    silence = is_silent ? silence + std::min<nanoseconds>(glance, now - before) : nanoseconds(0);
+    const bool was_heard = process.last_beat() != std::exchange(heard, process.last_beat());
+    silence.sample(now, was_heard, cpu_wait.sample(now));
   }
   IoProcess::End end = this->end(process);
-  end.how = fmt::format("was silent for {} s and {}", patience.count(), end.how);
+  end.how = fmt::format("was silent for {:.1f} s and {}",
+                        std::chrono::duration<double>(silence.lasted()).count(), end.how);
   return end;
 }
 

@@ -17,7 +17,7 @@ namespace coupler::node {
 /// as they are.
 class Keeper {
  public:
-  /// An I/O process that has not beaten for so long is killed.
+  /// For an I/O process that was asked to end. One that does not beat has as long as Silence says.
   static constexpr std::chrono::seconds patience{1};
 
   /// The charge shares what it knows with the I/O process. `heard` (may be null) is told of each beat of it.

@@ -15,7 +15,10 @@ int main(int argc, char** argv) {
     return ask_to_reload(static_cast<pid_t>(node));
   StderrLog log(std::getenv("JOURNAL_STREAM"));
   const MapInput input(std::get<Options>(options).map, log);
-  const coupler::MapPtr map = input.read();
-  if (map == nullptr) return 1;
-  return serve(map->map(), std::get<Options>(options), log, input.again(), nullptr);
+  const auto map = read_first(input.first());
+  if (!map) {
+    if (!map.error().empty()) log.fail(map.error());
+    return Refusal::map_is_wrong;
+  }
+  return serve((*map)->map(), std::get<Options>(options), log, input.again(), nullptr);
 }

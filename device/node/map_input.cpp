@@ -14,7 +14,11 @@ MapPtr MapInput::read() const {
   return loaded.map;
 }
 
-ReadAgain MapInput::again() const {
+ReadMap MapInput::first() const {
+  return {[this] { return read(); }, log_.descriptor()};
+}
+
+ReadMap MapInput::again() const {
   if (path_ == "-") return {};
   const auto read = [this]() -> MapPtr {
     for (const std::string& path : {path_, path_ + ".lock"})

@@ -14,12 +14,13 @@ class MapInput {
   /// `path` may be "-", standard input, which can be read once. The log outlives it.
   MapInput(std::string path, StderrLog& log) : path_(std::move(path)), log_(log) {}
 
-  /// Null after telling what is wrong. Any file will do, a pipe too.
-  MapPtr read() const;
+  /// Any file will do, a pipe too.
+  ReadMap first() const;
   /// For a node that runs: only a regular file is opened, others may have no end, or none that comes soon.
-  ReadAgain again() const;
+  ReadMap again() const;
 
  private:
+  MapPtr read() const;
   bool is_regular(const std::string& path) const;
 
   std::string path_;

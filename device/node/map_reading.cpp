@@ -25,7 +25,7 @@ MapReading::~MapReading() {
   if (is_watched_) loop_.forget(child_->descriptor(), *this);
 }
 
-tl::expected<std::unique_ptr<MapReading>, std::string> MapReading::start(Loop& loop, const ReadAgain& again,
+tl::expected<std::unique_ptr<MapReading>, std::string> MapReading::start(Loop& loop, const ReadMap& source,
                                                                          TimePoint now) {
   const auto failed = [](const char* why) {
     return tl::unexpected(fmt::format("the map cannot be read: no process can be had for it: {}", why));
@@ -33,7 +33,7 @@ tl::expected<std::unique_ptr<MapReading>, std::string> MapReading::start(Loop& l
   try {
     std::unique_ptr<MapReading> reading(new MapReading(loop, now));
     const pid_t parent = ::getpid();
-    auto child = Child::start([&] { return reading->read(again, parent); });
+    auto child = Child::start([&] { return reading->read(source, parent); });
     if (!child) return failed(std::strerror(child.error()));
     reading->child_ = *std::move(child);
     // Unwatched, its end is seen a little later.
@@ -45,15 +45,13 @@ tl::expected<std::unique_ptr<MapReading>, std::string> MapReading::start(Loop& l
 }
 
 /// In the process of its own. Nothing is destroyed in it: the map is the other one's.
-int MapReading::read(const ReadAgain& again, pid_t parent) {
+int MapReading::read(const ReadMap& source, pid_t parent) {
   ::prctl(PR_SET_NAME, "coupler-map");
   if (!end_with_parent(parent, SIGKILL)) return told;
-  close_descriptors(again.descriptor);
-  std::pmr::monotonic_buffer_resource resource(arena_->begin(), arena_->size(),
-                                               std::pmr::null_memory_resource());
-  std::pmr::set_default_resource(&resource);
+  close_descriptors(source.descriptor);
+  std::pmr::set_default_resource(arena_.get());
   try {
-    const MapPtr map = again.read();
+    const MapPtr map = source.read();
     map_[0] = map.get();
     ::_exit(map == nullptr ? told : done);
   } catch (const std::bad_alloc&) {
@@ -77,12 +75,23 @@ tl::expected<MapPtr, std::string> MapReading::take() {
         fmt::format("the map could not be read in {} s; is the disk or the network file system that it is on "
                     "still there?",
                     patience.count()));
-  if (*status_ == 0) return MapPtr(arena_, map_[0]);
+  if (*status_ == 0) {
+    arena_->give_back_rest();
+    return MapPtr(arena_, map_[0]);
+  }
   if (!WIFEXITED(*status_)) return tl::unexpected("the process that read the map " + describe_end(*status_));
   if (WEXITSTATUS(*status_) == too_large)
     return tl::unexpected(
         fmt::format("the map needs more than {} MiB of memory; leave points out", room >> 20));
   return tl::unexpected(std::string());
+}
+
+tl::expected<MapPtr, std::string> read_first(const ReadMap& source) {
+  Loop loop;
+  auto reading = MapReading::start(loop, source, TimePoint::clock::now());
+  if (!reading) return tl::unexpected(std::move(reading).error());
+  while (!(*reading)->is_over({})) loop.run_once(std::chrono::milliseconds(100));
+  return (*reading)->take();
 }
 
 }  // namespace coupler::node

@@ -14,10 +14,10 @@
 
 namespace coupler::node {
 
-/// How a node reads its map again. It is called in a process of its own, which has none of the node's lines
-/// and sockets, and may take its time.
-struct ReadAgain {
-  std::function<MapPtr()> read;  ///< null after telling what is wrong; empty: there is nothing to read again
+/// How a node reads a map. It is called in a process of its own, which has none of the node's lines and
+/// sockets, and may take its time.
+struct ReadMap {
+  std::function<MapPtr()> read;  ///< null after telling what is wrong; empty: there is nothing to read
   int descriptor = -1;           ///< that it needs besides 0 to 2: the log's
 };
 
@@ -28,7 +28,7 @@ class MapReading : public Watcher {
   static constexpr std::chrono::seconds patience{60};
 
   /// `loop` wakes up when it is done. The error says why it cannot be done.
-  static tl::expected<std::unique_ptr<MapReading>, std::string> start(Loop& loop, const ReadAgain& again,
+  static tl::expected<std::unique_ptr<MapReading>, std::string> start(Loop& loop, const ReadMap& source,
                                                                       TimePoint now);
   MapReading(const MapReading&) = delete;
   MapReading& operator=(const MapReading&) = delete;
@@ -45,7 +45,7 @@ class MapReading : public Watcher {
   /// More than the largest map file (loader) needs.
   static constexpr std::size_t room = std::size_t{256} << 20;
   MapReading(Loop& loop, TimePoint now);
-  int read(const ReadAgain& again, pid_t parent);
+  int read(const ReadMap& source, pid_t parent);
 
   Loop& loop_;
   TimePoint deadline_;
@@ -55,5 +55,9 @@ class MapReading : public Watcher {
   std::optional<int> status_;
   bool is_watched_ = false;
 };
+
+/// The first map of a node, read in the same way, so that this process keeps none of the memory that it took;
+/// but for as long as it takes: nothing is served yet, and a signal ends both.
+tl::expected<MapPtr, std::string> read_first(const ReadMap& source);
 
 }  // namespace coupler::node

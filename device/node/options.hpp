@@ -16,7 +16,7 @@ struct Options {
   std::string listen;                 ///< empty: as address_for() says
   std::optional<std::uint16_t> port;  ///< default: the map's
   bool simulated = false;
-  bool realtime = false;  ///< ahead of other programs, memory locked
+  bool realtime = false;     ///< ahead of other programs, memory locked
   std::uint32_t reload = 0;  ///< process id of a node that is to read its map again; 0: serve
 };
 

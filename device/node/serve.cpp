@@ -10,7 +10,7 @@
 
 namespace coupler::node {
 
-int serve(const Map& map, const Options& options, StderrLog& log, const ReadAgain& again, Hooks* hooks) {
+int serve(const Map& map, const Options& options, StderrLog& log, const ReadMap& again, Hooks* hooks) {
   const auto failed = [&](const Refusal& refusal) {
     tell(log, refusal);
     return refusal.reason;

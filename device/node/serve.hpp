@@ -13,6 +13,6 @@ namespace coupler::node {
 /// in the log what it does, which waits for nobody from then on. Returns the exit status: 0 stopped, 1 a node
 /// cannot serve this map, 3 network or hardware cannot be had, or an output could not be driven to its safe
 /// state at the end.
-int serve(const Map& map, const Options& options, StderrLog& log, const ReadAgain& again, Hooks* hooks);
+int serve(const Map& map, const Options& options, StderrLog& log, const ReadMap& again, Hooks* hooks);
 
 }  // namespace coupler::node

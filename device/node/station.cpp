@@ -38,14 +38,15 @@ void tell(Log& log, const Refusal& refusal) {
   }
 }
 
-Station::Station(Loop& loop, const Options& options, ReadAgain again, ServiceManager& manager, Log& log,
+Station::Station(Loop& loop, const Options& options, ReadMap again, ServiceManager& manager, Log& log,
                  Hooks* hooks)
     : loop_(loop),
       options_(options),
       again_(std::move(again)),
       manager_(manager),
       log_(log),
-      firmware_(hooks) {}
+      firmware_(hooks),
+      machine_(this_machine()) {}
 
 tl::expected<void, Refusal> Station::start(const Map& map) {
   if (firmware_ != nullptr) hooks_ = std::make_unique<GuardedHooks>(*firmware_, map, log_);

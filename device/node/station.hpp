@@ -34,7 +34,7 @@ class Station final : public Charge {
  public:
   /// `loop` is the keeper's. `again` is empty if the map is built in, `hooks` null if no code is bound to its
   /// points. All of them outlive it.
-  Station(Loop& loop, const Options& options, ReadAgain again, ServiceManager& manager, Log& log,
+  Station(Loop& loop, const Options& options, ReadMap again, ServiceManager& manager, Log& log,
           Hooks* hooks = nullptr);
 
   /// Puts the first map in force; it outlives the station.
@@ -60,7 +60,7 @@ class Station final : public Charge {
 
   Loop& loop_;
   const Options& options_;
-  ReadAgain again_;
+  ReadMap again_;
   ServiceManager& manager_;
   Log& log_;
   Hooks* firmware_;

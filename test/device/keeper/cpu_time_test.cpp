@@ -81,17 +81,17 @@ TEST(CpuWait, A_process_that_is_gone_waits_no_longer) {
 }
 
 /// A child that ends with the test.
-class Child {
+class Forked {
  public:
-  explicit Child(const std::function<void()>& life) : pid_(::fork()) {
+  explicit Forked(const std::function<void()>& life) : pid_(::fork()) {
     if (pid_ != 0) return;
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     life();
     ::_exit(0);
   }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-  ~Child() {
+  Forked(const Forked&) = delete;
+  Forked& operator=(const Forked&) = delete;
+  ~Forked() {
     ::kill(pid_, SIGKILL);
     ::waitpid(pid_, nullptr, 0);
   }
@@ -141,13 +141,13 @@ class RealProcess : public testing::Test {
 };
 
 TEST_F(RealProcess, One_that_gets_no_CPU_waits) {
-  const Child idle([] {
+  const Forked idle([] {
     stay_on_one_cpu();
     const sched_param none{};
     ::sched_setscheduler(0, SCHED_IDLE, &none);
     spin();
   });
-  const Child busy([] {
+  const Forked busy([] {
     stay_on_one_cpu();
     spin();
   });
@@ -156,7 +156,7 @@ TEST_F(RealProcess, One_that_gets_no_CPU_waits) {
 }
 
 TEST_F(RealProcess, One_that_is_stopped_does_not_wait) {
-  const Child stopped([] { spin(); });
+  const Forked stopped([] { spin(); });
   ::kill(stopped.pid(), SIGSTOP);
   ASSERT_EQ(::waitpid(stopped.pid(), nullptr, WUNTRACED), stopped.pid());
   const Seen seen = look_at(stopped.pid());
@@ -164,7 +164,7 @@ TEST_F(RealProcess, One_that_is_stopped_does_not_wait) {
 }
 
 TEST_F(RealProcess, One_that_sleeps_does_not_wait) {
-  const Child sleeping([] {
+  const Forked sleeping([] {
     for (;;) ::pause();
   });
   const Seen seen = look_at(sleeping.pid());

@@ -124,7 +124,7 @@ TEST_F(Kept, A_process_that_stands_still_is_killed_and_started_again) {
     return beat_for_ever(pulse);
   });
   EXPECT_EQ(safe_calls_[0], 2);
-  EXPECT_THAT(log_.lines, ElementsAre(AllOf(HasSubstr("was silent for 1 s"), HasSubstr("signal 9"))));
+  EXPECT_THAT(log_.lines, ElementsAre(AllOf(HasSubstr("was silent for "), HasSubstr("signal 9"))));
 }
 
 TEST_F(Kept, A_process_that_does_not_want_to_end_is_killed) {
@@ -322,7 +322,7 @@ TEST_F(Kept, A_process_that_cannot_be_killed_does_not_hang_the_keeper) {
   });
   ASSERT_EQ(::setresuid(0, 0, 0), 0);
   EXPECT_THAT(log_.lines,
-              ElementsAre(AllOf(HasSubstr("was silent for 1 s"), HasSubstr("in a call of the kernel")),
+              ElementsAre(AllOf(HasSubstr("was silent for "), HasSubstr("in a call of the kernel")),
                           HasSubstr("was replaced, since one before it, which hung")));
   EXPECT_EQ(safe_calls_[0], 3) << "once more after the one that hung has ended";
 }
