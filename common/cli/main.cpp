@@ -2,12 +2,14 @@
 // coupler: what a person or a build does with maps at the command line.
 #include <string>
 
+#include "common/base/standard_files.hpp"
 #include "common/base/version.hpp"
 #include "common/cli/commands.hpp"
 
 static_assert(coupler::version == COUPLER_VERSION, "common/base/version.hpp and CMakeLists.txt differ");
 
 int main(int argc, char** argv) {
+  coupler::open_standard_files();
   coupler::cli::Program program{"OpenCoupler: makes both sides of a Modbus/TCP coupler from one map.",
                                 "coupler"};
   program.version("coupler " COUPLER_VERSION);

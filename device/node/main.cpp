@@ -2,12 +2,14 @@
 // coupler-node: serves a map that it reads at the start, and again at SIGHUP.
 #include <cstdlib>
 
+#include "common/base/standard_files.hpp"
 #include "device/node/map_input.hpp"
 #include "device/node/reload.hpp"
 #include "device/node/serve.hpp"
 
 int main(int argc, char** argv) {
   using namespace coupler::node;
+  coupler::open_standard_files();
   const auto options = parse_options(argc, argv, MapSource::argument);
   if (const int* status = std::get_if<int>(&options)) return *status;
 

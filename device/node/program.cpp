@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "common/base/standard_files.hpp"
 #include "device/node/serve.hpp"
 
 namespace coupler::node {
@@ -10,6 +11,7 @@ namespace coupler::node {
 namespace {
 
 int run(const Map& map, Hooks* hooks, int argc, char** argv) {
+  open_standard_files();
   const auto options = parse_options(argc, argv, MapSource::built_in);
   if (const int* status = std::get_if<int>(&options)) return *status;
   StderrLog log(std::getenv("JOURNAL_STREAM"));

@@ -20,6 +20,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/standard_files.hpp"
 #include "host/modbus/make_transports.hpp"
 #include "host/ros/arguments.hpp"
 #include "host/ros/device_topics.hpp"
@@ -211,6 +212,7 @@ int run(const Devices& devices) {
 }  // namespace
 
 int main_with(const Map* built_in, int argc, char** argv) {
+  open_standard_files();
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // ROS_INFO is to be seen in a pipe and in the journal too
   end_at_once_on_signals();
   const Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
