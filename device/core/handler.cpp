@@ -114,7 +114,7 @@ tl::expected<void, Exception> Handler::store(Table table, modbus::Range range, S
     return driven;
   }
   std::copy(next.begin(), next.end(), cells.begin());
-  if (watchdog_.is_present() && hardware_.driven(table, range, cells)) {
+  if (hardware_.driven(table, range, cells)) {
     wrote_output_ = true;
     watchdog_.arm(now);
   }

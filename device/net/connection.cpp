@@ -17,21 +17,22 @@ bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == 
 
 }  // namespace
 
-void Connection::open(Descriptor socket, TimePoint now) {
+void Connection::open(Descriptor socket, const IpAddress& origin, TimePoint now) {
   assert(!is_open());
   framer_.reset();
   output_begin_ = output_end_ = 0;
   ended_ = has_asked_ = false;
   peer_ = {};
+  origin_ = origin;
   last_active_ = now;
   waiting_ = Waiting::for_request;
   deadline_.reset();
   if (loop_.watch(socket.get(), Interest::read, *this)) socket_ = std::move(socket);
 }
 
-void Connection::open(OpenConnection from, TimePoint now) {
+void Connection::open(OpenConnection from, const IpAddress& origin, TimePoint now) {
   assert(from.unread.size() <= modbus::max_adu_size && from.unsent.size() <= output_size);
-  open(std::move(from.socket), now);
+  open(std::move(from.socket), origin, now);
   if (!is_open()) return;
   peer_.has_written = from.has_written;
   has_asked_ = true;

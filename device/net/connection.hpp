@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "common/map/network.hpp"
 #include "common/modbus/frame.hpp"
 #include "device/core/server.hpp"
 #include "device/net/loop.hpp"
@@ -27,10 +28,10 @@ class Connection : public Watcher {
   Connection& operator=(const Connection&) = delete;
   ~Connection() { close(); }
 
-  /// Takes over a connected, non-blocking socket.
-  void open(Descriptor socket, TimePoint now);
+  /// Takes over a connected, non-blocking socket of a client from there (origin_of()).
+  void open(Descriptor socket, const IpAddress& origin, TimePoint now);
   /// Takes over what another one let go.
-  void open(OpenConnection from, TimePoint now);
+  void open(OpenConnection from, const IpAddress& origin, TimePoint now);
   /// Lets go of the client without closing its connection.
   OpenConnection release();
   bool is_open() const { return socket_.is_open(); }
@@ -43,6 +44,9 @@ class Connection : public Watcher {
 
   /// It has sent at least one whole frame.
   bool has_asked() const { return has_asked_; }
+  /// It has written an output.
+  bool has_written() const { return peer_.has_written; }
+  const IpAddress& origin() const { return origin_; }
   /// Of its last whole frame, or of its beginning.
   TimePoint last_active() const { return last_active_; }
 
@@ -64,6 +68,7 @@ class Connection : public Watcher {
   Statistics& statistics_;
   Descriptor socket_;
   Peer peer_;
+  IpAddress origin_{};
   modbus::Framer framer_;
   std::array<std::uint8_t, output_size> output_;
   std::size_t output_begin_ = 0;

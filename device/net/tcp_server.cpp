@@ -16,6 +16,8 @@
 #include <tuple>
 #include <utility>
 
+#include "device/net/client_address.hpp"
+
 namespace coupler::node {
 namespace {
 
@@ -60,6 +62,7 @@ TcpServer::TcpServer(Loop& loop, const Listener& listener, Server& server, Stati
                      std::size_t capacity)
     : loop_(loop), listener_(listener), statistics_(statistics), log_(log) {
   for (std::size_t i = affordable(capacity); i > 0; --i) connections_.emplace_back(loop, server, statistics);
+  for (Connection& connection : connections_) by_origin_.push_back(&connection);
   [[maybe_unused]] const bool watched = loop_.watch(listener_.socket.get(), Interest::read, *this);
   assert(watched);
 }
@@ -87,7 +90,8 @@ void TcpServer::adopt(std::vector<OpenConnection> clients, TimePoint now) {
       continue;
     }
     in_use_ = true;
-    free_connection().open(std::move(client), now);
+    const IpAddress origin = origin_of(peer);
+    place_for(origin).open(std::move(client), origin, now);
   }
 }
 
@@ -118,7 +122,8 @@ bool TcpServer::accept_one(TimePoint now) {
   ++statistics_.connections;
   in_use_ = true;
   pause_logged_ = false;
-  free_connection().open(std::move(socket), now);
+  const IpAddress origin = origin_of(peer);
+  place_for(origin).open(std::move(socket), origin, now);
   return true;
 }
 
@@ -141,17 +146,40 @@ void TcpServer::pause(int error) {
   loop_.change(listener_.socket.get(), Interest::nothing, *this);
 }
 
-Connection& TcpServer::free_connection() {
-  const auto order = [](const Connection& c) {
-    return std::make_tuple(c.is_open(), c.has_asked(), c.last_active());
-  };
-  Connection& chosen = *std::min_element(connections_.begin(), connections_.end(),
-                                         [&](const auto& a, const auto& b) { return order(a) < order(b); });
-  if (chosen.is_open()) {
-    ++statistics_.evictions;
-    chosen.close();
-  }
+Connection& TcpServer::place_for(const IpAddress& newcomer) {
+  const auto free = std::find_if(connections_.begin(), connections_.end(),
+                                 [](const Connection& connection) { return !connection.is_open(); });
+  if (free != connections_.end()) return *free;
+  Connection& chosen = who_makes_room_for(newcomer);
+  ++statistics_.evictions;
+  chosen.close();
   return chosen;
+}
+
+/// All places are taken. The origin with the most connections gives one up, the newcomer's being counted; so
+/// nobody can push out who has fewer.
+Connection& TcpServer::who_makes_room_for(const IpAddress& newcomer) {
+  std::sort(by_origin_.begin(), by_origin_.end(),
+            [](const Connection* a, const Connection* b) { return a->origin() < b->origin(); });
+  const auto rank = [&](const Connection& one, std::ptrdiff_t of_its_origin) {
+    const bool own = one.origin() == newcomer;
+    return std::make_tuple(-(of_its_origin + own), !own, one.has_asked(), one.has_written(),
+                           one.last_active());
+  };
+  Connection* chosen = by_origin_.front();
+  auto first_rank = rank(*chosen, 0);
+  for (auto begin = by_origin_.begin(); begin != by_origin_.end();) {
+    const auto end = std::find_if(begin, by_origin_.end(),
+                                  [&](const Connection* one) { return one->origin() != (*begin)->origin(); });
+    const std::ptrdiff_t count = end - begin;
+    for (; begin != end; ++begin) {
+      const auto its = rank(**begin, count);
+      if (its >= first_rank) continue;
+      first_rank = its;
+      chosen = *begin;
+    }
+  }
+  return *chosen;
 }
 
 std::optional<std::chrono::milliseconds> TcpServer::patience() const {

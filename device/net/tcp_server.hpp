@@ -13,8 +13,9 @@
 
 namespace coupler::node {
 
-/// Accepts clients and ends those that overstay: a fixed number of connections, and when all are taken, the
-/// longest idle one makes room, first of those that never asked anything. Allocates at the start only.
+/// Accepts clients and ends those that overstay: a fixed number of connections. When all are taken, the
+/// address with the most of them makes room: first who never asked anything, then who never wrote an output,
+/// then the longest idle. Allocates at the start only.
 class TcpServer : public Watcher {
  public:
   static constexpr std::size_t max_connections = 256;
@@ -45,7 +46,8 @@ class TcpServer : public Watcher {
   void tick(TimePoint now);
 
  private:
-  Connection& free_connection();
+  Connection& place_for(const IpAddress& newcomer);
+  Connection& who_makes_room_for(const IpAddress& newcomer);
   bool accept_one(TimePoint now);
   void refuse(Descriptor socket, const sockaddr_storage& peer);
   void pause(int error);
@@ -55,6 +57,7 @@ class TcpServer : public Watcher {
   Statistics& statistics_;
   Log& log_;
   std::deque<Connection> connections_;  ///< never grows after the start: addresses are stable
+  std::vector<Connection*> by_origin_;  ///< the same; sorted where it matters
   bool paused_ = false;                 ///< out of descriptors or memory
   bool pause_logged_ = false;           ///< and nobody was let in since
   bool in_use_ = false;                 ///< connections are open, or were at the last sweep

@@ -4,9 +4,10 @@ import dataclasses
 import pathlib
 
 MAP = pathlib.Path(__file__).resolve().parent / "map.yaml"
+FLOODER = "127.0.0.2"  # an address that every node lets in
 ATTACKER = "127.0.0.66"  # an address that a guarded node refuses
 TIMEOUT = 1.0  # seconds of a guarded node's watchdog
-GUARDS = "watchdog: {timeout: 1s}\nallow: [127.0.0.1]\n"
+GUARDS = "watchdog: {timeout: 1s}\nallow: [127.0.0.1, 127.0.0.2]\n"
 
 
 @dataclasses.dataclass

@@ -6,6 +6,7 @@ import adu as modbus
 from attacks import TARGET, TARGET_REGISTERS, attack
 from attacks.framing import READ, is_answered
 from node import CONNECTIONS
+from subjects import FLOODER
 
 MANY = 1000
 BURST = 10_000
@@ -35,6 +36,40 @@ def idle_crowd(node):
             is_answered(clients[-1])
         assert all(client.is_closed() for client in clients[:10]), "the oldest are still connected"
         is_answered(clients[-CONNECTIONS // 2])
+
+
+@attack("a thousand clients of one address ask and stay: they displace only each other")
+def flood_of_another_address(node):
+    with contextlib.ExitStack() as stack:
+        # Half of them never ask: they are of the address that has fewer.
+        residents = [stack.enter_context(node.connect()) for _ in range(20)]
+        for resident in residents[:10]:
+            is_answered(resident)
+        flood = []
+        for _ in range(MANY):
+            flood.append(stack.enter_context(node.connect(source=FLOODER)))
+            is_answered(flood[-1])
+        assert not any(resident.is_closed() for resident in residents), "a flood has displaced another address"
+        assert all(client.is_closed() for client in flood[:10]), "the oldest of the flood are still connected"
+        for resident in residents:
+            is_answered(resident)
+
+
+@attack("a client that has written an output keeps its place while it is idle, whoever else comes", alone=True)
+def flood_while_the_writer_is_idle(node):
+    with node.connect() as writer:
+        writer.expect_answer(modbus.pdu(5, 0, 0xFF00), modbus.pdu(5, 0, 0xFF00))
+        with contextlib.ExitStack() as stack:
+            for source in [FLOODER, None]:  # None: its own address
+                for _ in range(2 * CONNECTIONS):
+                    is_answered(stack.enter_context(node.connect(source=source)))
+        is_answered(writer)
+    with node.connect() as writer, contextlib.ExitStack() as stack:
+        writer.expect_answer(modbus.pdu(5, 0, 0), modbus.pdu(5, 0, 0))
+        for _ in range(2 * CONNECTIONS):  # writers, too
+            client = stack.enter_context(node.connect(source=FLOODER))
+            client.expect_answer(modbus.pdu(5, 0, 0), modbus.pdu(5, 0, 0))
+        is_answered(writer)
 
 
 @attack("two thousand clients connect and close, in order or not")

@@ -62,5 +62,16 @@ TEST(Allocations, Connecting_and_leaving_cost_none) {
   EXPECT_EQ(allocations(), before);
 }
 
+TEST(Allocations, Making_room_costs_none) {
+  TcpUnderTest node(2);
+  Client first = node.connect(1);
+  Client second = node.connect(2);
+  Client third(node.tcp.name(), 2);
+  const long before = allocations();
+  node.settle();
+  EXPECT_EQ(node.node.statistics.evictions, 1U);
+  EXPECT_EQ(allocations(), before);
+}
+
 }  // namespace
 }  // namespace coupler::node

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "device/net/client_address.hpp"
 #include "test/device/net/tcp_under_test.hpp"
 
 namespace coupler::node {
@@ -51,6 +52,17 @@ TEST(GuestList, One_of_its_ranges_is_enough) {
 TEST(GuestList, A_socket_of_both_families_shows_IPv4_as_IPv6) {
   EXPECT_TRUE(guests({"10.0.0.0/8"}).admits(ipv6("::ffff:10.1.2.3")));
   EXPECT_FALSE(guests({"10.0.0.0/8"}).admits(ipv6("::ffff:11.1.2.3")));
+}
+
+TEST(Origin, IPv4_in_either_form_is_one_and_each_address_is_another) {
+  EXPECT_EQ(origin_of(ipv4("10.0.0.7")), origin_of(ipv6("::ffff:10.0.0.7")));
+  EXPECT_NE(origin_of(ipv4("10.0.0.7")), origin_of(ipv4("10.0.0.8")));
+}
+
+TEST(Origin, Of_IPv6_it_is_the_network_of_64_bits) {
+  EXPECT_EQ(origin_of(ipv6("fd00:1:2:3::7")), origin_of(ipv6("fd00:1:2:3:ffff::8")));
+  EXPECT_NE(origin_of(ipv6("fd00:1:2:3::7")), origin_of(ipv6("fd00:1:2:4::7")));
+  EXPECT_NE(origin_of(ipv6("::1")), origin_of(ipv4("0.0.0.1")));
 }
 
 TEST(Accepting, Who_is_not_on_the_list_is_closed_at_once_counted_and_named_once) {

@@ -68,6 +68,80 @@ TEST(Accepting, When_all_places_are_taken_who_never_asked_makes_room_first_then_
   EXPECT_EQ(node.node.statistics.connections, 5U);
 }
 
+/// A server of three places whose coil 0 is an output.
+struct ThreePlaces : testing::Test {
+  ThreePlaces() { node.node.lines.outputs[0] = {}; }
+  /// Of 127.0.0.`host`.
+  Client asking(std::uint8_t host = 1) { return sending(question(1), host); }
+  Client writing(std::uint8_t host = 1) { return sending(adu(1, pdu(5, {0, 0xFF00})), host); }
+  Client sending(const Pdu& request, std::uint8_t host) {
+    Client client = node.connect(host);
+    client.send(request);
+    node.settle();
+    EXPECT_FALSE(client.received().empty());
+    return client;
+  }
+  TcpUnderTest node{3};
+};
+
+TEST_F(ThreePlaces, Who_has_written_an_output_makes_room_last) {
+  Client writer = writing();
+  Client first = asking();
+  Client second = asking();
+  Client third = node.connect();
+  EXPECT_TRUE(first.is_closed()) << "the longest idle of those that have written nothing";
+  Client fourth = asking();
+  EXPECT_TRUE(third.is_closed()) << "it never asked";
+  Client fifth = writing();
+  EXPECT_TRUE(second.is_closed());
+  Client sixth = writing();
+  EXPECT_TRUE(fourth.is_closed());
+  EXPECT_FALSE(writer.is_closed());
+  Client seventh = asking();
+  EXPECT_TRUE(writer.is_closed()) << "all have written: the longest idle";
+  EXPECT_FALSE(fifth.is_closed() || sixth.is_closed());
+}
+
+TEST_F(ThreePlaces, A_write_to_plain_memory_or_one_that_fails_is_no_write_to_an_output) {
+  Client memory = sending(adu(1, pdu(5, {1, 0xFF00})), 1);
+  node.node.lines.broken = true;
+  Client failed = writing();
+  node.node.lines.broken = false;
+  Client writer = writing();
+  Client next = writing();
+  EXPECT_TRUE(memory.is_closed());
+  Client last = writing();
+  EXPECT_TRUE(failed.is_closed());
+  EXPECT_FALSE(writer.is_closed());
+}
+
+TEST_F(ThreePlaces, A_flood_from_one_address_displaces_only_itself) {
+  Client writer = writing(1);
+  Client silent = node.connect(1);
+  std::vector<Client> flood;
+  for (int i = 0; i < 10; ++i) flood.push_back(writing(2));
+  EXPECT_FALSE(writer.is_closed());
+  EXPECT_FALSE(silent.is_closed()) << "although it never asked, and the others have written";
+  EXPECT_FALSE(flood.back().is_closed());
+  EXPECT_TRUE(flood[8].is_closed());
+}
+
+TEST_F(ThreePlaces, The_address_with_the_most_connections_makes_room_for_another) {
+  Client oldest = asking(1);
+  Client writer = writing(1);
+  Client silent = node.connect(1);
+  Client other = asking(2);
+  EXPECT_TRUE(silent.is_closed());
+  Client second = asking(2);
+  EXPECT_TRUE(other.is_closed()) << "with it, both have two: the newcomer's address makes room";
+  EXPECT_FALSE(oldest.is_closed() || writer.is_closed());
+  Client third = asking(3);
+  EXPECT_TRUE(oldest.is_closed());
+  Client fourth = asking(4);
+  EXPECT_TRUE(second.is_closed()) << "one each: who has written stays";
+  EXPECT_FALSE(writer.is_closed());
+}
+
 TEST(Accepting, A_storm_of_silent_connections_does_not_push_out_who_works) {
   TcpUnderTest node(4);
   Client worker = node.connect();

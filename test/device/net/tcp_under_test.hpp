@@ -34,9 +34,13 @@ inline Pdu answer_to(std::uint16_t transaction) { return adu(transaction, {3, 4,
 /// A master as rude as the test wants.
 class Client {
  public:
-  explicit Client(const std::string& server) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  /// `host`: it comes from 127.0.0.`host`.
+  explicit Client(const std::string& server, std::uint8_t host = 1)
+      : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK - 1 + host);
+    EXPECT_EQ(::bind(socket_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
     address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(server.substr(server.rfind(':') + 1))));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     EXPECT_EQ(::connect(socket_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
@@ -90,8 +94,8 @@ struct TcpUnderTest {
   }
 
   /// A client that is connected and accepted.
-  Client connect() {
-    Client client(tcp.name());
+  Client connect(std::uint8_t host = 1) {
+    Client client(tcp.name(), host);
     settle();
     return client;
   }
