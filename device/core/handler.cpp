@@ -110,8 +110,8 @@ tl::expected<void, Exception> Handler::store(Table table, modbus::Range range, S
   if (watchdog_.is_locked() && hardware_.driven(table, range, next))
     return tl::unexpected(Exception::server_device_failure);
   if (const auto driven = hardware_.drive(table, range, next); !driven) {
-    if (driven.error() == Exception::server_device_failure) ++statistics_.hardware_errors;
-    return driven;
+    if (driven.error().hardware_failed) ++statistics_.hardware_errors;
+    return tl::unexpected(driven.error().exception);
   }
   std::copy(next.begin(), next.end(), cells.begin());
   if (hardware_.driven(table, range, cells)) {

@@ -10,6 +10,12 @@
 
 namespace coupler::node {
 
+/// Why outputs were not driven.
+struct DriveError {
+  modbus::Exception exception;
+  bool hardware_failed;  ///< false: the firmware's code, or the hardware, does not take the value
+};
+
 /// All that is behind the points of a map: lines behind bits, channels behind registers, a firmware's own
 /// code.
 class Hardware {
@@ -41,10 +47,11 @@ class Hardware {
 
   /// Drives the outputs of the range, all of them or none. Exceptions: AnaloguePoints::drive() 's; 04 if the
   /// firmware refuses, which is asked first.
-  [[nodiscard]] tl::expected<void, modbus::Exception> drive(Table table, modbus::Range range,
-                                                            Span<const std::uint16_t> next) {
+  [[nodiscard]] tl::expected<void, DriveError> drive(Table table, modbus::Range range,
+                                                     Span<const std::uint16_t> next) {
     if (hooked_ == nullptr) return drive_outputs(table, range, next);
-    if (!hooked_->write(table, range, next)) return tl::unexpected(modbus::Exception::server_device_failure);
+    if (!hooked_->write(table, range, next))
+      return tl::unexpected(DriveError{modbus::Exception::server_device_failure, false});
     const auto driven = drive_outputs(table, range, next);
     if (!driven) hooked_->take_back(table, range, next);
     return driven;
@@ -60,11 +67,16 @@ class Hardware {
   }
 
  private:
-  tl::expected<void, modbus::Exception> drive_outputs(Table table, modbus::Range range,
-                                                      Span<const std::uint16_t> next) {
-    if (table == Table::holding_registers && analogue_ != nullptr) return analogue_->drive(range, next);
+  tl::expected<void, DriveError> drive_outputs(Table table, modbus::Range range,
+                                               Span<const std::uint16_t> next) {
+    constexpr auto failure = modbus::Exception::server_device_failure;
+    if (table == Table::holding_registers && analogue_ != nullptr) {
+      const auto driven = analogue_->drive(range, next);
+      if (!driven) return tl::unexpected(DriveError{driven.error(), driven.error() == failure});
+      return {};
+    }
     if (table != Table::coils || lines_->drive(range, next)) return {};
-    return tl::unexpected(modbus::Exception::server_device_failure);
+    return tl::unexpected(DriveError{failure, true});
   }
 
   Lines* lines_;

@@ -14,7 +14,7 @@ struct Statistics {
   std::uint32_t requests = 0;                    ///< answered, exceptions included
   std::uint32_t exceptions = 0;                  ///< of those
   std::array<std::uint32_t, 4> exceptions_of{};  ///< of those, by code: 01, 02, 03, 04
-  std::uint32_t hardware_errors = 0;             ///< requests that a line refused, exception 04
+  std::uint32_t hardware_errors = 0;             ///< requests that a line or channel failed, exception 04
   std::uint32_t events_lost = 0;                 ///< edges of counted inputs that were not seen, at least
   std::uint32_t watchdog_trips = 0;  ///< outputs went to their safe state since no master fed the watchdog
   std::uint32_t foreign_units = 0;   ///< requests for another unit id, not answered

@@ -80,6 +80,13 @@ TEST_F(HookedNode, A_refused_value_is_exception_04_and_changes_nothing) {
   EXPECT_EQ(ask(pdu(3, {0, 1})), (Pdu{3, 2, 0, 0}));
 }
 
+TEST_F(HookedNode, A_refused_value_is_an_exception_but_no_hardware_error) {
+  hooks.refused = {1, 7};
+  EXPECT_EQ(write(0, {7}), failure);
+  EXPECT_EQ(statistics.exceptions_of[3], 1U);
+  EXPECT_EQ(statistics.hardware_errors, 0U);
+}
+
 TEST_F(HookedNode, What_was_accepted_before_a_refusal_is_called_again_with_its_old_value) {
   ASSERT_NE(write(0, {1, 2, 3}), failure);
   hooks.calls.clear();
@@ -112,7 +119,9 @@ TEST_F(HookedNode, When_a_line_cannot_be_driven_the_code_gets_its_old_values_aga
   HookedPoints points(coils->map(), image.image, hooks);
   Hardware hardware(lines, nullptr, &points);
   const std::uint16_t on = 1;
-  EXPECT_FALSE(hardware.drive(Table::coils, modbus::Range::of(0, 1), {&on, 1}));
+  const auto driven = hardware.drive(Table::coils, modbus::Range::of(0, 1), {&on, 1});
+  ASSERT_FALSE(driven);
+  EXPECT_TRUE(driven.error().hardware_failed);
   EXPECT_THAT(hooks.calls, ElementsAre(std::pair(0U, 1), std::pair(0U, 0)));
 }
 
