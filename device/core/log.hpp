@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <optional>
 #include <string_view>
+
+#include "device/core/time.hpp"
 
 namespace coupler::node {
 
@@ -14,6 +18,19 @@ class Log {
   virtual void warn(std::string_view line) { write(line); }
   /// What keeps the node, or a new map, from being served.
   virtual void fail(std::string_view line) { write(line); }
+
+  /// Lines that clients can cause again and again. Of those of one kind, one a second is kept at most: the
+  /// newest, with how many there were beside it.
+  virtual void write_limited(std::string_view kind, std::string_view line) {
+    (void)kind;
+    write(line);
+  }
+  virtual void warn_limited(std::string_view kind, std::string_view line) {
+    (void)kind;
+    warn(line);
+  }
+  /// Says what was held back, when it is due. Returns how long it need not be called; nullopt: nothing waits.
+  virtual std::optional<std::chrono::milliseconds> tick(TimePoint) { return std::nullopt; }
 
  protected:
   ~Log() = default;

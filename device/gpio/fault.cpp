@@ -10,11 +10,13 @@ namespace coupler::node {
 bool Fault::note(int error) {
   if (error != *error_) {
     if (error == 0)
-      log_->write(what_ + " works again");
+      log_->write_limited(what_, what_ + " works again");
     else
-      log_->warn(fmt::format(
-          "{} failed: {}; requests that need it are answered with exception 04 until it works again", what_,
-          std::strerror(error)));
+      log_->warn_limited(
+          what_,
+          fmt::format(
+              "{} failed: {}; requests that need it are answered with exception 04 until it works again",
+              what_, std::strerror(error)));
     *error_ = error;
   }
   return error == 0;

@@ -8,7 +8,8 @@
 
 namespace coupler::node {
 
-/// Whether some hardware works, said in the log once per change.
+/// Whether some hardware works, said in the log once per change. Clients can cause changes by what they
+/// write, so the log limits these lines.
 class Fault {
  public:
   /// `what` begins the sentence: "gpiochip0 line 5 (GPIO5)". `error` is the last outcome, which processes

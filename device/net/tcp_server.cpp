@@ -140,8 +140,8 @@ void TcpServer::refuse(Descriptor socket, const sockaddr_storage& peer) {
 /// The listener stays readable while it cannot accept; watching it would spin.
 void TcpServer::pause(int error) {
   if (!pause_logged_)
-    log_.write(
-        fmt::format("cannot accept connections: {}; trying again until it works", std::strerror(error)));
+    log_.warn_limited("accept", fmt::format("cannot accept connections: {}; trying again until it works",
+                                            std::strerror(error)));
   pause_logged_ = paused_ = true;
   loop_.change(listener_.socket.get(), Interest::nothing, *this);
 }

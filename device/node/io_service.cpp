@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/base/line_limit.hpp"
 #include "device/node/farewell.hpp"
 
 namespace coupler::node {
@@ -39,6 +40,7 @@ void IoService::run(const std::function<bool(TimePoint)>& is_over, Pulse& pulse)
     pulse.beat();
     next_beat = now_ + Pulse::period;
   }
+  (void)log_.tick(now_ + LineLimit::interval);  // nobody says later what is still held back
 }
 
 std::vector<OpenConnection> IoService::release() { return tcp_.release(); }
@@ -48,7 +50,8 @@ void IoService::end(int signal) {
 }
 
 void IoService::turn() {
-  now_ = loop_.run_once(shorter(Pulse::period, shorter(tcp_.patience(), node_.handler().patience(now_))));
+  const Patience work = shorter(tcp_.patience(), node_.handler().patience(now_));
+  now_ = loop_.run_once(shorter(Pulse::period, shorter(work, log_.tick(now_))));
   tcp_.tick(now_);
   node_.handler().tick(now_);
   log_trips();
@@ -57,7 +60,9 @@ void IoService::turn() {
 void IoService::log_trips() {
   if (trips_ == statistics_.watchdog_trips) return;
   trips_ = statistics_.watchdog_trips;
-  log_.warn("the watchdog expired: no master that writes was heard in time; outputs go to their safe state");
+  log_.warn_limited(
+      "watchdog",
+      "the watchdog expired: no master that writes was heard in time; outputs go to their safe state");
 }
 
 }  // namespace coupler::node

@@ -6,6 +6,7 @@
 #include <syslog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <string>
@@ -29,6 +30,34 @@ StderrLog::StderrLog(const char* journal_stream) : to_journal_(is_stderr(journal
 void StderrLog::write(std::string_view line) { put(LOG_INFO, speaker, line); }
 void StderrLog::warn(std::string_view line) { put(LOG_WARNING, speaker, line); }
 void StderrLog::fail(std::string_view line) { put(LOG_ERR, speaker, line); }
+
+void StderrLog::write_limited(std::string_view kind, std::string_view line) {
+  put_limited(LOG_INFO, kind, line);
+}
+
+void StderrLog::warn_limited(std::string_view kind, std::string_view line) {
+  put_limited(LOG_WARNING, kind, line);
+}
+
+void StderrLog::put_limited(int priority, std::string_view kind, std::string_view line) {
+  if (!now_) return put(priority, speaker, line);
+  Kind& of_kind = kinds_[std::string(kind)];
+  of_kind.priority = priority;
+  if (const auto said = of_kind.limit.say(std::string(line), *now_)) put(priority, speaker, *said);
+}
+
+std::optional<std::chrono::milliseconds> StderrLog::tick(TimePoint now) {
+  using std::chrono::milliseconds;
+  now_ = now;
+  std::optional<TimePoint> next;
+  for (auto& [name, kind] : kinds_) {
+    if (const auto line = kind.limit.due(now)) put(kind.priority, speaker, *line);
+    const auto due = kind.limit.due_at();
+    if (due && (!next || *due < *next)) next = due;
+  }
+  if (!next) return std::nullopt;
+  return std::max(milliseconds(0), std::chrono::ceil<milliseconds>(*next - now));
+}
 
 void StderrLog::tell(const Diagnostic& diagnostic) {
   const bool is_error = diagnostic.severity == Diagnostic::Severity::error;

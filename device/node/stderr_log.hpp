@@ -2,8 +2,11 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
+#include <map>
 #include <string>
 
+#include "common/base/line_limit.hpp"
 #include "common/map/diagnostic.hpp"
 #include "device/core/log.hpp"
 #include "device/keeper/shared_array.hpp"
@@ -22,6 +25,10 @@ class StderrLog : public Log {
   void write(std::string_view line) override;
   void warn(std::string_view line) override;
   void fail(std::string_view line) override;
+  void write_limited(std::string_view kind, std::string_view line) override;
+  void warn_limited(std::string_view kind, std::string_view line) override;
+  /// Until it is called nothing is held back: a process that serves no clients need not call it.
+  std::optional<std::chrono::milliseconds> tick(TimePoint now) override;
   /// As compilers tell them, for editors.
   void tell(const Diagnostic& diagnostic);
 
@@ -38,6 +45,12 @@ class StderrLog : public Log {
     std::atomic<bool> in_the_middle{false};  ///< of a line: the rest of it is missing
   };
 
+  struct Kind {
+    LineLimit limit;
+    int priority;  ///< of the newest line
+  };
+
+  void put_limited(int priority, std::string_view kind, std::string_view line);
   void put(int priority, std::string_view who, std::string_view line);
   std::string line_of(int priority, std::string_view who, std::string_view line) const;
   bool write_at_once(std::string_view text);
@@ -47,6 +60,8 @@ class StderrLog : public Log {
   SharedArray<Dropped> dropped_{1};
   bool to_journal_;
   bool waits_ = true;
+  std::map<std::string, Kind, std::less<>> kinds_;
+  std::optional<TimePoint> now_;  ///< of the last tick()
 };
 
 }  // namespace coupler::node

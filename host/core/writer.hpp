@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "common/base/line_limit.hpp"
 #include "host/core/calls.hpp"
 #include "host/core/deadmen.hpp"
 #include "host/core/device_statistics.hpp"
-#include "host/core/line_limit.hpp"
 #include "host/core/paced_transport.hpp"
 #include "host/core/point_quality.hpp"
 #include "host/core/sink.hpp"

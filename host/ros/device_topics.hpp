@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "common/base/line_limit.hpp"
 #include "host/core/device_thread.hpp"
 #include "host/ros/device_services.hpp"
 #include "host/ros/diagnostics.hpp"

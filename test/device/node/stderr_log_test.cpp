@@ -42,6 +42,44 @@ TEST(StderrLog, The_journal_sees_how_important_it_is) {
   EXPECT_EQ(said(nullptr, true), "<6>serving\n<4>lost\n<3>refused\n<3>map.yaml:3:7: error: wrong; mend it\n");
 }
 
+TEST(StderrLog, Of_what_clients_cause_again_and_again_it_says_one_line_a_second) {
+  using std::chrono::milliseconds;
+  testing::internal::CaptureStderr();
+  StderrLog log(nullptr);
+  const TimePoint begin = TimePoint() + std::chrono::hours(1);
+  EXPECT_EQ(log.tick(begin), std::nullopt);
+  for (int i = 0; i < 1000; ++i) {
+    log.warn_limited("lamp", "lamp failed");
+    log.write_limited("lamp", "lamp works again");
+  }
+  log.warn_limited("watchdog", "expired");
+  EXPECT_EQ(log.tick(begin + milliseconds(10)), milliseconds(990));
+  log.write("something else");
+  EXPECT_EQ(log.tick(begin + milliseconds(1000)), std::nullopt);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "coupler-node: lamp failed\ncoupler-node: expired\ncoupler-node: something else\n"
+            "coupler-node: lamp works again (and 1998 more of this kind)\n");
+}
+
+TEST(StderrLog, A_line_that_was_held_back_keeps_its_importance) {
+  testing::internal::CaptureStderr();
+  StderrLog log(stderr_stream().c_str());
+  const TimePoint begin = TimePoint() + std::chrono::hours(1);
+  log.tick(begin);
+  log.write_limited("lamp", "works again");
+  log.warn_limited("lamp", "failed");
+  log.tick(begin + std::chrono::seconds(1));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "<6>works again\n<4>failed\n");
+}
+
+TEST(StderrLog, Where_nobody_calls_tick_nothing_is_held_back) {
+  testing::internal::CaptureStderr();
+  StderrLog log(nullptr);
+  log.warn_limited("lamp", "failed");
+  log.write_limited("lamp", "works again");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "coupler-node: failed\ncoupler-node: works again\n");
+}
+
 TEST(StderrLog, Nobody_who_reads_it_is_no_reason_to_end) {
   const int before = ::dup(STDERR_FILENO);
   const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -9,14 +10,13 @@
 
 #include <fmt/format.h>
 
-#include "host/core/clock.hpp"
-
-namespace coupler::driver {
+namespace coupler {
 
 /// Of lines of one kind, one a second: at once where there was none, else the newest when the second is over,
 /// and how many came before it. Any thread may call.
 class LineLimit {
  public:
+  using Time = std::chrono::steady_clock::time_point;
   static constexpr auto interval = std::chrono::seconds(1);
 
   /// What is to be said now.
@@ -30,6 +30,11 @@ class LineLimit {
   std::optional<std::string> due(Time now) {
     const std::lock_guard lock(mutex_);
     return take(now);
+  }
+  /// When due() has something to say; nullopt: nothing waits.
+  std::optional<Time> due_at() {
+    const std::lock_guard lock(mutex_);
+    return waiting_ ? std::optional(said_.value_or(Time()) + interval) : std::nullopt;
   }
 
  private:
@@ -46,4 +51,4 @@ class LineLimit {
   std::uint64_t left_out_ = 0;
 };
 
-}  // namespace coupler::driver
+}  // namespace coupler
