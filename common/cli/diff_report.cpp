@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/map/printable.hpp"
+
 namespace coupler::cli {
 namespace {
 
@@ -45,8 +47,8 @@ std::string what(const Change& change) {
 /// A cell of a table: no bar and no newline ends it, and no mark of it is taken for Markdown's.
 std::string cell(std::string_view text) {
   std::string out;
-  for (const char c : text) {
-    if (c == '\n' || c == '\r') {
+  for (const char c : printable_lines(text)) {
+    if (c == '\n') {
       out += ' ';
       continue;
     }
@@ -68,8 +70,9 @@ std::string diff_text(const Versions& versions, const std::vector<Change>& chang
     for (const Change& change : changes)
       if (change.severity == severity)
         text += fmt::format("{:<13}  {:<23}  {}: {}\n", to_string(severity), change.rule, or_map(change),
-                            what(change));
-  return text + fmt::format("{} -> {}: {}\n", versions.older, versions.newer, counts(changes));
+                            printable(what(change)));
+  return text +
+         fmt::format("{} -> {}: {}\n", printable(versions.older), printable(versions.newer), counts(changes));
 }
 
 std::string diff_json(const Versions& versions, const std::vector<Change>& changes) {

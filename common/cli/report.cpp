@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/map/fingerprint.hpp"
+#include "common/map/printable.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -54,7 +55,7 @@ ordered_json to_json(const Diagnostic& diagnostic) {
 }  // namespace
 
 std::string summary(const std::string& file, const Map& map) {
-  return fmt::format("{}: ok: {}, {}{}, fingerprint {}", file, map.name,
+  return fmt::format("{}: ok: {}, {}{}, fingerprint {}", printable(file), map.name,
                      counted(static_cast<std::ptrdiff_t>(map.points.size()), "point"), by_table(map),
                      fingerprint_text(map.fingerprint));
 }

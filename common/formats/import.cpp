@@ -10,6 +10,7 @@
 #include "common/formats/names.hpp"
 #include "common/map/loader/map_reader.hpp"
 #include "common/map/loader/source_text.hpp"
+#include "common/map/printable.hpp"
 
 namespace coupler::formats {
 namespace {
@@ -72,12 +73,9 @@ ImportedMap finish(const ForeignUnit& foreign, std::string_view comment, Problem
   return {foreign.unit, std::move(text), map};
 }
 
-/// Control characters of a file's name would end the comment.
+/// A newline in a file's name would end the comment.
 std::string comment_of(const Importer& importer, std::string_view file) {
-  std::string name(base_name(file));
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  return fmt::format("Imported from {} by `coupler import {}`.", name, importer.name);
+  return fmt::format("Imported from {} by `coupler import {}`.", printable(base_name(file)), importer.name);
 }
 
 Diagnostics quoted(Problems&& problems, std::string_view text) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "common/map/printable.hpp"
+
 namespace coupler::generate {
 namespace {
 
@@ -18,14 +20,6 @@ std::string escape(char c) {
   const auto byte = static_cast<unsigned char>(c);
   if (byte >= 0x20 && byte < 0x7F) return std::string(1, c);
   return fmt::format("\\{:03o}", byte);  // three digits always: a digit that follows stays text
-}
-
-/// U+200E, U+200F, U+202A … U+202E, U+2066 … U+2069 in UTF-8.
-bool turns_direction(std::string_view at) {
-  if (at.size() < 3 || at[0] != '\xE2') return false;
-  const auto third = static_cast<unsigned char>(at[2]);
-  if (at[1] == '\x80') return third == 0x8E || third == 0x8F || (third >= 0xAA && third <= 0xAE);
-  return at[1] == '\x81' && third >= 0xA6 && third <= 0xA9;
 }
 
 }  // namespace
@@ -55,13 +49,13 @@ std::string literal_lines(std::string_view text, std::string_view indent) {
 
 std::string comment(std::string_view text) {
   std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (turns_direction(text.substr(i))) {
-      i += 2;
-      continue;
-    }
-    const auto byte = static_cast<unsigned char>(text[i]);
-    out += byte < 0x20 || byte == 0x7F ? ' ' : text[i];
+  for (std::size_t at = 0; at < text.size();) {
+    const Character c = character_at(text, at);
+    if (c.valid && is_control(c.code))
+      out += ' ';
+    else if (!turns_direction(c.code))
+      out += text.substr(at, c.size);
+    at += c.size;
   }
   return out;
 }

@@ -5,12 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "common/map/printable.hpp"
+
 namespace coupler {
 
 std::string to_string(const Diagnostic& d) {
   const std::string where = d.line > 0 ? fmt::format("{}:{}:{}", d.file, d.line, d.column) : d.file;
   const char* severity = d.severity == Diagnostic::Severity::error ? "error" : "warning";
-  return fmt::format("{}: {}: {}; {}", where, severity, d.what, d.remedy);
+  return printable_lines(fmt::format("{}: {}: {}; {}", where, severity, d.what, d.remedy));
 }
 
 void quote(Diagnostics& diagnostics, std::string_view text) {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "common/map/printable.hpp"
+
 namespace coupler {
 namespace {
 
@@ -14,29 +16,6 @@ constexpr std::string_view cut = "…";
 
 std::uint8_t byte(std::string_view text, std::size_t i) { return static_cast<std::uint8_t>(text[i]); }
 bool continues(std::uint8_t byte) { return (byte & 0xC0U) == 0x80U; }
-
-struct Character {
-  char32_t code;
-  std::size_t size;  ///< bytes
-  bool valid = true;
-};
-
-/// The character that begins at `at`; a byte that begins none stands for itself.
-Character character(std::string_view text, std::size_t at) {
-  const std::uint8_t first = byte(text, at);
-  if (first < 0x80) return {first, 1};
-  const std::size_t size = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || at + size > text.size()) return {first, 1, false};
-  char32_t code = first & (0x7FU >> size);
-  for (std::size_t i = 1; i < size; ++i) {
-    if (!continues(byte(text, at + i))) return {first, 1, false};
-    code = code << 6U | (byte(text, at + i) & 0x3FU);
-  }
-  constexpr std::array<char32_t, 3> least{0x80, 0x800, 0x10000};
-  const bool surrogate = code >= 0xD800 && code < 0xE000;
-  if (code < least[size - 2] || surrogate || code > 0x10FFFF) return {first, 1, false};
-  return {code, size};
-}
 
 /// Columns of a terminal: none for what combines with its neighbour, two for the wide scripts and pictures.
 std::size_t width(char32_t code) {
@@ -56,15 +35,12 @@ std::size_t width(char32_t code) {
   return std::any_of(two.begin(), two.end(), holds) ? 2 : 1;
 }
 
-/// C0, DEL and C1 could steer the terminal.
-bool is_control(char32_t code) { return (code < 0x20 && code != '\t') || (code >= 0x7F && code < 0xA0); }
-
 /// Byte by byte the same length, so that columns stay what they are.
 std::string showable(std::string_view line) {
   std::string text;
   for (std::size_t i = 0; i < line.size();) {
-    const Character c = character(line, i);
-    if (!c.valid || is_control(c.code))
+    const Character c = character_at(line, i);
+    if (!c.valid || (is_control(c.code) && c.code != '\t') || turns_direction(c.code))
       text.append(c.size, c.valid ? ' ' : '?');
     else
       text += line.substr(i, c.size);
@@ -99,7 +75,7 @@ std::string underline(const Excerpt& excerpt) {
   const std::string_view text = excerpt.text;
   std::string below;
   for (std::size_t i = 0; i < excerpt.caret;) {
-    const Character c = character(text, i);
+    const Character c = character_at(text, i);
     below.append(c.code == '\t' ? 1 : width(c.code), c.code == '\t' ? '\t' : ' ');
     i += c.size;
   }
@@ -107,7 +83,7 @@ std::string underline(const Excerpt& excerpt) {
   if (excerpt.caret >= text.size()) return below;
   std::size_t columns = 0;
   for (std::size_t i = excerpt.caret; i < text.size() && in_word(text, i);) {
-    const Character c = character(text, i);
+    const Character c = character_at(text, i);
     columns += width(c.code);
     i += c.size;
   }

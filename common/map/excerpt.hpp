@@ -8,7 +8,7 @@
 namespace coupler {
 
 /// A line of a file as it may be shown: of a long line only what is around the caret, no control characters
-/// but tabs, valid UTF-8.
+/// but tabs, none that turn the direction of writing, valid UTF-8.
 struct Excerpt {
   std::string text;
   std::size_t caret = 0;  ///< the byte of `text` that is meant; its size: the end of the line

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/map/diagnostic.hpp"
+#include "common/map/printable.hpp"
 
 namespace coupler {
 namespace {
@@ -24,14 +25,15 @@ std::string source_lines(int line, const Excerpt& source, const Style& style) {
 std::string render(const Diagnostic& d, Colour colour) {
   const Style& style = colour == Colour::yes ? ansi : plain;
   const bool error = d.severity == Diagnostic::Severity::error;
+  const std::string file = printable(d.file);
   std::string text = fmt::format("{}{}:{} {}{}:{} {}; {}\n", style.bold,
-                                 d.line > 0 ? fmt::format("{}:{}:{}", d.file, d.line, d.column) : d.file,
+                                 d.line > 0 ? fmt::format("{}:{}:{}", file, d.line, d.column) : file,
                                  style.end, error ? style.red : style.magenta, error ? "error" : "warning",
-                                 style.end, d.what, d.remedy);
+                                 style.end, printable_lines(d.what), printable_lines(d.remedy));
   text += source_lines(d.line, d.source, style);
   for (const Diagnostic::Note& note : d.notes) {
-    text += fmt::format("{}{}:{}:{}:{} {}note:{} {}\n", style.bold, d.file, note.line, note.column, style.end,
-                        style.cyan, style.end, note.what);
+    text += fmt::format("{}{}:{}:{}:{} {}note:{} {}\n", style.bold, file, note.line, note.column, style.end,
+                        style.cyan, style.end, printable_lines(note.what));
     text += source_lines(note.line, note.source, style);
   }
   return text;

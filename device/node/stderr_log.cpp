@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <string>
 
+#include "common/map/printable.hpp"
+
 namespace coupler::node {
 namespace {
 
@@ -81,7 +83,8 @@ void StderrLog::put(int priority, std::string_view who, std::string_view line) {
 }
 
 std::string StderrLog::line_of(int priority, std::string_view who, std::string_view line) const {
-  std::string text = to_journal_ ? fmt::format("<{}>{}", priority, line) : fmt::format("{}{}", who, line);
+  const std::string shown = printable_lines(line);
+  std::string text = to_journal_ ? fmt::format("<{}>{}", priority, shown) : fmt::format("{}{}", who, shown);
   if (text.back() != '\n') text += '\n';
   return text;
 }

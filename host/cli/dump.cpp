@@ -14,6 +14,7 @@
 
 #include "common/map/loader/print.hpp"
 #include "common/map/node_address.hpp"
+#include "common/map/printable.hpp"
 #include "host/cli/device_reader.hpp"
 #include "host/cli/dump_json.hpp"
 #include "host/cli/dump_text.hpp"
@@ -31,7 +32,7 @@ void put(const std::string& line) {
   std::fflush(stdout);
 }
 
-void tell(const std::string& note) { fmt::print(stderr, "coupler dump: note: {}\n", note); }
+void tell(const std::string& note) { fmt::print(stderr, "coupler dump: note: {}\n", printable_lines(note)); }
 
 /// Rows of the terminal that is standard output.
 std::size_t terminal_rows() {
@@ -74,7 +75,7 @@ Exit once(const Map& map, const DumpWish& wish) {
   }
   if (!now.online())
     fmt::print(stderr, "coupler dump: error: {}: {}; see that a device serves there, or give --at\n",
-               node_address_text(map.connection), now.trouble);
+               printable(node_address_text(map.connection)), printable_lines(now.trouble));
   return now.online() && now.failed() == 0 ? ok : failed;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "common/map/node_address.hpp"
+#include "common/map/printable.hpp"
 #include "common/pages/row.hpp"
 #include "host/core/value_text.hpp"
 
@@ -16,24 +17,6 @@ namespace {
 
 using State = Reading::State;
 using Cells = std::array<std::string, 6>;  // point, value, type, table, wire, Modicon
-
-/// A text from a device can hold anything: a terminal must not obey it, nor a line end in it.
-std::string printable(const std::string& text) {
-  std::string result;
-  unsigned char before = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    // U+0080 … U+009F: one of them begins sequences, as ESC [ does.
-    const bool is_c1 = before == 0xC2 && byte >= 0x80 && byte < 0xA0;
-    if (is_c1) result.pop_back();
-    if (is_c1 || byte < 0x20 || byte == 0x7F)
-      result += fmt::format("\\x{:02x}", byte);
-    else
-      result += c;
-    before = byte;
-  }
-  return result;
-}
 
 /// Characters of UTF-8.
 std::size_t width(const std::string& text) {
@@ -52,7 +35,7 @@ std::string why_not(const Reading& reading) {
 std::string good_value(const Point& point, const Reading& reading) {
   std::string text = printable(driver::format_value(reading.registers.data(), point));
   if (point.format.type == codec::Type::STRING && point.count == 1) text = '"' + text + '"';
-  return point.units.empty() ? text : fmt::format("{} {}", text, point.units);
+  return point.units.empty() ? text : fmt::format("{} {}", text, printable(point.units));
 }
 
 /// Where it is read, as the register map of `coupler generate --docs` writes it.
@@ -70,7 +53,7 @@ Cells cells_of(const Map& map, const Reading& reading) {
 
 std::string head(const Map& map, const Snapshot& now) {
   const std::string where =
-      fmt::format("{} at {}, {}", map.name, node_address_text(map.connection), time_text(now.at));
+      printable(fmt::format("{} at {}, {}", map.name, node_address_text(map.connection), time_text(now.at)));
   if (!now.online()) return fmt::format("{}: offline: {}", where, printable(now.trouble));
   if (const std::size_t failed = now.failed(); failed > 0)
     return fmt::format("{}: {} of {} points not read", where, failed, now.readings.size());

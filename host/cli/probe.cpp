@@ -11,6 +11,7 @@
 #include "common/cli/commands.hpp"
 #include "common/cli/report.hpp"
 #include "common/generate/output.hpp"
+#include "common/map/printable.hpp"
 #include "host/cli/interruption.hpp"
 #include "host/cli/modbus_master.hpp"
 #include "host/cli/probe_call.hpp"
@@ -24,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Exit complain(Exit exit, std::string_view what, std::string_view remedy) {
-  fmt::print(stderr, "coupler probe: error: {}; {}\n", what, remedy);
+  fmt::print(stderr, "coupler probe: error: {}; {}\n", printable_lines(what), printable_lines(remedy));
   return exit;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/map/node_address.hpp"
+#include "common/map/printable.hpp"
 #include "host/survey/identification.hpp"
 
 namespace coupler::cli {
@@ -21,7 +22,7 @@ constexpr std::size_t most_candidates = 6;
 /// "10.0.0.7:502/255", to be given to a command.
 std::string place(Connection connection, std::uint8_t unit) {
   connection.unit = unit;
-  return survey::printable(node_address_text(connection)).substr(std::string_view("tcp://").size());
+  return printable(node_address_text(connection)).substr(std::string_view("tcp://").size());
 }
 
 std::string units_text(const Findings& findings, const Connection& connection) {
@@ -38,7 +39,7 @@ std::string units_text(const Findings& findings, const Connection& connection) {
 std::string identification_text(const Findings& findings, const Connection& connection) {
   std::string text;
   for (const auto& [id, value] : findings.identification)
-    text += fmt::format("  {:<20} {}\n", survey::object_name(id), survey::printable(value));
+    text += fmt::format("  {:<20} {}\n", survey::object_name(id), printable(value));
   text = text.empty() ? "identification: none (FC 43/14)\n" : "identification:\n" + text;
   if (findings.node)
     text += fmt::format("an OpenCoupler node: it serves its map, see `coupler dump tcp://{}`\n",
@@ -118,7 +119,7 @@ std::string probe_report(const Findings& findings, const survey::Task& task, con
   text += orders_text(matches);
   text += fmt::format("requests: {}\n", findings.requests);
   for (const std::string& failure : findings.failures)
-    text += fmt::format("  without an answer: {}\n", survey::printable(failure));
+    text += fmt::format("  without an answer: {}\n", printable(failure));
   if (!findings.is_complete) text += "ended early: there may be more\n";
   if (untried && task.stride > 1)
     text += fmt::format("not tried: where blocks are refused, only one address in {}; --stride 1 tries all\n",

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "common/map/printable.hpp"
+
 namespace coupler::driver {
 namespace {
 
@@ -18,7 +20,8 @@ void error(const std::string& text) { ROS_ERROR("%s", text.c_str()); }
 
 }  // namespace
 
-void log(Level level, const std::string& text) {
+void log(Level level, const std::string& raw) {
+  const std::string text = printable_lines(raw);
   if (ros::isShuttingDown()) {  // its log has ended; what becomes of safe values is still to be told
     fmt::print(stderr, "[{}] {}\n",
                level == Level::error     ? "ERROR"
@@ -39,6 +42,6 @@ bool is_debug_logged() {
   return __rosconsole_define_location__enabled;
 }
 
-void log_debug(const std::string& text) { ROS_DEBUG("%s", text.c_str()); }
+void log_debug(const std::string& text) { ROS_DEBUG("%s", printable_lines(text).c_str()); }
 
 }  // namespace coupler::driver

@@ -7,7 +7,7 @@
 
 namespace coupler::driver {
 
-/// Writes to rosout and the console.
+/// Writes to rosout and the console, escaped as printable_lines() does.
 void log(Level level, const std::string& text);
 
 /// Whether log_debug() says anything; costs nothing.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/map/printable.hpp"
 #include "host/survey/identification.hpp"
 
 namespace coupler::survey {
@@ -194,18 +195,6 @@ std::string point_text(const Candidate& candidate, bool with_order) {
 std::string value_text(const Candidate& candidate) {
   if (candidate.type == codec::Type::REAL) return fmt::format("{}", static_cast<float>(candidate.value));
   return fmt::format("{}", candidate.value);
-}
-
-std::string printable(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte < 0x7F)
-      out += c;
-    else
-      out += fmt::format("\\x{:02X}", byte);
-  }
-  return out;
 }
 
 std::string draft_map(const Findings& findings, const Connection& connection,

@@ -25,9 +25,6 @@ std::string point_text(const Candidate& candidate, bool with_order);
 /// The value as it was read, in as few digits as its type needs: "230.4".
 std::string value_text(const Candidate& candidate);
 
-/// What came over the network, as it may stand in one line of text: printable ASCII.
-std::string printable(std::string_view text);
-
 /// A map of all that can be read, in YAML, with comments: each known value is a point of its own, the rest
 /// arrays of UINT; all of them read only, since nobody knows yet what a write would do.
 std::string draft_map(const Findings& findings, const Connection& connection,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "common/map/printable.hpp"
+
 namespace coupler::loader {
 
 void Problems::error(Position at, std::string what, std::string remedy, const Notes& related) {
@@ -31,11 +33,14 @@ Diagnostics Problems::sorted() && {
 std::string shown(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result = "'";
-  for (const char c : text) {
-    const bool continues_character = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
-    if (result.size() > longest && !continues_character) return result + "…'";
-    const bool control = static_cast<unsigned char>(c) < 0x20U || c == '\x7F';
-    result += control ? ' ' : c;
+  for (std::size_t at = 0; at < text.size();) {
+    if (result.size() > longest) return result + "…'";
+    const Character c = character_at(text, at);
+    if (is_control(c.code) || turns_direction(c.code))
+      result += ' ';
+    else
+      result += text.substr(at, c.size);
+    at += c.size;
   }
   return result + "'";
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/map/lock/lock.hpp"
+#include "common/map/printable.hpp"
 
 namespace coupler::lock {
 namespace {
@@ -34,10 +35,7 @@ bool is_conflict_marker(std::string_view line) {
 
 /// The word as a message shows it: names are short, other things need not be.
 std::string shown(std::string_view word) {
-  const auto printable = [](char c) { return c > ' ' && c <= '~'; };
-  std::string text(word.substr(0, 40));
-  std::replace_if(
-      text.begin(), text.end(), [&](char c) { return !printable(c); }, '?');
+  const std::string text = printable(word.substr(0, 40));
   return fmt::format("'{}{}'", text, word.size() > 40 ? "…" : "");
 }
 

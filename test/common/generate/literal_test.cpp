@@ -37,7 +37,7 @@ TEST(Literal, A_final_newline_adds_no_line) { EXPECT_EQ(literal_lines("one\n", "
 
 TEST(Literal, No_text_is_an_empty_literal) { EXPECT_EQ(literal_lines("", ""), "\"\""); }
 
-TEST(Comment, Is_one_line) { EXPECT_EQ(comment("one\ntwo\r\x7F"), "one two  "); }
+TEST(Comment, Is_one_line) { EXPECT_EQ(comment("one\ntwo\r\x7F\u0085"), "one two   "); }
 
 TEST(Comment, Keeps_letters_of_every_language) { EXPECT_EQ(comment("Öl – 20 °C"), "Öl – 20 °C"); }
 

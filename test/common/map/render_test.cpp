@@ -53,6 +53,20 @@ TEST(Render, Nothing_in_a_file_steers_the_terminal) {
   EXPECT_NE(text.find("    2 | a:  [31m    ??? b\n"), std::string::npos) << text;
 }
 
+TEST(Render, Nothing_in_a_message_steers_the_terminal) {
+  Diagnostic d{Severity::error, "\x1b.yaml", 2, 3, "'\u009B2J' is wrong", "remove \u202E", {}, {}};
+  d.notes.push_back({1, 1, "\xFF is here", {}});
+  EXPECT_EQ(
+      render(d, Colour::no),
+      "\\x1b.yaml:2:3: error: '\\x9b2J' is wrong; remove \\u202e\n\\x1b.yaml:1:1: note: \\xff is here\n");
+  EXPECT_EQ(to_string(d), "\\x1b.yaml:2:3: error: '\\x9b2J' is wrong; remove \\u202e");
+}
+
+TEST(Render, What_turns_the_direction_of_writing_is_a_gap_as_wide_in_bytes) {
+  EXPECT_NE(shown("a: \u202Eb c", 8).find("    2 | a:    b c\n"), std::string::npos)
+      << shown("a: \u202Eb c", 8);
+}
+
 TEST(Render, Of_a_long_line_the_surroundings_are_shown) {
   const std::string far(1000, 'x');
   const std::string text = shown(far + " \u00e4lamp " + far, 1002);

@@ -80,6 +80,16 @@ TEST(StderrLog, Where_nobody_calls_tick_nothing_is_held_back) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "coupler-node: failed\ncoupler-node: works again\n");
 }
 
+TEST(StderrLog, A_terminal_does_not_obey_a_text_of_a_map_or_a_device) {
+  testing::internal::CaptureStderr();
+  StderrLog log(nullptr);
+  log.write("gpiochip0 (\x1B[2J\u009B2J\xFF\u202E) failed");
+  log.tell({Diagnostic::Severity::error, "a\nb.yaml", 3, 7, "'\u009B'", "mend it"});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "coupler-node: gpiochip0 (\\x1b[2J\\x9b2J\\xff\\u202e) failed\n"
+            "a\\x0ab.yaml:3:7: error: '\\x9b'; mend it\n");
+}
+
 TEST(StderrLog, Nobody_who_reads_it_is_no_reason_to_end) {
   const int before = ::dup(STDERR_FILENO);
   const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);

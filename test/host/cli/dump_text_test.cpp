@@ -94,6 +94,14 @@ TEST_F(DumpText, A_terminal_does_not_obey_the_text_of_a_device) {
   EXPECT_EQ(value_text(other->map(), Reading{0, State::good, {0x9BB0, 0x4100}}), "\"\\x9b°A\"");
 }
 
+TEST_F(DumpText, A_terminal_does_not_obey_a_map) {
+  MapBuilder units;
+  units.add(Table::holding_registers, "level", 0, Type::UINT,
+            [](Point& point) { point.units = "\u009B2J\u202E\x1B"; });
+  const MapPtr hostile = units.build();
+  EXPECT_EQ(value_text(hostile->map(), Reading{0, State::good, {7}}), "7 \\x9b2J\\u202e\\x1b");
+}
+
 TEST_F(DumpText, A_long_value_does_not_push_the_others_aside) {
   MapBuilder arrays;
   arrays.add(Table::holding_registers, "many", 0, Type::UINT, [](Point& point) { point.count = 20; })

@@ -199,7 +199,7 @@ TEST_F(SurveyTest, What_a_device_calls_itself_cannot_break_out_of_a_comment) {
   device_.fill(holding, 0, 3);
   const LoadResult loaded = draft(look());
   ASSERT_TRUE(loaded.map) << text_;
-  EXPECT_THAT(text_, HasSubstr("ACME\\x0Aname: other\\x1B[2J\\xFF"));
+  EXPECT_THAT(text_, HasSubstr("ACME\\x0aname: other\\x1b[2J\\xff"));
 }
 
 }  // namespace
