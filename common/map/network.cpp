@@ -49,11 +49,19 @@ std::string to_text(const IpAddress& address, bool ipv4) {
 
 }  // namespace
 
+bool is_ipv4(const IpAddress& address) {
+  constexpr std::array<std::uint8_t, 12> mapped{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF};
+  return std::equal(mapped.begin(), mapped.end(), address.begin());
+}
+
 bool Network::contains(const IpAddress& other) const {
+  if (is_ipv4(address) != is_ipv4(other)) return false;
   for (unsigned i = 0; i < prefix; ++i)
     if (bit(address, i) != bit(other, i)) return false;
   return true;
 }
+
+bool Network::is_whole_family() const { return prefix == (is_ipv4(address) ? mapped_prefix : 0); }
 
 bool is_ip_address(std::string_view text) {
   const std::size_t zone = is_ipv4(text) ? std::string_view::npos : text.find('%');

@@ -13,12 +13,17 @@ namespace coupler {
 /// 2.5.5.2), as a socket that takes both shows them.
 using IpAddress = std::array<std::uint8_t, 16>;
 
-/// The addresses that share their first `prefix` bits.
+bool is_ipv4(const IpAddress& address);
+
+/// The addresses of one family that share their first `prefix` bits: ::/0 is every IPv6 address, but no IPv4
+/// address, although those are mapped into it.
 struct Network {
   IpAddress address{};
   unsigned prefix = 128;  ///< 0 … 128, of the mapped address
 
   bool contains(const IpAddress& other) const;
+  /// 0.0.0.0/0 or ::/0.
+  bool is_whole_family() const;
 };
 
 struct NetworkError {

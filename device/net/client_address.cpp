@@ -11,11 +11,6 @@ namespace {
 
 constexpr std::size_t ipv6_network = 8;  ///< bytes of the /64
 
-bool is_ipv4(const IpAddress& address) {
-  constexpr std::array<std::uint8_t, 12> mapped{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF};
-  return std::equal(mapped.begin(), mapped.end(), address.begin());
-}
-
 }  // namespace
 
 std::optional<IpAddress> address_of(const sockaddr_storage& peer) {

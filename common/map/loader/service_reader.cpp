@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/map/loader/service_reader.hpp"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "common/map/network.hpp"
@@ -26,6 +30,23 @@ Watchdog read_watchdog(const Reader& top, Context& context) {
   return watchdog;
 }
 
+/// Who lists all of one family means everybody, perhaps, but nobody of the other may connect.
+void warn_of_half(const std::vector<std::pair<Network, const Entry*>>& allowed, Context& context) {
+  const auto lists = [&](bool ipv4) {
+    return std::any_of(allowed.begin(), allowed.end(),
+                       [&](const auto& one) { return is_ipv4(one.first.address) == ipv4; });
+  };
+  for (const auto& [network, entry] : allowed) {
+    const bool ipv4 = is_ipv4(network.address);
+    if (!network.is_whole_family() || lists(!ipv4)) continue;
+    context.problems.warning(
+        entry->at,
+        fmt::format("{} is every {} address, but no {} address", shown(entry->text), ipv4 ? "IPv4" : "IPv6",
+                    ipv4 ? "IPv6" : "IPv4"),
+        fmt::format("add '{}', or remove 'allow' to let everyone in", ipv4 ? "::/0" : "0.0.0.0/0"));
+  }
+}
+
 Span<const std::string_view> read_allow(const Reader& top, Context& context) {
   const Entry* entry = top.find("allow");
   if (entry == nullptr) return {};
@@ -37,6 +58,7 @@ Span<const std::string_view> read_allow(const Reader& top, Context& context) {
     context.problems.error(entry->at, "'allow' lists nobody",
                            "write who may connect, or remove it to let everyone in");
   std::vector<std::string_view> networks;
+  std::vector<std::pair<Network, const Entry*>> allowed;
   for (const Entry& child : entry->children) {
     if (child.kind != Entry::Kind::scalar) {
       context.problems.error(child.at, fmt::format("'allow' lists IP addresses, not {}", shown(child)),
@@ -46,8 +68,10 @@ Span<const std::string_view> read_allow(const Reader& top, Context& context) {
                              network.error().remedy);
     } else {
       networks.push_back(context.map.keep(child.text));
+      allowed.emplace_back(*network, &child);
     }
   }
+  if (allowed.size() == entry->children.size()) warn_of_half(allowed, context);
   return context.map.keep(networks);
 }
 

@@ -36,6 +36,16 @@ TEST(Network, Everything_of_one_family_is_not_the_other) {
   EXPECT_TRUE(contains("0.0.0.0/0", "255.255.255.255"));
   EXPECT_FALSE(contains("0.0.0.0/0", "::1"));
   EXPECT_TRUE(contains("::/0", "fd00::7"));
+  EXPECT_FALSE(contains("::/0", "10.0.0.7"));
+  EXPECT_FALSE(contains("::/8", "::ffff:10.0.0.7"));
+  EXPECT_TRUE(contains("::ffff:0:0/96", "10.0.0.7")) << "all of IPv4, as IPv6 writes it";
+}
+
+TEST(Network, It_tells_when_it_is_all_of_a_family) {
+  EXPECT_TRUE(parse_network("0.0.0.0/0")->is_whole_family());
+  EXPECT_TRUE(parse_network("::/0")->is_whole_family());
+  for (const char* part : {"0.0.0.0/1", "0.0.0.0", "::/1", "::", "10.0.0.0/8"})
+    EXPECT_FALSE(parse_network(part)->is_whole_family()) << part;
 }
 
 TEST(Network, A_mapped_address_is_the_IPv4_address) {

@@ -30,6 +30,8 @@ UNSEEN = {name + ".yaml" for name in (
     "line_option_given_twice line_option_without_a_line array_with_hardware array_initial initial_does_not_fit "
     # in the digits of an address
     "modicon_of_another_table modicon_past_65536 modicon_numbers_read_from_zero "
+    # between entries of a list
+    "allow_is_half allow_is_the_other_half "
     # between the watchdog and the preset
     "coupler_watchdog_fed_by coupler_watchdog_heartbeat coupler_watchdog_heartbeat_place coupler_watchdog_of_a_plc "
     "coupler_watchdog_place_is_taken coupler_watchdog_recovery coupler_watchdog_steps coupler_watchdog_too_long "

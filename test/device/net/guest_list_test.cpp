@@ -54,6 +54,14 @@ TEST(GuestList, A_socket_of_both_families_shows_IPv4_as_IPv6) {
   EXPECT_FALSE(guests({"10.0.0.0/8"}).admits(ipv6("::ffff:11.1.2.3")));
 }
 
+TEST(GuestList, All_of_IPv6_is_nobody_of_IPv4_and_the_other_way_round) {
+  EXPECT_TRUE(guests({"::/0"}).admits(ipv6("2001:db8::1")));
+  EXPECT_FALSE(guests({"::/0"}).admits(ipv6("::ffff:10.1.2.3")));
+  EXPECT_FALSE(guests({"::/0"}).admits(ipv4("10.1.2.3")));
+  EXPECT_TRUE(guests({"0.0.0.0/0"}).admits(ipv6("::ffff:10.1.2.3")));
+  EXPECT_FALSE(guests({"0.0.0.0/0"}).admits(ipv6("2001:db8::1")));
+}
+
 TEST(Origin, IPv4_in_either_form_is_one_and_each_address_is_another) {
   EXPECT_EQ(origin_of(ipv4("10.0.0.7")), origin_of(ipv6("::ffff:10.0.0.7")));
   EXPECT_NE(origin_of(ipv4("10.0.0.7")), origin_of(ipv4("10.0.0.8")));
