@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "common/map/host.hpp"
+
 namespace coupler {
 namespace {
 
@@ -65,7 +67,11 @@ tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view 
   if (!bracketed && node.host.find(':') != std::string_view::npos)
     return wrong("an IPv6 address stands in brackets: tcp://[fe80::1]:502");
   if (node.host.empty()) return wrong("there is no host");
-  if (node.host.find_first_of("/[] ") != std::string_view::npos) return wrong("that is no host's name");
+  const std::string_view written =
+      bracketed ? std::string_view(node.host.data() - 1, node.host.size() + 2) : node.host;
+  if (const auto host = parse_host(written); !host)
+    return tl::unexpected<NodeAddressError>(
+        {fmt::format("the host '{}' {}", written, host.error().what), host.error().remedy});
   return node;
 }
 

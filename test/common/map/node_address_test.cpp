@@ -55,12 +55,11 @@ TEST(NodeAddress, A_connection_as_text_reads_back_the_same) {
 
 TEST(NodeAddress, What_is_wrong_is_said_with_a_remedy) {
   const std::pair<const char*, const char*> cases[] = {
-      {"tcp://", "there is no host"},         {"tcp://:502", "there is no host"},
-      {"tcp://cell:0", "the port '0'"},       {"tcp://cell:65536", "the port '65536'"},
-      {"tcp://cell:", "the port ''"},         {"tcp://cell/256", "the unit id '256'"},
-      {"tcp://cell/x", "the unit id 'x'"},    {"tcp://cell/1/2", "no host's name"},
-      {"tcp://[::1]502", "behind ']'"},       {"udp://cell", "begins with tcp://"},
-      {"tcp://cell:5 02", "the port '5 02'"},
+      {"tcp://", "there is no host"},       {"tcp://:502", "there is no host"},
+      {"tcp://cell:0", "the port '0'"},     {"tcp://cell:65536", "the port '65536'"},
+      {"tcp://cell:", "the port ''"},       {"tcp://cell/256", "the unit id '256'"},
+      {"tcp://cell/x", "the unit id 'x'"},  {"tcp://[::1]502", "behind ']'"},
+      {"udp://cell", "begins with tcp://"}, {"tcp://cell:5 02", "the port '5 02'"},
   };
   for (const auto& [argument, what] : cases) {
     const auto node = parse_node_address(argument);
@@ -68,6 +67,25 @@ TEST(NodeAddress, What_is_wrong_is_said_with_a_remedy) {
     EXPECT_THAT(node.error().what, HasSubstr(what));
     EXPECT_THAT(node.error().remedy, HasSubstr("write tcp://HOST[:PORT][/UNIT]"));
   }
+}
+
+TEST(NodeAddress, Its_host_is_one_that_a_map_may_have) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"tcp://192.168.1.300", "the host '192.168.1.300' is no IP address"},
+      {"tcp://192.168.1.300:502/1", "the host '192.168.1.300' is no IP address"},
+      {"tcp://cell/1/2", "the host 'cell/1' is no host name"},
+      {"tcp://ce ll", "the host 'ce ll' is no host name"},
+      {"tcp://[cell]", "the host '[cell]' is no host name"},
+      {"tcp://[fe80:::1]", "the host '[fe80:::1]' is no IPv6 address"},
+  };
+  for (const auto& [argument, what] : cases) {
+    const auto node = parse_node_address(argument);
+    ASSERT_FALSE(node) << argument;
+    EXPECT_EQ(node.error().what, what);
+  }
+  EXPECT_EQ(parse_node_address("tcp://192.168.1.300").error().remedy,
+            "write four numbers from 0 to 255, as in 192.168.0.10");
+  EXPECT_EQ(parse_node_address("tcp://[fe80::7%eth0]:502")->host, "fe80::7%eth0");
 }
 
 }  // namespace
