@@ -17,7 +17,8 @@ struct Watchdog {
   };
   enum class Recovery : std::uint8_t {
     automatic,  ///< the next write is carried out and arms it again
-    manual      ///< writes to outputs answer 04 until 0xAA55 is written to holding register 0xFF00
+    manual      ///< writes to outputs (with a line, a channel or a hook) answer 04 until 0xAA55 is written to
+                ///< holding register 0xFF00
   };
   std::chrono::milliseconds timeout{0};  ///< 0: there is no watchdog
   FedBy fed_by = FedBy::any;

@@ -64,7 +64,9 @@ FactGroup limits(const Map& map) {
 std::string watchdog_words(const Watchdog& watchdog) {
   if (!watchdog.present()) return "none";
   return fmt::format("{}, fed by {}, recovery {}", words(watchdog.timeout),
-                     watchdog.fed_by == Watchdog::FedBy::any ? "any request" : "writes",
+                     watchdog.fed_by == Watchdog::FedBy::any
+                         ? "any request of a client that has written an output"
+                         : "writes",
                      watchdog.recovery == Watchdog::Recovery::automatic ? "automatic" : "manual");
 }
 

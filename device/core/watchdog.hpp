@@ -29,7 +29,7 @@ class OutputWatchdog {
     return state_ == State::expired && settings_.recovery == Watchdog::Recovery::manual;
   }
 
-  /// A master has written to an output that has a line.
+  /// A master has written to an output.
   void arm(TimePoint now);
   /// A request of this client was carried out; `wrote_output`: it was a write to an output.
   void request(Peer& peer, bool wrote_output, TimePoint now);

@@ -55,6 +55,15 @@ TEST(Facts, A_watchdog_with_manual_recovery_says_how_it_is_reset) {
   EXPECT_EQ(told(map, "Watchdog reset"), "write 0xAA55 to holding register 65280 (465281)");
 }
 
+TEST(Facts, A_watchdog_is_fed_only_by_who_has_written_an_output) {
+  const auto map = fakes::MapBuilder()
+                       .many(Table::coils, 0, 1)
+                       .watchdog({500ms, Watchdog::FedBy::any, Watchdog::Recovery::automatic})
+                       .build();
+  EXPECT_EQ(told(map, "Watchdog"),
+            "500 ms, fed by any request of a client that has written an output, recovery automatic");
+}
+
 TEST(Facts, Only_what_is_unusual_of_the_limits_is_told) {
   auto builder = fakes::MapBuilder();
   EXPECT_EQ(told(builder.build(), "Pause before a request"), "-");
