@@ -46,12 +46,13 @@ bool GuardedHooks::made_safe() {
 
 bool GuardedHooks::accept(std::uint32_t point, const std::uint16_t* registers) {
   bool accepted = false;
-  const bool returned =
-      guard([&] { accepted = hooks_.accept(point, registers); },
-            [&](const char* what) {
-              tell(fmt::format("the hook of point '{}' refuses a write: it", map_.points[point].name), what);
-            });
-  return returned && accepted;
+  const auto thrown = [&](const char* what) {
+    // Masters write as often as they like.
+    log_.warn_limited("hook",
+                      fmt::format("the hook of point '{}' threw an exception: {}; the write is refused",
+                                  map_.points[point].name, what));
+  };
+  return guard([&] { accepted = hooks_.accept(point, registers); }, thrown) && accepted;
 }
 
 }  // namespace coupler::node

@@ -6,8 +6,8 @@
 
 #include "common/map/fingerprint.hpp"
 #include "common/map/node_address.hpp"
+#include "common/map/printable.hpp"
 #include "host/cli/snapshot.hpp"
-#include "host/survey/draft.hpp"
 #include "host/survey/identification.hpp"
 
 namespace coupler::cli {
@@ -25,7 +25,7 @@ std::string object(const NodeStatus& status, std::uint8_t id) {
   return found == status.identification.end() ? std::string() : found->second;
 }
 
-std::string or_unknown(const std::string& text) { return text.empty() ? "unknown" : survey::printable(text); }
+std::string or_unknown(const std::string& text) { return text.empty() ? "unknown" : printable(text); }
 
 std::string serial_text(const identity::Machine& machine) {
   return machine.serial == 0 ? std::string() : fmt::format("{:016x}", machine.serial);
@@ -79,11 +79,11 @@ ordered_json identification_json(const NodeStatus& status) {
 }  // namespace
 
 std::string status_text(const NodeStatus& status, const Connection& where) {
-  const std::string device = survey::printable(node_address_text(where));
+  const std::string device = printable(node_address_text(where));
   if (!status.report) {
     std::string text;
     for (const auto& [id, value] : status.identification)
-      text += row(survey::object_name(id), survey::printable(value));
+      text += row(survey::object_name(id), printable(value));
     return text.empty() ? text : fmt::format("identification of {} (FC 43/14):\n{}", device, text);
   }
   const Report& report = *status.report;
