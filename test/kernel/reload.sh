@@ -188,7 +188,7 @@ before=$(io_process)
 kill -HUP "$(pid node)"
 check "a pipe is refused" wait_until says node 'map.yaml: error: it is not a regular file'
 rm "$map"; mv "$map.kept" "$map"
-yes '  a_point_of_a_long_map: {address: 0, type: INT, description: nothing but text}' | head -c 4000000 >"$map.long"
+head -c 4000000 >"$map.long" < <(yes '  a_point_of_a_long_map: {address: 0, type: INT, description: nothing but text}')
 mv "$map.long" "$map"
 kill -HUP "$(pid node)"
 check "a long one is being read" wait_until pgrep -x coupler-map
