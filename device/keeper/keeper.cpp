@@ -17,6 +17,8 @@ namespace coupler::node {
 namespace {
 
 constexpr std::chrono::milliseconds glance{100};
+/// Ten in the time after which an I/O process takes its keeper for dead.
+constexpr std::chrono::milliseconds beat_period = std::chrono::milliseconds(Superior::patience) / 10;
 
 }  // namespace
 
@@ -65,7 +67,7 @@ IoProcess::End Keeper::watch_over(IoProcess& process) {
   for (TimePoint heard = process.last_beat(), next_beat{}; !silence.is_too_long();) {
     if (now >= next_beat) {
       process.beat();
-      next_beat = now + glance;
+      next_beat = now + beat_period;
     }
     now = loop_.run_once(glance);
     if (signals_.stop() != 0) {
