@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "device/keeper/channel.hpp"
+#include "device/net/signals.hpp"
 
 namespace coupler::node {
 namespace {
@@ -17,7 +18,8 @@ namespace {
 /// The life of the child. Its end of the channel is closed by the kernel, when its exit status is settled.
 [[noreturn]] void live(const IoProcess::Work& work, Descriptor channel, pid_t parent) {
   ::prctl(PR_SET_NAME, "coupler-node-io");
-  ::setpgid(0, 0);
+  // At a terminal it stays in the keeper's group: another one could not read what somebody types.
+  if (!has_terminal()) ::setpgid(0, 0);
   if (!end_with_parent(parent, SIGTERM)) ::_exit(0);
   Superior superior(std::move(channel));
   ::_exit(work(superior));

@@ -15,8 +15,8 @@
 namespace coupler::node {
 
 /// The process that drives lines and answers masters: a child with this process's memory and descriptors.
-/// When this process dies, it gets SIGTERM; its process group, which is its own, is an orphan then, so if it
-/// was stopped the kernel makes it go on.
+/// When this process dies, it gets SIGTERM. Without a terminal it has a process group of its own, which is an
+/// orphan then: if it was stopped, the kernel makes it go on.
 class IoProcess : public Watcher {
  public:
   /// What it does; this process is its superior.

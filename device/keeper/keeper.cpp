@@ -36,7 +36,7 @@ bool Keeper::run() {
         is_safe_ ? "outputs are in their safe state" : "not every output could be driven to its safe state",
         pause.count()));
     rest(pause);
-    if (signals_.stop() != 0) make_safe(true);
+    if (signals_.stop() != 0) make_safe(false);
   }
   return is_safe_;
 }

@@ -15,10 +15,9 @@ bool is_ignored(int signal) {
   return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-/// Whether this process has a controlling terminal; one that was closed is none.
-bool has_terminal() { return Descriptor(::open("/dev/tty", O_RDONLY | O_NOCTTY | O_CLOEXEC)).is_open(); }
-
 }  // namespace
+
+bool has_terminal() { return Descriptor(::open("/dev/tty", O_RDONLY | O_NOCTTY | O_CLOEXEC)).is_open(); }
 
 Signals::Signals(Loop& loop) : loop_(loop), has_terminal_(has_terminal()) {
   sigemptyset(&signals_);

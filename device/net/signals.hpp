@@ -11,6 +11,9 @@
 
 namespace coupler::node {
 
+/// Whether this process has a controlling terminal; one that was closed is none.
+bool has_terminal();
+
 /// Turns SIGINT and SIGTERM into a request to stop and SIGHUP into one to reload, which the loop sees in its
 /// own time. The SIGHUP of a terminal that is closed is a request to stop. A SIGHUP that is ignored at the
 /// start (nohup) stays ignored; SIGPIPE is. SIGTSTP, which Ctrl-Z sends, is only noted. To be made before any
