@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/arguments.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -43,9 +44,15 @@ struct Assignment {
 struct Sorted {
   std::vector<std::string> options;  ///< as `--key VALUE` or `--key=VALUE`
   std::vector<Assignment> of_devices;
+  std::vector<std::string_view> unknown;  ///< `_key:=VALUE` of no setting
   std::vector<char*> for_ros;
   bool names_the_node = false;
 };
+
+bool is_setting(std::string_view name) {
+  const auto names = setting_names();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 /// ROS's own are left out.
 Sorted sorted(Span<char* const> arguments) {
@@ -61,7 +68,9 @@ Sorted sorted(Span<char* const> arguments) {
       const std::string_view name = argument.substr(1, assign - 1);
       const std::string_view value = argument.substr(assign + 2);
       const std::size_t slash = name.rfind('/');
-      if (slash == std::string_view::npos) {
+      if (slash == std::string_view::npos && !is_setting(name)) {
+        result.unknown.push_back(argument);
+      } else if (slash == std::string_view::npos) {
         result.options.push_back(fmt::format("--{}={}", name, value));
       } else {
         result.of_devices.push_back({name.substr(0, slash), name.substr(slash + 1), value});
@@ -109,6 +118,9 @@ Arguments parse_arguments(Span<char* const> arguments) {
     result.exit_code = 2;
     result.text += done.error() + "\n";
   };
+  for (const std::string_view one : given.unknown)
+    check(
+        tl::make_unexpected(fmt::format("{}: {}", one, no_such_setting(one.substr(1, one.find(":=") - 1)))));
   for (std::size_t i = 0; i < texts.size(); ++i)
     if (options[i].given()) check(set(result.settings, setting_keys[i].key, texts[i]));
   for (const Assignment& one : given.of_devices)

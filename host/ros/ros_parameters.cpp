@@ -40,19 +40,10 @@ std::optional<std::string> as_text(XmlRpc::XmlRpcValue& value) {
 /// Those of the libraries that the driver uses.
 constexpr std::string_view of_others[] = {"diagnostic_period", "diagnostic_updater_fast"};
 
-std::vector<std::string_view> known_names() {
-  std::vector<std::string_view> names;
-  for (const SettingKey& key : setting_keys) {
-    names.push_back(key.key);
-    if (!key.alias.empty()) names.push_back(key.alias);
-  }
-  return names;
-}
-
 void add_unknown(XmlRpc::XmlRpcValue& tree, const std::string& place,
                  const std::vector<std::string_view>& devices, std::vector<std::string>& lines) {
   if (tree.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
-  std::vector<std::string_view> names = known_names();
+  std::vector<std::string_view> names = setting_names();
   for (auto& [name, value] : tree) {
     if (std::find(std::begin(of_others), std::end(of_others), name) != std::end(of_others)) continue;
     if (std::find(devices.begin(), devices.end(), name) != devices.end())

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "common/map/host.hpp"
+#include "common/map/loader/nearest.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -143,7 +144,21 @@ Outcome set(Settings& settings, std::string_view key, const std::string& text) {
   if (key == "timeout") return set_timeout(settings, text);
   if (key == "verify") return set_verify(settings, text);
   if (key == "poll") return set_poll(settings, text);
-  return tl::make_unexpected(fmt::format("{}: there is no such setting; see --help", key));
+  return tl::make_unexpected(fmt::format("{}: {}", key, no_such_setting(key)));
+}
+
+std::vector<std::string_view> setting_names() {
+  std::vector<std::string_view> names;
+  for (const SettingKey& key : setting_keys) {
+    names.push_back(key.key);
+    if (!key.alias.empty()) names.push_back(key.alias);
+  }
+  return names;
+}
+
+std::string no_such_setting(std::string_view name) {
+  return "there is no such setting; " +
+         loader::nearest_or(name, setting_names(), "coupler_driver --help shows them");
 }
 
 Settings overlay(Settings weak, const Settings& strong) {

@@ -34,6 +34,10 @@ struct SettingKey {
   std::string_view help;
 };
 extern const std::array<SettingKey, 10> setting_keys;
+/// Of all of them, the other spellings included.
+std::vector<std::string_view> setting_names();
+/// "there is no such setting; did you mean 'poll'?"
+std::string no_such_setting(std::string_view name);
 
 /// Sets what the text says. The error says what the value should have been.
 tl::expected<void, std::string> set(Settings& settings, std::string_view key, const std::string& text);

@@ -79,11 +79,19 @@ TEST(Arguments, What_is_ROSs_own_is_passed_over) {
 }
 
 TEST(Arguments, An_unknown_one_is_a_wrong_call) {
-  for (const char* argument : {"--speed=1", "_speed:=1", "map.yaml"}) {
+  for (const char* argument : {"--speed=1", "map.yaml"}) {
     const Arguments result = parse({argument});
     EXPECT_EQ(result.exit_code, 2) << argument;
     EXPECT_THAT(result.text, HasSubstr("not expected")) << argument;
   }
+}
+
+TEST(Arguments, A_misspelt_one_is_told_with_the_nearest) {
+  const Arguments result = parse({"_pol:=subscribed"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.text, "_pol:=subscribed: there is no such setting; did you mean 'poll'?\n");
+  EXPECT_THAT(parse({"_speed:=1"}).text,
+              HasSubstr("_speed:=1: there is no such setting; coupler_driver --help"));
 }
 
 TEST(Arguments, A_value_out_of_range_is_a_wrong_call) {
