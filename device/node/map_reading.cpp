@@ -52,7 +52,7 @@ int MapReading::read(const ReadMap& source, pid_t parent) {
   std::pmr::set_default_resource(arena_.get());
   try {
     const MapPtr map = source.read();
-    map_[0] = map.get();
+    made_[0].map = map.get();
     ::_exit(map == nullptr ? told : done);
   } catch (const std::bad_alloc&) {
     return too_large;
@@ -77,7 +77,7 @@ tl::expected<MapPtr, std::string> MapReading::take() {
                     patience.count()));
   if (*status_ == 0) {
     arena_->give_back_rest();
-    return MapPtr(arena_, map_[0]);
+    return MapPtr(arena_, made_[0].map);
   }
   if (!WIFEXITED(*status_)) return tl::unexpected("the process that read the map " + describe_end(*status_));
   if (WEXITSTATUS(*status_) == too_large)

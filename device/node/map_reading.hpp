@@ -44,13 +44,18 @@ class MapReading : public Watcher {
  private:
   /// More than the largest map file (loader) needs.
   static constexpr std::size_t room = std::size_t{256} << 20;
+  /// What the process leaves behind.
+  struct Made {
+    const OwnedMap* map = nullptr;
+  };
+
   MapReading(Loop& loop, TimePoint now);
   int read(const ReadMap& source, pid_t parent);
 
   Loop& loop_;
   TimePoint deadline_;
   std::shared_ptr<SharedArena> arena_;
-  SharedArray<const OwnedMap*> map_{1};
+  SharedArray<Made> made_{1};
   std::optional<Child> child_;
   std::optional<int> status_;
   bool is_watched_ = false;
