@@ -13,9 +13,9 @@ int main(int argc, char** argv) {
   const auto options = parse_options(argc, argv, MapSource::argument);
   if (const int* status = std::get_if<int>(&options)) return *status;
 
-  if (const auto node = std::get<Options>(options).reload; node != 0)
-    return ask_to_reload(static_cast<pid_t>(node));
   StderrLog log(std::getenv("JOURNAL_STREAM"));
+  if (const auto node = std::get<Options>(options).reload; node != 0)
+    return ask_to_reload(static_cast<pid_t>(node), log);
   const MapInput input(std::get<Options>(options).map, log);
   const auto map = read_first(input.first());
   if (!map) {

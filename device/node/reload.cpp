@@ -13,7 +13,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstddef>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -92,11 +91,6 @@ bool is_another_program(pid_t pid) {
   return !name.empty() && name != "coupler-node";
 }
 
-int fail(const std::string& why) {
-  fmt::print(stderr, "coupler-node: {}\n", why);
-  return failed;
-}
-
 }  // namespace
 
 void Askers::add(pid_t asker) {
@@ -113,7 +107,11 @@ void Askers::tell(bool taken, std::string_view text) {
   }
 }
 
-int ask_to_reload(pid_t node) {
+int ask_to_reload(pid_t node, StderrLog& log) {
+  const auto fail = [&](const std::string& why) {
+    log.fail(why);
+    return failed;
+  };
   if (is_another_program(node))
     return fail(
         fmt::format("process {} is no coupler-node; systemctl show -P MainPID coupler-node tells the one "
@@ -131,7 +129,11 @@ int ask_to_reload(pid_t node) {
   if (!answer)
     return fail(
         fmt::format("process {} gave no answer in {} s; its log may tell why", node, longest_wait.count()));
-  fmt::print(answer->taken ? stdout : stderr, "coupler-node: {}\n", answer->text);
+  if (log.is_journal()) return answer->taken ? taken : refused;
+  if (answer->taken)
+    log.write(answer->text);
+  else
+    log.fail(answer->text);
   return answer->taken ? taken : refused;
 }
 

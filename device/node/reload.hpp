@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "device/node/stderr_log.hpp"
+
 namespace coupler::node {
 
 /// Processes that asked for the reload that is going on.
@@ -26,6 +28,6 @@ class Askers {
 /// `coupler-node --reload PID`: asks the node with that process id to read its map again, waits, and prints
 /// what it answers. Returns the exit status: 0 the new map is served, 1 it is refused, 3 there is no such
 /// node, or no answer.
-int ask_to_reload(pid_t node);
+int ask_to_reload(pid_t node, StderrLog& log);
 
 }  // namespace coupler::node

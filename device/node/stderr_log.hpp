@@ -36,6 +36,7 @@ class StderrLog : public Log {
   /// and the next one that can is preceded by one that tells how many were. So it is in processes forked from
   /// this one, which count together.
   void never_wait();
+  bool is_journal() const { return to_journal_; }
   /// That it needs besides stderr; -1: none.
   int descriptor() const { return stream_.descriptor(); }
 

@@ -34,15 +34,17 @@ Child node_that_answers(bool taken) {
 }
 
 int ask(const Child& node) {
+  StderrLog log(nullptr);
   // Before it has its name and handles the signal it is another program.
   for (;;)
-    if (const int status = ask_to_reload(node.pid()); status != 3) return status;
+    if (const int status = ask_to_reload(node.pid(), log); status != 3) return status;
 }
 
 TEST(Reload, Who_asks_hears_how_it_ended) {
-  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
   EXPECT_EQ(ask(node_that_answers(true)), 0);
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "coupler-node: read the map again\n");
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::EndsWith("coupler-node: read the map again\n"));
   EXPECT_EQ(ask(node_that_answers(false)), 1);
 }
 
@@ -51,7 +53,8 @@ TEST(Reload, Another_program_is_not_sent_a_signal) {
     for (;;) ::pause();
     return 0;
   });
-  EXPECT_EQ(ask_to_reload(other.pid()), 3);
+  StderrLog log(nullptr);
+  EXPECT_EQ(ask_to_reload(other.pid(), log), 3);
   EXPECT_FALSE(other.wait(std::chrono::milliseconds(0))) << "it has ended";
 }
 
