@@ -84,7 +84,7 @@ class Settings(testing.RosTest):
 
     def test_a_wrong_call_ends_with_2_and_says_why(self):
         self.assert_ends(2, "no map; give one by _map:=MAP")
-        self.assert_ends(2, "--speed", "_speed:=5")
+        self.assert_ends(2, "_speed:=5: there is no such setting", "_speed:=5")
         self.assert_ends(2, "--speed", "--speed", 5)
         self.assert_ends(2, "rate: 'fast' is not a rate", f"_map:={self.map()}", "_rate:=fast")
         self.assert_ends(2, "port: '70000' is not a whole number from 1 to 65535", "_port:=70000")
