@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/cli/commands.hpp"
+#include "common/cli/complain.hpp"
 #include "common/cli/map_argument.hpp"
 #include "common/cli/report.hpp"
 #include "common/formats/exporter.hpp"
@@ -21,11 +22,6 @@ struct Arguments {
   bool list = false;
 };
 
-Exit complain(std::string_view what, std::string_view remedy) {
-  fmt::print(stderr, "coupler export: error: {}; {}\n", what, remedy);
-  return bad_call;
-}
-
 std::string names_of_formats() {
   std::string names;
   for (const formats::Exporter& exporter : formats::exporters())
@@ -40,10 +36,10 @@ Exit run(const Arguments& arguments) {
     return ok;
   }
   if (arguments.map.empty() || arguments.to.empty())
-    return complain("MAP and --to FORMAT are required", "see `coupler export --help`");
+    return complain("export", bad_call, "MAP and --to FORMAT are required", "see `coupler export --help`");
   const formats::Exporter* exporter = formats::find_exporter(arguments.to);
   if (exporter == nullptr)
-    return complain(fmt::format("'{}' is not a format that can be written", arguments.to),
+    return complain("export", bad_call, fmt::format("'{}' is not a format that can be written", arguments.to),
                     "give one of " + names_of_formats());
   const MapArgument argument = get_map(arguments.map);
   print(argument.loaded.diagnostics);
@@ -55,7 +51,7 @@ Exit run(const Arguments& arguments) {
     return ok;
   }
   if (const auto outcome = generate::write_if_changed(arguments.out, exported.text); !outcome)
-    return complain(outcome.error(), "give a file that you may write with --out");
+    return complain("export", bad_call, outcome.error(), "give a file that you may write with --out");
   return ok;
 }
 

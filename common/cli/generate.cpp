@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "common/cli/commands.hpp"
+#include "common/cli/complain.hpp"
 #include "common/cli/locked_map.hpp"
 #include "common/cli/map_argument.hpp"
 #include "common/cli/map_pages.hpp"
@@ -34,11 +35,6 @@ struct Arguments {
   bool locked = false;
 };
 
-Exit complain(Exit exit, std::string_view what, std::string_view remedy) {
-  fmt::print(stderr, "coupler generate: error: {}; {}\n", what, remedy);
-  return exit;
-}
-
 fs::path folder_of(const Arguments& arguments) { return arguments.out.empty() ? "." : arguments.out; }
 
 Exit write(const Arguments& arguments, const std::vector<generate::File>& files) {
@@ -46,12 +42,12 @@ Exit write(const Arguments& arguments, const std::vector<generate::File>& files)
   std::error_code failed;
   fs::create_directories(folder_of(arguments), failed);
   if (failed)
-    return complain(bad_call, fmt::format("cannot make the folder {}: {}", arguments.out, failed.message()),
-                    remedy);
+    return complain("generate", bad_call,
+                    fmt::format("cannot make the folder {}: {}", arguments.out, failed.message()), remedy);
   for (const generate::File& file : files) {
     const fs::path path = (folder_of(arguments) / file.name).lexically_normal();
     const auto outcome = generate::write_if_changed(path, file.content);
-    if (!outcome) return complain(bad_call, outcome.error(), remedy);
+    if (!outcome) return complain("generate", bad_call, outcome.error(), remedy);
     if (!arguments.quiet)
       fmt::print("{}: {}\n", path.string(), *outcome == generate::Outcome::written ? "written" : "unchanged");
   }
@@ -60,7 +56,7 @@ Exit write(const Arguments& arguments, const std::vector<generate::File>& files)
 
 Exit run(const Arguments& arguments) {
   if (!is_url_part(arguments.source_url))
-    return complain(bad_call, fmt::format("'{}' is no part of a URL", arguments.source_url),
+    return complain("generate", bad_call, fmt::format("'{}' is no part of a URL", arguments.source_url),
                     "write what a URL cannot hold as %XX");
   const MapArgument argument = get_map(arguments.map, arguments.locked ? LockUse::exact : LockUse::renew);
   const LoadResult& loaded = argument.loaded;
@@ -82,8 +78,9 @@ Exit run(const Arguments& arguments) {
   if (generate::is_identifier(stamp.name)) return write(arguments, generate::generate(map, stamp));
   const auto remedy = "give one with --name: letters, digits and underscores, a letter first, no word of C++";
   if (!arguments.name.empty())
-    return complain(bad_call, fmt::format("'{}' cannot name C++ code", stamp.name), remedy);
-  return complain(bad_input, fmt::format("the map's name '{}' cannot name C++ code", stamp.name), remedy);
+    return complain("generate", bad_call, fmt::format("'{}' cannot name C++ code", stamp.name), remedy);
+  return complain("generate", bad_input, fmt::format("the map's name '{}' cannot name C++ code", stamp.name),
+                  remedy);
 }
 
 }  // namespace

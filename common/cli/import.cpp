@@ -13,6 +13,7 @@
 #include <tl/expected.hpp>
 
 #include "common/cli/commands.hpp"
+#include "common/cli/complain.hpp"
 #include "common/cli/report.hpp"
 #include "common/generate/output.hpp"
 #include "common/map/loader/source_text.hpp"
@@ -30,11 +31,6 @@ struct Arguments {
   unsigned unit = 0;
   bool list = false;
 };
-
-Exit complain(Exit exit, std::string_view what, std::string_view remedy) {
-  fmt::print(stderr, "coupler import: error: {}; {}\n", what, remedy);
-  return exit;
-}
 
 std::string names_of_formats() {
   std::string names;
@@ -78,7 +74,7 @@ Exit write(const Arguments& arguments, const formats::ImportResult& result) {
     std::string units;
     for (const formats::ImportedMap& map : result.maps)
       units += fmt::format("{}{}", units.empty() ? "" : ", ", map.unit.value_or(0));
-    return complain(bad_call, fmt::format("{} has several units: {}", arguments.file, units),
+    return complain("import", bad_call, fmt::format("{} has several units: {}", arguments.file, units),
                     "choose one with --unit, or write a map for each with --out");
   }
   for (const formats::ImportedMap& imported : result.maps) {
@@ -88,7 +84,7 @@ Exit write(const Arguments& arguments, const formats::ImportResult& result) {
     }
     const fs::path path = path_of(arguments.out, imported, several);
     if (const auto outcome = generate::write_if_changed(path, imported.text); !outcome)
-      return complain(bad_call, outcome.error(), "give a file that you may write with --out");
+      return complain("import", bad_call, outcome.error(), "give a file that you may write with --out");
     std::puts(summary(path.string(), imported.map->map()).c_str());
   }
   return ok;
@@ -101,10 +97,11 @@ Exit run(const Arguments& arguments) {
     return ok;
   }
   if (arguments.file.empty())
-    return complain(bad_call, "FORMAT and FILE are required", "see `coupler import --help`");
+    return complain("import", bad_call, "FORMAT and FILE are required", "see `coupler import --help`");
   const formats::Importer* importer = formats::find_importer(arguments.format);
   if (importer == nullptr)
-    return complain(bad_call, fmt::format("'{}' is not a format that can be read", arguments.format),
+    return complain("import", bad_call,
+                    fmt::format("'{}' is not a format that can be read", arguments.format),
                     "give one of " + names_of_formats());
   const std::string file = arguments.file == "-" ? "<stdin>" : arguments.file;
   const auto text = read_file(arguments.file);

@@ -46,6 +46,10 @@ bool take_brackets(std::string_view& text, std::string_view& host) {
 
 }  // namespace
 
+std::string node_argument(const std::string& argument) {
+  return names_a_node(argument) ? argument : "tcp://" + argument;
+}
+
 tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view argument,
                                                                const Connection& otherwise) {
   if (!names_a_node(argument)) return wrong("a node begins with tcp://");

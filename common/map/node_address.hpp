@@ -27,6 +27,9 @@ struct NodeAddressError {
 /// The argument means a node, well written or not.
 constexpr bool names_a_node(std::string_view argument) { return argument.substr(0, 6) == "tcp://"; }
 
+/// Where a command expects a node in any case, "tcp://" may be left out.
+std::string node_argument(const std::string& argument);
+
 /// "tcp://10.0.0.7", "tcp://cell:1502/3", "tcp://[fe80::1]:502". A port or unit that is not given is
 /// `otherwise`'s.
 tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view argument,

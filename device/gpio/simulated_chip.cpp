@@ -39,40 +39,32 @@ bool is_safe_on(const Point& point) {
   return point.safe == Safe::on && (point.safe_value.empty() || point.safe_value[0] != 0);
 }
 
-std::vector<const Point*> outputs_of(const Map& map) {
-  std::vector<const Point*> all;
-  for (const Point& point : map.points)
-    if (point.table == Table::coils && !point.latched.present()) all.push_back(&point);
-  return all;
-}
-
-auto wires_by_input(const Map& map) {
-  return LookupByName(map.sim, [](const SimWire& wire) { return wire.to; });
-}
-
-std::vector<const Point*> inputs_of(const Map& map) {
-  auto wires = wires_by_input(map);
-  std::vector<const Point*> all;
-  for (const Point& point : map.points)
-    if (point.table == Table::discrete_inputs && (point.line.present() || wires.find(point.name) != nullptr))
-      all.push_back(&point);
-  return all;
-}
-
 }  // namespace
 
 SimulatedChip::SimulatedChip(const Map& map, TimePoint now)
-    : outputs_(outputs_of(map).size()), inputs_(inputs_of(map).size()), start_(now) {
+    : outputs_(outputs_of(map)), inputs_(inputs_of(map, outputs_.all())), start_(now) {
   state_[0].told = now;
-  Output* output = outputs_.all().begin();
-  for (const Point* point : outputs_of(map)) *output++ = {point, starts_on(*point)};
-  auto wires = wires_by_input(map);
-  auto outputs = by_name(outputs_.all());
-  Input* input = inputs_.all().begin();
-  for (const Point* point : inputs_of(map)) {
-    const SimWire* wire = wires.find(point->name);
-    *input++ = {point, starts_on(*point), wire, wire == nullptr ? nullptr : outputs.find(wire->from), {}};
+}
+
+std::vector<SimulatedChip::Output> SimulatedChip::outputs_of(const Map& map) {
+  std::vector<Output> all;
+  for (const Point& point : map.points)
+    if (point.table == Table::coils && !point.latched.present()) all.push_back({&point, starts_on(point)});
+  return all;
+}
+
+std::vector<SimulatedChip::Input> SimulatedChip::inputs_of(const Map& map, Span<const Output> outputs) {
+  LookupByName wires(map.sim, [](const SimWire& wire) { return wire.to; });
+  auto by_output = by_name(outputs);
+  std::vector<Input> all;
+  for (const Point& point : map.points) {
+    if (point.table != Table::discrete_inputs) continue;
+    const SimWire* wire = wires.find(point.name);
+    if (wire == nullptr && !point.line.present()) continue;
+    const Output* from = wire == nullptr ? nullptr : by_output.find(wire->from);
+    all.push_back({&point, starts_on(point), wire, from, {}});
   }
+  return all;
 }
 
 std::uint16_t SimulatedChip::level_of(const Input& input, TimePoint now) const {

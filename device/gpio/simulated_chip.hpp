@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "common/map/map.hpp"
 #include "device/core/lines.hpp"
@@ -52,6 +53,8 @@ class SimulatedChip : public Lines {
     bool plugged = true;
   };
 
+  static std::vector<Output> outputs_of(const Map& map);
+  static std::vector<Input> inputs_of(const Map& map, Span<const Output> outputs);
   std::uint16_t level_of(const Input& input, TimePoint now) const;
   Edges edges_of_square(const SimWire& wire, TimePoint now) const;
   void set(Output& output, bool level);

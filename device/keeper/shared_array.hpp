@@ -26,6 +26,10 @@ class SharedArray {
   SharedArray(std::size_t count, const T& value) : all_(shared(count)) {
     std::uninitialized_fill(all_.begin(), all_.end(), value);
   }
+  /// Copies of them.
+  explicit SharedArray(Span<const T> values) : all_(shared(values.size())) {
+    std::uninitialized_copy(values.begin(), values.end(), all_.begin());
+  }
   SharedArray(const SharedArray&) = delete;
   SharedArray& operator=(const SharedArray&) = delete;
   ~SharedArray() {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/keeper/superior.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -19,11 +18,9 @@ void Superior::beat() { channel::send(channel_.get(), channel::Beat{}); }
 
 void Superior::give(const OpenConnection& client) { channel::send(channel_.get(), client); }
 
-/// A turn counts for no longer than it may last: this process may have been stopped itself.
 bool Superior::is_silent(TimePoint now) {
-  const auto turn = std::min<std::chrono::nanoseconds>(now - std::exchange(asked_, now), Pulse::period);
-  silence_ = std::exchange(heard_, false) ? std::chrono::nanoseconds(0) : silence_ + turn;
-  return silence_ >= patience;
+  silence_.sample(now, std::exchange(heard_, false), std::chrono::nanoseconds(0));
+  return silence_.lasted() >= patience;
 }
 
 void Superior::ready(TimePoint) {

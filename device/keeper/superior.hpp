@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device/keeper/pulse.hpp"
+#include "device/keeper/silence.hpp"
 #include "device/net/loop.hpp"
 #include "device/net/open_connection.hpp"
 
@@ -23,7 +24,7 @@ class Superior : public Pulse, public Watcher {
   void give(const OpenConnection& client);
 
   /// A keeper that was not heard of for so long is stopped, or hangs, and would not see its I/O process die.
-  static constexpr std::chrono::seconds patience{5};
+  static constexpr std::chrono::seconds patience = Silence::limit_in_any_case;
   /// To be asked in each turn of the loop.
   bool is_silent(TimePoint now);
 
@@ -34,8 +35,7 @@ class Superior : public Pulse, public Watcher {
   Loop* loop_ = nullptr;
   bool wants_room_ = false;
   bool heard_ = true;  ///< since is_silent() was asked
-  TimePoint asked_ = TimePoint::clock::now();
-  std::chrono::nanoseconds silence_{0};
+  Silence silence_{TimePoint::clock::now(), Pulse::period, std::chrono::nanoseconds(0)};
 };
 
 }  // namespace coupler::node

@@ -43,12 +43,16 @@ tl::expected<void, int> lock_memory() {
 
 }  // namespace
 
-tl::expected<void, std::string> become_realtime(RealtimePriority priority) {
-  std::string errors;
+bool take_priority(RealtimePriority priority) {
   sched_param parameters{};
   parameters.sched_priority = static_cast<int>(priority);
-  if (::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) != 0)
-    errors = refused(fmt::format("SCHED_FIFO with priority {}", parameters.sched_priority), errno,
+  return ::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) == 0;
+}
+
+tl::expected<void, std::string> become_realtime(RealtimePriority priority) {
+  std::string errors;
+  if (!take_priority(priority))
+    errors = refused(fmt::format("SCHED_FIFO with priority {}", static_cast<int>(priority)), errno,
                      fmt::format("LimitRTPRIO={} and RestrictRealtime=no", limit),
                      fmt::format("ulimit -r {}", limit));
   if (const auto locked = lock_memory(); !locked) {

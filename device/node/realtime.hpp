@@ -17,4 +17,7 @@ enum class RealtimePriority : int { io_process = 10, supervisor = 11 };
 /// which nobody has asked to be that urgent. The error says what was refused and what to do, one a line.
 tl::expected<void, std::string> become_realtime(RealtimePriority priority);
 
+/// The first half alone, for a process that drives outputs to their safe state and ends. False: refused.
+bool take_priority(RealtimePriority priority);
+
 }  // namespace coupler::node

@@ -240,8 +240,8 @@ void Station::change(std::vector<OpenConnection>& clients) {
 }
 
 bool Station::drive_safe() {
-  // A process that is made for this has ordinary priority, and only a second.
-  if (options_.realtime) (void)become_realtime(RealtimePriority::io_process);
+  // A process that is made for this has ordinary priority, and only a second. In the keeper nothing changes.
+  if (options_.realtime) (void)take_priority(RealtimePriority::supervisor);
   const bool safe = Hardware(duty_->wiring->lines(), duty_->analogue.get()).drive_safe();
   duty_->memory->watchdog().disarm();
   return safe;

@@ -9,9 +9,9 @@
 #include <tl/expected.hpp>
 
 #include "common/cli/commands.hpp"
+#include "common/cli/complain.hpp"
 #include "common/cli/report.hpp"
 #include "common/generate/output.hpp"
-#include "common/map/printable.hpp"
 #include "host/cli/interruption.hpp"
 #include "host/cli/modbus_master.hpp"
 #include "host/cli/probe_call.hpp"
@@ -23,11 +23,6 @@ namespace coupler::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-Exit complain(Exit exit, std::string_view what, std::string_view remedy) {
-  fmt::print(stderr, "coupler probe: error: {}; {}\n", printable_lines(what), printable_lines(remedy));
-  return exit;
-}
 
 survey::Findings look(const ProbeCall& call) {
   ModbusMaster master(call.connection);
@@ -60,7 +55,7 @@ Exit write(const std::string& path, const std::string& text) {
   print(loaded.diagnostics);
   if (const auto outcome = generate::write_if_changed(path, text); !outcome) {
     std::fputs(text.c_str(), stdout);
-    return complain(bad_call, outcome.error(), "the draft is on standard output instead");
+    return complain("probe", bad_call, outcome.error(), "the draft is on standard output instead");
   }
   if (!loaded.map) return bad_input;
   fmt::print("{}\nNext: give its points names and types, then `coupler plan {}`\n",
@@ -70,17 +65,17 @@ Exit write(const std::string& path, const std::string& text) {
 
 Exit run(const ProbeArguments& arguments) {
   const auto understood = understand(arguments);
-  if (!understood) return complain(bad_call, understood.error().what, understood.error().remedy);
+  if (!understood) return complain("probe", bad_call, understood.error().what, understood.error().remedy);
   ProbeCall& call = **understood;
   if (const auto can = can_write(arguments); !can)
-    return complain(bad_call, can.error().what, can.error().remedy);
+    return complain("probe", bad_call, can.error().what, can.error().remedy);
 
   const survey::Findings findings = look(call);
   if (findings.broke_off)
-    complain(failed, driver::to_string(*findings.broke_off),
+    complain("probe", failed, driver::to_string(*findings.broke_off),
              "see that the device is on, the port right, and no other master has its last connection");
   if (!findings.unit && findings.is_complete)
-    return complain(failed,
+    return complain("probe", failed,
                     fmt::format("a server is there, but none of {} units answers", call.task.units.size()),
                     "give its unit id, as HOST/17, or try all with --units 0-247,255");
   if (!findings.unit) return failed;

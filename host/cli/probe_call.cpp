@@ -60,7 +60,7 @@ tl::expected<std::vector<survey::KnownValue>, WrongCall> known_values(const std:
 
 tl::expected<std::unique_ptr<ProbeCall>, WrongCall> understand(const ProbeArguments& arguments) {
   auto call = std::make_unique<ProbeCall>();
-  call->address = names_a_node(arguments.host) ? arguments.host : "tcp://" + arguments.host;
+  call->address = node_argument(arguments.host);
   const auto where = parse_node_address(call->address);
   if (!where) return tl::make_unexpected(WrongCall{where.error().what, where.error().remedy});
   if (arguments.from > arguments.to)

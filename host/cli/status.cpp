@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/cli/commands.hpp"
+#include "common/cli/complain.hpp"
 #include "common/map/node_address.hpp"
 #include "host/cli/modbus_master.hpp"
 #include "host/cli/status_report.hpp"
@@ -19,15 +20,10 @@ struct Arguments {
   bool json = false;
 };
 
-Exit complain(Exit exit, std::string_view what, std::string_view remedy) {
-  fmt::print(stderr, "coupler status: error: {}; {}\n", what, remedy);
-  return exit;
-}
-
 Exit run(const Arguments& arguments) {
-  const std::string address = names_a_node(arguments.host) ? arguments.host : "tcp://" + arguments.host;
+  const std::string address = node_argument(arguments.host);
   const auto where = parse_node_address(address);
-  if (!where) return complain(bad_call, where.error().what, where.error().remedy);
+  if (!where) return complain("status", bad_call, where.error().what, where.error().remedy);
   const Connection connection{where->host, where->port, where->unit,
                               std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000))};
   driver::ModbusTransport transport(connection);
@@ -40,10 +36,10 @@ Exit run(const Arguments& arguments) {
   std::fflush(stdout);
   const std::string device = node_address_text(connection);
   if (!status.trouble.empty())
-    return complain(failed, device + ": " + status.trouble,
+    return complain("status", failed, device + ": " + status.trouble,
                     "see that a node serves there, with this unit id");
   if (!status.report)
-    return complain(bad_input, device + " is a foreign coupler: it has no identity area",
+    return complain("status", bad_input, device + " is a foreign coupler: it has no identity area",
                     "`coupler dump` shows its values if you have its map, `coupler probe` looks into it");
   return ok;
 }

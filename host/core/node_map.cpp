@@ -12,9 +12,6 @@
 namespace coupler::driver {
 namespace {
 
-/// No map is as large; a device that says so is not to be believed.
-constexpr std::uint32_t largest_map = 16U << 20U;
-
 /// False: the device refuses them, as a foreign coupler does and a node that is older than the fields.
 Result<bool> read_if_mapped(Transport& transport, std::uint32_t first, Span<std::uint16_t> registers) {
   const auto range =
@@ -78,7 +75,7 @@ std::string to_string(const identity::Machine& machine) {
 }
 
 Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size) {
-  if (size > largest_map) return fail(BadFrame{fmt::format("a map of {} bytes", size)});
+  if (size > max_file_size) return fail(BadFrame{fmt::format("a map of {} bytes", size)});
   std::string text;
   text.reserve(size + 1);
   std::array<std::uint16_t, modbus::max_file_registers> registers{};

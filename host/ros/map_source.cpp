@@ -11,10 +11,10 @@
 #include "common/map/loader/load.hpp"
 #include "common/map/loader/print.hpp"
 #include "common/map/node_address.hpp"
-#include "common/map/printable.hpp"
 #include "host/core/backoff.hpp"
 #include "host/core/node_map.hpp"
 #include "host/modbus/modbus_transport.hpp"
+#include "host/ros/ros_log.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -23,8 +23,6 @@ constexpr int wrong_input = 1;
 constexpr int wrong_call = 2;
 
 using Source = tl::expected<MapSource, int>;
-
-void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", printable_lines(text)); }
 
 /// A relative path that leads nowhere: roslaunch has its programs start in another folder than its own.
 void explain_relative(const std::string& path) {

@@ -21,7 +21,6 @@
 #include <fmt/format.h>
 
 #include "common/base/standard_files.hpp"
-#include "common/map/printable.hpp"
 #include "host/modbus/make_transports.hpp"
 #include "host/ros/arguments.hpp"
 #include "host/ros/device_topics.hpp"
@@ -39,8 +38,6 @@ constexpr int wrong_call = 2;
 constexpr int not_safe = 3;
 constexpr auto report_interval = std::chrono::milliseconds(100);
 constexpr auto diagnostics_interval = std::chrono::seconds(1);
-
-void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", printable_lines(text)); }
 
 /// Until ROS is there nothing has been started that would have to be ended.
 void end_at_once_on_signals() {

@@ -20,6 +20,8 @@ void error(const std::string& text) { ROS_ERROR("%s", text.c_str()); }
 
 }  // namespace
 
+void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", printable_lines(text)); }
+
 void log(Level level, const std::string& raw) {
   const std::string text = printable_lines(raw);
   if (ros::isShuttingDown()) {  // its log has ended; what becomes of safe values is still to be told

@@ -32,8 +32,6 @@ shown_is() { [ "$(shown)" = "$1" ]; }
 dac_is() { [ "$(cat $dac)" = "$1" ]; }
 steps_are() { [ "$(input_register 4)" = "$1" ]; }
 input_is_gone() { ! answered master -t 3 -r 0 -c 1 127.0.0.1 >/dev/null; }
-io_process() { pgrep -P "$(pid node)" -x coupler-node-io; }
-new_io_process() { local now; now=$(io_process) && [ "$now" != "$1" ] && [[ "$(cat "/proc/$now/stat")" != *" Z "* ]]; }
 
 # Reads two of the PWM's files as fast as it can and tells each change. "armed" comes first.
 watch_pwm() {

@@ -115,7 +115,7 @@ expect "three presses that bounce are three" 3 "$(counter 3 4)"
 
 echo "# the I/O process is killed"
 before=$(counter 3 0)
-kill -KILL "$(pgrep -P "$(pid node)" -x coupler-node-io)"
+kill -KILL "$(io_process)"
 pulse 5 "$width" "$button"
 check "another one serves" wait_until counter 3 0
 pulse 5 "$width" "$button"
@@ -125,7 +125,7 @@ expect "nothing was lost by that" 0 "$(lost)"
 
 echo "# a reader that is stopped"
 before=$(counter 3 2)
-io=$(pgrep -P "$(pid node)" -x coupler-node-io)
+io=$(io_process)
 kill -STOP "$(pid node)" # the keeper, which would end an I/O process that is silent for so long
 kill -STOP "$io"
 pulse 700 "$width" "$wave"

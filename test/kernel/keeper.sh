@@ -15,8 +15,6 @@ written=(1 0 1 1 0 1)
 safe=(0 1 1 0 1 1)
 
 wire_of() { if [ "$1" -ge 3 ]; then echo $((1 - $2)); else echo "$2"; fi; }
-io_process() { pgrep -P "$(pid node)" -x coupler-node-io; }
-new_io_process() { local now; now=$(io_process) && [ "$now" != "$1" ] && [[ "$(cat "/proc/$now/stat")" != *" Z "* ]]; }
 wires_are() {
   local line
   for line in 0 1 2 3 4 5; do

@@ -12,10 +12,8 @@ plant_chip
 map="$check_folder/map.yaml"
 cp reload.yaml "$map"
 
-io_process() { pgrep -P "$(pid node)" -x coupler-node-io; }
 # How often the node said so before.
 times() { grep -cE -- "$1" "$(log node)" || true; }
-new_io_process() { local now; now=$(io_process) && [ "$now" != "$1" ] && [[ "$(cat "/proc/$now/stat")" != *" Z "* ]]; }
 # Gives the node the map on stdin; the rest is check's: what it says then, and how often it said so before.
 reload_with() {
   local said=$1 before

@@ -16,7 +16,7 @@ lost='(failed: No such device)'
 back='works again'
 holds_no_line() {
   local io
-  io=$(pgrep -P "$(pid node)" -x coupler-node-io) && [ -d "/proc/$io/fd" ] || return
+  io=$(io_process) && [ -d "/proc/$io/fd" ] || return
   [ -z "$(find "/proc/$(pid node)/fd" "/proc/$io/fd" -lname '*gpio*')" ]
 }
 # Requests to the kernel for the map: libgpiod 1 wants one for each polarity of outputs.

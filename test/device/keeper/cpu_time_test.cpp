@@ -3,13 +3,14 @@
 
 #include <gtest/gtest.h>
 #include <sched.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <functional>
 #include <thread>
+
+#include "device/keeper/child.hpp"
 
 namespace coupler::node {
 namespace {
@@ -81,25 +82,13 @@ TEST(CpuWait, A_process_that_is_gone_waits_no_longer) {
 }
 
 /// A child that ends with the test.
-class Forked {
- public:
-  explicit Forked(const std::function<void()>& life) : pid_(::fork()) {
-    if (pid_ != 0) return;
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    life();
-    ::_exit(0);
-  }
-  Forked(const Forked&) = delete;
-  Forked& operator=(const Forked&) = delete;
-  ~Forked() {
-    ::kill(pid_, SIGKILL);
-    ::waitpid(pid_, nullptr, 0);
-  }
-  pid_t pid() const { return pid_; }
-
- private:
-  pid_t pid_;
-};
+Child forked(const std::function<void()>& life) {
+  const pid_t parent = ::getpid();
+  return *Child::start([&] {
+    if (end_with_parent(parent, SIGKILL)) life();
+    return 0;
+  });
+}
 
 /// This process, from now on, on the first CPU that it may use.
 void stay_on_one_cpu() {
@@ -141,13 +130,13 @@ class RealProcess : public testing::Test {
 };
 
 TEST_F(RealProcess, One_that_gets_no_CPU_waits) {
-  const Forked idle([] {
+  const Child idle = forked([] {
     stay_on_one_cpu();
     const sched_param none{};
     ::sched_setscheduler(0, SCHED_IDLE, &none);
     spin();
   });
-  const Forked busy([] {
+  const Child busy = forked([] {
     stay_on_one_cpu();
     spin();
   });
@@ -156,7 +145,7 @@ TEST_F(RealProcess, One_that_gets_no_CPU_waits) {
 }
 
 TEST_F(RealProcess, One_that_is_stopped_does_not_wait) {
-  const Forked stopped([] { spin(); });
+  const Child stopped = forked([] { spin(); });
   ::kill(stopped.pid(), SIGSTOP);
   ASSERT_EQ(::waitpid(stopped.pid(), nullptr, WUNTRACED), stopped.pid());
   const Seen seen = look_at(stopped.pid());
@@ -164,7 +153,7 @@ TEST_F(RealProcess, One_that_is_stopped_does_not_wait) {
 }
 
 TEST_F(RealProcess, One_that_sleeps_does_not_wait) {
-  const Forked sleeping([] {
+  const Child sleeping = forked([] {
     for (;;) ::pause();
   });
   const Seen seen = look_at(sleeping.pid());
