@@ -170,7 +170,7 @@ Result<> Device::judge(const Identity& identity) {
     std::string text = difference_text(map_, identity);
     if (refuse)
       text +=
-          "\nNothing is read or written. Give both sides the same map, or accept it with _verify:=warn (a "
+          "\nNothing is read or written. Give both sides the same map, or accept it with --verify warn (a "
           "client: Options::verify)";
     sink_.on_report(refuse ? Level::error : Level::warning, text);
   }

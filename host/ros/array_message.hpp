@@ -2,9 +2,6 @@
 // Messages of points that hold several values, or a value that is a row of bits.
 #pragma once
 
-#include <coupler_driver/BoolArray.h>
-#include <std_msgs/MultiArrayLayout.h>
-
 #include <string>
 
 #include <fmt/format.h>
@@ -50,43 +47,45 @@ struct ArrayMessage {
   }
 };
 
-/// `count` coils or discrete inputs.
+/// `count` coils or discrete inputs. M: coupler_driver/BoolArray, whose data is bytes in ROS 1 and
+/// std::vector<bool> in ROS 2.
+template <class M>
 struct BoolsMessage {
-  using Message = coupler_driver::BoolArray;
+  using Message = M;
   static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
     message.data.resize(point.count);
     for (std::size_t i = 0; i < point.count; ++i) message.data[i] = registers[i] != 0;
   }
   static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
     if (auto wrong = wrong_size(message.data.size(), point.count, ""); !wrong.empty()) return wrong;
-    for (std::size_t i = 0; i < point.count; ++i) registers[i] = message.data[i] != 0 ? 1 : 0;
+    for (std::size_t i = 0; i < point.count; ++i) registers[i] = message.data[i] ? 1 : 0;
     return {};
   }
 };
 
 /// BYTE … LWORD, one or `count` of them: element i is bit i of T, those of the next value follow.
-template <class T>
+template <class T, class M>
 struct BitsMessage {
-  using Message = coupler_driver::BoolArray;
+  using Message = M;
   static constexpr std::size_t bits = 8 * sizeof(T);
 
   static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
     message.data.resize(point.count * bits);
-    auto* out = message.data.data();
+    auto out = message.data.begin();
     for (std::size_t n = 0; n < point.count; ++n, registers += codec::registers(point.format)) {
       const T value = codec::take<T>(point.format, registers);
-      for (std::size_t i = 0; i < bits; ++i) *out++ = static_cast<std::uint8_t>(value >> i & 1U);
+      for (std::size_t i = 0; i < bits; ++i) *out++ = (value >> i & 1U) != 0;
     }
   }
   static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
     if (auto wrong = wrong_size(message.data.size(), point.count * bits, ", element i is bit i");
         !wrong.empty())
       return wrong;
-    const auto* in = message.data.data();
+    auto in = message.data.begin();
     for (std::size_t n = 0; n < point.count; ++n, registers += codec::registers(point.format)) {
       T value = 0;
       for (std::size_t i = 0; i < bits; ++i)
-        if (*in++ != 0) value = static_cast<T>(value | T{1} << i);
+        if (*in++) value = static_cast<T>(value | T{1} << i);
       codec::put(value, point.format, registers);
     }
     return {};

@@ -9,27 +9,11 @@
 #include "common/plan/planner.hpp"
 #include "host/core/health.hpp"
 #include "host/core/value_text.hpp"
-#include "host/ros/ros_log.hpp"
 
 namespace coupler::driver {
 namespace {
 
 using Outcome = WriteResult::Outcome;
-
-using Reply = coupler_driver::Write::Response;
-
-static_assert(outcome_number(Outcome::ok) == Reply::OK &&
-              outcome_number(Outcome::superseded) == Reply::SUPERSEDED &&
-              outcome_number(Outcome::exception) == Reply::EXCEPTION &&
-              outcome_number(Outcome::not_taken) == Reply::NOT_TAKEN &&
-              outcome_number(Outcome::lost) == Reply::LOST &&
-              outcome_number(Outcome::dropped) == Reply::DROPPED &&
-              outcome_number(Outcome::kept) == Reply::KEPT &&
-              outcome_number(Outcome::refused) == Reply::REFUSED);
-
-std::uint8_t code_of(const std::optional<modbus::Exception>& exception) {
-  return exception ? static_cast<std::uint8_t>(*exception) : 0;
-}
 
 bool is_bit(const Point& point) { return point.format.type == codec::Type::BOOL && point.count == 1; }
 
@@ -41,33 +25,29 @@ Duration patience(const Map& map, const Point& point) {
 
 }  // namespace
 
-void DeviceServices::offer(ros::NodeHandle& handle, Driver driver) {
+void DeviceServices::offer(Node& node, Driver driver) {
   driver_ = std::move(driver);
+  calls_ = node.make_service_thread();
+  urgent_calls_ = node.make_service_thread();
   const auto name = [this](std::string_view service) { return fmt::format("{}/{}", map_.name, service); };
-  calls_.advertise<coupler_driver::Write>(handle, name("write"), [this](const auto& request, auto& response) {
-    answer_write(request, response);
+  calls_->offer_write(name("write"), [this](const std::string& point, const std::string& value) {
+    return answer_write(point, value);
   });
-  calls_.advertise<coupler_driver::Read>(
-      handle, name("read"), [this](const auto& request, auto& response) { answer_read(request, response); });
+  calls_->offer_read(name("read"), [this](const std::string& point) { return answer_read(point); });
   if (map_.coupler_watchdog.present())
-    calls_.advertise<std_srvs::Trigger>(handle, name("reset_watchdog"), [this](const auto&, auto& response) {
-      answer_call(&Driver::reset, response);
-    });
-  urgent_calls_.advertise<std_srvs::Trigger>(handle, name("safe"), [this](const auto&, auto& response) {
-    answer_call(&Driver::make_safe, response);
-  });
+    calls_->offer_trigger(name("reset_watchdog"), [this] { return answer_call(&Driver::reset); });
+  urgent_calls_->offer_trigger(name("safe"), [this] { return answer_call(&Driver::make_safe); });
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)
     if (is_writable(map_.points[i]) && is_bit(map_.points[i]))
-      calls_.advertise<std_srvs::SetBool>(
-          handle, name(fmt::format("{}/set", map_.points[i].name)),
-          [this, i](const auto& request, auto& response) { answer_set(i, request.data != 0, response); });
-  calls_.start();
-  urgent_calls_.start();
+      calls_->offer_set(name(fmt::format("{}/set", map_.points[i].name)),
+                        [this, i](bool on) { return answer_set(i, on); });
+  calls_->start();
+  urgent_calls_->start();
 }
 
 void DeviceServices::withdraw() {
-  calls_.end();
-  urgent_calls_.end();
+  for (ServiceThread* thread : {calls_.get(), urgent_calls_.get()})
+    if (thread != nullptr) thread->end();
   next_value_.end();
   const std::lock_guard lock(mutex_);
   driver_.reset();
@@ -94,72 +74,64 @@ WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::
   return ticket.wait();
 }
 
-void DeviceServices::refuse(const std::string& name, const Point* point, const std::string& why,
-                            Reply& reply) {
-  reply.outcome = Reply::REFUSED;
-  reply.message = "refused: " + why;
+WriteTicket::Outcome DeviceServices::refuse(const std::string& name, const Point* point,
+                                            const std::string& why) {
   const std::lock_guard lock(mutex_);
-  if (!driver_) return;
-  driver_->writes.refuse(point != nullptr ? std::optional(index_of(*point)) : std::nullopt,
-                         fmt::format("{} by the service {}/write: {}", name, map_.name, why));
+  if (driver_)
+    driver_->writes.refuse(point != nullptr ? std::optional(index_of(*point)) : std::nullopt,
+                           fmt::format("{} by the service {}/write: {}", name, map_.name, why));
+  return {Outcome::refused, {}, "refused: " + why};
 }
 
-void DeviceServices::answer_write(const coupler_driver::Write::Request& request, Reply& reply) {
+WriteTicket::Outcome DeviceServices::answer_write(const std::string& name, const std::string& text) {
   std::string why;
-  const Point* point = find_point(request.point, why);
+  const Point* point = find_point(name, why);
   std::vector<std::uint16_t> value;
   if (point != nullptr && !is_writable(*point)) why = fmt::format("{} cannot be written", point->name);
   if (why.empty()) {
     value.resize(range(*point).count());
-    if (const auto parsed = parse_value(request.value, *point, value.data()); !parsed) why = parsed.error();
+    if (const auto parsed = parse_value(text, *point, value.data()); !parsed) why = parsed.error();
   }
-  if (!why.empty()) return refuse(request.point, point, why, reply);
-  const auto outcome = write(index_of(*point), value);
-  reply.success = outcome.outcome == Outcome::ok;
-  reply.outcome = outcome_number(outcome.outcome);
-  reply.exception = code_of(outcome.exception);
-  reply.message = outcome.text;
+  if (!why.empty()) return refuse(name, point, why);
+  return write(index_of(*point), value);
 }
 
-void DeviceServices::answer_set(std::uint32_t index, bool on, std_srvs::SetBool::Response& response) {
+Calls::Answer DeviceServices::answer_set(std::uint32_t index, bool on) {
   const Point& point = map_.points[index];
   const std::uint16_t value =
       holds_bits(point.table) ? std::uint16_t{on} : codec::encode_part(on ? 1 : 0, point.format);
   const auto outcome = write(index, {&value, 1});
-  response.success = outcome.outcome == Outcome::ok;
-  response.message = outcome.text;
+  return {outcome.outcome == Outcome::ok, outcome.text};
 }
 
-void DeviceServices::answer_call(std::function<std::future<Calls::Answer>()> Driver::*call,
-                                 std_srvs::Trigger::Response& response) {
+Calls::Answer DeviceServices::answer_call(std::function<std::future<Calls::Answer>()> Driver::*call) {
   std::future<Calls::Answer> asked;
   {
     const std::lock_guard lock(mutex_);
     if (driver_) asked = ((*driver_).*call)();
   }
-  const auto answer = asked.valid() ? asked.get() : Calls::Answer{false, "the driver ends"};
-  response.success = answer.success;
-  response.message = answer.text;
+  return asked.valid() ? asked.get() : Calls::Answer{false, "the driver ends"};
 }
 
-void DeviceServices::answer_read(const coupler_driver::Read::Request& request,
-                                 coupler_driver::Read::Response& response) {
-  const Point* point = find_point(request.point, response.message);
-  if (point == nullptr) return;
-  if (const auto why = plan::why_not_read(map_, *point)) {
-    response.message = fmt::format("{} is never read", point->name);
-    return;
+ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
+  ServiceThread::ReadAnswer answer;
+  const Point* point = find_point(name, answer.message);
+  if (point == nullptr) return answer;
+  if (plan::why_not_read(map_, *point)) {
+    answer.message = fmt::format("{} is never read", point->name);
+    return answer;
   }
   const std::uint32_t index = index_of(*point);
   const auto deadline = std::chrono::steady_clock::now() + patience(map_, *point);
   listeners_.came(index);
   const auto value = next_value_.wait(index, deadline);
   listeners_.left(index);
-  response.success = value.has_value();
+  answer.success = value.has_value();
   if (value)
-    response.value = format_value(value->data(), *point);
+    answer.value = format_value(value->data(), *point);
   else
-    response.message = why_no_value(*point);
+    answer.message = why_no_value(*point);
+  return answer;
 }
 
 std::string DeviceServices::why_no_value(const Point& point) {

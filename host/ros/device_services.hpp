@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <coupler_driver/Read.h>
-#include <coupler_driver/Write.h>
-#include <ros/node_handle.h>
-#include <std_srvs/SetBool.h>
-#include <std_srvs/Trigger.h>
-
 #include <functional>
 #include <future>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
-#include "host/core/calls.hpp"
-#include "host/core/device_statistics.hpp"
-#include "host/core/write_ticket.hpp"
-#include "host/ros/listeners.hpp"
 #include "host/ros/next_value.hpp"
-#include "host/ros/point_subscriber.hpp"
-#include "host/ros/service_thread.hpp"
+#include "host/ros/node.hpp"
 
 namespace coupler::driver {
 
@@ -43,7 +34,7 @@ class DeviceServices {
     std::function<DeviceSnapshot()> statistics;
   };
 
-  void offer(ros::NodeHandle& handle, Driver driver);
+  void offer(Node& node, Driver driver);
   /// Calls them no more: what they need may end.
   void withdraw();
 
@@ -52,13 +43,11 @@ class DeviceServices {
 
  private:
   WriteTicket::Outcome write(std::uint32_t index, Span<const std::uint16_t> value);
-  void refuse(const std::string& name, const Point* point, const std::string& why,
-              coupler_driver::Write::Response& reply);
-  void answer_write(const coupler_driver::Write::Request& request, coupler_driver::Write::Response& reply);
-  void answer_read(const coupler_driver::Read::Request& request, coupler_driver::Read::Response& response);
-  void answer_set(std::uint32_t index, bool on, std_srvs::SetBool::Response& response);
-  void answer_call(std::function<std::future<Calls::Answer>()> Driver::*call,
-                   std_srvs::Trigger::Response& response);
+  WriteTicket::Outcome refuse(const std::string& name, const Point* point, const std::string& why);
+  WriteTicket::Outcome answer_write(const std::string& name, const std::string& text);
+  ServiceThread::ReadAnswer answer_read(const std::string& name);
+  Calls::Answer answer_set(std::uint32_t index, bool on);
+  Calls::Answer answer_call(std::function<std::future<Calls::Answer>()> Driver::*call);
   std::uint32_t index_of(const Point& point) const {
     return static_cast<std::uint32_t>(&point - map_.points.data());
   }
@@ -70,8 +59,8 @@ class DeviceServices {
   std::mutex mutex_;
   std::optional<Driver> driver_;  ///< none after withdraw()
   NextValue next_value_;
-  ServiceThread calls_;  // last: they use the others
-  ServiceThread urgent_calls_;
+  std::unique_ptr<ServiceThread> calls_;  // last: they use the others
+  std::unique_ptr<ServiceThread> urgent_calls_;
 };
 
 }  // namespace coupler::driver

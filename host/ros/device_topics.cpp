@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/device_topics.hpp"
 
-#include <std_msgs/Bool.h>
-
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "common/map/loader/load.hpp"
-#include "host/ros/ros_log.hpp"
 #include "host/ros/traced_transport.hpp"
 
 namespace coupler::driver {
@@ -19,42 +16,41 @@ using State = PointQuality::State;
 
 std::string topic(const Map& map, std::string_view point) { return fmt::format("{}/{}", map.name, point); }
 
-std::vector<std::unique_ptr<PointPublisher>> advertise_all(ros::NodeHandle& handle, const Map& map,
-                                                           Listeners& listeners) {
+std::vector<std::unique_ptr<PointPublisher>> advertise_all(Node& node, const Map& map, Listeners& listeners) {
   std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
   for (std::uint32_t i = 0; i < map.points.size(); ++i)
     if (is_readable(map.points[i]))
-      result[i] = advertise(handle, topic(map, map.points[i].name), map, i, listeners);
+      result[i] = node.advertise(topic(map, map.points[i].name), map.points[i], i, listeners);
   return result;
 }
 
-ros::Publisher advertise_online(ros::NodeHandle& handle, const Map& map) {
-  auto publisher = handle.advertise<std_msgs::Bool>(topic(map, "online"), 1, true);
-  publisher.publish(std_msgs::Bool());
-  return publisher;
+std::function<void(bool)> advertise_online(Node& node, const Map& map) {
+  auto online = node.advertise_online(topic(map, "online"));
+  online(false);
+  return online;
 }
 
 }  // namespace
 
-DeviceTopics::DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater& updater, const Map& map,
-                           std::unique_ptr<Transport> transport, Verify verify, Poll poll)
-    : map_(map),
+DeviceTopics::DeviceTopics(Node& node, const Map& map, std::unique_ptr<Transport> transport, Verify verify,
+                           Poll poll)
+    : node_(node),
+      map_(map),
       listeners_(map.points.size()),
-      publishers_(advertise_all(handle, map_, listeners_)),
-      online_(advertise_online(handle, map)),
-      status_(handle, map),
-      diagnostics_(map, updater),
+      publishers_(advertise_all(node, map_, listeners_)),
+      online_(advertise_online(node, map)),
+      status_(node.advertise_status(topic(map, "status"), map)),
+      diagnostics_(map, node),
       services_(map, listeners_),
-      transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport))),
+      transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport), node)),
       thread_(map, verify, load_served_map, *transport_, *this, poll),
       writes_{[this](const Write& write) { thread_.write(write); },
               [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)
     if (is_writable(map_.points[i]))
-      subscribers_.push_back(
-          subscribe(handle, topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
-  services_.offer(handle, {writes_, [this] { return thread_.reset_watchdog(); },
-                           [this] { return thread_.make_safe(); }, [this] { return thread_.statistics(); }});
+      subscriptions_.push_back(node.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
+  services_.offer(node, {writes_, [this] { return thread_.reset_watchdog(); },
+                         [this] { return thread_.make_safe(); }, [this] { return thread_.statistics(); }});
   if (poll == Poll::subscribed)
     listeners_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
 }
@@ -71,7 +67,7 @@ bool DeviceTopics::report(Time now) {
     if (const auto state = points[i].state; is_readable(map_.points[i]) && listeners_.is_unwanted(i) &&
                                             (state == State::stale || state == State::never_read))
       points[i].state = State::not_wanted;
-  status_.update(device, points, now);
+  status_(device, points, now);
   thread_.report_held_back();
   if (const auto line = refused_lines_.due(now)) on_report(Level::warning, *line);
   return diagnostics_.update(device, points);
@@ -96,13 +92,11 @@ void DeviceTopics::on_online(bool online) {
     for (const auto& publisher : publishers_)
       if (publisher) publisher->renew();
   services_.next_value().online(online);
-  std_msgs::Bool message;
-  message.data = online;
-  online_.publish(message);
+  online_(online);
 }
 
 void DeviceTopics::on_report(Level level, const std::string& text) {
-  log(level, fmt::format("{}: {}", map_.name, text));
+  node_.log(level, fmt::format("{}: {}", map_.name, text));
 }
 
 void DeviceTopics::refuse(std::optional<std::uint32_t> point, const std::string& what) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <ros/node_handle.h>
-
 #include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -11,10 +10,7 @@
 #include "host/core/device_thread.hpp"
 #include "host/ros/device_services.hpp"
 #include "host/ros/diagnostics.hpp"
-#include "host/ros/point_publisher.hpp"
-#include "host/ros/point_subscriber.hpp"
-#include "host/ros/settings.hpp"
-#include "host/ros/status_publisher.hpp"
+#include "host/ros/node.hpp"
 
 namespace coupler::driver {
 
@@ -23,10 +19,9 @@ namespace coupler::driver {
 /// device. Values are published in that thread as they are decoded.
 class DeviceTopics : public Sink {
  public:
-  /// The map's views must outlive it; ROS must have been shut down before it ends, since callbacks refer to
-  /// it, and `updater` is not used any more.
-  DeviceTopics(ros::NodeHandle& handle, diagnostic_updater::Updater& updater, const Map& map,
-               std::unique_ptr<Transport> transport, Verify verify, Poll poll);
+  /// The map's views must outlive it; the node must have been shut down before it ends, since callbacks refer
+  /// to it, and publish no diagnostics any more.
+  DeviceTopics(Node& node, const Map& map, std::unique_ptr<Transport> transport, Verify verify, Poll poll);
   ~DeviceTopics() override { services_.withdraw(); }
 
   /// The driver's thread ends; what comes from ROS afterwards does nothing. False if an output should have
@@ -45,19 +40,20 @@ class DeviceTopics : public Sink {
  private:
   void refuse(std::optional<std::uint32_t> point, const std::string& what);
 
+  Node& node_;
   Map map_;
   Listeners listeners_;
   std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
   std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of one span, as publishers take them
-  ros::Publisher online_;
-  StatusPublisher status_;
+  std::function<void(bool)> online_;
+  Node::PublishStatus status_;
   Diagnostics diagnostics_;
   DeviceServices services_;
   std::unique_ptr<Transport> transport_;
   DeviceThread thread_;
   WriteHandler writes_;
   LineLimit refused_lines_;
-  std::vector<ros::Subscriber> subscribers_;
+  std::vector<std::shared_ptr<void>> subscriptions_;
 };
 
 }  // namespace coupler::driver

@@ -1,39 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/diagnostics.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 namespace coupler::driver {
 namespace {
 
-using Wrapper = diagnostic_updater::DiagnosticStatusWrapper;
+/// The figures of an entry.
+class Figures {
+ public:
+  explicit Figures(Diagnosis& diagnosis) : figures_(diagnosis.figures) {}
 
-void summarize(Wrapper& status, const Health& health) {
-  switch (health.level) {
-    case Level::info: return status.summary(diagnostic_msgs::DiagnosticStatus::OK, health.text);
-    case Level::warning: return status.summary(diagnostic_msgs::DiagnosticStatus::WARN, health.text);
-    case Level::error: return status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, health.text);
+  void add(std::string name, std::string value) { figures_.emplace_back(std::move(name), std::move(value)); }
+  void add(std::string name, const char* value) { add(std::move(name), std::string(value)); }
+  void add(std::string name, bool value) { add(std::move(name), value ? "True" : "False"); }
+  void add(std::string name, std::uint64_t value) { add(std::move(name), fmt::to_string(value)); }
+  /// A distribution, in ms.
+  void add(const std::string& name, const Histogram& histogram) {
+    const auto ms = [](Duration d) {
+      return fmt::format("{:.3f}", std::chrono::duration<double, std::milli>(d).count());
+    };
+    for (const auto& [label, share] : {std::pair{"p50", 0.5}, {"p95", 0.95}, {"p99", 0.99}})
+      add(fmt::format("{} {} ms", name, label), ms(histogram.quantile(share)));
+    add(name + " max ms", ms(histogram.max()));
   }
-}
 
-/// The distribution, in ms.
-void add(Wrapper& status, const std::string& name, const Histogram& histogram) {
-  const auto ms = [](Duration d) { return std::chrono::duration<double, std::milli>(d).count(); };
-  for (const auto& [label, share] : {std::pair{"p50", 0.5}, {"p95", 0.95}, {"p99", 0.99}})
-    status.addf(fmt::format("{} {} ms", name, label), "%.3f", ms(histogram.quantile(share)));
-  status.addf(name + " max ms", "%.3f", ms(histogram.max()));
-}
+ private:
+  std::vector<std::pair<std::string, std::string>>& figures_;
+};
+
+Diagnosis diagnosis_of(Health health) { return {health.level, std::move(health.text), {}, {}}; }
 
 }  // namespace
 
-Diagnostics::Diagnostics(const Map& map, diagnostic_updater::Updater& updater)
+Diagnostics::Diagnostics(const Map& map, Node& node)
     : map_(map),
       hardware_id_(fmt::format("{} {}:{} unit {}", map.name, map.connection.address, map.connection.port,
                                map.connection.unit)) {
-  const auto add = [&](const char* what, void (Diagnostics::*tell)(Wrapper&)) {
-    updater.add(fmt::format("{} {}", map.name, what), [this, tell](Wrapper& status) {
-      status.hardware_id = hardware_id_;
-      (this->*tell)(status);
+  const auto add = [&](const char* what, Diagnosis (Diagnostics::*tell)()) {
+    node.add_diagnosis(fmt::format("{} {}", map.name, what), [this, tell] {
+      Diagnosis diagnosis = (this->*tell)();
+      diagnosis.hardware_id = hardware_id_;
+      return diagnosis;
     });
   };
   add("connection", &Diagnostics::connection);
@@ -49,43 +59,51 @@ bool Diagnostics::update(const DeviceSnapshot& device, const std::vector<PointQu
 }
 
 /// The first of a message.
-void Diagnostics::connection(Wrapper& status) {
+Diagnosis Diagnostics::connection() {
   before_ = std::exchange(now_, next_);
-  summarize(status, connection_health(now_));
-  status.add("online", now_.online);
-  status.add("identity", std::string(to_string(now_.identity)));
+  Diagnosis result = diagnosis_of(connection_health(now_));
+  Figures figures(result);
+  figures.add("online", now_.online);
+  figures.add("identity", std::string(to_string(now_.identity)));
   if (const auto hostname = hostname_of(now_.machine); !hostname.empty())
-    status.add("hostname", std::string(hostname));
-  if (now_.machine.serial != 0) status.add("serial", fmt::format("{:016x}", now_.machine.serial));
-  status.add("connections", now_.connections);
-  status.add("requests", now_.requests);
-  status.add("timeouts", now_.timeouts);
-  status.add("other failures", now_.failures);
+    figures.add("hostname", std::string(hostname));
+  if (now_.machine.serial != 0) figures.add("serial", fmt::format("{:016x}", now_.machine.serial));
+  figures.add("connections", now_.connections);
+  figures.add("requests", now_.requests);
+  figures.add("timeouts", now_.timeouts);
+  figures.add("other failures", now_.failures);
+  return result;
 }
 
-void Diagnostics::polling(Wrapper& status) {
-  summarize(status, polling_health(map_, points_, before_, now_));
-  add(status, "cycle", now_.cycles);
-  add(status, "request latency", now_.latency);
-  status.add("overruns", now_.overruns);
-  status.add("rejected ranges", now_.rejected_ranges);
+Diagnosis Diagnostics::polling() {
+  Diagnosis result = diagnosis_of(polling_health(map_, points_, before_, now_));
+  Figures figures(result);
+  figures.add("cycle", now_.cycles);
+  figures.add("request latency", now_.latency);
+  figures.add("overruns", now_.overruns);
+  figures.add("rejected ranges", now_.rejected_ranges);
   for (std::size_t code = 0; code < now_.exceptions.size(); ++code)
     if (now_.exceptions[code] > 0)
-      status.add(to_string(Error(ExceptionReply{static_cast<modbus::Exception>(code)})),
-                 now_.exceptions[code]);
+      figures.add(to_string(Error(ExceptionReply{static_cast<modbus::Exception>(code)})),
+                  now_.exceptions[code]);
+  return result;
 }
 
-void Diagnostics::writes(Wrapper& status) {
-  summarize(status, writes_health(before_, now_));
+Diagnosis Diagnostics::writes() {
+  Diagnosis result = diagnosis_of(writes_health(before_, now_));
+  Figures figures(result);
   for (std::size_t i = 0; i < now_.writes.size(); ++i)
-    status.add(std::string(to_string(static_cast<WriteResult::Outcome>(i))), now_.writes[i]);
+    figures.add(std::string(to_string(static_cast<WriteResult::Outcome>(i))), now_.writes[i]);
+  return result;
 }
 
-void Diagnostics::watchdog(Wrapper& status) {
-  summarize(status, watchdog_health(now_));
-  status.add("timeout ms", map_.coupler_watchdog.timeout.count());
-  status.add("fed", now_.watchdog.state == WatchdogStatus::State::fed);
-  status.add("times expired", now_.watchdog.expiries);
+Diagnosis Diagnostics::watchdog() {
+  Diagnosis result = diagnosis_of(watchdog_health(now_));
+  Figures figures(result);
+  figures.add("timeout ms", static_cast<std::uint64_t>(map_.coupler_watchdog.timeout.count()));
+  figures.add("fed", now_.watchdog.state == WatchdogStatus::State::fed);
+  figures.add("times expired", now_.watchdog.expiries);
+  return result;
 }
 
 }  // namespace coupler::driver

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <diagnostic_updater/diagnostic_updater.h>
-
 #include <string>
 #include <vector>
 
@@ -10,6 +8,7 @@
 #include "host/core/device_statistics.hpp"
 #include "host/core/health.hpp"
 #include "host/core/point_quality.hpp"
+#include "host/ros/node.hpp"
 
 namespace coupler::driver {
 
@@ -17,20 +16,17 @@ namespace coupler::driver {
 /// coupler's own watchdog where the driver makes use of it. The hardware id is its name and address.
 class Diagnostics {
  public:
-  /// `updater` publishes what all devices of the process say as one message: a publisher of /diagnostics
-  /// keeps only the newest. It outlives the diagnostics, and is not used once they are gone. What `map` views
-  /// outlives it too.
-  Diagnostics(const Map& map, diagnostic_updater::Updater& updater);
+  /// Adds its entries to the node's. What `map` views outlives it.
+  Diagnostics(const Map& map, Node& node);
 
   /// What to say next. True: it should not wait, since the device came or went.
   bool update(const DeviceSnapshot& device, const std::vector<PointQuality>& points);
 
  private:
-  using Wrapper = diagnostic_updater::DiagnosticStatusWrapper;
-  void connection(Wrapper& status);
-  void polling(Wrapper& status);
-  void writes(Wrapper& status);
-  void watchdog(Wrapper& status);
+  Diagnosis connection();
+  Diagnosis polling();
+  Diagnosis writes();
+  Diagnosis watchdog();
 
   Map map_;
   std::string hardware_id_;

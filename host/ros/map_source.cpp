@@ -14,145 +14,161 @@
 #include "host/core/backoff.hpp"
 #include "host/core/node_map.hpp"
 #include "host/modbus/modbus_transport.hpp"
-#include "host/ros/ros_log.hpp"
+#include "host/ros/ending.hpp"
+#include "host/ros/program.hpp"
 
 namespace coupler::driver {
 namespace {
 
-constexpr int wrong_input = 1;
-constexpr int wrong_call = 2;
+constexpr auto look = std::chrono::milliseconds(50);  ///< how long an end may wait
 
 using Source = tl::expected<MapSource, int>;
 
-/// A relative path that leads nowhere: roslaunch has its programs start in another folder than its own.
-void explain_relative(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  if (fs::path(path).is_absolute() || fs::exists(path, ignored)) return;
-  print(fmt::format(
-      "a relative path counts from {}; roslaunch starts programs there (in ROS_HOME): give the whole path, "
-      "as in map:=$PWD/{} or $(find PACKAGE)/{}",
-      fs::current_path(ignored).string(), path, path));
-}
+/// A look at one place after the other. The settings outlive what it finds.
+class Search {
+ public:
+  Search(const Dialect& dialect, const Say& say) : dialect_(dialect), say_(say) {}
 
-/// `name` is that of a map that says none.
-Source from_file(const std::string& path, std::string_view name) {
-  const LoadResult loaded = load_map_file(path, LockUse::read, name);
-  coupler::print(loaded.diagnostics);
-  if (!loaded.map) explain_relative(path);
-  if (!loaded.map) return tl::make_unexpected(wrong_input);
-  return MapSource{loaded.map, loaded.map->map()};
-}
-
-/// PATH, or NAME=PATH for a device that is not to have its map's name. The result views `entry`.
-Source from_entry(std::string_view entry) {
-  const std::size_t equals = entry.find('=');
-  const bool is_named = equals < entry.find('/');  // a folder may have '=' in its name
-  const std::string_view name = is_named ? entry.substr(0, equals) : std::string_view();
-  auto source = from_file(std::string(is_named ? entry.substr(equals + 1) : entry), name);
-  if (source && !name.empty()) source->map.name = name;
-  return source;
-}
-
-std::optional<ServedMap> wait_for(Transport& transport, const std::string& where) {
-  Backoff backoff;
-  std::string told;
-  for (;;) {
-    auto served = fetch_served_map(transport);
-    if (served) return std::move(*served);
-    const std::string why = to_string(served.error());
-    if (why != told) print(fmt::format("waiting for the map of {}: {}; trying again", where, why));
-    told = why;
-    std::this_thread::sleep_for(backoff.next());
+  /// PATH, or NAME=PATH for a device that is not to have its map's name. The result views `entry`.
+  Source in_entry(std::string_view entry) {
+    const std::size_t equals = entry.find('=');
+    const bool is_named = equals < entry.find('/');  // a folder may have '=' in its name
+    const std::string_view name = is_named ? entry.substr(0, equals) : std::string_view();
+    auto source = in_file(std::string(is_named ? entry.substr(equals + 1) : entry), name);
+    if (source && !name.empty()) source->map.name = name;
+    return source;
   }
-}
 
-/// `address` stays where it is: the map will view it.
-Source from_node(const Settings& settings, std::string_view address) {
-  Map asked;
-  apply(settings, asked);
-  asked.connection.address = address;
-  const std::string where = fmt::format("{} port {}", asked.connection.address, asked.connection.port);
-  ModbusTransport transport(asked.connection);
-  const auto served = wait_for(transport, where);
-  if (!served) {
-    print(where + " serves no map: it is a foreign coupler; give its map by _map:=MAP");
-    return tl::make_unexpected(wrong_input);
-  }
-  const auto owner = load_node_map(served->text, served->head, load_served_map);
-  if (!owner) {
-    print(fmt::format("the map of {} cannot be used: {}", where, owner.error()));
-    return tl::make_unexpected(wrong_input);
-  }
-  // Where it was found counts, not where it says it is.
-  Map map = (*owner)->map();
-  map.connection.address = address;
-  map.connection.port = asked.connection.port;
-  map.connection.unit = asked.connection.unit;
-  return MapSource{*owner, map};
-}
-
-/// tcp://HOST:PORT/UNIT in place of a file; it says the same as address, port and unit, which override it.
-Source from_named_node(const std::string& argument, const Settings& settings) {
-  const auto node = parse_node_address(argument);
-  if (!node) {
-    print(fmt::format("{}: {}; {}", argument, node.error().what, node.error().remedy));
-    return tl::make_unexpected(wrong_call);
-  }
-  Settings named;
-  named.port = node->port;
-  named.unit = node->unit;
-  return from_node(overlay(named, settings), settings.address ? *settings.address : node->host);
-}
-
-Source find_one(const Map* built_in, const Settings& settings) {
-  if (built_in != nullptr) {
-    if (settings.map) {
-      print("this driver has its map built in and takes no other; use coupler_driver for that");
-      return tl::make_unexpected(wrong_call);
+  Source in_settings(const Map* built_in, const Settings& settings) {
+    if (built_in != nullptr) {
+      if (settings.map)
+        return none(wrong_call,
+                    "this driver has its map built in and takes no other; use coupler_driver for that");
+      return MapSource{nullptr, *built_in};
     }
-    return MapSource{nullptr, *built_in};
+    if (settings.map && names_a_node(*settings.map)) return in_named_node(*settings.map, settings);
+    if (settings.map)
+      return in_file(*settings.map, settings.name ? std::string_view(*settings.name) : std::string_view());
+    if (settings.address) return in_node(settings, *settings.address);
+    return none(
+        wrong_call,
+        "no map; give one by --map MAP, or --address HOST of a node that serves its map (--help shows "
+        "examples)");
   }
-  if (settings.map && names_a_node(*settings.map)) return from_named_node(*settings.map, settings);
-  if (settings.map)
-    return from_file(*settings.map, settings.name ? std::string_view(*settings.name) : std::string_view());
-  if (settings.address) return from_node(settings, *settings.address);
-  print(
-      "no map; give one by _map:=MAP, or _address:=HOST of a node that serves its map (--help shows "
-      "examples)");
-  return tl::make_unexpected(wrong_call);
-}
+
+  tl::unexpected<int> none(int exit_code, const std::string& why) {
+    say_(why);
+    return tl::make_unexpected(exit_code);
+  }
+
+ private:
+  /// `name` is that of a map that says none.
+  Source in_file(const std::string& path, std::string_view name) {
+    const LoadResult loaded = load_map_file(path, LockUse::read, name);
+    coupler::print(loaded.diagnostics);
+    if (loaded.map) return MapSource{loaded.map, loaded.map->map()};
+    explain_relative(path);
+    return tl::make_unexpected(wrong_input);
+  }
+
+  /// A relative path that leads nowhere: a launch has its programs start in another folder than its own.
+  void explain_relative(const std::string& path) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    if (fs::path(path).is_absolute() || fs::exists(path, ignored)) return;
+    say_(fmt::format("a relative path counts from {}; {}", fs::current_path(ignored).string(),
+                     fmt::format(fmt::runtime(dialect_.relative_path), fmt::arg("path", path))));
+  }
+
+  /// What the node serves, if anything; an error once the wait is ended.
+  tl::expected<std::optional<ServedMap>, int> wait_for(Transport& transport, const std::string& where) {
+    Backoff backoff;
+    std::string told;
+    while (!Ending::asked) {
+      auto served = fetch_served_map(transport);
+      if (served) return std::move(*served);
+      const std::string why = to_string(served.error());
+      if (why != told) say_(fmt::format("waiting for the map of {}: {}; trying again", where, why));
+      told = why;
+      const Time again = std::chrono::steady_clock::now() + backoff.next();
+      while (!Ending::asked && std::chrono::steady_clock::now() < again) std::this_thread::sleep_for(look);
+    }
+    return tl::make_unexpected(0);
+  }
+
+  /// `address` stays where it is: the map will view it.
+  Source in_node(const Settings& settings, std::string_view address) {
+    Map asked;
+    apply(settings, asked);
+    asked.connection.address = address;
+    const std::string where = fmt::format("{} port {}", asked.connection.address, asked.connection.port);
+    ModbusTransport transport(asked.connection);
+    const auto served = wait_for(transport, where);
+    if (!served) return tl::make_unexpected(served.error());
+    if (!*served)
+      return none(wrong_input, where + " serves no map: it is a foreign coupler; give its map by --map MAP");
+    const auto owner = load_node_map((*served)->text, (*served)->head, load_served_map);
+    if (!owner)
+      return none(wrong_input, fmt::format("the map of {} cannot be used: {}", where, owner.error()));
+    // Where it was found counts, not where it says it is.
+    Map map = (*owner)->map();
+    map.connection.address = address;
+    map.connection.port = asked.connection.port;
+    map.connection.unit = asked.connection.unit;
+    return MapSource{*owner, map};
+  }
+
+  /// tcp://HOST:PORT/UNIT in place of a file; it says the same as address, port and unit, which override it.
+  Source in_named_node(const std::string& argument, const Settings& settings) {
+    const auto node = parse_node_address(argument);
+    if (!node)
+      return none(wrong_call, fmt::format("{}: {}; {}", argument, node.error().what, node.error().remedy));
+    Settings named;
+    named.port = node->port;
+    named.unit = node->unit;
+    return in_node(overlay(named, settings), settings.address ? *settings.address : node->host);
+  }
+
+  const Dialect& dialect_;
+  const Say& say_;
+};
 
 /// What is wrong with settings that name several maps, or an empty text.
-std::string_view why_not_several(const Map* built_in, const Settings& settings) {
+std::string why_not_several(const Map* built_in, const Settings& settings, const Dialect& dialect) {
   if (built_in != nullptr) return "this driver has its map built in and takes no other";
   if (settings.map) return "both map and maps are given; give one of them";
   if (settings.name || settings.address || settings.port || settings.unit)
-    return "name, address, port and unit are those of one device; with several maps give them in the maps, "
-           "as in _NAME/address:=HOST (NAME being the map's name), or as a parameter ~NAME/address";
+    return fmt::format(
+        "name, address, port and unit are those of one device; with several maps give them in the maps, {}",
+        dialect.device_setting);
   return {};
 }
 
 }  // namespace
 
-tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const Settings& settings) {
+tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const Settings& settings,
+                                                    const Dialect& dialect, const Say& say) {
+  Search places(dialect, say);
   std::vector<MapSource> sources;
   if (settings.maps.empty()) {
-    auto source = find_one(built_in, settings);
+    auto source = places.in_settings(built_in, settings);
     if (!source) return tl::make_unexpected(source.error());
     sources.push_back(std::move(*source));
     return sources;
   }
-  if (const auto wrong = why_not_several(built_in, settings); !wrong.empty()) {
-    print(wrong);
-    return tl::make_unexpected(wrong_call);
-  }
+  if (const auto wrong = why_not_several(built_in, settings, dialect); !wrong.empty())
+    return places.none(wrong_call, wrong);
   for (const std::string& entry : settings.maps) {
-    auto source = from_entry(entry);
+    auto source = places.in_entry(entry);
     if (!source) return tl::make_unexpected(source.error());
     sources.push_back(std::move(*source));
   }
   return sources;
+}
+
+bool is_map_of_a_node(const Map* built_in, const Settings& settings) {
+  if (built_in != nullptr || !settings.maps.empty()) return false;
+  return settings.map ? names_a_node(*settings.map) : settings.address.has_value();
 }
 
 }  // namespace coupler::driver

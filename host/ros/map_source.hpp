@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "common/map/owned_map.hpp"
+#include "host/ros/dialect.hpp"
 #include "host/ros/settings.hpp"
 
 namespace coupler::driver {
@@ -14,9 +17,16 @@ struct MapSource {
   Map map;
 };
 
+/// Is told why there is no map, and what is waited for.
+using Say = std::function<void(const std::string&)>;
+
 /// The built-in map, the maps of the files that the settings name (at least one), or, where they name an
-/// address only, the map that the node there serves: it is waited for. Prints why there is none; the error is
-/// the exit code. What is found may view the settings.
-tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const Settings& settings);
+/// address only, the map that the node there serves: it is waited for until Ending::asked. The error is the
+/// exit code, 0 where the wait was ended. What is found may view the settings.
+tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const Settings& settings,
+                                                    const Dialect& dialect, const Say& say);
+
+/// Whether a node must be asked for the map.
+bool is_map_of_a_node(const Map* built_in, const Settings& settings);
 
 }  // namespace coupler::driver

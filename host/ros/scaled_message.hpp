@@ -2,17 +2,16 @@
 // Messages of points with a scale: what they publish is a Float64, whatever the device holds.
 #pragma once
 
-#include <std_msgs/Float64.h>
-#include <std_msgs/Float64MultiArray.h>
-
 #include "common/codec/scale.hpp"
 #include "common/map/typed_value.hpp"
 #include "host/ros/array_message.hpp"
 
 namespace coupler::driver {
 
+/// M: std_msgs' Float64.
+template <class M>
 struct ScaledMessage {
-  using Message = std_msgs::Float64;
+  using Message = M;
   static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
     message.data = codec::published(registers, point.format, point.scale);
   }
@@ -21,8 +20,10 @@ struct ScaledMessage {
   }
 };
 
+/// M: std_msgs' Float64MultiArray.
+template <class M>
 struct ScaledArrayMessage {
-  using Message = std_msgs::Float64MultiArray;
+  using Message = M;
   static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
     shape(message, point);
     for (double& value : message.data) {

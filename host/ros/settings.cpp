@@ -118,8 +118,8 @@ void prefer(std::optional<T>& field, const std::optional<T>& strong) {
 const std::array<SettingKey, 10> setting_keys{{
     {"map", "mapping", "the device's map: a YAML or JSON file, or tcp://HOST[:PORT][/UNIT] of a node"},
     {"maps", "",
-     "several devices in one process: their maps, as in _maps:=[a.yaml,b.yaml] or --maps a.yaml,b.yaml; "
-     "with names of their own, as in _maps:=[left=io.yaml,right=io.yaml]"},
+     "several devices in one process: their maps, as in --maps a.yaml,b.yaml; with names of their own, as in "
+     "--maps left=io.yaml,right=io.yaml"},
     {"name", "", "namespace of the topics, instead of the map's"},
     {"address", "", "host name or IP address; alone, without a map: a node that serves its own"},
     {"port", "", "TCP port, 502 if the map says nothing"},

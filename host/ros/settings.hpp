@@ -27,7 +27,7 @@ struct Settings {
   std::optional<Poll> poll;
 };
 
-/// One setting by its name, as ROS parameter (`~key`) and as argument (`_key:=VALUE`, `--key VALUE`).
+/// One setting by its name, as ROS parameter and as argument (`--key VALUE`).
 struct SettingKey {
   std::string_view key;
   std::string_view alias;  ///< the origin's name for it, or empty

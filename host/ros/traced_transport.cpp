@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "host/ros/ros_log.hpp"
-
 namespace coupler::driver {
 namespace {
 
@@ -19,10 +17,10 @@ std::string describe_read(Table table, modbus::Range range) {
 
 template <class Describe>
 Result<> TracedTransport::told(Result<> result, Time begun, Describe describe) {
-  if (!is_debug_logged()) return result;
+  if (!log_.shows_debug()) return result;
   const std::chrono::duration<double, std::milli> took = now() - begun;
-  log_debug(fmt::format("{}: {}: {} after {:.3f} ms", name_, describe(),
-                        result ? std::string("ok") : to_string(result.error()), took.count()));
+  log_.log_debug(fmt::format("{}: {}: {} after {:.3f} ms", name_, describe(),
+                             result ? std::string("ok") : to_string(result.error()), took.count()));
   return result;
 }
 

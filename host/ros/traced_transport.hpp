@@ -5,15 +5,15 @@
 #include <string>
 
 #include "host/core/transport.hpp"
+#include "host/ros/log.hpp"
 
 namespace coupler::driver {
 
-/// Shows each request at ROS's debug level: what it was, its result, and how long it took. `rosservice call
-/// /NODE/set_logger_level ros.coupler_driver debug` switches that on.
+/// Shows each request at ROS's debug level: what it was, its result, and how long it took.
 class TracedTransport : public Transport {
  public:
-  TracedTransport(std::string name, std::unique_ptr<Transport> transport)
-      : name_(std::move(name)), transport_(std::move(transport)) {}
+  TracedTransport(std::string name, std::unique_ptr<Transport> transport, Log& log)
+      : name_(std::move(name)), transport_(std::move(transport)), log_(log) {}
 
   Result<> connect() override;
   void close() override { transport_->close(); }
@@ -37,6 +37,7 @@ class TracedTransport : public Transport {
 
   std::string name_;
   std::unique_ptr<Transport> transport_;
+  Log& log_;
   Time sent_{};
 };
 

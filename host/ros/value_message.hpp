@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of points that hold one value. message.hpp says what every kind of message offers.
+// Messages of points that hold one value; M is the type in std_msgs. message.hpp says what every kind of
+// message offers.
 #pragma once
-
-#include <std_msgs/Bool.h>
-#include <std_msgs/String.h>
 
 #include <string>
 
@@ -15,8 +13,9 @@
 
 namespace coupler::driver {
 
+template <class M>
 struct CoilMessage {
-  using Message = std_msgs::Bool;
+  using Message = M;
   static void decode(const std::uint16_t* registers, const Point&, Message& message) {
     message.data = registers[0] != 0;
   }
@@ -39,8 +38,9 @@ struct NumberMessage {
   }
 };
 
+template <class M>
 struct TextMessage {
-  using Message = std_msgs::String;
+  using Message = M;
   static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
     codec::decode_text(registers, point.format, message.data);
   }

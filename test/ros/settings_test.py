@@ -83,7 +83,7 @@ class Settings(testing.RosTest):
         self.assertIn(text, driver.output)
 
     def test_a_wrong_call_ends_with_2_and_says_why(self):
-        self.assert_ends(2, "no map; give one by _map:=MAP")
+        self.assert_ends(2, "no map; give one by --map MAP")
         self.assert_ends(2, "_speed:=5: there is no such setting", "_speed:=5")
         self.assert_ends(2, "--speed", "--speed", 5)
         self.assert_ends(2, "rate: 'fast' is not a rate", f"_map:={self.map()}", "_rate:=fast")
@@ -97,7 +97,7 @@ class Settings(testing.RosTest):
         self.assert_ends(1, "/nowhere.yaml", "_map:=/nowhere.yaml")
         self.assert_ends(1, f"a relative path counts from {os.getcwd()}; roslaunch starts programs there", "_map:=nowhere.yaml")
         path = process.write_map("name: homeless\nmapping:\n  coils: {a: 7}\n")
-        self.assert_ends(1, "the map has no address; add 'address: HOST' or give _address:=HOST", f"_map:={path}")
+        self.assert_ends(1, "the map has no address; add 'address: HOST' or give --address HOST", f"_map:={path}")
 
     def test_a_misspelt_parameter_is_told_with_the_nearest_name(self):
         rospy.set_param("/settings_driver/raet", 20)

@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros/arguments.hpp"
+#include "host/ros1/arguments.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "common/base/version.hpp"
-#include "common/command_line/command_line.hpp"
+#include "host/ros/options.hpp"
+#include "host/ros/program.hpp"
 
 namespace coupler::driver {
 namespace {
 
-constexpr const char* description =
-    "Drives a Modbus/TCP coupler: every point of its map becomes a ROS topic <name>/<point>, every writable "
-    "one also\n"
-    "listens to <name>/<point>/write.";
-
-constexpr const char* examples =
+constexpr const char* help =
     "Each option is also a private parameter (~rate) and, as ROS has it, an argument (_rate:=20).\n"
     "What is said of one device of several has the name in its map before it: _NAME/rate:=20, ~NAME/rate.\n"
     "Precedence: map < parameter < argument, what is said of one device over what is said of all.\n\n"
@@ -92,39 +86,34 @@ tl::expected<void, std::string> set_of_device(Settings& settings, const Assignme
   return {};
 }
 
-std::string option_names(const SettingKey& key) {
-  return key.alias.empty() ? fmt::format("--{}", key.key) : fmt::format("--{},--{}", key.key, key.alias);
-}
-
 }  // namespace
 
+const Dialect ros1_dialect{
+    help,
+    "as in _NAME/address:=HOST (NAME being the map's name), or as a parameter ~NAME/address",
+    "roslaunch starts programs there (in ROS_HOME): give the whole path, as in map:=$PWD/{path} or $(find "
+    "PACKAGE)/{path}",
+};
+
 Arguments parse_arguments(Span<char* const> arguments) {
-  Arguments result;
   Sorted given = sorted(arguments);
+  Arguments result;
+  Options options = parse_options(std::move(given.options), ros1_dialect);
+  result.settings = std::move(options.settings);
+  result.exit_code = options.exit_code;
+  result.text = std::move(options.text);
   result.names_the_node = given.names_the_node;
   result.for_ros = std::move(given.for_ros);
-  command_line::Program app(description, "coupler_driver");
-  app.version(fmt::format("coupler_driver {}", version));
-  app.footer(examples);
-  std::array<std::string, setting_keys.size()> texts;
-  std::vector<command_line::Option> options;
-  for (std::size_t i = 0; i < texts.size(); ++i)
-    options.push_back(
-        app.add_option(option_names(setting_keys[i]), texts[i], std::string(setting_keys[i].help)));
-  result.exit_code = app.parse(std::move(given.options), result.text);
-  if (result.exit_code) return result;
-  const auto check = [&](const tl::expected<void, std::string>& done) {
-    if (done) return;
-    result.exit_code = 2;
-    result.text += done.error() + "\n";
+  if (result.exit_code == 0) return result;
+  const auto refuse = [&](const std::string& why) {
+    result.exit_code = wrong_call;
+    result.text += why + "\n";
   };
   for (const std::string_view one : given.unknown)
-    check(
-        tl::make_unexpected(fmt::format("{}: {}", one, no_such_setting(one.substr(1, one.find(":=") - 1)))));
-  for (std::size_t i = 0; i < texts.size(); ++i)
-    if (options[i].given()) check(set(result.settings, setting_keys[i].key, texts[i]));
+    refuse(fmt::format("{}: {}", one, no_such_setting(one.substr(1, one.find(":=") - 1))));
   for (const Assignment& one : given.of_devices)
-    check(set_of_device(result.of_devices[std::string(one.device)], one));
+    if (const auto done = set_of_device(result.of_devices[std::string(one.device)], one); !done)
+      refuse(done.error());
   return result;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "host/ros/registrations.hpp"
+#include "host/ros1/registrations.hpp"
 
 namespace coupler::driver {
 

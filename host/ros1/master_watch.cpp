@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros/master_watch.hpp"
+#include "host/ros1/master_watch.hpp"
 
 #include <ros/init.h>
 #include <ros/master.h>
@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "host/ros/ros_log.hpp"
+#include "host/ros1/ros_log.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -57,10 +57,11 @@ void MasterWatch::warn_of_rivals() {
   for (const auto& [topic, node] : registrations_.rivals()) {
     now.insert(topic + node);
     if (warned_of_.count(topic + node) == 0)
-      log(Level::warning, fmt::format("{} publishes {}, too: two drivers of one device, whose writes mix, or "
-                                      "two devices of one name. End "
-                                      "one of them, or give its device another name by _name:=",
-                                      node, topic));
+      ros_log(Level::warning,
+              fmt::format("{} publishes {}, too: two drivers of one device, whose writes mix, or "
+                          "two devices of one name. End "
+                          "one of them, or give its device another name by _name:=",
+                          node, topic));
   }
   warned_of_ = std::move(now);
 }
@@ -72,22 +73,22 @@ void MasterWatch::look() {
     case Known::yes: return learn();
     case Known::no_master:
       if (before == Known::yes)
-        log(Level::warning,
-            master_uri() +
-                " does not answer; devices are polled and fed, and topics that are connected go on");
+        ros_log(Level::warning,
+                master_uri() +
+                    " does not answer; devices are polled and fed, and topics that are connected go on");
       return;
     case Known::by_another:
       if (before != Known::by_another)
-        log(Level::error,
-            fmt::format(
-                "{} knows another node as {}; new subscribers do not find this one. End one of the two",
-                master_uri(), ros::this_node::getName()));
+        ros_log(Level::error,
+                fmt::format(
+                    "{} knows another node as {}; new subscribers do not find this one. End one of the two",
+                    master_uri(), ros::this_node::getName()));
       return;
     case Known::no: break;
   }
   if (registrations_.tell())
-    log(Level::warning,
-        master_uri() + " has started again; topics, services and parameters are registered anew");
+    ros_log(Level::warning,
+            master_uri() + " has started again; topics, services and parameters are registered anew");
   else
     known_ = before == Known::yes ? Known::no_master : before;  // it went again; the next look tells
 }

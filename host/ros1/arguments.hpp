@@ -7,9 +7,12 @@
 #include <vector>
 
 #include "common/base/span.hpp"
+#include "host/ros/dialect.hpp"
 #include "host/ros/settings.hpp"
 
 namespace coupler::driver {
+
+extern const Dialect ros1_dialect;
 
 struct Arguments {
   Settings settings;

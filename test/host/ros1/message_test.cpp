@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros/message.hpp"
+#include "host/ros1/messages.hpp"
 
 #include <gmock/gmock.h>
 
@@ -25,8 +25,8 @@ Point point_of(codec::Type type, std::uint16_t count, Table table = Table::holdi
 
 template <class Message>
 bool is_carried_by(const Point& point) {
-  return with_message(point,
-                      [](auto kind) { return std::is_same_v<typename decltype(kind)::Message, Message>; });
+  return with_message<Ros1Messages>(
+      point, [](auto kind) { return std::is_same_v<typename decltype(kind)::Message, Message>; });
 }
 
 TEST(Message, Arrays_have_the_array_message_of_their_type) {
@@ -48,7 +48,7 @@ TEST(Message, The_pages_of_a_map_name_the_type_of_every_message) {
         if (count > 1 && (codec::width(type) <= 8) && type != Type::BOOL) continue;  // no arrays of these
         Point point = point_of(type, count, type == Type::BOOL ? Table::coils : Table::holding_registers);
         if (codec::is_scalable(type)) point.scale.gain = gain;
-        const std::string carried = with_message(point, [](auto kind) {
+        const std::string carried = with_message<Ros1Messages>(point, [](auto kind) {
           return std::string(ros::message_traits::DataType<typename decltype(kind)::Message>::value());
         });
         EXPECT_EQ(pages::ros_message(point), carried) << codec::to_string(type) << " × " << count;
@@ -82,7 +82,7 @@ TEST(Message, Elements_that_are_wider_than_a_register_stand_one_behind_the_other
 
 TEST(Message, The_bits_of_several_words_follow_each_other) {
   const Point point = point_of(codec::Type::WORD, 2);
-  using Kind = BitsMessage<std::uint16_t>;
+  using Kind = BitsMessage<std::uint16_t, coupler_driver::BoolArray>;
   const std::vector<std::uint16_t> registers{0x0001, 0x8000};
   Kind::Message message;
   Kind::decode(registers.data(), point, message);
@@ -96,11 +96,11 @@ TEST(Message, The_bits_of_several_words_follow_each_other) {
 TEST(Message, Several_coils_are_one_element_each) {
   const Point point = point_of(codec::Type::BOOL, 3, Table::coils);
   const std::vector<std::uint16_t> registers{1, 0, 1};
-  BoolsMessage::Message message;
-  BoolsMessage::decode(registers.data(), point, message);
+  BoolsMessage<coupler_driver::BoolArray>::Message message;
+  BoolsMessage<coupler_driver::BoolArray>::decode(registers.data(), point, message);
   EXPECT_THAT(message.data, ElementsAre(1, 0, 1));
   std::vector<std::uint16_t> back(3, 7);
-  EXPECT_EQ(BoolsMessage::encode(message, point, back.data()), "");
+  EXPECT_EQ(BoolsMessage<coupler_driver::BoolArray>::encode(message, point, back.data()), "");
   EXPECT_EQ(back, registers);
 }
 
@@ -109,14 +109,15 @@ TEST(Message, A_scaled_point_is_a_Float64_and_an_array_of_them) {
   point.scale = {0.5, 10};
   EXPECT_TRUE(is_carried_by<std_msgs::Float64MultiArray>(point));
   const std::vector<std::uint16_t> registers{4, 0xFFFF};
-  ScaledArrayMessage::Message message;
-  ScaledArrayMessage::decode(registers.data(), point, message);
+  ScaledArrayMessage<std_msgs::Float64MultiArray>::Message message;
+  ScaledArrayMessage<std_msgs::Float64MultiArray>::decode(registers.data(), point, message);
   EXPECT_THAT(message.data, ElementsAre(12, 9.5));
   std::vector<std::uint16_t> back(2);
-  EXPECT_EQ(ScaledArrayMessage::encode(message, point, back.data()), "");
+  EXPECT_EQ(ScaledArrayMessage<std_msgs::Float64MultiArray>::encode(message, point, back.data()), "");
   EXPECT_EQ(back, registers);
   message.data[1] = 1e9;
-  EXPECT_THAT(ScaledArrayMessage::encode(message, point, back.data()), HasSubstr("out of range"));
+  EXPECT_THAT(ScaledArrayMessage<std_msgs::Float64MultiArray>::encode(message, point, back.data()),
+              HasSubstr("out of range"));
   point.count = 1;
   EXPECT_TRUE(is_carried_by<std_msgs::Float64>(point));
 }
@@ -128,10 +129,10 @@ TEST(Message, A_wrong_number_of_elements_is_refused_with_the_right_one) {
   const std::string wrong = ArrayMessage<std::int16_t, std_msgs::Int16MultiArray>::encode(
       numbers, point_of(codec::Type::INT, 3), registers.data());
   EXPECT_EQ(wrong, "2 elements; send 3");
-  coupler_driver::BoolArray bits;
+  using Words = BitsMessage<std::uint16_t, coupler_driver::BoolArray>;
+  Words::Message bits;
   bits.data.resize(16);
-  EXPECT_THAT(BitsMessage<std::uint16_t>::encode(bits, point_of(codec::Type::WORD, 2), registers.data()),
-              HasSubstr("send 32"));
+  EXPECT_THAT(Words::encode(bits, point_of(codec::Type::WORD, 2), registers.data()), HasSubstr("send 32"));
 }
 
 }  // namespace

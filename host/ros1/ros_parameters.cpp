@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros/ros_parameters.hpp"
+#include "host/ros1/ros_parameters.hpp"
 
 #include <ros/param.h>
 #include <ros/this_node.h>

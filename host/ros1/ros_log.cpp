@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros/ros_log.hpp"
+#include "host/ros1/ros_log.hpp"
 
 #include <ros/console.h>
 #include <ros/init.h>
@@ -20,9 +20,7 @@ void error(const std::string& text) { ROS_ERROR("%s", text.c_str()); }
 
 }  // namespace
 
-void print(std::string_view text) { fmt::print(stderr, "coupler_driver: {}\n", printable_lines(text)); }
-
-void log(Level level, const std::string& raw) {
+void ros_log(Level level, const std::string& raw) {
   const std::string text = printable_lines(raw);
   if (ros::isShuttingDown()) {  // its log has ended; what becomes of safe values is still to be told
     fmt::print(stderr, "[{}] {}\n",
@@ -44,6 +42,6 @@ bool is_debug_logged() {
   return __rosconsole_define_location__enabled;
 }
 
-void log_debug(const std::string& text) { ROS_DEBUG("%s", printable_lines(text).c_str()); }
+void ros_log_debug(const std::string& text) { ROS_DEBUG("%s", printable_lines(text).c_str()); }
 
 }  // namespace coupler::driver

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros/registrations.hpp"
+#include "host/ros1/registrations.hpp"
 
 #include <XmlRpcClient.h>
 #include <ros/connection_manager.h>

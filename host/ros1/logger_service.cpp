@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros/logger_service.hpp"
+#include "host/ros1/logger_service.hpp"
 
 #include <ros/console.h>
 #include <ros/names.h>
@@ -9,7 +9,7 @@
 #include <array>
 #include <string>
 
-#include "host/ros/in_place_queue.hpp"
+#include "host/ros1/in_place_queue.hpp"
 
 namespace coupler::driver {
 namespace {

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/ros/configuration.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace coupler::driver {
+
+std::vector<std::string_view> names_of(const std::vector<MapSource>& sources) {
+  std::vector<std::string_view> names;
+  names.reserve(sources.size());
+  for (const MapSource& source : sources) names.push_back(source.map.name);
+  return names;
+}
+
+tl::expected<Devices, std::string> configure(
+    std::vector<MapSource> sources,
+    const std::function<tl::expected<Settings, std::string>(std::string_view name)>& settings_of) {
+  Devices devices;
+  for (MapSource& source : sources) {
+    auto settings = settings_of(source.map.name);
+    if (!settings) return tl::make_unexpected(settings.error());
+    Configured& device = devices.emplace_back(Configured{std::move(*settings), std::move(source)});
+    apply(device.settings, device.source.map);
+  }
+  return devices;
+}
+
+std::string why_not(const Devices& devices) {
+  std::set<std::string_view> names;
+  for (const auto& [settings, source] : devices) {
+    if (source.map.connection.address.empty())
+      return fmt::format("the map has no address; add 'address: HOST' or give --address HOST{}",
+                         devices.size() > 1 ? fmt::format(" (map of {})", source.map.name) : "");
+    if (!names.insert(source.map.name).second)
+      return fmt::format(
+          "two devices have the name {}; give one of them another, as in --maps left=a.yaml,right=a.yaml",
+          source.map.name);
+  }
+  return {};
+}
+
+std::string node_name(std::string_view map_name) {
+  std::string name = fmt::format("{}_driver", map_name);
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
+
+}  // namespace coupler::driver
