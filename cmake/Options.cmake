@@ -1,9 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
+set(COUPLER_ROS AUTO CACHE STRING "Build the ROS driver: AUTO or ON (for ROS 2 where ROS_VERSION is 2, else for ROS 1), OFF, 1, 2")
+if(NOT COUPLER_ROS MATCHES "^(AUTO|ON|OFF|1|2)$")
+  message(FATAL_ERROR "COUPLER_ROS=${COUPLER_ROS}: it knows AUTO, ON, OFF, 1 and 2")
+endif()
+set(COUPLER_ROS_VERSION 1)
+if(COUPLER_ROS EQUAL 2 OR (COUPLER_ROS MATCHES "^(AUTO|ON)$" AND "$ENV{ROS_VERSION}" STREQUAL 2))
+  set(COUPLER_ROS_VERSION 2)
+  # `colcon build` says nothing about tests and means none.
+  option(BUILD_TESTING "Build the tests" OFF)
+endif()
 include(CTest)
+set(examples ON)
+if(COUPLER_ROS_VERSION EQUAL 2 AND NOT BUILD_TESTING)
+  set(examples OFF)
+endif()
+option(COUPLER_EXAMPLES "Build the programs of the example maps" ${examples})
 option(COUPLER_WERROR "Treat compiler warnings as errors (CI does)" OFF)
 option(COUPLER_COVERAGE "Instrument for gcov" OFF)
 set(COUPLER_SANITIZE "" CACHE STRING "Sanitizers, as -fsanitize= takes them")
-set(COUPLER_ROS AUTO CACHE STRING "Build the ROS driver: AUTO, ON or OFF")
 set(COUPLER_GPIOD AUTO CACHE STRING "Build the libgpiod backend: AUTO, ON or OFF")
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
@@ -29,6 +43,7 @@ if(COUPLER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
       ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
       CCACHE_BASEDIR=${base} CCACHE_NOHASHDIR=1
       ${COUPLER_CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
 
 add_library(coupler_flags INTERFACE)

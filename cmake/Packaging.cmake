@@ -37,8 +37,8 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION net)
 set(CPACK_DEBIAN_TOOLS_DESCRIPTION "Checks maps of Modbus/TCP couplers and generates C++ from them
  The program coupler of OpenCoupler.")
 
-install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-node COMPONENT node)
-install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-tools COMPONENT tools)
-install(FILES docs/node.md docs/identity.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-node COMPONENT node)
-install(FILES docs/import-export.md docs/map.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-tools COMPONENT tools)
+coupler_install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-node COMPONENT node)
+coupler_install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-tools COMPONENT tools)
+coupler_install(FILES docs/node.md docs/identity.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-node COMPONENT node)
+coupler_install(FILES docs/import-export.md docs/map.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-tools COMPONENT tools)
 include(CPack)

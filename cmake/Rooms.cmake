@@ -21,6 +21,15 @@ if(BUILD_TESTING)
     <utility> <variant> <vector> <gmock/gmock.h>)
 endif()
 
+# coupler_install(…): install(…). `colcon build --symlink-install` puts one that knows no COMPONENT in its place.
+macro(coupler_install)
+  if(COMMAND _install)
+    _install(${ARGN})
+  else()
+    install(${ARGN})
+  endif()
+endmacro()
+
 # coupler_room(NAME SOURCES a.cpp … LINKS lib … [HEADERS <h> …]): the library of one room. LINKS are public. HEADERS are
 # precompiled for it alone, in place of those that most rooms share: where they cost more, or where fmt is not linked.
 function(coupler_room name)

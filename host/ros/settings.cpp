@@ -15,6 +15,7 @@ namespace coupler::driver {
 namespace {
 
 using Outcome = tl::expected<void, std::string>;
+using Kind = SettingKey::Kind;
 
 tl::unexpected<std::string> wrong(std::string_view key, const std::string& text, std::string_view expected) {
   return tl::make_unexpected(fmt::format("{}: '{}' is not {}", key, text, expected));
@@ -28,28 +29,22 @@ std::optional<double> number(const std::string& text) {
   return value;
 }
 
-/// A whole number from 0 to what fits into T.
+/// A number as the key's range has it.
 template <class T>
-Outcome set_whole(std::optional<T>& field, std::string_view key, const std::string& text, double smallest) {
-  constexpr double largest = std::numeric_limits<T>::max();
+Outcome set_number(std::optional<T>& field, const SettingKey& key, const std::string& text) {
   const auto value = number(text);
-  if (!value || *value != std::floor(*value) || *value < smallest || *value > largest)
-    return wrong(key, text, fmt::format("a whole number from {} to {}", smallest, largest));
+  const bool is_whole = key.kind == SettingKey::Kind::whole;
+  if (!value || *value < key.min || *value > key.max || (is_whole && *value != std::floor(*value)))
+    return wrong(key.key, text,
+                 fmt::format("a {} from {} to {}{}", is_whole ? "whole number" : "number", key.min, key.max,
+                             key.unit));
   field = static_cast<T>(*value);
   return {};
 }
 
-Outcome set_rate(Settings& settings, const std::string& text) {
-  const auto hertz = number(text);
-  if (!hertz || *hertz < 0.001 || *hertz > 10000) return wrong("rate", text, "a rate from 0.001 to 10000 Hz");
-  settings.rate = *hertz;
-  return {};
-}
-
-Outcome set_timeout(Settings& settings, const std::string& text) {
-  const auto seconds = number(text);
-  if (!seconds || *seconds < 0.001 || *seconds > 3600)
-    return wrong("timeout", text, "a time from 0.001 to 3600 s");
+Outcome set_timeout(Settings& settings, const SettingKey& key, const std::string& text) {
+  std::optional<double> seconds;
+  if (const auto done = set_number(seconds, key, text); !done) return done;
   settings.timeout = std::chrono::milliseconds(std::lround(*seconds * 1000));
   return {};
 }
@@ -116,35 +111,42 @@ void prefer(std::optional<T>& field, const std::optional<T>& strong) {
 }  // namespace
 
 const std::array<SettingKey, 10> setting_keys{{
-    {"map", "mapping", "the device's map: a YAML or JSON file, or tcp://HOST[:PORT][/UNIT] of a node"},
-    {"maps", "",
+    {"map", "mapping", Kind::text, 0, 0, "",
+     "the device's map: a YAML or JSON file, or tcp://HOST[:PORT][/UNIT] of a node"},
+    {"maps", "", Kind::list, 0, 0, "",
      "several devices in one process: their maps, as in --maps a.yaml,b.yaml; with names of their own, as in "
      "--maps left=io.yaml,right=io.yaml"},
-    {"name", "", "namespace of the topics, instead of the map's"},
-    {"address", "", "host name or IP address; alone, without a map: a node that serves its own"},
-    {"port", "", "TCP port, 502 if the map says nothing"},
-    {"unit", "", "unit id"},
-    {"rate", "", "polling rate in Hz"},
-    {"timeout", "", "longest wait for a reply, in seconds"},
-    {"verify", "",
+    {"name", "", Kind::text, 0, 0, "", "namespace of the topics, instead of the map's"},
+    {"address", "", Kind::text, 0, 0, "",
+     "host name or IP address; alone, without a map: a node that serves its own"},
+    {"port", "", Kind::whole, 1, 65535, "", "TCP port, 502 if the map says nothing"},
+    {"unit", "", Kind::whole, 0, 255, "", "unit id"},
+    {"rate", "", Kind::real, 0.001, 10000, " Hz", "polling rate in Hz"},
+    {"timeout", "", Kind::real, 0.001, 3600, " s", "longest wait for a reply, in seconds"},
+    {"verify", "", Kind::text, 0, 0, "",
      "if the node's map differs: require (default: do not talk to it), warn (go on) or off (do not ask)"},
-    {"poll", "",
+    {"poll", "", Kind::text, 0, 0, "",
      "which points are read: all (default), or subscribed: those that somebody listens to; instead of the "
      "map's"},
 }};
 
-Outcome set(Settings& settings, std::string_view key, const std::string& text) {
+Outcome set(Settings& settings, std::string_view name, const std::string& text) {
+  const auto* const found = std::find_if(setting_keys.begin(), setting_keys.end(),
+                                         [&](const SettingKey& one) { return one.key == name; });
+  if (found == setting_keys.end())
+    return tl::make_unexpected(fmt::format("{}: {}", name, no_such_setting(name)));
+  const SettingKey& setting = *found;
+  const std::string_view key = setting.key;
   if (key == "map") return set_text(settings.map, key, text);
   if (key == "maps") return set_list(settings.maps, key, text);
   if (key == "name") return set_text(settings.name, key, text);
   if (key == "address") return set_address(settings, text);
-  if (key == "port") return set_whole(settings.port, key, text, 1);
-  if (key == "unit") return set_whole(settings.unit, key, text, 0);
-  if (key == "rate") return set_rate(settings, text);
-  if (key == "timeout") return set_timeout(settings, text);
+  if (key == "port") return set_number(settings.port, setting, text);
+  if (key == "unit") return set_number(settings.unit, setting, text);
+  if (key == "rate") return set_number(settings.rate, setting, text);
+  if (key == "timeout") return set_timeout(settings, setting, text);
   if (key == "verify") return set_verify(settings, text);
-  if (key == "poll") return set_poll(settings, text);
-  return tl::make_unexpected(fmt::format("{}: {}", key, no_such_setting(key)));
+  return set_poll(settings, text);
 }
 
 std::vector<std::string_view> setting_names() {

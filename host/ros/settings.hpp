@@ -29,8 +29,14 @@ struct Settings {
 
 /// One setting by its name, as ROS parameter and as argument (`--key VALUE`).
 struct SettingKey {
+  enum class Kind { text, list, whole, real };
+
   std::string_view key;
   std::string_view alias;  ///< the origin's name for it, or empty
+  Kind kind;
+  double min;  ///< of a number
+  double max;
+  std::string_view unit;  ///< behind a number, or empty
   std::string_view help;
 };
 extern const std::array<SettingKey, 10> setting_keys;

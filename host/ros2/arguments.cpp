@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/ros2/arguments.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host/ros/options.hpp"
+#include "host/ros/program.hpp"
+
+namespace coupler::driver {
+namespace {
+
+constexpr std::string_view help =
+    "Each option is also a parameter of the node (rate), as ROS has it: --ros-args -p rate:=20, "
+    "--params-file "
+    "FILE.\n"
+    "What is said of one device of several is a parameter with the name in its map before it: NAME.rate.\n"
+    "Precedence: map < parameter < option, what is said of one device over what is said of all.\n"
+    "Behind --ros-args: -r (names), --log-level, --enclave and what else ROS 2 takes.\n\n"
+    "Examples:\n"
+    "  coupler_driver --map device.yaml\n"
+    "  coupler_driver --map device.yaml --address 192.168.10.101 --rate 50\n"
+    "  coupler_driver --address raspberrypi        (a node that serves its map)\n"
+    "  ros2 run coupler_driver coupler_driver --ros-args -p map:=$PWD/device.yaml -r __ns:=/cell\n"
+    "  coupler_driver --maps press.yaml,belt.yaml --ros-args -p belt.address:=192.168.10.102\n"
+    "  ros2 topic echo /device/in_A\n"
+    "  ros2 topic pub -1 /device/out_Z/write std_msgs/msg/Bool '{data: true}'";
+
+bool starts_with(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
+
+/// How ROS 2 spells an assignment of ROS 1, `from:=to`.
+std::string in_ros2(std::string_view assignment) {
+  if (starts_with(assignment, "__name:=")) return fmt::format("-r __node:={}", assignment.substr(8));
+  if (starts_with(assignment, "__")) return fmt::format("-r {}", assignment);
+  if (!starts_with(assignment, "_")) return fmt::format("-r {}", assignment);
+  std::string parameter(assignment.substr(1));
+  const std::size_t assign = parameter.find(":=");
+  const std::size_t slash = parameter.rfind('/', assign);
+  if (slash != std::string::npos) parameter[slash] = '.';
+  return "-p " + parameter;
+}
+
+/// What is wrong with an argument outside of --ros-args, or an empty text.
+std::string misplaced(std::string_view argument) {
+  if (argument == "-p" || argument == "-r" || argument == "--params-file" || argument == "--log-level")
+    return fmt::format("{}: arguments of ROS 2 stand behind --ros-args", argument);
+  if (argument.find(":=") == std::string_view::npos || starts_with(argument, "-")) return {};
+  return fmt::format("{}: that is ROS 1's spelling; in ROS 2 say --ros-args {}", argument, in_ros2(argument));
+}
+
+}  // namespace
+
+const Dialect ros2_dialect{
+    help,
+    "as a parameter, as in --ros-args -p NAME.address:=HOST (NAME being the map's name)",
+    "give the whole path, as in map:=$PWD/{path}",
+};
+
+Arguments parse_arguments(Span<char* const> arguments) {
+  Arguments result;
+  std::vector<std::string> options;
+  result.for_ros.emplace_back(arguments[0]);
+  bool is_for_ros = false;
+  std::string wrong;
+  for (const char* const raw : arguments.from(1)) {
+    const std::string_view argument(raw);
+    if (argument == "--ros-args") {
+      is_for_ros = true;
+      result.for_ros.emplace_back(argument);
+    } else if (is_for_ros) {
+      is_for_ros = argument != "--";
+      result.for_ros.emplace_back(argument);
+      result.names_the_node |= starts_with(argument, "__node:=") || starts_with(argument, "__name:=");
+    } else if (std::string why = misplaced(argument); !why.empty()) {
+      wrong += why + "\n";
+    } else {
+      options.emplace_back(argument);
+    }
+  }
+  if (!wrong.empty()) {
+    result.exit_code = wrong_call;
+    result.text = std::move(wrong);
+    return result;
+  }
+  Options parsed = parse_options(std::move(options), ros2_dialect);
+  result.settings = std::move(parsed.settings);
+  result.exit_code = parsed.exit_code;
+  result.text = std::move(parsed.text);
+  return result;
+}
+
+}  // namespace coupler::driver

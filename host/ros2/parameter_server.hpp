@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <rcl_interfaces/msg/parameter.hpp>
+#include <rcl_interfaces/msg/parameter_descriptor.hpp>
+#include <rcl_interfaces/msg/parameter_event.hpp>
+#include <rcl_interfaces/msg/set_parameters_result.hpp>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "host/ros2/message_clock.hpp"
+#include "host/ros2/rcl/publisher.hpp"
+#include "host/ros2/rcl/service.hpp"
+
+namespace coupler::driver {
+
+/// The parameters of a node as ROS 2's tools see them: its six services and /parameter_events. All but those
+/// with a `change` are read-only.
+class ParameterServer {
+ public:
+  using Value = rcl_interfaces::msg::ParameterValue;
+  using Descriptor = rcl_interfaces::msg::ParameterDescriptor;
+
+  /// Throws rcl::Error.
+  ParameterServer(rcl::Node& node, const MessageClock& clock);
+
+  /// The descriptor has the name and the type; a value of no type is one that is not set. To be called again
+  /// when the value is another one. `change` is called in the inbox's thread.
+  void declare(Descriptor descriptor, Value value, std::function<void(const Value&)> change = {});
+
+ private:
+  struct Declared {
+    Descriptor descriptor;
+    Value value;
+    std::function<void(const Value&)> change;
+  };
+  using Parameter = rcl_interfaces::msg::Parameter;
+  using Result = rcl_interfaces::msg::SetParametersResult;
+
+  template <class S>
+  void offer(const char* name,
+             void (ParameterServer::*answer)(const typename S::Request&, typename S::Response&));
+  template <class S>
+  void describe(const typename S::Request& request, typename S::Response& response);
+  template <class S>
+  void types(const typename S::Request& request, typename S::Response& response);
+  template <class S>
+  void get(const typename S::Request& request, typename S::Response& response);
+  template <class S>
+  void list(const typename S::Request& request, typename S::Response& response);
+  template <class S>
+  void set_each(const typename S::Request& request, typename S::Response& response);
+  template <class S>
+  void set_all(const typename S::Request& request, typename S::Response& response);
+  Result why_not(const Parameter& parameter) const;
+  void set(const Parameter& parameter);
+  void tell(const std::string& name, const Value& value, bool is_new);
+
+  rcl::Node& node_;
+  const MessageClock& clock_;
+  std::mutex mutex_;
+  std::map<std::string, Declared> declared_;
+  rcl::Publisher<rcl_interfaces::msg::ParameterEvent> events_;
+  std::vector<std::shared_ptr<void>> services_;  // last: they use the others
+};
+
+}  // namespace coupler::driver

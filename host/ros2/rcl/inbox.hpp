@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace coupler::rcl {
+
+/// What the middleware has for this program: messages, requests, events. The middleware's threads only note
+/// that there is something; one thread of the inbox takes it. (A wait set would have to be filled with each
+/// of some thousand entities at each wake-up.)
+class Inbox {
+ public:
+  /// What something can be taken from.
+  class Source {
+   public:
+    explicit Source(Inbox& inbox) : inbox_(inbox) {}
+    Source(const Source&) = delete;
+    Source& operator=(const Source&) = delete;
+
+    /// There is something. Any thread may call.
+    void note() {
+      if (!noted_.exchange(true)) inbox_.add(*this);
+    }
+
+   protected:
+    /// leave() must have been called.
+    virtual ~Source() = default;
+    /// For the destructor of what is derived: take() is not called any more, and does not run.
+    void leave() { inbox_.remove(*this); }
+    /// Takes one thing, in the inbox's thread; false: there is nothing.
+    virtual bool take() = 0;
+
+   private:
+    friend class Inbox;
+    Inbox& inbox_;
+    std::atomic<bool> noted_{false};
+  };
+
+  ~Inbox() { stop(); }
+  void start() {
+    thread_ = std::thread([this] { run(); });
+  }
+  /// Nothing is taken any more.
+  void stop();
+
+ private:
+  void add(Source& source);
+  void remove(const Source& source);
+  void run();
+  void empty(Source& source);
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Source*> noted_;
+  const Source* current_ = nullptr;  ///< its take() runs
+  bool ended_ = false;
+  std::thread thread_;
+};
+
+}  // namespace coupler::rcl

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "host/ros/configuration.hpp"
+#include "host/ros2/parameter_server.hpp"
+
+namespace coupler::driver {
+
+/// Declares every setting as a parameter, with what has been given. What the map says is not known yet.
+void show_given(ParameterServer& server, const Settings& settings);
+
+/// What holds, once it is known: of a single device each setting, of several those of each below its name.
+void show_effective(ParameterServer& server, const Settings& settings, const Devices& devices);
+
+}  // namespace coupler::driver
