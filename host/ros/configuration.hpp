@@ -30,5 +30,7 @@ std::string why_not(const Devices& devices);
 
 /// `<name>_driver`: two drivers must not have one name.
 std::string node_name(std::string_view map_name);
+/// Of a device whose map it serves itself, as device.launch has it: "coupler_192_168_1_17_driver".
+std::string node_name_by_address(const Settings& settings);
 
 }  // namespace coupler::driver

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/map/host.hpp"
 #include "common/map/loader/nearest.hpp"
@@ -149,6 +150,29 @@ Outcome set(Settings& settings, std::string_view name, const std::string& text) 
   return set_poll(settings, text);
 }
 
+std::optional<std::string> text_of(const Settings& settings, std::string_view key) {
+  const auto number = [](const auto& field) {
+    return field ? std::optional(fmt::to_string(*field)) : std::nullopt;
+  };
+  const auto word = [](bool is_set, std::string_view said) {
+    return is_set ? std::optional(std::string(said)) : std::nullopt;
+  };
+  if (key == "map") return settings.map;
+  if (key == "maps") return word(!settings.maps.empty(), fmt::format("{}", fmt::join(settings.maps, ",")));
+  if (key == "name") return settings.name;
+  if (key == "address") return settings.address;
+  if (key == "port") return number(settings.port);
+  if (key == "unit") return number(settings.unit);
+  if (key == "rate") return number(settings.rate);
+  if (key == "timeout" && settings.timeout)
+    return fmt::to_string(std::chrono::duration<double>(*settings.timeout).count());
+  if (key == "verify" && settings.verify)
+    return *settings.verify == Verify::require ? "require"
+           : *settings.verify == Verify::warn  ? "warn"
+                                               : "off";
+  return word(key == "poll" && settings.poll, settings.poll == Poll::subscribed ? "subscribed" : "all");
+}
+
 std::vector<std::string_view> setting_names() {
   std::vector<std::string_view> names;
   for (const SettingKey& key : setting_keys) {
@@ -177,6 +201,18 @@ Settings overlay(Settings weak, const Settings& strong) {
   prefer(weak.verify, strong.verify);
   prefer(weak.poll, strong.poll);
   return weak;
+}
+
+Settings with_map(Settings settings, const Map& map) {
+  settings.name = std::string(map.name);
+  settings.address = std::string(map.connection.address);
+  settings.port = map.connection.port;
+  settings.unit = map.connection.unit;
+  settings.timeout = map.connection.timeout;
+  settings.rate = map.polling.rate;
+  settings.verify = settings.verify.value_or(Verify::require);
+  settings.poll = map.poll;
+  return settings;
 }
 
 void apply(const Settings& settings, Map& map) {

@@ -48,8 +48,14 @@ std::string no_such_setting(std::string_view name);
 /// Sets what the text says. The error says what the value should have been.
 tl::expected<void, std::string> set(Settings& settings, std::string_view key, const std::string& text);
 
+/// What was set, as set() takes it; nullopt: nothing.
+std::optional<std::string> text_of(const Settings& settings, std::string_view key);
+
 /// `strong` where it says something, `weak` elsewhere. `map` and `maps` are one thing to say.
 Settings overlay(Settings weak, const Settings& strong);
+
+/// As if all that the map says had been set.
+Settings with_map(Settings settings, const Map& map);
 
 /// Overrides the map's fields. The map then refers to the settings' texts.
 void apply(const Settings& settings, Map& map);

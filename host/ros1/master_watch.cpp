@@ -10,8 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "host/ros1/ros_log.hpp"
-
 namespace coupler::driver {
 namespace {
 
@@ -25,7 +23,7 @@ std::string master_uri() { return fmt::format("the ROS master at {}", ros::maste
 
 }  // namespace
 
-MasterWatch::MasterWatch() : thread_([this] { run(); }) {}
+MasterWatch::MasterWatch(Log& log) : log_(log), thread_([this] { run(); }) {}
 
 MasterWatch::~MasterWatch() {
   {
@@ -49,21 +47,7 @@ void MasterWatch::run() {
 void MasterWatch::learn() {
   if (looks_++ % looks_to_learn != 0) return;
   registrations_.learn();
-  warn_of_rivals();
-}
-
-void MasterWatch::warn_of_rivals() {
-  std::set<std::string> now;
-  for (const auto& [topic, node] : registrations_.rivals()) {
-    now.insert(topic + node);
-    if (warned_of_.count(topic + node) == 0)
-      ros_log(Level::warning,
-              fmt::format("{} publishes {}, too: two drivers of one device, whose writes mix, or "
-                          "two devices of one name. End "
-                          "one of them, or give its device another name by _name:=",
-                          node, topic));
-  }
-  warned_of_ = std::move(now);
+  rivals_.warn_of(registrations_.rivals(), log_);
 }
 
 void MasterWatch::look() {
@@ -73,22 +57,22 @@ void MasterWatch::look() {
     case Known::yes: return learn();
     case Known::no_master:
       if (before == Known::yes)
-        ros_log(Level::warning,
-                master_uri() +
-                    " does not answer; devices are polled and fed, and topics that are connected go on");
+        log_.log(Level::warning,
+                 master_uri() +
+                     " does not answer; devices are polled and fed, and topics that are connected go on");
       return;
     case Known::by_another:
       if (before != Known::by_another)
-        ros_log(Level::error,
-                fmt::format(
-                    "{} knows another node as {}; new subscribers do not find this one. End one of the two",
-                    master_uri(), ros::this_node::getName()));
+        log_.log(Level::error,
+                 fmt::format(
+                     "{} knows another node as {}; new subscribers do not find this one. End one of the two",
+                     master_uri(), ros::this_node::getName()));
       return;
     case Known::no: break;
   }
   if (registrations_.tell())
-    ros_log(Level::warning,
-            master_uri() + " has started again; topics, services and parameters are registered anew");
+    log_.log(Level::warning,
+             master_uri() + " has started again; topics, services and parameters are registered anew");
   else
     known_ = before == Known::yes ? Known::no_master : before;  // it went again; the next look tells
 }

@@ -3,10 +3,9 @@
 
 #include <condition_variable>
 #include <mutex>
-#include <set>
-#include <string>
 #include <thread>
 
+#include "host/ros/rival_warnings.hpp"
 #include "host/ros1/registrations.hpp"
 
 namespace coupler::driver {
@@ -16,7 +15,7 @@ namespace coupler::driver {
 class MasterWatch {
  public:
   /// All topics and services must have been advertised.
-  MasterWatch();
+  explicit MasterWatch(Log& log);
   /// Waits for the question to the master in progress.
   ~MasterWatch();
   MasterWatch(const MasterWatch&) = delete;
@@ -26,11 +25,11 @@ class MasterWatch {
   void run();
   void look();
   void learn();
-  void warn_of_rivals();
 
+  Log& log_;
   Registrations registrations_;
   unsigned looks_ = 0;
-  std::set<std::string> warned_of_;
+  RivalWarnings rivals_;
   Registrations::Known known_ = Registrations::Known::yes;
   std::mutex mutex_;
   std::condition_variable ends_;

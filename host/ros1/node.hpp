@@ -26,7 +26,7 @@ class Ros1Node : public Node {
   std::unique_ptr<ServiceThread> make_service_thread() override;
   void add_diagnosis(const std::string& name, std::function<Diagnosis()> tell) override;
   void publish_diagnostics() override { diagnostics_.force_update(); }
-  void begin() override { master_.emplace(); }
+  void begin() override { master_.emplace(*this); }
   bool is_running() const override { return ros::ok(); }
   void shut_down() override;
 

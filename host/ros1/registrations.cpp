@@ -55,8 +55,8 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-std::vector<Registrations::Rival> rivals_for(const std::vector<std::string>& own, XmlRpcValue& published) {
-  std::vector<Registrations::Rival> rivals;
+std::vector<Rival> rivals_for(const std::vector<std::string>& own, XmlRpcValue& published) {
+  std::vector<Rival> rivals;
   for (int i = 0; i < published.size(); ++i) {
     const auto& topic = static_cast<std::string&>(published[i][0]);
     if (!ends_with(topic, "/online") || std::find(own.begin(), own.end(), topic) == own.end()) continue;

@@ -8,6 +8,8 @@
 
 #include <XmlRpcValue.h>
 
+#include "host/ros/rival_warnings.hpp"
+
 namespace coupler::driver {
 
 /// What the ROS master knows of this node: topics, services and the node's parameters. roscpp registers them
@@ -23,12 +25,7 @@ class Registrations {
   Known ask() const;
   /// Takes over what the master knows. What it does not say is kept as it was.
   void learn();
-  /// Another node that publishes `<name>/online`, as this one does: two drivers of one device, or of one
-  /// name.
-  struct Rival {
-    std::string topic;
-    std::string node;
-  };
+  /// At the last learn().
   const std::vector<Rival>& rivals() const { return rivals_; }
   /// Tells it to a master that does not know it. False if it did not take all. Not while ROS shuts down, when
   /// the master has been told that this node goes.
@@ -44,7 +41,7 @@ class Registrations {
   std::vector<std::string> subscribed_;
   std::vector<std::string> services_;
   Topics types_;
-  std::vector<Rival> rivals_;       ///< at the last learn()
+  std::vector<Rival> rivals_;
   XmlRpc::XmlRpcValue parameters_;  ///< of the node's namespace
 };
 

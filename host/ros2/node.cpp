@@ -76,7 +76,7 @@ Ros2Node::Ros2Node(rcl::Context& context, const std::string& name, bool use_sim_
       parameters_(std::make_unique<ParameterServer>(node_, clock_)),
       type_descriptions_(offer_type_descriptions(node_)),
       diagnostics_(node_, "/diagnostics", rcl::reliable(diagnostics_depth)),
-      rivals_(node_, [this](const std::string& text) { log(Level::warning, text); }) {
+      rivals_(node_, *this) {
   declare_sim_time(use_sim_time);
   node_.inbox().start();
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/ros/program.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <utility>
@@ -10,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "common/base/standard_files.hpp"
-#include "common/map/node_address.hpp"
 #include "host/ros/configuration.hpp"
 #include "host/ros/drive.hpp"
 #include "host/ros/ending.hpp"
@@ -38,20 +36,6 @@ T accept(tl::expected<T, std::string> expected) {
   return std::move(*expected);
 }
 
-/// As a name of ROS, of a device that is known by its address alone: "coupler_192_168_1_17_driver".
-std::string name_by_address(const Settings& settings) {
-  std::string stem = settings.address.value_or("");
-  if (stem.empty() && settings.map) stem = settings.map->substr(settings.map->find("//") + 2);
-  if (settings.port) stem += fmt::format("_{}", *settings.port);
-  if (settings.unit) stem += fmt::format("_unit{}", *settings.unit);
-  for (char& sign : stem)
-    if (std::isalnum(static_cast<unsigned char>(sign)) == 0) sign = '_';
-  stem.erase(0, std::min(stem.find_first_not_of('_'), stem.size()));
-  stem.erase(stem.find_last_not_of('_') + 1);
-  if (stem.empty()) stem = "coupler";
-  return node_name(std::isdigit(static_cast<unsigned char>(stem[0])) != 0 ? "coupler_" + stem : stem);
-}
-
 bool is_same_place(const Settings& one, const Settings& other) {
   return one.map == other.map && one.maps == other.maps && one.name == other.name &&
          one.address == other.address;
@@ -76,7 +60,7 @@ class Program {
     Ros2Node node(context_, name, wants_sim_time(name));
     const auto parameters = given_.for_node(node.full_name());
     const Settings settings = overlay(accept(settings_among(parameters, "")), arguments_.settings);
-    show_given(node.parameters(), settings);
+    show_settings(node.parameters(), settings);
     if (!sources_ || !is_same_place(settings, early_))
       find(settings, [&](const std::string& text) { node.log(Level::error, text); });
     return drive_devices(node, parameters, settings);
@@ -95,7 +79,7 @@ class Program {
     if (arguments_.names_the_node) return name;
     early_ = overlay(accept(settings_among(given_.for_node(""), "")), arguments_.settings);
     if (early_.name && early_.maps.empty()) return node_name(*early_.name);
-    if (is_map_of_a_node(built_in_, early_)) return name_by_address(early_);
+    if (is_map_of_a_node(built_in_, early_)) return node_name_by_address(early_);
     find(early_, print);
     return node_name(sources_->front().map.name);
   }
@@ -120,7 +104,7 @@ class Program {
     };
     const Devices devices = accept(configure(std::move(*sources_), settings_of));
     if (const std::string wrong = why_not(devices); !wrong.empty()) refuse(wrong_input, wrong);
-    show_effective(node.parameters(), settings, devices);
+    show_devices(node.parameters(), devices);
     return drive(devices, node);
   }
 

@@ -4,8 +4,6 @@
 #include <chrono>
 #include <utility>
 
-#include <fmt/format.h>
-
 namespace coupler::driver {
 namespace {
 
@@ -34,21 +32,17 @@ void Rivals::end() {
 }
 
 void Rivals::look() {
-  std::set<std::string> now;
-  const std::string own = node_.full_name();
+  std::vector<Rival> rivals;
   for (const std::string& topic : topics_) {
     bool is_first_own = true;
     for (const std::string& node : node_.publishers_of(topic)) {
-      if (node == own && std::exchange(is_first_own, false)) continue;
-      now.insert(topic + node);
-      if (warned_of_.count(topic + node) == 0)
-        warn_(fmt::format(
-            "{} publishes {}, too: two drivers of one device, whose writes mix, or two devices of one "
-            "name. End one of them, or give its device another name by --name",
-            node == own ? "another node " + node : node, topic));
+      if (node != node_.full_name())
+        rivals.push_back({topic, node});
+      else if (!std::exchange(is_first_own, false))
+        rivals.push_back({topic, "another node " + node});
     }
   }
-  warned_of_ = std::move(now);
+  warnings_.warn_of(rivals, log_);
 }
 
 }  // namespace coupler::driver

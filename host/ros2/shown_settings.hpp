@@ -8,10 +8,11 @@
 
 namespace coupler::driver {
 
-/// Declares every setting as a parameter, with what has been given. What the map says is not known yet.
-void show_given(ParameterServer& server, const Settings& settings);
+/// Declares every setting as a parameter, with what has been given.
+void show_settings(ParameterServer& server, const Settings& settings);
 
-/// What holds, once it is known: of a single device each setting, of several those of each below its name.
-void show_effective(ParameterServer& server, const Settings& settings, const Devices& devices);
+/// What holds, once the maps are known: of a single device each setting, of several those of each below its
+/// name.
+void show_devices(ParameterServer& server, const Devices& devices);
 
 }  // namespace coupler::driver

@@ -18,10 +18,7 @@ class TypeDescriptions : public rcl::Inbox::Source {
       : Source(node.inbox()), node_(node), service_(rcl_get_zero_initialized_service()) {
     rcl::check(rcl_node_type_description_service_init(&service_, node.get()),
                "cannot offer the service ~/get_type_description");
-    const auto note = [](const void* self, std::size_t) {
-      const_cast<TypeDescriptions*>(static_cast<const TypeDescriptions*>(self))->note();
-    };
-    rcl::check(rcl_service_set_on_new_request_callback(&service_, note, this),
+    rcl::check(rcl_service_set_on_new_request_callback(&service_, note_of, self()),
                "cannot offer the service ~/get_type_description");
   }
   ~TypeDescriptions() override {

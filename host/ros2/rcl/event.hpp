@@ -30,10 +30,7 @@ class Event : public Inbox::Source {
     }
     check(made, "cannot follow the events of a topic");
     known_ = true;
-    const auto note = [](const void* self, std::size_t) {
-      const_cast<Event*>(static_cast<const Event*>(self))->note();
-    };
-    check(rcl_event_set_callback(&event_, note, this), "cannot follow the events of a topic");
+    check(rcl_event_set_callback(&event_, note_of, self()), "cannot follow the events of a topic");
   }
   ~Event() override {
     if (known_) ignore(rcl_event_set_callback(&event_, nullptr, nullptr));

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -28,6 +29,11 @@ class Inbox {
     }
 
    protected:
+    /// note() as a callback of rcl, which is to be given self().
+    static void note_of(const void* self, std::size_t /*how_many*/) {
+      const_cast<Source*>(static_cast<const Source*>(self))->note();
+    }
+    const void* self() const { return static_cast<const Source*>(this); }
     /// leave() must have been called.
     virtual ~Source() = default;
     /// For the destructor of what is derived: take() is not called any more, and does not run.

@@ -13,10 +13,8 @@ AnyService::AnyService(Node& node, const rosidl_service_type_support_t* type, co
 }
 
 void AnyService::listen() {
-  const auto note = [](const void* self, std::size_t) {
-    const_cast<AnyService*>(static_cast<const AnyService*>(self))->note();
-  };
-  check(rcl_service_set_on_new_request_callback(&service_, note, this), "cannot offer the service " + name_);
+  check(rcl_service_set_on_new_request_callback(&service_, note_of, self()),
+        "cannot offer the service " + name_);
 }
 
 void AnyService::end() {

@@ -22,10 +22,7 @@ AnySubscription::AnySubscription(Node& node, const rosidl_message_type_support_t
 }
 
 void AnySubscription::listen() {
-  const auto note = [](const void* self, std::size_t) {
-    const_cast<AnySubscription*>(static_cast<const AnySubscription*>(self))->note();
-  };
-  check(rcl_subscription_set_on_new_message_callback(&subscription_, note, this),
+  check(rcl_subscription_set_on_new_message_callback(&subscription_, note_of, self()),
         "cannot subscribe to the topic " + topic());
 }
 
