@@ -24,6 +24,19 @@ const DraftPoint* written_by(std::string_view name, const FirstOfName& first) {
   return found != first.end() && is_writable(found->second->point) ? found->second : nullptr;
 }
 
+/// ROS 2 takes no part of a name that begins with a digit, as in "a/1b"; ROS 1 does.
+bool is_ros2_name(std::string_view name) {
+  for (std::size_t slash = name.find('/'); slash != std::string_view::npos; slash = name.find('/', slash + 1))
+    if (slash + 1 < name.size() && is_digit(name[slash + 1])) return false;
+  return true;
+}
+
+void warn_of_ros1_name(std::string_view name, Position at, Context& context) {
+  if (!is_ros2_name(name))
+    context.problems.warning(at, fmt::format("{} is a name in ROS 1 only", shown(name)),
+                             "for ROS 2 begin each part behind a '/' with a letter");
+}
+
 void check_topic(const DraftPoint& draft, const FirstOfName& first, Context& context) {
   const std::string_view name = draft.point.name;
   if (!is_relative_ros_name(name)) {
@@ -37,6 +50,8 @@ void check_topic(const DraftPoint& draft, const FirstOfName& first, Context& con
                            fmt::format("{} is the topic that writes {} (line {})", shown(name),
                                        shown(other->point.name), other->name_at.line),
                            "give the point another name", {{other->name_at, "it is here"}});
+  } else {
+    warn_of_ros1_name(name, draft.name_at, context);
   }
 }
 
@@ -52,6 +67,8 @@ bool is_relative_ros_name(std::string_view name) {
 void check_map_name(std::string_view name, Position at, Context& context) {
   if (!is_relative_ros_name(name))
     context.problems.error(at, fmt::format("{} is not a valid ROS name", shown(name)), std::string(rule));
+  else
+    warn_of_ros1_name(name, at, context);
 }
 
 void check_point_names(const DraftPoints& points, Context& context) {
