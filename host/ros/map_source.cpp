@@ -57,7 +57,7 @@ class Search {
   }
 
   tl::unexpected<int> none(int exit_code, const std::string& why) {
-    say_(why);
+    say_(Level::error, why);
     return tl::make_unexpected(exit_code);
   }
 
@@ -76,7 +76,8 @@ class Search {
     namespace fs = std::filesystem;
     std::error_code ignored;
     if (fs::path(path).is_absolute() || fs::exists(path, ignored)) return;
-    say_(fmt::format("a relative path counts from {}; {}", fs::current_path(ignored).string(),
+    say_(Level::error,
+         fmt::format("a relative path counts from {}; {}", fs::current_path(ignored).string(),
                      fmt::format(fmt::runtime(dialect_.relative_path), fmt::arg("path", path))));
   }
 
@@ -88,7 +89,8 @@ class Search {
       auto served = fetch_served_map(transport);
       if (served) return std::move(*served);
       const std::string why = to_string(served.error());
-      if (why != told) say_(fmt::format("waiting for the map of {}: {}; trying again", where, why));
+      if (why != told)
+        say_(Level::warning, fmt::format("waiting for the map of {}: {}; trying again", where, why));
       told = why;
       const Time again = std::chrono::steady_clock::now() + backoff.next();
       while (!Ending::asked && std::chrono::steady_clock::now() < again) std::this_thread::sleep_for(look);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/map/owned_map.hpp"
+#include "host/core/sink.hpp"
 #include "host/ros/dialect.hpp"
 #include "host/ros/settings.hpp"
 
@@ -18,7 +19,7 @@ struct MapSource {
 };
 
 /// Is told why there is no map, and what is waited for.
-using Say = std::function<void(const std::string&)>;
+using Say = std::function<void(Level, const std::string&)>;
 
 /// The built-in map, the maps of the files that the settings name (at least one), or, where they name an
 /// address only, the map that the node there serves: it is waited for until Ending::asked. The error is the

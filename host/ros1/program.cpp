@@ -103,7 +103,8 @@ int main_with(const Map* built_in, int argc, char** argv) {
     }
     settings = overlay(*parameters, arguments.settings);
   }
-  auto sources = find_maps(built_in, settings, ros1_dialect, print);
+  auto sources = find_maps(built_in, settings, ros1_dialect,
+                           [](Level /*level*/, const std::string& text) { print(text); });
   if (!sources) return sources.error();
   const std::string name =
       node_name(arguments.settings.name.value_or(std::string(sources->front().map.name)));

@@ -127,6 +127,13 @@ std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
     for (const GivenParameter& one : section.parameters) {
       const std::string_view setting = setting_of(one.name, devices);
       if (is_setting(setting) || is_ROSs_own(one.name)) continue;
+      const std::string_view behind_dot = setting.substr(setting.find('.') + 1);
+      if (!devices.empty() && behind_dot != setting && is_setting(behind_dot)) {
+        lines.push_back(
+            fmt::format("parameter {} is for a device that is not there; the maps have the names {}",
+                        one.name, fmt::join(devices, ", ")));
+        continue;
+      }
       if (is_for_all(section.node) && loader::nearest(setting, names).empty()) continue;
       lines.push_back(fmt::format("parameter {} is no setting and does nothing; {}", one.name,
                                   loader::nearest_or(setting, names, "coupler_driver --help shows them")));

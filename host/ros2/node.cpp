@@ -68,7 +68,7 @@ struct Owned {
 
 }  // namespace
 
-Ros2Node::Ros2Node(rcl::Context& context, const std::string& name, bool use_sim_time)
+Ros2Node::Ros2Node(rcl::Context& context, const std::string& name)
     : node_(context, name),
       shows_debug_(rcutils_logging_logger_is_enabled_for(rcl_node_get_logger_name(node_.get()),
                                                          RCUTILS_LOG_SEVERITY_DEBUG)),
@@ -77,7 +77,6 @@ Ros2Node::Ros2Node(rcl::Context& context, const std::string& name, bool use_sim_
       type_descriptions_(offer_type_descriptions(node_)),
       diagnostics_(node_, "/diagnostics", rcl::reliable(diagnostics_depth)),
       rivals_(node_, *this) {
-  declare_sim_time(use_sim_time);
   node_.inbox().start();
 }
 

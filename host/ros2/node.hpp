@@ -21,13 +21,15 @@ namespace coupler::driver {
 class Ros2Node : public Node {
  public:
   /// It is in the graph from now on, and its parameters can be asked for. Throws rcl::Error.
-  Ros2Node(rcl::Context& context, const std::string& name, bool use_sim_time);
+  Ros2Node(rcl::Context& context, const std::string& name);
   ~Ros2Node() override;
   Ros2Node(const Ros2Node&) = delete;
   Ros2Node& operator=(const Ros2Node&) = delete;
 
   std::string full_name() const { return node_.full_name(); }
   ParameterServer& parameters() { return *parameters_; }
+  /// Declares the parameter; it may change while the node runs.
+  void declare_sim_time(bool use_sim_time);
 
   std::unique_ptr<PointPublisher> advertise(const std::string& topic, const Point& point, std::uint32_t index,
                                             Listeners& listeners) override;
@@ -49,7 +51,6 @@ class Ros2Node : public Node {
  private:
   std::function<void(rmw_qos_policy_kind_t)> warn_subscriber(const std::string& topic, bool could_latch);
   std::function<void(rmw_qos_policy_kind_t)> warn_publisher(const std::string& topic);
-  void declare_sim_time(bool use_sim_time);
 
   rcl::Node node_;
   bool shows_debug_;

@@ -20,25 +20,25 @@
 namespace coupler::driver {
 namespace {
 
-/// The call is wrong, or what it names; the text has been told.
-struct Wrong {
+/// The program has told why it ends.
+struct End {
   int exit_code;
 };
-
-[[noreturn]] void refuse(int exit_code, const std::string& why) {
-  print(why);
-  throw Wrong{exit_code};
-}
-
-template <class T>
-T accept(tl::expected<T, std::string> expected) {
-  if (!expected) refuse(wrong_input, expected.error());
-  return std::move(*expected);
-}
 
 bool is_same_place(const Settings& one, const Settings& other) {
   return one.map == other.map && one.maps == other.maps && one.name == other.name &&
          one.address == other.address;
+}
+
+tl::expected<bool, std::string> wants_sim_time(const std::vector<GivenParameter>& parameters) {
+  bool wanted = false;
+  for (const GivenParameter& one : parameters) {
+    if (one.name != "use_sim_time") continue;
+    if (one.kind != GivenParameter::Kind::truth)
+      return tl::make_unexpected(fmt::format("parameter use_sim_time: '{}' is not true or false", one.text));
+    wanted = one.text == "true";
+  }
+  return wanted;
 }
 
 /// One driver, from its arguments to its end.
@@ -56,51 +56,20 @@ class Program {
              fmt::format("{}: nothing that ROS 2 knows behind --ros-args; options of the driver stand "
                          "before it",
                          unknown.front()));
-    const std::string name = settle_name();
-    Ros2Node node(context_, name, wants_sim_time(name));
+    Ros2Node& node = node_.emplace(context_, settle_name());
     const auto parameters = given_.for_node(node.full_name());
+    node.declare_sim_time(accept(wants_sim_time(parameters)));
     const Settings settings = overlay(accept(settings_among(parameters, "")), arguments_.settings);
     show_settings(node.parameters(), settings);
-    if (!sources_ || !is_same_place(settings, early_))
-      find(settings, [&](const std::string& text) { node.log(Level::error, text); });
-    return drive_devices(node, parameters, settings);
-  }
-
- private:
-  void find(const Settings& settings, const Say& say) {
-    auto sources = find_maps(built_in_, settings, ros2_dialect, say);
-    if (!sources) throw Wrong{sources.error()};
-    sources_ = std::move(*sources);
-  }
-
-  /// Before there is a node, and without asking a device: the node waits for that in the graph.
-  std::string settle_name() {
-    std::string name = "coupler_driver";
-    if (arguments_.names_the_node) return name;
-    early_ = overlay(accept(settings_among(given_.for_node(""), "")), arguments_.settings);
-    if (early_.name && early_.maps.empty()) return node_name(*early_.name);
-    if (is_map_of_a_node(built_in_, early_)) return node_name_by_address(early_);
-    find(early_, print);
-    return node_name(sources_->front().map.name);
-  }
-
-  bool wants_sim_time(const std::string& name) const {
-    bool wanted = false;
-    for (const GivenParameter& one : given_.for_node("/" + name))
-      if (one.name == "use_sim_time") wanted = one.text == "true";
-    return wanted;
-  }
-
-  int drive_devices(Ros2Node& node, const std::vector<GivenParameter>& parameters, const Settings& settings) {
+    if (!sources_ || !is_same_place(settings, early_)) find(settings);
     const bool several = sources_->size() > 1;
     const auto names = several ? names_of(*sources_) : std::vector<std::string_view>();
-    for (const std::string& line : given_.unknown(node.full_name(), names)) node.log(Level::warning, line);
+    for (const std::string& line : given_.unknown(node.full_name(), names)) tell(Level::warning, line);
     const auto settings_of = [&](std::string_view name) -> tl::expected<Settings, std::string> {
       if (!several) return settings;
-      const auto own = settings_among(parameters, fmt::format("{}.", name));
-      if (!own) return own;
-      Settings all = settings;
-      return overlay(std::move(all), *own);
+      return settings_among(parameters, fmt::format("{}.", name)).map([&](const Settings& own) {
+        return overlay(settings, own);
+      });
     };
     const Devices devices = accept(configure(std::move(*sources_), settings_of));
     if (const std::string wrong = why_not(devices); !wrong.empty()) refuse(wrong_input, wrong);
@@ -108,10 +77,48 @@ class Program {
     return drive(devices, node);
   }
 
+ private:
+  /// On the terminal; once there is a node, on /rosout, too.
+  void tell(Level level, const std::string& text) {
+    if (node_)
+      node_->log(level, text);
+    else
+      print(text);
+  }
+
+  [[noreturn]] void refuse(int exit_code, const std::string& why) {
+    tell(Level::error, why);
+    throw End{exit_code};
+  }
+
+  template <class T>
+  T accept(tl::expected<T, std::string> expected) {
+    if (!expected) refuse(wrong_input, expected.error());
+    return std::move(*expected);
+  }
+
+  void find(const Settings& settings) {
+    auto sources = find_maps(built_in_, settings, ros2_dialect,
+                             [this](Level level, const std::string& text) { tell(level, text); });
+    if (!sources) throw End{sources.error()};
+    sources_ = std::move(*sources);
+  }
+
+  /// Before there is a node, and without asking a device: the node waits for that in the graph.
+  std::string settle_name() {
+    if (arguments_.names_the_node) return "coupler_driver";
+    early_ = overlay(accept(settings_among(given_.for_node(""), "")), arguments_.settings);
+    if (early_.name && early_.maps.empty()) return node_name(*early_.name);
+    if (is_map_of_a_node(built_in_, early_)) return node_name_by_address(early_);
+    find(early_);
+    return node_name(sources_->front().map.name);
+  }
+
   const Map* built_in_;
   Arguments arguments_;
   rcl::Context context_;
   GivenParameters given_;
+  std::optional<Ros2Node> node_;
   Settings early_;  ///< before the node's own parameters are known; what is found may view them
   std::optional<std::vector<MapSource>> sources_;
 };
@@ -130,11 +137,11 @@ int main_with(const Map* built_in, int argc, char** argv) {
   Ending::in_order_on_signals();
   try {
     return Program(built_in, std::move(arguments)).run();
-  } catch (const Wrong& wrong) {
-    return wrong.exit_code;
+  } catch (const End& end) {
+    return end.exit_code;
   } catch (const rcl::Error& error) {
     print(error.what());
-    return wrong_input;
+    return error.result() == RCL_RET_INVALID_ROS_ARGS ? wrong_call : wrong_input;
   }
 }
 
