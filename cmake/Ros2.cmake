@@ -57,7 +57,12 @@ rosidl_generator_py_get_typesupports(python)
 list(TRANSFORM python PREPEND ${PROJECT_NAME}_s__)
 add_custom_target(${PROJECT_NAME}_generate_messages DEPENDS ${PROJECT_NAME} ${python})
 
+# ament gives its definition to every target of the project. The other rooms compile alike with and without ROS, so that the
+# compiler's cache serves both.
+get_directory_property(definitions COMPILE_DEFINITIONS)
+set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "")
 add_library(coupler_ros INTERFACE)
+target_compile_definitions(coupler_ros INTERFACE ${definitions})
 target_link_libraries(coupler_ros INTERFACE
   rcl::rcl rcl_yaml_param_parser::rcl_yaml_param_parser rcutils::rcutils rmw::rmw rosidl_typesupport_cpp::rosidl_typesupport_cpp)
 foreach(package IN LISTS interfaces)
