@@ -6,7 +6,6 @@ import statistics
 import struct
 import time
 
-import rospy
 from coupler_driver.msg import PointStatus, Status
 from std_msgs.msg import Bool, Int16, Int32, UInt16
 
@@ -14,7 +13,7 @@ from support import process, testing
 from support.device import (BUSY, FAILURE, ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Device, Raw,
                             Refuse, frame)
 from support.patience import NO_TIMEOUT, PATIENCE, QUIET
-from support.topics import connected_publishers, wait_until
+from support.topics import connected_publishers, next_message, wait_until
 
 TIMEOUT = 0.5
 MAP = """
@@ -40,7 +39,7 @@ class FaultMatrix(testing.RosTest):
 
     @staticmethod
     def status_says_offline():
-        status = rospy.wait_for_message("/plant/status", Status, PATIENCE)
+        status = next_message("/plant/status", Status)
         return (status.online, status.points[0].quality) == (False, PointStatus.OFFLINE)
 
     LEVEL = "  holding_registers: {level: {address: 4, type: INT}}\n"

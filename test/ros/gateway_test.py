@@ -3,7 +3,6 @@
 import statistics
 import time
 
-import rospy
 from coupler_driver.srv import Write
 from std_msgs.msg import Bool, Int16
 
@@ -48,9 +47,7 @@ class Gateway(testing.RosTest):
 
     def test_a_write_waits_for_the_request_in_flight_and_not_for_the_reads_of_all(self):
         self.drive(NO_TIMEOUT)
-        rospy.wait_for_service("/k1/write", PATIENCE)
-        write = rospy.ServiceProxy("/k1/write", Write, persistent=True)
-        self.addCleanup(write.close)
+        write = self.service("/k1/write", Write)
         overtaking, seconds = [], []
         for value in range(9):
             begin = time.monotonic()

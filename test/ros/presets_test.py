@@ -5,7 +5,6 @@ import socket
 import time
 import unittest
 
-import rospy
 from coupler_driver.srv import Write
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_msgs.msg import Bool, UInt16MultiArray, UInt32
@@ -17,7 +16,7 @@ from support.couplers import moxa_e1200 as moxa
 from support.couplers import wago_750 as wago
 from support.couplers.plc import Plc
 from support.patience import NO_TIMEOUT, PATIENCE
-from support.topics import wait_until
+from support.topics import NoService, next_message, wait_until
 
 TIMEOUT = 1.5  # of the watchdogs; they are fed three times in it
 LONGER = 1.5 * TIMEOUT
@@ -39,7 +38,7 @@ def diagnosis(wanted):
     """The diagnostic status of the watchdog, once its level is the wanted one."""
     end = time.monotonic() + PATIENCE
     while True:
-        for status in rospy.wait_for_message("/diagnostics", DiagnosticArray, PATIENCE).status:
+        for status in next_message("/diagnostics", DiagnosticArray).status:
             if status.name.endswith(" watchdog") and status.level == wanted:
                 return status
         if time.monotonic() > end:
@@ -62,12 +61,10 @@ class PresetTest(testing.RosTest):
         return self.driver(f"_map:={path}", f"_port:={self.coupler.port}")
 
     def write(self, point, value):
-        rospy.wait_for_service("/rack/write", PATIENCE)
-        return rospy.ServiceProxy("/rack/write", Write)(point, value)
+        return self.service("/rack/write", Write)(point, value)
 
     def reset(self):
-        rospy.wait_for_service("/rack/reset_watchdog", PATIENCE)
-        return rospy.ServiceProxy("/rack/reset_watchdog", Trigger)()
+        return self.service("/rack/reset_watchdog", Trigger)()
 
     def switch_on(self):
         self.assertTrue(self.write("valve", "true").success)
@@ -168,15 +165,15 @@ class Wago(PresetTest):
         wait_until(self.is_on, "the valve")
         self.expire(driver)
         driver.wait_for("call wago/reset_watchdog")
-        self.assertTrue(rospy.ServiceProxy("/wago/reset_watchdog", Trigger)().success)
+        self.assertTrue(self.service("/wago/reset_watchdog", Trigger)().success)
         self.assertFalse(self.coupler.expired)
 
     def test_without_watchdog_in_the_map_it_is_left_alone(self):
         self.start("wago_750", watchdog=None)
         self.switch_on()
         self.assertEqual([request for request in self.coupler.seen(6, 16) if request.address >= 0x1000], [])
-        with self.assertRaises(rospy.ROSException):
-            rospy.wait_for_service("/rack/reset_watchdog", 1)
+        with self.assertRaises(NoService):
+            self.service("/rack/reset_watchdog", Trigger, seconds=1)
 
     def test_outputs_are_read_where_they_read_back(self):
         self.coupler.tables["coils"][3] = 1  # an input, as one that reads coil 3 sees it

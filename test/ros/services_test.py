@@ -2,9 +2,8 @@
 """Services answer when the result is known, and say what it was."""
 import time
 
-import rospy
 from coupler_driver.msg import PointStatus
-from coupler_driver.srv import Read, Write, WriteResponse
+from coupler_driver.srv import Read, Write
 from std_msgs.msg import Bool, Float32
 from std_srvs.srv import SetBool
 
@@ -12,6 +11,7 @@ from support import process, testing
 from support.device import ILLEGAL_ADDRESS, Device, Refuse
 from support.latest import LatestDiagnostics, LatestStatus, values
 from support.patience import NO_TIMEOUT, PATIENCE
+from support.topics import response_of
 
 MAP = """
 name: served
@@ -31,6 +31,8 @@ mapping:
     seldom: {address: 30, type: INT, rate: 0.001}
 """
 
+WriteResponse = response_of(Write)
+
 
 class ServicesTest(testing.RosTest):
     timeout = NO_TIMEOUT
@@ -45,8 +47,7 @@ class ServicesTest(testing.RosTest):
         self.addCleanup(self.status.close)
 
     def call(self, name, kind, *arguments):
-        rospy.wait_for_service(f"/served/{name}", PATIENCE)
-        return rospy.ServiceProxy(f"/served/{name}", kind)(*arguments)
+        return self.service(f"/served/{name}", kind)(*arguments)
 
     def write(self, point, value):
         return self.call("write", Write, point, value)

@@ -4,9 +4,8 @@ from coupler_driver.msg import BoolArray
 from std_msgs.msg import Float64, Float64MultiArray, Int16MultiArray, UInt16, UInt32MultiArray
 
 from support import process, testing
-from support.patience import PATIENCE
 from support.peer import Peer
-from support.topics import wait_until
+from support.topics import next_message, wait_until
 
 MAP = """
 name: shapes
@@ -54,8 +53,7 @@ class Shapes(testing.RosTest):
         self.holds(10, 1, 2, 3, 4)
 
     def test_its_dimension_is_labelled_with_the_points_name(self):
-        import rospy  # pylint: disable=import-outside-toplevel
-        message = rospy.wait_for_message("/shapes/speeds", Int16MultiArray, PATIENCE)
+        message = next_message("/shapes/speeds", Int16MultiArray)
         self.assertEqual([(d.label, d.size, d.stride) for d in message.layout.dim], [("speeds", 3, 3)])
 
     def test_arrays_of_bits_follow_each_other(self):
@@ -91,7 +89,7 @@ class Shapes(testing.RosTest):
         self.reads(25)
         self.assertEqual(level.values, [0, 1, 2], "25 reads with nothing new")
         self.assertNotIn(5, raw.values, "within the deadband")
-        self.assertEqual(self.topic("/shapes/kept", UInt16).next(), 0)
+        self.assertEqual(self.topic("/shapes/kept", UInt16, latched=True).next(), 0)
 
     def test_after_a_reconnect_the_same_value_is_news(self):
         level = self.topic("/shapes/level", UInt16)

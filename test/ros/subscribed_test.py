@@ -2,7 +2,6 @@
 """With poll: subscribed the device is asked only for what somebody listens to."""
 import time
 
-import rospy
 from coupler_driver.msg import PointStatus
 from coupler_driver.srv import Read
 from std_msgs.msg import Int16
@@ -10,7 +9,7 @@ from std_msgs.msg import Int16
 from support import process, testing
 from support.device import Device
 from support.latest import LatestStatus
-from support.patience import NO_TIMEOUT, PATIENCE, QUIET
+from support.patience import NO_TIMEOUT, QUIET
 from support.topics import wait_until
 
 MAP = """
@@ -74,8 +73,7 @@ class Subscribed(SubscribedTest):
         wait_until(lambda: self.asks_only_for({0}), "the last one to leave to be noticed")
 
     def test_a_read_asks_for_its_point_once(self):
-        rospy.wait_for_service("/quiet/read", PATIENCE)
-        self.assertEqual(rospy.ServiceProxy("/quiet/read", Read)("b").value, "22")
+        self.assertEqual(self.service("/quiet/read", Read)("b").value, "22")
         wait_until(self.falls_silent, "it to ask for no more")
         self.assertEqual(self.asked(), {1})
 

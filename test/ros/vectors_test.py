@@ -9,12 +9,10 @@ import subprocess
 import tempfile
 import unittest
 
-import rostopic
-
 from support import iec, process, testing
 from support.patience import NO_TIMEOUT
 from support.peer import Peer
-from support.topics import wait_until
+from support.topics import type_of, wait_until
 
 TEST = pathlib.Path(__file__).resolve().parent.parent
 ROUNDS = 14  # as many as a float has cases
@@ -117,7 +115,7 @@ class Vectors(testing.RosTest):
         kinds = []
 
         def is_known():
-            kinds.append(rostopic.get_topic_class(topic)[0])
+            kinds.append(type_of(topic))
             return kinds[-1] is not None
         wait_until(is_known, f"the type of {topic}")
         return kinds[-1]

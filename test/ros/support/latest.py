@@ -1,36 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a driver says of its device, as it stands: the newest of status and of /diagnostics."""
-import threading
-
-import rospy
 from coupler_driver.msg import Status
 from diagnostic_msgs.msg import DiagnosticArray
 
-from support.patience import PATIENCE
-
-
-class Latest:
-    """The last message of a topic, and a wait for one that fits."""
-
-    def __init__(self, name, kind, merge):
-        self._changed = threading.Condition()
-        self._merge = merge
-        self.known = {}
-        self._subscriber = rospy.Subscriber(name, kind, self._receive, queue_size=100)
-
-    def _receive(self, message):
-        with self._changed:
-            self._merge(self.known, message)
-            self._changed.notify_all()
-
-    def wait_for(self, condition, seconds=PATIENCE):
-        with self._changed:
-            if not self._changed.wait_for(lambda: condition(self.known), seconds):
-                raise AssertionError(f"waited {seconds} s; last: {self.known}")
-            return dict(self.known)
-
-    def close(self):
-        self._subscriber.unregister()
+from support.topics import Latest
 
 
 class LatestStatus(Latest):

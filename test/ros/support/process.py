@@ -99,7 +99,11 @@ class Process:
 
 
 class Driver(Process):
+    """`_key:=value` is ROS 1's spelling of `--key=value`; the driver of ROS 2 takes the latter only."""
+
     def __init__(self, *arguments):
+        if os.environ.get("ROS_VERSION") == "2":
+            arguments = [re.sub(r"^_(\w+):=", r"--\1=", str(one)) for one in arguments]
         super().__init__("coupler_driver", *arguments)
 
 

@@ -5,7 +5,7 @@ import unittest
 import rospy
 
 from support.process import Driver
-from support.topics import Topic, connected_publishers
+from support.topics import Topic, connected_publishers, service
 
 
 class RosTest(unittest.TestCase):
@@ -19,7 +19,8 @@ class RosTest(unittest.TestCase):
                 rospy.delete_param(name)
         return super().run(result)
 
-    def topic(self, name, kind):
+    def topic(self, name, kind, latched=False):  # pylint: disable=unused-argument
+        """ROS 2 must be told that the last value is wanted; in ROS 1 it comes with the topic."""
         topic = Topic(name, kind)
         self.addCleanup(topic.close)
         return topic
@@ -32,6 +33,10 @@ class RosTest(unittest.TestCase):
         for publisher in publishers:
             self.addCleanup(publisher.unregister)
         return publishers
+
+    @staticmethod
+    def service(name, kind, **options):
+        return service(name, kind, **options)
 
     def driver(self, *arguments):
         driver = Driver(*arguments)

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics as a test wants them: the values that came, the value that comes, a message that surely arrives."""
+"""Topics and services as a test wants them: the values that came, the value that comes, a message that surely arrives.
+With testing.py all that is ROS 1's here: test/ros2/support has the same for ROS 2, and tests that use no more of ROS than
+this and messages are run with both."""
 import threading
 import time
 
 import rospy
+import rostopic
 
 from support.patience import PATIENCE, QUIET
 
@@ -62,6 +65,39 @@ class Topic:
         self._subscriber.unregister()
 
 
+class Latest:
+    """The last message of a topic, and a wait for one that fits."""
+
+    def __init__(self, name, kind, merge):
+        self._changed = threading.Condition()
+        self._merge = merge
+        self.known = {}
+        self._subscriber = rospy.Subscriber(name, kind, self._receive, queue_size=100)
+
+    def _receive(self, message):
+        with self._changed:
+            self._merge(self.known, message)
+            self._changed.notify_all()
+
+    def wait_for(self, condition, seconds=PATIENCE):
+        with self._changed:
+            if not self._changed.wait_for(lambda: condition(self.known), seconds):
+                raise AssertionError(f"waited {seconds} s; last: {self.known}")
+            return dict(self.known)
+
+    def close(self):
+        self._subscriber.unregister()
+
+
+def next_message(name, kind):
+    return rospy.wait_for_message(name, kind, PATIENCE)
+
+
+def type_of(name):
+    """Of a topic; None until somebody publishes or subscribes."""
+    return rostopic.get_topic_class(name)[0]
+
+
 def connected_publishers(kinds):
     """A publisher for each topic of {name: type}, once somebody listens to all of them."""
     publishers = [rospy.Publisher(name, kind, queue_size=100) for name, kind in kinds.items()]
@@ -76,3 +112,21 @@ def wait_until(condition, what, seconds=PATIENCE):
         if time.monotonic() > end:
             raise AssertionError(f"waited {seconds} s for {what}")
         time.sleep(0.01)
+
+
+class NoService(Exception):
+    pass
+
+
+def service(name, kind, seconds=PATIENCE):
+    """A function that calls it, once it is there."""
+    try:
+        rospy.wait_for_service(name, seconds)
+    except rospy.ROSException as error:
+        raise NoService(name) from error
+    return rospy.ServiceProxy(name, kind)
+
+
+def response_of(kind):
+    """The message that a service of this type answers with."""
+    return kind._response_class  # pylint: disable=protected-access
