@@ -81,8 +81,8 @@ class Vectors(testing.RosTest):
         vectors = vectors_of(path)
         points = [Tested(point, i, "/" + vectors["map"]) for i, point in enumerate(vectors["points"])]
         with Peer() as peer:
-            with process.Process(*program, "_address:=127.0.0.1", f"_port:={peer.port}",
-                                 f"_timeout:={NO_TIMEOUT}") as driver:
+            arguments = (*program, "_address:=127.0.0.1", f"_port:={peer.port}", f"_timeout:={NO_TIMEOUT}")
+            with process.Process(*process.driver_arguments(arguments)) as driver:
                 driver.wait_for("connected")
                 self.check_reading(peer, points)
                 self.check_writing(peer, points)

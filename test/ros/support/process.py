@@ -71,10 +71,10 @@ class Process:
         self._reader.join(PATIENCE)
         return code
 
-    def interrupt(self):
-        """SIGINT; the exit code."""
+    def interrupt(self, by=signal.SIGINT):
+        """The exit code."""
         if self.running:
-            self._child.send_signal(signal.SIGINT)
+            self._child.send_signal(by)
         return self.wait()
 
     def end(self):
@@ -99,12 +99,15 @@ class Process:
 
 
 class Driver(Process):
-    """`_key:=value` is ROS 1's spelling of `--key=value`; the driver of ROS 2 takes the latter only."""
-
     def __init__(self, *arguments):
-        if os.environ.get("ROS_VERSION") == "2":
-            arguments = [re.sub(r"^_(\w+):=", r"--\1=", str(one)) for one in arguments]
-        super().__init__("coupler_driver", *arguments)
+        super().__init__("coupler_driver", *driver_arguments(arguments))
+
+
+def driver_arguments(arguments):
+    """`_key:=value` is ROS 1's spelling of `--key=value`; a driver for ROS 2 takes the latter only."""
+    if os.environ.get("ROS_VERSION") != "2":
+        return arguments
+    return [re.sub(r"^_([a-z]+):=", r"--\1=", str(one)) for one in arguments]
 
 
 class Node(Process):
