@@ -26,7 +26,7 @@ def start(*arguments):
     for file in range(3):
         os.close(file)
     program = str(process.BUILD / "bin" / "coupler_driver")
-    os.execv(program, [program, *arguments])
+    os.execv(program, [program, *process.driver_arguments(arguments)])
 
 
 class ClosedFiles(testing.RosTest):

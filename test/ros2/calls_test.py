@@ -112,8 +112,10 @@ class Calls(CallsTest):
     def test_only_bits_have_a_service_of_their_own(self):
         self.assertTrue(self.call("kept/set", SetBool, True).success)
         self.assertTrue(self.call("ready/set", SetBool, True).success)
-        names = [name for name, _ in polled.get_service_names_and_types()]
-        self.assertIn("/called/kept/set", names)
+        names = []
+        wait_until(lambda: names.append([name for name, _ in polled.get_service_names_and_types()]) or
+                   "/called/kept/set" in names[-1], "the services")
+        names = names[-1]
         self.assertNotIn("/called/speed/set", names)
         self.assertNotIn("/called/reset_watchdog", names)
 

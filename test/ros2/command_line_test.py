@@ -62,12 +62,11 @@ class Spellings(CallTest):
 
     def test_the_nodes_name_is_given_as_to_any_node(self):
         self.assert_drives("--map", self.map, "--ros-args", "-r", "__node:=io", "--remap", "__ns:=/cell", topic="/cell/called/level")
-        self.assertIn(("io", "/cell"), polled.get_node_names_and_namespaces())
+        wait_until(lambda: ("io", "/cell") in polled.get_node_names_and_namespaces(), "the node")
 
     def test_it_may_have_an_enclave(self):
         self.assert_drives("--map", self.map, "--ros-args", "--enclave", "/cell/io")
-        known = {name: enclave for name, _, enclave in polled.get_node_names_and_namespaces_with_enclaves()}
-        self.assertEqual(known["called_driver"], "/cell/io")
+        wait_until(lambda: ("called_driver", "/", "/cell/io") in polled.get_node_names_and_namespaces_with_enclaves(), "the node")
 
 
 class Wrong(CallTest):
@@ -154,8 +153,11 @@ class Logs(CallTest):
 
     def test_rosout_can_be_left_out_and_the_terminal_stays(self):
         self.assert_drives("--map", self.map, "--ros-args", "--disable-rosout-logs")
-        publishers = [info.node_name for info in polled.get_publishers_info_by_topic("/rosout")]
-        self.assertNotIn("called_driver", publishers)
+        wait_until(lambda: "called_driver" in polled.get_node_names(), "the node")
+        published = []
+        wait_until(lambda: published.append(dict(polled.get_publisher_names_and_types_by_node("called_driver", "/"))) or
+                   "/diagnostics" in published[-1], "its topics")
+        self.assertNotIn("/rosout", published[-1])
 
     def test_the_terminal_can_be_left_out_and_rosout_stays(self):
         rosout = self.rosout()

@@ -110,7 +110,7 @@ class Waiting(GraphTest):
         parameters = Parameters(node)
         self.assertEqual(parameters.get("address", "port"), ["127.0.0.1", port])
         self.assertIn("rate", parameters.list().names)
-        self.assertTrue(polled.get_publishers_info_by_topic("/diagnostics"))
+        wait_until(lambda: polled.get_publishers_info_by_topic("/diagnostics"), "the diagnostics")
         self.assertEqual(driver.interrupt(), 0, driver.output)
 
     @unittest.skipUnless(process.has_node(), "coupler-node was not built")
@@ -122,7 +122,7 @@ class Waiting(GraphTest):
         served = process.Node(process.write_map("name: press\nmapping:\n  holding_registers: {speed: {address: 7, type: INT}}\n"), port)
         self.addCleanup(served.end)
         self.topic("/press/speed", Int16).wait_for(lambda value: value == 0)
-        self.assertEqual([info.node_name for info in polled.get_publishers_info_by_topic("/press/speed")], [node])
+        wait_until(lambda: [info.node_name for info in polled.get_publishers_info_by_topic("/press/speed")] == [node], "its node")
         self.assertEqual(Parameters(f"/{node}").get("name", "port"), ["press", port])
 
 

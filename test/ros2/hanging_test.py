@@ -36,7 +36,7 @@ class HangingTest(testing.RosTest):
         self.assertTrue(parameters.describe("port")[0].description)
         self.assertTrue(parameters.set(parameter("use_sim_time", BOOL, False))[0].successful)
         self.assertFalse(self.service(f"{node}/get_type_description", GetTypeDescription)("none/msg/None", "", False).successful)
-        self.assertTrue(polled.get_publishers_info_by_topic("/diagnostics"))
+        wait_until(lambda: polled.get_publishers_info_by_topic("/diagnostics"), "the diagnostics")
 
 
 class NeverAnswered(HangingTest):

@@ -103,6 +103,7 @@ class Declared(ParametersTest):
         self.start()
         message = next_message("/given/status", Status)
         self.assertTrue(message.online)
+        wait_until(lambda: polled.get_publishers_info_by_topic("/given/status"), "its publisher")
         info = polled.get_publishers_info_by_topic("/given/status")[0]
         known = self.service("/given_driver/get_type_description", GetTypeDescription)(
             info.topic_type, str(info.topic_type_hash), True)

@@ -78,7 +78,7 @@ class Spellings(testing.RosTest):
                 driver.end()
 
     def test_what_is_no_yaml_is_refused_with_the_quoted_spelling(self):
-        self.assert_refused("address", "[::1]", "[::1]", "quotes")
+        self.assert_refused("address", "[::1]", "quotes", "'")
 
     def test_a_list_of_maps_is_a_list_or_a_text(self):
         other = process.write_map(MAP.format(address="127.0.0.1", port=self.peer.port).replace("spelt", "other"))

@@ -1,35 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """This process's part in ROS 2: a domain of its own and two nodes."""
 import os
-import socket
 import threading
 
-DOMAINS = 101  # 1 to 101: the ports of those above may be the kernel's choice for somebody else
-_lock = None   # of the domain, held until this process ends
+from support import ros2_domain
 
-
-def take_domain():
-    """For this process and its children: one in which no other test of this machine is. Nobody else's programs, either,
-    if they were there before."""
-    global _lock  # pylint: disable=global-statement
-    for number in range(DOMAINS):
-        domain = 1 + (os.getpid() + number) % DOMAINS
-        lock, probe = socket.socket(socket.AF_UNIX), socket.socket(type=socket.SOCK_DGRAM)
-        try:
-            lock.bind(f"\0coupler-ros2-domain-{domain}")
-            probe.bind(("", 7410 + 250 * domain))  # of the first participant
-        except OSError:
-            lock.close()
-            continue
-        finally:
-            probe.close()
-        _lock = lock
-        os.environ["ROS_DOMAIN_ID"] = str(domain)
-        return
-    raise RuntimeError("every ROS 2 domain of this machine is in use")
-
-
-take_domain()
+os.environ["ROS_DOMAIN_ID"] = str(ros2_domain.take())  # for this process and its children
 
 # pylint: disable=wrong-import-position
 import rclpy  # noqa: E402
