@@ -207,7 +207,8 @@ void Device::lost(const Error& error) {
     identity_suffices_ = transport_.replies() > replies_at_connect_;
     sink_.on_online(false);
   }
-  if (was_online || why != last_trouble_) sink_.on_report(Level::warning, loss_text(map_, error, was_online));
+  if (!ending_ && (was_online || why != last_trouble_))
+    sink_.on_report(Level::warning, loss_text(map_, error, was_online));
   last_trouble_ = why;
 }
 

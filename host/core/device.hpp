@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <future>
 #include <string>
 
@@ -52,6 +53,8 @@ class Device {
   Time step();
   /// Bytes have come while no step() ran: an answer to send_now(), or else the end of the connection.
   void arrived();
+  /// From any thread: what breaks off from now on is not worth a line in the log.
+  void end_comes() { ending_ = true; }
   /// The program ends: outputs go where `on_shutdown` wants them, the connection is dropped for good. False
   /// if an output should have its safe value and has not.
   bool stop();
@@ -92,6 +95,7 @@ class Device {
   Reader reader_;
   Backoff backoff_;
 
+  std::atomic<bool> ending_{false};
   bool linked_ = false;      ///< there is a connection, to the device or to its gateway
   bool connected_ = false;   ///< proven equal; reads and writes may go out
   bool online_ = false;      ///< connected, and the device has answered

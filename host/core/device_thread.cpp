@@ -27,6 +27,7 @@ bool DeviceThread::end() {
   transport_.wake();
   if (ends_safely_) stopped_.get_future().wait_for(longest_farewell);
   clock_.stop();
+  device_.end_comes();
   transport_.interrupt();
   thread_.join();
   return ended_safely_;

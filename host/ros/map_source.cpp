@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <future>
 #include <system_error>
 #include <thread>
 
@@ -86,8 +87,13 @@ class Search {
     Backoff backoff;
     std::string told;
     while (!Ending::asked) {
-      auto served = fetch_served_map(transport);
+      // A device that hangs must not hold up the end for its timeout.
+      auto attempt = std::async(std::launch::async, [&transport] { return fetch_served_map(transport); });
+      while (attempt.wait_for(look) != std::future_status::ready)
+        if (Ending::asked) transport.interrupt();
+      auto served = attempt.get();
       if (served) return std::move(*served);
+      if (Ending::asked) break;
       const std::string why = to_string(served.error());
       if (why != told)
         say_(Level::warning, fmt::format("waiting for the map of {}: {}; trying again", where, why));

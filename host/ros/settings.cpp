@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "common/map/host.hpp"
+#include "common/map/loader/names.hpp"
 #include "common/map/loader/nearest.hpp"
 
 namespace coupler::driver {
@@ -84,6 +85,13 @@ Outcome set_address(Settings& settings, const std::string& text) {
   return {};
 }
 
+Outcome set_name(Settings& settings, const std::string& text) {
+  if (!loader::is_relative_ros_name(text))
+    return wrong("name", text, "a name in ROS: a letter, then letters, digits, '_' and '/'");
+  settings.name = text;
+  return {};
+}
+
 std::string_view without(std::string_view text, std::string_view front, std::string_view back) {
   const std::size_t from = text.find_first_not_of(front);
   if (from == std::string_view::npos) return {};
@@ -140,7 +148,7 @@ Outcome set(Settings& settings, std::string_view name, const std::string& text) 
   const std::string_view key = setting.key;
   if (key == "map") return set_text(settings.map, key, text);
   if (key == "maps") return set_list(settings.maps, key, text);
-  if (key == "name") return set_text(settings.name, key, text);
+  if (key == "name") return set_name(settings, text);
   if (key == "address") return set_address(settings, text);
   if (key == "port") return set_number(settings.port, setting, text);
   if (key == "unit") return set_number(settings.unit, setting, text);

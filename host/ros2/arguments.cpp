@@ -42,12 +42,13 @@ std::string in_ros2(std::string_view assignment) {
   return "-p " + parameter;
 }
 
-/// What is wrong with an argument outside of --ros-args, or an empty text.
-std::string misplaced(std::string_view argument) {
-  if (argument == "-p" || argument == "-r" || argument == "--params-file" || argument == "--log-level")
-    return fmt::format("{}: arguments of ROS 2 stand behind --ros-args", argument);
-  if (argument.find(":=") == std::string_view::npos || starts_with(argument, "-")) return {};
-  return fmt::format("{}: that is ROS 1's spelling; in ROS 2 say --ros-args {}", argument, in_ros2(argument));
+bool is_ROSs_own(std::string_view argument) {
+  return argument == "-p" || argument == "--param" || argument == "-r" || argument == "--remap" ||
+         argument == "--params-file" || argument == "--log-level";
+}
+
+bool is_ROS1s(std::string_view argument) {
+  return argument.find(":=") != std::string_view::npos && !starts_with(argument, "-");
 }
 
 }  // namespace
@@ -64,8 +65,10 @@ Arguments parse_arguments(Span<char* const> arguments) {
   result.for_ros.emplace_back(arguments[0]);
   bool is_for_ros = false;
   std::string wrong;
+  bool follows_misplaced = false;
   for (const char* const raw : arguments.from(1)) {
     const std::string_view argument(raw);
+    if (std::exchange(follows_misplaced, false)) continue;
     if (argument == "--ros-args") {
       is_for_ros = true;
       result.for_ros.emplace_back(argument);
@@ -73,8 +76,12 @@ Arguments parse_arguments(Span<char* const> arguments) {
       is_for_ros = argument != "--";
       result.for_ros.emplace_back(argument);
       result.names_the_node |= starts_with(argument, "__node:=") || starts_with(argument, "__name:=");
-    } else if (std::string why = misplaced(argument); !why.empty()) {
-      wrong += why + "\n";
+    } else if (is_ROSs_own(argument)) {
+      wrong += fmt::format("{}: arguments of ROS 2 stand behind --ros-args\n", argument);
+      follows_misplaced = true;
+    } else if (is_ROS1s(argument)) {
+      wrong += fmt::format("{}: that is ROS 1's spelling; in ROS 2 say --ros-args {}\n", argument,
+                           in_ros2(argument));
     } else {
       options.emplace_back(argument);
     }

@@ -118,6 +118,12 @@ std::vector<GivenParameter> GivenParameters::for_node(std::string_view full_name
   return all;
 }
 
+std::string GivenParameters::driver_section() const {
+  for (const Section& section : sections_)
+    if (!is_for_all(section.node) && is_meant_for_a_driver(section)) return section.node;
+  return {};
+}
+
 std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
                                                   const std::vector<std::string_view>& devices) const {
   std::vector<std::string> lines;
@@ -127,7 +133,15 @@ std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
     for (const GivenParameter& one : section.parameters) {
       const std::string_view setting = setting_of(one.name, devices);
       if (is_setting(setting) || is_ROSs_own(one.name)) continue;
-      const std::string_view behind_dot = setting.substr(setting.find('.') + 1);
+      const std::string_view behind_slash = setting.substr(setting.rfind('/') + 1);
+      if (behind_slash != setting && is_setting(behind_slash)) {
+        std::string spelt = one.name;
+        spelt[one.name.rfind('/')] = '.';
+        lines.push_back(
+            fmt::format("parameter {} is ROS 1's spelling and does nothing; say {}", one.name, spelt));
+        continue;
+      }
+      const std::string_view behind_dot = setting.substr(setting.rfind('.') + 1);
       if (!devices.empty() && behind_dot != setting && is_setting(behind_dot)) {
         lines.push_back(
             fmt::format("parameter {} is for a device that is not there; the maps have the names {}",

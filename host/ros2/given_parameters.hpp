@@ -36,6 +36,9 @@ class GivenParameters {
   /// An empty name: a node whose name is not known yet.
   std::vector<GivenParameter> for_node(std::string_view full_name) const;
 
+  /// A node, not a pattern, whose parameters are those of a driver; empty: there is none.
+  std::string driver_section() const;
+
   /// A line for each parameter of the node that is no setting: misspelt ones do nothing. What is said of all
   /// nodes may be meant for others, so of that only what is nearly a setting. `devices`: the names of
   /// several, whose settings stand below them.

@@ -108,7 +108,7 @@ std::unique_ptr<PointPublisher> Ros2Node::advertise(const std::string& topic, co
     const bool latch = point.host.latch;
     publisher->use(
         {make_publisher<Message>(node_, topic, latch ? rcl::latched() : rcl::reliable(point.host.queue_size),
-                                 {matched, warn_subscriber(topic, !latch)})});
+                                 {matched, warn_subscriber(!latch)})});
     return publisher;
   });
 }
@@ -124,14 +124,13 @@ std::shared_ptr<void> Ros2Node::subscribe(const std::string& topic, const Map& m
         [topic, &map, index, &handler](const Message& message) {
           receive<Kind>(message, topic, map, index, handler);
         },
-        warn_publisher(topic));
+        warn_publisher());
   });
 }
 
 std::function<void(bool)> Ros2Node::advertise_online(const std::string& topic) {
   using Bool = Ros2Messages::Bool;
-  const auto publisher =
-      make_publisher<Bool>(node_, topic, rcl::latched(), {{}, warn_subscriber(topic, false)});
+  const auto publisher = make_publisher<Bool>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)});
   rivals_.watch(publisher->topic());
   return [publisher](bool online) {
     Bool message;
@@ -143,8 +142,7 @@ std::function<void(bool)> Ros2Node::advertise_online(const std::string& topic) {
 Node::PublishStatus Ros2Node::advertise_status(const std::string& topic, const Map& map) {
   using Message = coupler_driver::msg::Status;
   const auto status = std::make_shared<Status<Message>>(map);
-  const auto publisher =
-      make_publisher<Message>(node_, topic, rcl::latched(), {{}, warn_subscriber(topic, false)});
+  const auto publisher = make_publisher<Message>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)});
   return [this, status, publisher](const DeviceSnapshot& device, const std::vector<PointQuality>& points,
                                    Time now) {
     if (!status->update(device, points, now)) return;
@@ -187,21 +185,21 @@ void Ros2Node::shut_down() {
   node_.inbox().stop();
 }
 
-std::function<void(rmw_qos_policy_kind_t)> Ros2Node::warn_subscriber(const std::string& topic,
-                                                                     bool could_latch) {
-  return [this, topic, could_latch, warned = false](rmw_qos_policy_kind_t policy) mutable {
+rcl::Incompatible Ros2Node::warn_subscriber(bool could_latch) {
+  return [this, could_latch, warned = false](const std::string& topic, rmw_qos_policy_kind_t policy) mutable {
     if (std::exchange(warned, true)) return;
-    std::string remedy = "subscribe with reliable, volatile, keep last";
-    if (could_latch && policy == RMW_QOS_POLICY_DURABILITY)
-      remedy = "subscribe with durability volatile, or say 'latch: true' of the point in the map";
+    const bool is_late = could_latch && policy == RMW_QOS_POLICY_DURABILITY;
     log(Level::warning,
         fmt::format("a subscriber of {} asks for another {} than is offered, and gets nothing; {}", topic,
-                    policy_name(policy), remedy));
+                    policy_name(policy),
+                    is_late
+                        ? "subscribe with durability volatile, or say 'latch: true' of the point in the map"
+                        : "subscribe with reliable, volatile, keep last"));
   };
 }
 
-std::function<void(rmw_qos_policy_kind_t)> Ros2Node::warn_publisher(const std::string& topic) {
-  return [this, topic, warned = false](rmw_qos_policy_kind_t policy) mutable {
+rcl::Incompatible Ros2Node::warn_publisher() {
+  return [this, warned = false](const std::string& topic, rmw_qos_policy_kind_t policy) mutable {
     if (std::exchange(warned, true)) return;
     log(Level::warning,
         fmt::format("a publisher of {} offers another {} than is needed, and nothing of it is written; "

@@ -49,8 +49,8 @@ class Ros2Node : public Node {
   void log_debug(const std::string& text) override;
 
  private:
-  std::function<void(rmw_qos_policy_kind_t)> warn_subscriber(const std::string& topic, bool could_latch);
-  std::function<void(rmw_qos_policy_kind_t)> warn_publisher(const std::string& topic);
+  rcl::Incompatible warn_subscriber(bool could_latch);
+  rcl::Incompatible warn_publisher();
 
   rcl::Node node_;
   bool shows_debug_;

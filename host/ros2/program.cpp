@@ -110,6 +110,12 @@ class Program {
     early_ = overlay(accept(settings_among(given_.for_node(""), "")), arguments_.settings);
     if (early_.name && early_.maps.empty()) return node_name(*early_.name);
     if (is_map_of_a_node(built_in_, early_)) return node_name_by_address(early_);
+    if (const auto section = given_.driver_section();
+        !section.empty() && !early_.map && early_.maps.empty() && built_in_ == nullptr)
+      refuse(wrong_call,
+             fmt::format("no map; the parameters of {} may have one: name the node so, by --ros-args -r "
+                         "__node:={}",
+                         section, section.substr(section.rfind('/') + 1)));
     find(early_);
     return node_name(sources_->front().map.name);
   }
@@ -140,8 +146,13 @@ int main_with(const Map* built_in, int argc, char** argv) {
   } catch (const End& end) {
     return end.exit_code;
   } catch (const rcl::Error& error) {
-    print(error.what());
-    return error.result() == RCL_RET_INVALID_ROS_ARGS ? wrong_call : wrong_input;
+    if (error.result() != RCL_RET_INVALID_ROS_ARGS) {
+      print(error.what());
+      return wrong_input;
+    }
+    print(fmt::format("{}; put a value that is none in YAML into quotes, as in -p address:=\"'[::1]'\"",
+                      error.what()));
+    return wrong_call;
   }
 }
 

@@ -36,6 +36,7 @@ void Rivals::look() {
   for (const std::string& topic : topics_) {
     bool is_first_own = true;
     for (const std::string& node : node_.publishers_of(topic)) {
+      if (node.find("_UNKNOWN_") != std::string::npos) continue;  // the graph does not know its name yet
       if (node != node_.full_name())
         rivals.push_back({topic, node});
       else if (!std::exchange(is_first_own, false))

@@ -14,3 +14,11 @@
 #define COUPLER_RCL_HAS_MATCHED_EVENTS 0
 #define COUPLER_RCL_HAS_TYPE_DESCRIPTIONS 0
 #endif
+
+// rcl_node_init() publishes /rosout by itself up to Iron (6); from Jazzy on who makes the node does
+// (ros2/rcl#1065).
+#if defined(RCL_VERSION_MAJOR) && RCL_VERSION_MAJOR >= 7
+#define COUPLER_RCL_LEAVES_ROSOUT_TO_US 1
+#else
+#define COUPLER_RCL_LEAVES_ROSOUT_TO_US 0
+#endif

@@ -5,6 +5,7 @@
 #include <rmw/incompatible_qos_events_statuses.h>
 
 #include <functional>
+#include <string>
 #include <utility>
 
 #include "host/ros2/rcl/error.hpp"
@@ -55,6 +56,9 @@ class Event : public Inbox::Source {
   bool known_ = false;
 };
 
+/// Is told of another end of a topic with a QoS that does not fit: the topic, with its namespace, and a
+/// policy.
+using Incompatible = std::function<void(const std::string& topic, rmw_qos_policy_kind_t)>;
 using IncompatibleQos = Event<rmw_qos_incompatible_event_status_t>;
 
 }  // namespace coupler::rcl

@@ -2,8 +2,11 @@
 #include "host/ros2/rcl/node.hpp"
 
 #include <rcl/graph.h>
+#include <rcl/logging.h>
+#include <rcl/logging_rosout.h>
 #include <rcutils/logging.h>
 
+#include "host/ros2/rcl/distro.hpp"
 #include "host/ros2/rcl/error.hpp"
 
 namespace coupler::rcl {
@@ -11,10 +14,18 @@ namespace coupler::rcl {
 Node::Node(Context& context, const std::string& name) : node_(rcl_get_zero_initialized_node()) {
   const rcl_node_options_t options = rcl_node_get_default_options();
   check(rcl_node_init(&node_, name.c_str(), "", context.get(), &options), "cannot make the node " + name);
+  // What is logged goes to /rosout, too, unless --disable-rosout-logs is there.
+#if COUPLER_RCL_LEAVES_ROSOUT_TO_US
+  if (rcl_logging_rosout_enabled())
+    check(rcl_logging_rosout_init_publisher_for_node(&node_), "cannot publish the topic /rosout");
+#endif
 }
 
 Node::~Node() {
   inbox_.stop();
+#if COUPLER_RCL_LEAVES_ROSOUT_TO_US
+  if (rcl_logging_rosout_enabled()) ignore(rcl_logging_rosout_fini_publisher_for_node(&node_));
+#endif
   ignore(rcl_node_fini(&node_));
 }
 

@@ -20,7 +20,9 @@ void AnyPublisher::follow(Events events) {
   if (events.incompatible)
     incompatible_ = std::make_unique<IncompatibleQos>(
         node_.inbox(), publisher_, RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS, rcl_publisher_event_init,
-        [tell = std::move(events.incompatible)](const auto& status) { tell(status.last_policy_kind); });
+        [this, tell = std::move(events.incompatible)](const auto& status) {
+          tell(topic(), status.last_policy_kind);
+        });
 #if COUPLER_RCL_HAS_MATCHED_EVENTS
   if (events.matched)
     matched_ = std::make_unique<Event<rmw_matched_status_t>>(

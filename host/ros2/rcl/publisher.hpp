@@ -20,7 +20,7 @@ class AnyPublisher {
   /// In the inbox's thread; must wait for nothing.
   struct Events {
     std::function<void(int by)> matched{};  ///< so many subscriptions have come, or, negative, gone
-    std::function<void(rmw_qos_policy_kind_t)> incompatible{};
+    Incompatible incompatible{};
   };
 
   /// Throws Error.

@@ -8,7 +8,7 @@ namespace coupler::rcl {
 
 AnySubscription::AnySubscription(Node& node, const rosidl_message_type_support_t* type,
                                  const std::string& topic, const rmw_qos_profile_t& qos,
-                                 std::function<void(rmw_qos_policy_kind_t)> incompatible)
+                                 Incompatible incompatible)
     : Source(node.inbox()), node_(node), subscription_(rcl_get_zero_initialized_subscription()) {
   rcl_subscription_options_t options = rcl_subscription_get_default_options();
   options.qos = qos;
@@ -18,7 +18,9 @@ AnySubscription::AnySubscription(Node& node, const rosidl_message_type_support_t
   if (incompatible)
     incompatible_ = std::make_unique<IncompatibleQos>(
         node.inbox(), subscription_, RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS, rcl_subscription_event_init,
-        [tell = std::move(incompatible)](const auto& status) { tell(status.last_policy_kind); });
+        [this, tell = std::move(incompatible)](const auto& status) {
+          tell(this->topic(), status.last_policy_kind);
+        });
 }
 
 void AnySubscription::listen() {

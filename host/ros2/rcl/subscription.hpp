@@ -18,7 +18,7 @@ class AnySubscription : public Inbox::Source {
  public:
   /// Throws Error.
   AnySubscription(Node& node, const rosidl_message_type_support_t* type, const std::string& topic,
-                  const rmw_qos_profile_t& qos, std::function<void(rmw_qos_policy_kind_t)> incompatible);
+                  const rmw_qos_profile_t& qos, Incompatible incompatible);
 
   std::string topic() const { return rcl_subscription_get_topic_name(&subscription_); }
 
@@ -40,8 +40,7 @@ class Subscription : public AnySubscription {
  public:
   /// `receive` is called in the inbox's thread.
   Subscription(Node& node, const std::string& topic, const rmw_qos_profile_t& qos,
-               std::function<void(const Message&)> receive,
-               std::function<void(rmw_qos_policy_kind_t)> incompatible = {})
+               std::function<void(const Message&)> receive, Incompatible incompatible = {})
       : AnySubscription(node, rosidl_typesupport_cpp::get_message_type_support_handle<Message>(), topic, qos,
                         std::move(incompatible)),
         receive_(std::move(receive)) {
