@@ -80,7 +80,7 @@ Ros2Node::Ros2Node(rcl::Context& context, const std::string& name)
   node_.inbox().start();
 }
 
-Ros2Node::~Ros2Node() { shut_down(); }
+Ros2Node::~Ros2Node() { Ros2Node::shut_down(); }
 
 void Ros2Node::declare_sim_time(bool use_sim_time) {
   ParameterServer::Descriptor descriptor;
@@ -91,7 +91,7 @@ void Ros2Node::declare_sim_time(bool use_sim_time) {
   value.type = descriptor.type;
   value.bool_value = use_sim_time;
   clock_.use_simulated(use_sim_time);
-  parameters_->declare(std::move(descriptor), std::move(value),
+  parameters_->declare(std::move(descriptor), value,
                        [this](const ParameterServer::Value& now) { clock_.use_simulated(now.bool_value); });
 }
 

@@ -58,7 +58,8 @@ void ParameterServer::offer(const char* name, void (ParameterServer::*answer)(co
       }));
 }
 
-void ParameterServer::declare(Descriptor descriptor, Value value, std::function<void(const Value&)> change) {
+void ParameterServer::declare(Descriptor descriptor, const Value& value,
+                              std::function<void(const Value&)> change) {
   const std::lock_guard lock(mutex_);
   descriptor.read_only = !change;
   const std::string name = descriptor.name;

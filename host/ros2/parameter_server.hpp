@@ -31,7 +31,7 @@ class ParameterServer {
 
   /// The descriptor has the name and the type; a value of no type is one that is not set. To be called again
   /// when the value is another one. `change` is called in the inbox's thread.
-  void declare(Descriptor descriptor, Value value, std::function<void(const Value&)> change = {});
+  void declare(Descriptor descriptor, const Value& value, std::function<void(const Value&)> change = {});
 
  private:
   struct Declared {

@@ -13,7 +13,7 @@
 namespace coupler::driver {
 
 Ros2ServiceThread::~Ros2ServiceThread() {
-  end();
+  Ros2ServiceThread::end();
   if (thread_.joinable()) thread_.join();
 }
 

@@ -64,10 +64,11 @@ def programs(prefix):
         assert online.done(), "no /example/online"
         print("online")
     finally:
-        driver.terminate()
-        node.terminate()
-        ends = (driver.wait(PATIENCE), node.wait(PATIENCE))
-    assert ends == (0, 0), ends
+        ends = []
+        for process in (driver, node):
+            process.terminate()
+            ends.append(process.wait(PATIENCE))
+    assert ends == [0, 0], ends
 
 
 if __name__ == "__main__":

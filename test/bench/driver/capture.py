@@ -44,6 +44,11 @@ class Capture:
             yield Packet(float(at) * 1e6, int(source), int(target), bytes.fromhex(data.replace(":", "")))
 
 
+def with_messages(packets, stamps, port):
+    """In the order of time, with messages whose times another program has told, as if they came from `port`."""
+    return sorted([*packets, *(Packet(at, port, 0, b"") for at in stamps)], key=lambda packet: packet.at)
+
+
 def reading(packets, modbus_port, ros_ports, count):
     """(first, between, last) in µs for each response that `count` messages followed: from the response to the first
     message, the mean time from message to message, from the response to the last one."""
@@ -66,7 +71,7 @@ def reading(packets, modbus_port, ros_ports, count):
 
 
 def writing(packets, modbus_port, ros_ports):
-    """From a message that leaves `ros_ports` to the write request that follows it, µs."""
+    """From a message of `ros_ports` to the write request that follows it, µs."""
     results = []
     message = None
     for packet in packets:

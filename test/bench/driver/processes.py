@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The programs of a measurement: a ROS master of its own, and children that end with it."""
+"""The programs of a measurement: a ROS of its own (a master, or a domain of ROS 2), and children that end with it."""
 import contextlib
 import os
 import pathlib
+import random
 import re
 import signal
 import socket
@@ -55,6 +56,9 @@ class Child:
         threads = pathlib.Path(f"/proc/{self.pid}/task").iterdir()
         return sum(int((thread / "schedstat").read_text().split()[0]) for thread in threads) / 1e9
 
+    def resident_mb(self):
+        return int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{self.pid}/status").read_text())[1]) / 1000
+
     def listening_ports(self):
         """TCP ports that the process accepts connections on."""
         inodes = set()
@@ -81,3 +85,16 @@ def ros_master():
         with Child("roscore", "-p", port, environment=environment) as master:
             master.wait_for("started core service", 60)
             yield environment
+
+
+@contextlib.contextmanager
+def ros2_domain(build):
+    """The environment that makes a program a node of a domain that no other has. Whoever calls may set the RMW."""
+    text = subprocess.run(["bash", "-c", 'source "$1" && env -0', "-", build / "setup.bash"], check=True,
+                          stdout=subprocess.PIPE, text=True).stdout
+    environment = dict(line.split("=", 1) for line in text.split("\0") if line)
+    bound = {int(line.split()[1].rsplit(":", 1)[1], 16)
+             for line in pathlib.Path("/proc/net/udp").read_text().splitlines()[1:]}
+    domain = random.choice([d for d in range(102) if 7400 + 250 * d not in bound])
+    with tempfile.TemporaryDirectory() as home:
+        yield dict(environment, ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST", ROS_HOME=home)
