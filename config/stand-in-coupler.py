@@ -3,7 +3,7 @@
 """A Modbus/TCP server of pymodbus that stands in for a commercial coupler, to try config/foreign-coupler.yaml with:
 
     config/stand-in-coupler.py &
-    coupler_driver _map:=config/foreign-coupler.yaml _address:=127.0.0.1 _port:=5020
+    coupler_driver --map config/foreign-coupler.yaml --address 127.0.0.1 --port 5020
 """
 from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
 from pymodbus.server import StartTcpServer

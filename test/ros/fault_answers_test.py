@@ -77,7 +77,7 @@ class FaultExceptions(Answers):
                 self.truth.driver.wait_for(f"plant: the gateway cannot reach unit 1: exception {code:02X}")
                 self.all_is_well()
         self.assertEqual(self.device.accepted, 1)
-        self.assertNotIn("_verify:=off", self.truth.driver.output)  # it has answered before
+        self.assertNotIn("--verify off", self.truth.driver.output)  # it has answered before
 
     def test_a_point_that_the_device_has_not_is_told_and_asked_for_again_on_the_next_connection(self):
         for code in REJECTED:

@@ -36,6 +36,8 @@ UNSEEN = {name + ".yaml" for name in (
     "coupler_watchdog_fed_by coupler_watchdog_heartbeat coupler_watchdog_heartbeat_place coupler_watchdog_of_a_plc "
     "coupler_watchdog_place_is_taken coupler_watchdog_recovery coupler_watchdog_steps coupler_watchdog_too_long "
     "heartbeat_of_a_node "
+    # in a name that is right, but for ROS 1 only
+    "name_in_ros1_only "
     # in the lock, or for want of one
     "address_is_missing lock_does_not_know_it lock_of_a_merge lock_is_outgrown "
     # in the text: gone when it is read as YAML

@@ -56,7 +56,7 @@ TEST_F(DeviceIdentityTest, A_device_that_is_silent_about_its_identity_is_told_on
   start(here());
   for (int i = 0; i < 4; ++i) device.next_errors.push_back(Timeout{milliseconds(3000)});
   run_for(milliseconds(1200));
-  EXPECT_EQ(sink->reported("_verify:=off"), 1);
+  EXPECT_EQ(sink->reported("--verify off"), 1);
   EXPECT_TRUE(sink->online.empty());
   run_for(seconds(6));
   EXPECT_THAT(sink->online, ElementsAre(true));
@@ -69,7 +69,7 @@ TEST_F(DeviceIdentityTest, A_unit_that_a_gateway_never_reached_is_told_as_such_w
   run_for(milliseconds(1200));
   EXPECT_EQ(sink->reported("the gateway answers, but unit 1 does not answer"), 1);
   EXPECT_EQ(sink->reported("'unit' is its unit id"), 1);
-  EXPECT_EQ(sink->reported("_verify:=off"), 1);
+  EXPECT_EQ(sink->reported("--verify off"), 1);
   EXPECT_EQ(sink->reported("the gateway cannot reach unit 1: exception 0B"), 1);
   EXPECT_EQ(sink->reported("not connected"), 0);
 }
@@ -85,7 +85,7 @@ TEST_F(DeviceIdentityTest, Who_has_answered_once_is_not_taken_for_one_who_ignore
     for (int i = 0; i < 6; ++i) device.next_errors.push_back(trouble);
     run_for(seconds(3));
     const bool by_gateway = is_unit_away(trouble);
-    EXPECT_EQ(sink->reported("_verify:=off"), 0);
+    EXPECT_EQ(sink->reported("--verify off"), 0);
     EXPECT_EQ(sink->reported("the gateway cannot reach unit 1: exception 0A"), by_gateway ? 1 : 0);
     EXPECT_EQ(sink->reported("connection lost"), by_gateway ? 0 : 1);
   }
