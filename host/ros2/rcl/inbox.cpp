@@ -14,14 +14,15 @@ constexpr int turn = 32;
 void Inbox::add(Source& source) {
   {
     const std::lock_guard lock(mutex_);
-    if (ended_) return;
+    if (ended_ || source.left_) return;
     noted_.push_back(&source);
   }
   changed_.notify_all();
 }
 
-void Inbox::remove(const Source& source) {
+void Inbox::remove(Source& source) {
   std::unique_lock lock(mutex_);
+  source.left_ = true;  // after a long turn it notes itself once more
   noted_.erase(std::remove(noted_.begin(), noted_.end(), &source), noted_.end());
   if (std::this_thread::get_id() == thread_.get_id()) return;
   changed_.wait(lock, [&] { return current_ != &source; });

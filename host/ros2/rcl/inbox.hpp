@@ -45,6 +45,7 @@ class Inbox {
     friend class Inbox;
     Inbox& inbox_;
     std::atomic<bool> noted_{false};
+    bool left_ = false;  ///< leave() was called
   };
 
   ~Inbox() { stop(); }
@@ -56,7 +57,7 @@ class Inbox {
 
  private:
   void add(Source& source);
-  void remove(const Source& source);
+  void remove(Source& source);
   void run();
   void empty(Source& source);
 
