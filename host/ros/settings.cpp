@@ -46,7 +46,7 @@ Outcome set_number(std::optional<T>& field, const SettingKey& key, const std::st
 
 Outcome set_timeout(Settings& settings, const SettingKey& key, const std::string& text) {
   std::optional<double> seconds;
-  if (const auto done = set_number(seconds, key, text); !done) return done;
+  if (auto done = set_number(seconds, key, text); !done) return done;
   settings.timeout = std::chrono::milliseconds(std::lround(*seconds * 1000));
   return {};
 }
