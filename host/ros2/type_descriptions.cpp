@@ -30,9 +30,8 @@ class TypeDescriptions : public rcl::Inbox::Source {
  protected:
   bool take() override {
     type_description_interfaces__srv__GetTypeDescription_Request request;
-    type_description_interfaces__srv__GetTypeDescription_Response response;
+    type_description_interfaces__srv__GetTypeDescription_Response response{};  // rcl makes it
     type_description_interfaces__srv__GetTypeDescription_Request__init(&request);
-    type_description_interfaces__srv__GetTypeDescription_Response__init(&response);
     rmw_request_id_t id;
     const bool taken = rcl_take_request(&service_, &id, &request) == RCL_RET_OK;
     if (taken) rcl_node_type_description_service_handle_request(node_.get(), &id, &request, &response);
