@@ -25,8 +25,7 @@ int serve(const Map& map, const Options& options, StderrLog& log, const ReadMap&
   ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"));
   Station station(loop, options, again, manager, log, hooks);
   if (const auto started = station.start(map); !started) return failed(started.error());
-  Pulse* const managed = manager.is_there() ? &manager : nullptr;
-  const bool safe = Keeper(loop, signals, station, log, managed).run();
+  const bool safe = Keeper(loop, signals, station, log, &station).run();
   manager.stopping();
   if (safe) return 0;
   return failed({Refusal::device_failed, "ended, and not every output could be driven to its safe state"});

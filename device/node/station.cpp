@@ -57,7 +57,6 @@ tl::expected<void, Refusal> Station::start(const Map& map) {
     return tl::unexpected(
         Refusal{Refusal::device_failed, "not every analogue output can be driven to its initial value"});
   duty_->wiring = std::exchange(duty_->prepared, nullptr)->take_over();
-  log_.write(greeting());
   manager_.set_status(greeting());
   return {};
 }
@@ -141,6 +140,11 @@ int Station::serve(Superior& superior, std::vector<OpenConnection> clients) {
   else
     return end_without_keeper(service);
   return 0;
+}
+
+void Station::beat() {
+  if (!std::exchange(has_greeted_, true)) log_.write(greeting());
+  manager_.beat();
 }
 
 /// Were this process to die now, nobody would drive the outputs. Whoever started the node starts it again.

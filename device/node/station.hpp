@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "device/keeper/charge.hpp"
+#include "device/keeper/pulse.hpp"
 #include "device/net/signals.hpp"
 #include "device/node/duty.hpp"
 #include "device/node/guarded_hooks.hpp"
@@ -30,7 +31,7 @@ struct Refusal {
 void tell(Log& log, const Refusal& refusal);
 
 /// A node with the map in force, which may be replaced by another one while masters are served.
-class Station final : public Charge {
+class Station final : public Charge, public Pulse {
  public:
   /// `loop` is the keeper's. `again` is empty if the map is built in, `hooks` null if no code is bound to its
   /// points. All of them outlive it.
@@ -47,6 +48,9 @@ class Station final : public Charge {
   bool drive_safe() override;
   bool make_firmware_safe() override;
   bool has_firmware() const override { return firmware_ != nullptr; }
+
+  /// A sign of life of the I/O process. With the first one the node says that it serves.
+  void beat() override;
 
  private:
   tl::expected<std::unique_ptr<Duty>, Refusal> prepare(const Map& map, MapPtr owner);
@@ -65,6 +69,7 @@ class Station final : public Charge {
   Log& log_;
   Hooks* firmware_;
   identity::Machine machine_;
+  bool has_greeted_ = false;
   std::unique_ptr<GuardedHooks> hooks_;  ///< null: there is no firmware
   std::unique_ptr<Duty> duty_;
   std::unique_ptr<Duty> next_;           ///< waits for change()

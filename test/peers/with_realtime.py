@@ -57,7 +57,9 @@ def refused_with_the_remedy(command, checks):
 
 def serves_ahead_of_others(command, checks):
     with Served(command) as node:
-        for i, pid in enumerate(node.processes()):
+        processes = node.processes()
+        checks.equal("processes", len(processes), 2)
+        for i, pid in enumerate(processes):
             who = "the first process" if i == 0 else f"process {i + 1}"
             checks.equal(f"policy of {who}", os.sched_getscheduler(pid), os.SCHED_FIFO | os.SCHED_RESET_ON_FORK)
             checks.equal(f"priority of {who}", os.sched_getparam(pid).sched_priority, IO_PROCESS if i else SUPERVISOR)

@@ -17,7 +17,9 @@ using codec::Type;
 using fakes::MapBuilder;
 using modbus::Range;
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 Options simulated() {
   Options options;
@@ -65,6 +67,13 @@ class Simulated : public testing::Test {
   Loop loop_;
   Station station_{loop_, options_, {[this] { return next_; }}, nobody_, log_};
 };
+
+TEST_F(Simulated, It_says_that_it_serves_once_it_does) {
+  EXPECT_THAT(log_.lines, Not(Contains(HasSubstr("serving"))));
+  station_.beat();
+  station_.beat();
+  EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("serving plant (2 points")));
+}
 
 TEST_F(Simulated, A_map_that_looks_the_same_keeps_the_clients) {
   next_ = plant().build();

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a test of either ROS's driver starts and publishes, and how its file is run."""
+import sys
+import unittest
+
+from support.process import Driver
+from support.topics import connected_publishers, service
+
+
+class Case(unittest.TestCase):
+    """What a test starts, listens to or publishes ends with it: a publisher that stayed would count a driver that is
+    gone as its subscriber."""
+
+    def publisher(self, name, kind):
+        return self.publishers({name: kind})[0]
+
+    def publishers(self, kinds):
+        publishers = connected_publishers(kinds)
+        for publisher in publishers:
+            self.addCleanup(publisher.unregister)
+        return publishers
+
+    @staticmethod
+    def service(name, kind, **options):
+        return service(name, kind, **options)
+
+    def driver(self, *arguments):
+        driver = Driver(*arguments)
+        self.addCleanup(driver.end)
+        return driver
+
+
+def run(at_the_end=lambda: None):
+    """Runs the tests of the program. Exit code 77: all of them were skipped."""
+    result = unittest.main(exit=False, verbosity=2, warnings="ignore").result
+    at_the_end()
+    if not result.wasSuccessful():
+        sys.exit(1)
+    if result.testsRun and len(result.skipped) == result.testsRun:
+        print(f"skipped: {result.skipped[0][1]}")
+        sys.exit(77)
