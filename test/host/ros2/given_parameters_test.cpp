@@ -40,17 +40,16 @@ TEST(GivenParameters, The_last_one_that_is_given_counts) {
 
 TEST(GivenParameters, What_YAML_made_of_a_word_is_understood) {
   const auto settings = settings_among({{"verify", Kind::truth, "false"},
-                                        {"name", Kind::whole, "42"},
                                         {"address", Kind::list, "::1"},
                                         {"rate", Kind::whole, "5"},
                                         {"port", Kind::text, "1502"}},
                                        "");
   ASSERT_TRUE(settings) << settings.error();
   EXPECT_EQ(settings->verify, Verify::off);
-  EXPECT_EQ(settings->name, "42");
   EXPECT_EQ(settings->address, "::1");
   EXPECT_EQ(settings->rate, 5);
   EXPECT_EQ(settings->port, 1502);
+  EXPECT_THAT(settings_among({{"name", Kind::whole, "42"}}, "").error(), HasSubstr("'42' is not a name"));
 }
 
 TEST(GivenParameters, What_YAML_has_made_unreadable_is_refused_with_quotes) {
