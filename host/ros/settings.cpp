@@ -190,6 +190,11 @@ std::vector<std::string_view> setting_names() {
   return names;
 }
 
+bool is_setting(std::string_view name) {
+  const auto names = setting_names();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 std::string no_such_setting(std::string_view name) {
   return "there is no such setting; " +
          loader::nearest_or(name, setting_names(), "coupler_driver --help shows them");

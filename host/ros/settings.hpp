@@ -42,6 +42,7 @@ struct SettingKey {
 extern const std::array<SettingKey, 10> setting_keys;
 /// Of all of them, the other spellings included.
 std::vector<std::string_view> setting_names();
+bool is_setting(std::string_view name);
 /// "there is no such setting; did you mean 'poll'?"
 std::string no_such_setting(std::string_view name);
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "host/ros/options.hpp"
+#include "common/base/starts_with.hpp"
 #include "host/ros/program.hpp"
 
 namespace coupler::driver {
@@ -25,8 +25,6 @@ constexpr const char* help =
     "  rostopic echo /device/in_A\n"
     "  rostopic pub -1 /device/out_Z/write std_msgs/Bool true";
 
-bool starts_with(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
-
 /// What was given in ROS's spelling, `_key:=VALUE`.
 struct Assignment {
   std::string_view device;  ///< of `_device/key:=VALUE`
@@ -42,11 +40,6 @@ struct Sorted {
   std::vector<char*> for_ros;
   bool names_the_node = false;
 };
-
-bool is_setting(std::string_view name) {
-  const auto names = setting_names();
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 /// ROS's own are left out.
 Sorted sorted(Span<char* const> arguments) {
@@ -97,11 +90,7 @@ const Dialect ros1_dialect{
 
 Arguments parse_arguments(Span<char* const> arguments) {
   Sorted given = sorted(arguments);
-  Arguments result;
-  Options options = parse_options(std::move(given.options), ros1_dialect);
-  result.settings = std::move(options.settings);
-  result.exit_code = options.exit_code;
-  result.text = std::move(options.text);
+  Arguments result{parse_options(std::move(given.options), ros1_dialect), {}, {}, false};
   result.names_the_node = given.names_the_node;
   result.for_ros = std::move(given.for_ros);
   if (result.exit_code == 0) return result;

@@ -2,25 +2,20 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/base/span.hpp"
-#include "host/ros/dialect.hpp"
-#include "host/ros/settings.hpp"
+#include "host/ros/options.hpp"
 
 namespace coupler::driver {
 
 extern const Dialect ros1_dialect;
 
-struct Arguments {
-  Settings settings;
+struct Arguments : Options {
   std::map<std::string, Settings> of_devices;  ///< by the name in their maps
-  std::vector<char*> for_ros;    ///< all but those of one device, which ROS would keep as parameters
-  bool names_the_node = false;   ///< `__name:=` is there
-  std::optional<int> exit_code;  ///< the program is to end: 0 after --help, 2 after a wrong call
-  std::string text;              ///< then: what to print, to stdout or stderr
+  std::vector<char*> for_ros;   ///< all but those of one device, which ROS would keep as parameters
+  bool names_the_node = false;  ///< `__name:=` is there
 };
 
 /// Reads the settings in both spellings, `_key:=VALUE` and `--key VALUE`, and those of one device of several,

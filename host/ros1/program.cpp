@@ -61,8 +61,9 @@ tl::expected<Devices, int> configure(std::vector<MapSource> sources, const Argum
   for (const std::string& line :
        unknown_parameters(several ? names_of(sources) : std::vector<std::string_view>()))
     ros_log(Level::warning, line);
+  const auto common = read_parameters(ros::NodeHandle("~"));
   const auto settings_of = [&](std::string_view name) {
-    auto settings = read_parameters(ros::NodeHandle("~"));
+    auto settings = common;
     if (settings && several) {
       const auto own = read_parameters(ros::NodeHandle("~" + std::string(name)));
       settings = own ? overlay(*settings, *own) : own;
@@ -111,8 +112,8 @@ int main_with(const Map* built_in, int argc, char** argv) {
   if (!arguments.names_the_node && !init_ros(arguments.for_ros, name)) return wrong_call;
   const auto devices = configure(std::move(*sources), arguments);
   if (!devices) return devices.error();
-  Ending::in_order_on_signals();  // roscpp would shut down in a thread of its own, while this one still uses
-                                  // it
+  // roscpp would shut down in a thread of its own, while this one still uses it.
+  Ending::in_order_on_signals();
   Ros1Node node;
   return drive(*devices, node);
 }

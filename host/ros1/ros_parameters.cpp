@@ -43,14 +43,14 @@ constexpr std::string_view of_others[] = {"diagnostic_period", "diagnostic_updat
 void add_unknown(XmlRpc::XmlRpcValue& tree, const std::string& place,
                  const std::vector<std::string_view>& devices, std::vector<std::string>& lines) {
   if (tree.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
-  std::vector<std::string_view> names = setting_names();
   for (auto& [name, value] : tree) {
     if (std::find(std::begin(of_others), std::end(of_others), name) != std::end(of_others)) continue;
     if (std::find(devices.begin(), devices.end(), name) != devices.end())
       add_unknown(value, fmt::format("{}/{}", place, name), {}, lines);
-    else if (std::find(names.begin(), names.end(), name) == names.end())
-      lines.push_back(fmt::format("parameter {}/{} is no setting and does nothing; {}", place, name,
-                                  loader::nearest_or(name, names, "coupler_driver --help shows them")));
+    else if (!is_setting(name))
+      lines.push_back(
+          fmt::format("parameter {}/{} is no setting and does nothing; {}", place, name,
+                      loader::nearest_or(name, setting_names(), "coupler_driver --help shows them")));
   }
 }
 

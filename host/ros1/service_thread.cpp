@@ -9,8 +9,6 @@
 
 #include <utility>
 
-#include "host/ros/service_reply.hpp"
-
 namespace coupler::driver {
 namespace {
 
@@ -19,13 +17,22 @@ ros::WallDuration idle_turn() { return ros::WallDuration(1); }
 
 }  // namespace
 
+struct Ros1Services {
+  using Write = coupler_driver::Write;
+  using Read = coupler_driver::Read;
+  using SetBool = std_srvs::SetBool;
+  using Trigger = std_srvs::Trigger;
+};
+
+Ros1ServiceThread::Ros1ServiceThread(ros::NodeHandle& handle) : handle_(handle) {}
+
 Ros1ServiceThread::~Ros1ServiceThread() {
   queue_.disable();
   if (thread_.joinable()) thread_.join();
 }
 
 template <class S, class Function>
-void Ros1ServiceThread::advertise(const std::string& name, Function function) {
+void Ros1ServiceThread::serve(const std::string& name, Function function) {
   auto options = ros::AdvertiseServiceOptions::create<S>(
       name,
       [function = std::move(function)](typename S::Request& request, typename S::Response& response) {
@@ -34,32 +41,6 @@ void Ros1ServiceThread::advertise(const std::string& name, Function function) {
       },
       ros::VoidPtr(), &queue_);
   servers_.push_back(handle_.advertiseService(options));
-}
-
-void Ros1ServiceThread::offer_write(
-    const std::string& name,
-    std::function<WriteTicket::Outcome(const std::string&, const std::string&)> call) {
-  advertise<coupler_driver::Write>(name, [call = std::move(call)](const auto& request, auto& response) {
-    fill(response, call(request.point, request.value));
-  });
-}
-
-void Ros1ServiceThread::offer_read(const std::string& name,
-                                   std::function<ReadAnswer(const std::string&)> call) {
-  advertise<coupler_driver::Read>(name, [call = std::move(call)](const auto& request, auto& response) {
-    fill(response, call(request.point));
-  });
-}
-
-void Ros1ServiceThread::offer_set(const std::string& name, std::function<Calls::Answer(bool)> call) {
-  advertise<std_srvs::SetBool>(name, [call = std::move(call)](const auto& request, auto& response) {
-    fill(response, call(request.data != 0));
-  });
-}
-
-void Ros1ServiceThread::offer_trigger(const std::string& name, std::function<Calls::Answer()> call) {
-  advertise<std_srvs::Trigger>(
-      name, [call = std::move(call)](const auto&, auto& response) { fill(response, call()); });
 }
 
 void Ros1ServiceThread::start() {

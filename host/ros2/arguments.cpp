@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "host/ros/options.hpp"
+#include "common/base/starts_with.hpp"
 #include "host/ros/program.hpp"
 
 namespace coupler::driver {
@@ -27,8 +27,6 @@ constexpr std::string_view help =
     "  coupler_driver --maps press.yaml,belt.yaml --ros-args -p belt.address:=192.168.10.102\n"
     "  ros2 topic echo /device/in_A\n"
     "  ros2 topic pub -1 /device/out_Z/write std_msgs/msg/Bool '{data: true}'";
-
-bool starts_with(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
 
 /// How ROS 2 spells an assignment of ROS 1, `from:=to`.
 std::string in_ros2(std::string_view assignment) {
@@ -91,10 +89,7 @@ Arguments parse_arguments(Span<char* const> arguments) {
     result.text = std::move(wrong);
     return result;
   }
-  Options parsed = parse_options(std::move(options), ros2_dialect);
-  result.settings = std::move(parsed.settings);
-  result.exit_code = parsed.exit_code;
-  result.text = std::move(parsed.text);
+  static_cast<Options&>(result) = parse_options(std::move(options), ros2_dialect);
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "common/base/starts_with.hpp"
 #include "common/map/loader/nearest.hpp"
 #include "host/ros2/rcl/error.hpp"
 
@@ -43,7 +44,6 @@ GivenParameter given(std::string name, const rcl_variant_t& value) {
   return list;
 }
 
-bool starts_with(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
 bool is_for_all(std::string_view node) { return node.find('*') != std::string_view::npos; }
 
 /// `/*` stands for one name of the path and `/**` for any number of them, as in every ROS 2 node.
@@ -68,11 +68,6 @@ std::string_view setting_of(std::string_view name, const std::vector<std::string
     if (starts_with(name, device) && name.substr(device.size(), 1) == ".")
       return name.substr(device.size() + 1);
   return name;
-}
-
-bool is_setting(std::string_view name) {
-  const auto names = setting_names();
-  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 bool is_meant_for_a_driver(const GivenParameters::Section& section) {

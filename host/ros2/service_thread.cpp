@@ -8,9 +8,16 @@
 
 #include <utility>
 
-#include "host/ros/service_reply.hpp"
-
 namespace coupler::driver {
+
+struct Ros2Services {
+  using Write = coupler_driver::srv::Write;
+  using Read = coupler_driver::srv::Read;
+  using SetBool = std_srvs::srv::SetBool;
+  using Trigger = std_srvs::srv::Trigger;
+};
+
+Ros2ServiceThread::Ros2ServiceThread(rcl::Node& node) : node_(node) {}
 
 Ros2ServiceThread::~Ros2ServiceThread() {
   Ros2ServiceThread::end();
@@ -44,7 +51,7 @@ void Ros2ServiceThread::run() {
 }
 
 template <class S, class Function>
-void Ros2ServiceThread::offer(const std::string& name, Function function) {
+void Ros2ServiceThread::serve(const std::string& name, Function function) {
   using Service = rcl::Service<S>;
   auto service = std::make_shared<std::unique_ptr<Service>>();
   *service =
@@ -61,32 +68,6 @@ void Ros2ServiceThread::offer(const std::string& name, Function function) {
                                   changed_.notify_one();
                                 });
   services_.push_back(std::move(service));
-}
-
-void Ros2ServiceThread::offer_write(
-    const std::string& name,
-    std::function<WriteTicket::Outcome(const std::string&, const std::string&)> call) {
-  offer<coupler_driver::srv::Write>(name, [call = std::move(call)](const auto& request, auto& response) {
-    fill(response, call(request.point, request.value));
-  });
-}
-
-void Ros2ServiceThread::offer_read(const std::string& name,
-                                   std::function<ReadAnswer(const std::string&)> call) {
-  offer<coupler_driver::srv::Read>(name, [call = std::move(call)](const auto& request, auto& response) {
-    fill(response, call(request.point));
-  });
-}
-
-void Ros2ServiceThread::offer_set(const std::string& name, std::function<Calls::Answer(bool)> call) {
-  offer<std_srvs::srv::SetBool>(name, [call = std::move(call)](const auto& request, auto& response) {
-    fill(response, call(request.data));
-  });
-}
-
-void Ros2ServiceThread::offer_trigger(const std::string& name, std::function<Calls::Answer()> call) {
-  offer<std_srvs::srv::Trigger>(
-      name, [call = std::move(call)](const auto&, auto& response) { fill(response, call()); });
 }
 
 }  // namespace coupler::driver

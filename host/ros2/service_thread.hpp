@@ -8,30 +8,28 @@
 #include <thread>
 #include <vector>
 
-#include "host/ros/node.hpp"
+#include "host/ros/typed_service_thread.hpp"
 #include "host/ros2/rcl/service.hpp"
 
 namespace coupler::driver {
 
-class Ros2ServiceThread : public ServiceThread {
+struct Ros2Services;
+
+class Ros2ServiceThread : public TypedServiceThread<Ros2ServiceThread, Ros2Services> {
  public:
-  explicit Ros2ServiceThread(rcl::Node& node) : node_(node) {}
+  explicit Ros2ServiceThread(rcl::Node& node);
   ~Ros2ServiceThread() override;
   Ros2ServiceThread(const Ros2ServiceThread&) = delete;
   Ros2ServiceThread& operator=(const Ros2ServiceThread&) = delete;
 
-  void offer_write(const std::string& name,
-                   std::function<WriteTicket::Outcome(const std::string&, const std::string&)> call) override;
-  void offer_read(const std::string& name, std::function<ReadAnswer(const std::string&)> call) override;
-  void offer_set(const std::string& name, std::function<Calls::Answer(bool)> call) override;
-  void offer_trigger(const std::string& name, std::function<Calls::Answer()> call) override;
   void start() override;
   void end() override;
 
- private:
   /// Calls function(request, response) in this thread.
   template <class S, class Function>
-  void offer(const std::string& name, Function function);
+  void serve(const std::string& name, Function function);
+
+ private:
   void run();
 
   rcl::Node& node_;

@@ -6,34 +6,14 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Bool, Int16
 
-from support import process, testing
-from support.patience import NO_TIMEOUT, PATIENCE
-from support.peer import Peer
+from support import levels, process, testing
+from support.levels import write_map
+from support.patience import PATIENCE
 from support.ports import free_port
 from support.topics import wait_until
 
-MAP = """
-name: {name}
-address: 127.0.0.1
-port: {port}
-rate: 20
-timeout: {timeout}
-mapping:
-  holding_registers: {{level: {{address: 4, type: INT}}}}
-"""
 
-
-def write_map(name, port):
-    return process.write_map(MAP.format(name=name, port=port, timeout=NO_TIMEOUT))
-
-
-class SeveralDevices(testing.RosTest):
-    def peer(self, level):
-        peer = Peer().start()
-        self.addCleanup(peer.stop)
-        peer.set("holding_registers", 4, [level])
-        return peer
-
+class SeveralDevices(levels.LevelsTest):
     def test_each_spelling_of_the_list_drives_them_all(self):
         press, belt = self.peer(11), self.peer(22)
         maps = [write_map("press", press.port), write_map("belt", belt.port)]

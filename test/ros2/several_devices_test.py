@@ -5,35 +5,14 @@ import socket
 from coupler_driver.srv import Write
 from std_msgs.msg import Bool, Int16
 
-from support import process, testing
+from support import levels, testing
+from support.levels import write_map
 from support.parameters import Parameters, write_parameters
-from support.patience import NO_TIMEOUT
-from support.peer import Peer
 from support.ports import free_port
 from support.topics import wait_until
 
-MAP = """
-name: {name}
-address: 127.0.0.1
-port: {port}
-rate: 20
-timeout: {timeout}
-mapping:
-  holding_registers: {{level: {{address: 4, type: INT}}}}
-"""
 
-
-def write_map(name, port):
-    return process.write_map(MAP.format(name=name, port=port, timeout=NO_TIMEOUT))
-
-
-class SeveralTest(testing.RosTest):
-    def peer(self, level):
-        peer = Peer().start()
-        self.addCleanup(peer.stop)
-        peer.set("holding_registers", 4, [level])
-        return peer
-
+class SeveralTest(levels.LevelsTest):
     def reads(self, **levels):
         for name, level in levels.items():
             self.assertEqual(self.topic(f"/{name}/level", Int16).next(), level)

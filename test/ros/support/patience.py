@@ -4,6 +4,7 @@ must not come is looked for a while."""
 import os
 import pathlib
 import re
+import time
 
 _CACHE = pathlib.Path(os.environ["COUPLER_BUILD_DIR"]) / "CMakeCache.txt"
 _SANITIZED = _CACHE.exists() and re.search(r"^COUPLER_SANITIZE:\w+=.", _CACHE.read_text(), re.MULTILINE)
@@ -14,3 +15,11 @@ QUIET = 0.7  # seconds in which nothing comes: fourteen polls at the 20 Hz of mo
 # Of a map whose test is not about timeouts: longer than any test waits, so that a reply that comes late because the machine
 # is busy is no fault of the device.
 NO_TIMEOUT = 10 * PATIENCE
+
+
+def wait_until(condition, what, seconds=PATIENCE):
+    end = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > end:
+            raise AssertionError(f"waited {seconds} s for {what}")
+        time.sleep(0.005)

@@ -1,17 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-import sys
-import unittest
-
 import rospy
 
-from support.process import Driver
-from support.topics import Topic, connected_publishers, service
+from support import case
+from support.topics import Topic
 
 
-class RosTest(unittest.TestCase):
-    """What a test starts, listens to or publishes ends with it: a publisher that stayed would count a driver that is
-    gone as its subscriber."""
-
+class RosTest(case.Case):
     def run(self, result=None):
         """On a parameter server as a new roscore has it: a launch file's parameters outlive its nodes."""
         for name in rospy.get_param_names():
@@ -25,31 +19,8 @@ class RosTest(unittest.TestCase):
         self.addCleanup(topic.close)
         return topic
 
-    def publisher(self, name, kind):
-        return self.publishers({name: kind})[0]
-
-    def publishers(self, kinds):
-        publishers = connected_publishers(kinds)
-        for publisher in publishers:
-            self.addCleanup(publisher.unregister)
-        return publishers
-
-    @staticmethod
-    def service(name, kind, **options):
-        return service(name, kind, **options)
-
-    def driver(self, *arguments):
-        driver = Driver(*arguments)
-        self.addCleanup(driver.end)
-        return driver
-
 
 def main():
-    """Runs the tests of the calling file as a ROS node. Exit code 77: all of them were skipped."""
+    """Runs the tests of the calling file as a ROS node."""
     rospy.init_node("test", anonymous=True, disable_signals=True)
-    result = unittest.main(exit=False, verbosity=2, warnings="ignore").result
-    if not result.wasSuccessful():
-        sys.exit(1)
-    if result.testsRun and len(result.skipped) == result.testsRun:
-        print(f"skipped: {result.skipped[0][1]}")
-        sys.exit(77)
+    case.run()

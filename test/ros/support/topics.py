@@ -8,7 +8,7 @@ import time
 import rospy
 import rostopic
 
-from support.patience import PATIENCE, QUIET
+from support.patience import PATIENCE, QUIET, wait_until
 
 
 class Topic:
@@ -104,14 +104,6 @@ def connected_publishers(kinds):
     for publisher in publishers:
         wait_until(lambda p=publisher: p.get_num_connections() > 0, f"a subscriber of {publisher.name}")
     return publishers
-
-
-def wait_until(condition, what, seconds=PATIENCE):
-    end = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > end:
-            raise AssertionError(f"waited {seconds} s for {what}")
-        time.sleep(0.01)
 
 
 class NoService(Exception):

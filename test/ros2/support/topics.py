@@ -8,7 +8,7 @@ import time
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from support.patience import PATIENCE, QUIET
+from support.patience import PATIENCE, QUIET, wait_until
 from support.ros import polled, spun
 
 STEP = 0.005  # seconds from a look to the next
@@ -242,11 +242,3 @@ def service(name, kind, seconds=PATIENCE):
 def response_of(kind):
     """The message that a service of this type answers with."""
     return kind.Response
-
-
-def wait_until(condition, what, seconds=PATIENCE):
-    end = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > end:
-            raise AssertionError(f"waited {seconds} s for {what}")
-        time.sleep(STEP)
