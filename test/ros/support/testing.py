@@ -1,5 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
+import contextlib
+import threading
+import time
+import xmlrpc.client
+
+import rosgraph
 import rospy
+from rospy.impl.registration import get_topic_manager
 
 from support import case
 from support.topics import Topic
@@ -23,4 +30,21 @@ class RosTest(case.Case):
 def main():
     """Runs the tests of the calling file as a ROS node."""
     rospy.init_node("test", anonymous=True, disable_signals=True)
+    threading.Thread(target=_tell_of_publishers, daemon=True).start()
     case.run()
+
+
+def _tell_of_publishers():
+    """rospy handles what it hears of a topic's publishers last in, first out, and drops what is older: on a busy machine the
+    answer to its own registration, in which there was no publisher yet, may so undo the news of one. It would never hear of
+    that one again."""
+    master = rosgraph.Master(rospy.get_name())
+    this_node = xmlrpc.client.ServerProxy(rospy.get_node_uri())
+    while True:
+        time.sleep(5)
+        with contextlib.suppress(OSError, rosgraph.MasterException, xmlrpc.client.Fault):  # a master that comes and goes
+            publishers = dict(master.getSystemState()[0])
+            for name, subscriber in list(get_topic_manager().subs.items()):
+                if subscriber.get_num_connections() == 0 and name in publishers:
+                    uris = [master.lookupNode(node) for node in publishers[name]]
+                    this_node.publisherUpdate("/test", name, uris)
