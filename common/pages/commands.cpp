@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/starts_with.hpp"
 #include "common/pages/ros_message.hpp"
 #include "common/pages/words.hpp"
 
@@ -70,18 +71,27 @@ std::vector<Command> mbpoll_commands(const Map& map) {
 
 std::vector<Command> ros_commands(const Map& map, const std::string& file) {
   std::vector<Command> commands{
-      {"every point as a topic", fmt::format("coupler_driver _map:={}", quoted(file))}};
-  if (const Point* point = first(map, [](const Point& p) { return is_readable(p); }))
-    commands.push_back(
-        {"one point as it is read", fmt::format("rostopic echo /{}/{}", map.name, point->name)});
+      {"every point as a topic", fmt::format("coupler_driver --map {}", quoted(file))}};
+  if (const Point* point = first(map, [](const Point& p) { return is_readable(p); })) {
+    const std::string topic = fmt::format("/{}/{}", map.name, point->name);
+    commands.push_back({"one point as it is read, in ROS 2", "ros2 topic echo " + topic});
+    commands.push_back({"the same in ROS 1", "rostopic echo " + topic});
+  }
+  constexpr std::string_view std_msgs = "std_msgs/";
   // Messages of several values need a layout or a list of the right length: no line to begin with.
-  const auto single = [](const Point& p) {
-    return is_writable(p) && p.count == 1 && ros_message(p).rfind("std_msgs/", 0) == 0;
+  const auto single = [&](const Point& p) {
+    return is_writable(p) && p.count == 1 && starts_with(ros_message(p), std_msgs);
   };
-  if (const Point* point = first(map, single))
+  if (const Point* point = first(map, single)) {
+    const std::string topic = fmt::format("/{}/{}/write", map.name, point->name);
+    const std::string message = ros_message(*point);
+    const std::string value = example_value(*point);
+    commands.push_back({"one point is written, in ROS 2",
+                        fmt::format("ros2 topic pub --once {} std_msgs/msg/{} '{{data: {}}}'", topic,
+                                    message.substr(std_msgs.size()), value)});
     commands.push_back(
-        {"one point is written", fmt::format("rostopic pub --once /{}/{}/write {} {}", map.name, point->name,
-                                             ros_message(*point), example_value(*point))});
+        {"the same in ROS 1", fmt::format("rostopic pub --once {} {} {}", topic, message, value)});
+  }
   return commands;
 }
 

@@ -18,7 +18,8 @@ struct Command {
 /// shows as its registers.
 std::vector<Command> mbpoll_commands(const Map& map);
 
-/// ROS tools list the topics, show the first readable point and write the first writable one.
+/// The driver makes the topics; the tools of ROS 2 and of ROS 1 show the first readable point and write the
+/// first writable one.
 std::vector<Command> ros_commands(const Map& map, const std::string& file);
 
 }  // namespace coupler::pages

@@ -10,6 +10,7 @@ namespace {
 
 using codec::Order;
 using codec::Type;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr Table hr = Table::holding_registers;
@@ -47,17 +48,21 @@ TEST(Commands, Texts_of_the_map_are_one_word_for_the_shell) {
   builder.head().connection.address = "a; rm -rf 'x'";
   const auto map = builder.build();
   EXPECT_THAT(mbpoll_commands(map->map()).at(0).line, HasSubstr(R"( 'a; rm -rf '\''x'\''')"));
-  EXPECT_THAT(ros_commands(map->map(), "my map.yaml").at(0).line, HasSubstr("_map:='my map.yaml'"));
+  EXPECT_THAT(ros_commands(map->map(), "my map.yaml").at(0).line, HasSubstr("--map 'my map.yaml'"));
 }
 
 TEST(Commands, Ros_writes_the_first_point_that_takes_one_value) {
   auto builder = fakes::MapBuilder("cell");
   builder.many(hr, 0, 1);  // a WORD: an array of bits
   builder.add(hr, "speed", 4, Type::INT);
-  const auto commands = ros_commands(builder.build()->map(), "cell.yaml");
-  ASSERT_EQ(commands.size(), 3U);
-  EXPECT_EQ(commands[1].line, "rostopic echo /cell/holding_registers_0");
-  EXPECT_EQ(commands[2].line, "rostopic pub --once /cell/speed/write std_msgs/Int16 1");
+  std::vector<std::string> lines;
+  for (const Command& command : ros_commands(builder.build()->map(), "cell.yaml"))
+    lines.push_back(command.line);
+  EXPECT_THAT(lines,
+              ElementsAre("coupler_driver --map cell.yaml", "ros2 topic echo /cell/holding_registers_0",
+                          "rostopic echo /cell/holding_registers_0",
+                          "ros2 topic pub --once /cell/speed/write std_msgs/msg/Int16 '{data: 1}'",
+                          "rostopic pub --once /cell/speed/write std_msgs/Int16 1"));
 }
 
 }  // namespace
