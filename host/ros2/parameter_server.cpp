@@ -2,12 +2,6 @@
 #include "host/ros2/parameter_server.hpp"
 
 #include <rcl_interfaces/msg/parameter_type.hpp>
-#include <rcl_interfaces/srv/describe_parameters.hpp>
-#include <rcl_interfaces/srv/get_parameter_types.hpp>
-#include <rcl_interfaces/srv/get_parameters.hpp>
-#include <rcl_interfaces/srv/list_parameters.hpp>
-#include <rcl_interfaces/srv/set_parameters.hpp>
-#include <rcl_interfaces/srv/set_parameters_atomically.hpp>
 
 #include <algorithm>
 #include <set>
@@ -17,8 +11,6 @@
 
 namespace coupler::driver {
 namespace {
-
-namespace srv = rcl_interfaces::srv;
 
 constexpr std::size_t events_depth = 1000;  ///< as of every node
 
@@ -39,18 +31,16 @@ bool is_listed(const std::string& name, const std::vector<std::string>& prefixes
 
 ParameterServer::ParameterServer(rcl::Node& node, const MessageClock& clock)
     : node_(node), clock_(clock), events_(node, "/parameter_events", rcl::reliable(events_depth)) {
-  offer<srv::DescribeParameters>("describe_parameters", &ParameterServer::describe<srv::DescribeParameters>);
-  offer<srv::GetParameterTypes>("get_parameter_types", &ParameterServer::types<srv::GetParameterTypes>);
-  offer<srv::GetParameters>("get_parameters", &ParameterServer::get<srv::GetParameters>);
-  offer<srv::ListParameters>("list_parameters", &ParameterServer::list<srv::ListParameters>);
-  offer<srv::SetParameters>("set_parameters", &ParameterServer::set_each<srv::SetParameters>);
-  offer<srv::SetParametersAtomically>("set_parameters_atomically",
-                                      &ParameterServer::set_all<srv::SetParametersAtomically>);
+  offer<Describe>("describe_parameters", &ParameterServer::describe);
+  offer<Types>("get_parameter_types", &ParameterServer::types);
+  offer<Get>("get_parameters", &ParameterServer::get);
+  offer<List>("list_parameters", &ParameterServer::list);
+  offer<SetEach>("set_parameters", &ParameterServer::set_each);
+  offer<SetAll>("set_parameters_atomically", &ParameterServer::set_all);
 }
 
 template <class S>
-void ParameterServer::offer(const char* name, void (ParameterServer::*answer)(const typename S::Request&,
-                                                                              typename S::Response&)) {
+void ParameterServer::offer(const char* name, Answer<S> answer) {
   services_.push_back(std::make_shared<rcl::PromptService<S>>(
       node_, fmt::format("~/{}", name), [this, answer](const auto& request, auto& response) {
         const std::lock_guard lock(mutex_);
@@ -81,8 +71,7 @@ void ParameterServer::tell(const std::string& name, const Value& value, bool is_
   events_.publish(event);
 }
 
-template <class S>
-void ParameterServer::describe(const typename S::Request& request, typename S::Response& response) {
+void ParameterServer::describe(const Describe::Request& request, Describe::Response& response) {
   for (const std::string& name : request.names) {
     const auto found = declared_.find(name);
     if (found == declared_.end()) {
@@ -93,24 +82,21 @@ void ParameterServer::describe(const typename S::Request& request, typename S::R
   }
 }
 
-template <class S>
-void ParameterServer::types(const typename S::Request& request, typename S::Response& response) {
+void ParameterServer::types(const Types::Request& request, Types::Response& response) {
   for (const std::string& name : request.names) {
     const auto found = declared_.find(name);
     response.types.push_back(found == declared_.end() ? std::uint8_t{} : found->second.value.type);
   }
 }
 
-template <class S>
-void ParameterServer::get(const typename S::Request& request, typename S::Response& response) {
+void ParameterServer::get(const Get::Request& request, Get::Response& response) {
   for (const std::string& name : request.names) {
     const auto found = declared_.find(name);
     response.values.push_back(found == declared_.end() ? Value() : found->second.value);
   }
 }
 
-template <class S>
-void ParameterServer::list(const typename S::Request& request, typename S::Response& response) {
+void ParameterServer::list(const List::Request& request, List::Response& response) {
   std::set<std::string> prefixes;
   for (const auto& [name, declared] : declared_) {
     if (!is_listed(name, request.prefixes, request.depth)) continue;
@@ -145,16 +131,14 @@ void ParameterServer::set(const Parameter& parameter) {
   tell(parameter.name, parameter.value, false);
 }
 
-template <class S>
-void ParameterServer::set_each(const typename S::Request& request, typename S::Response& response) {
+void ParameterServer::set_each(const SetEach::Request& request, SetEach::Response& response) {
   for (const Parameter& parameter : request.parameters) {
     response.results.push_back(why_not(parameter));
     if (response.results.back().successful) set(parameter);
   }
 }
 
-template <class S>
-void ParameterServer::set_all(const typename S::Request& request, typename S::Response& response) {
+void ParameterServer::set_all(const SetAll::Request& request, SetAll::Response& response) {
   response.result.successful = true;
   for (const Parameter& parameter : request.parameters) {
     response.result = why_not(parameter);

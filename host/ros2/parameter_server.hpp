@@ -5,6 +5,12 @@
 #include <rcl_interfaces/msg/parameter_descriptor.hpp>
 #include <rcl_interfaces/msg/parameter_event.hpp>
 #include <rcl_interfaces/msg/set_parameters_result.hpp>
+#include <rcl_interfaces/srv/describe_parameters.hpp>
+#include <rcl_interfaces/srv/get_parameter_types.hpp>
+#include <rcl_interfaces/srv/get_parameters.hpp>
+#include <rcl_interfaces/srv/list_parameters.hpp>
+#include <rcl_interfaces/srv/set_parameters.hpp>
+#include <rcl_interfaces/srv/set_parameters_atomically.hpp>
 
 #include <functional>
 #include <map>
@@ -43,20 +49,21 @@ class ParameterServer {
   using Result = rcl_interfaces::msg::SetParametersResult;
 
   template <class S>
-  void offer(const char* name,
-             void (ParameterServer::*answer)(const typename S::Request&, typename S::Response&));
+  using Answer = void (ParameterServer::*)(const typename S::Request&, typename S::Response&);
   template <class S>
-  void describe(const typename S::Request& request, typename S::Response& response);
-  template <class S>
-  void types(const typename S::Request& request, typename S::Response& response);
-  template <class S>
-  void get(const typename S::Request& request, typename S::Response& response);
-  template <class S>
-  void list(const typename S::Request& request, typename S::Response& response);
-  template <class S>
-  void set_each(const typename S::Request& request, typename S::Response& response);
-  template <class S>
-  void set_all(const typename S::Request& request, typename S::Response& response);
+  void offer(const char* name, Answer<S> answer);
+  using Describe = rcl_interfaces::srv::DescribeParameters;
+  using Types = rcl_interfaces::srv::GetParameterTypes;
+  using Get = rcl_interfaces::srv::GetParameters;
+  using List = rcl_interfaces::srv::ListParameters;
+  using SetEach = rcl_interfaces::srv::SetParameters;
+  using SetAll = rcl_interfaces::srv::SetParametersAtomically;
+  void describe(const Describe::Request& request, Describe::Response& response);
+  void types(const Types::Request& request, Types::Response& response);
+  void get(const Get::Request& request, Get::Response& response);
+  void list(const List::Request& request, List::Response& response);
+  void set_each(const SetEach::Request& request, SetEach::Response& response);
+  void set_all(const SetAll::Request& request, SetAll::Response& response);
   Result why_not(const Parameter& parameter) const;
   void set(const Parameter& parameter);
   void tell(const std::string& name, const Value& value, bool is_new);
