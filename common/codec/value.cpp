@@ -29,7 +29,7 @@ tl::unexpected<std::string> out_of_range(const Value& value, Type type) {
   if constexpr (std::is_floating_point_v<To>)
     return tl::make_unexpected(fmt::format("{} does not fit into {}", to_string(value), to_string(type)));
   else
-    return tl::make_unexpected(fmt::format("{} does not fit into {} ({} … {})", to_string(value),
+    return tl::make_unexpected(fmt::format("{} does not fit into {} ({} to {})", to_string(value),
                                            to_string(type), +std::numeric_limits<To>::min(),
                                            +std::numeric_limits<To>::max()));
 }

@@ -21,7 +21,7 @@ Value decode(const std::uint16_t* registers, const Format& format);
 
 /// Writes the value's bits into its registers and leaves other bits of a shared register alone.
 /// Integers convert to every number type that can hold them, floats never to integers. Otherwise the error
-/// says what is wrong, as in "300 does not fit into USINT (0 … 255)"; the registers are then unchanged.
+/// says what is wrong, as in "300 does not fit into USINT (0 to 255)"; the registers are then unchanged.
 tl::expected<void, std::string> encode(const Value& value, const Format& format, std::uint16_t* registers);
 
 /// As a person reads it: "true", "-5", "3.14" (shortest text that reads back the same), the text itself.

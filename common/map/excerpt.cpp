@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_before = 80;  // bytes
 constexpr std::size_t most_after = 60;
-constexpr std::string_view cut = "…";
+constexpr std::string_view cut = "...";
 
 std::uint8_t byte(std::string_view text, std::size_t i) { return static_cast<std::uint8_t>(text[i]); }
 bool continues(std::uint8_t byte) { return (byte & 0xC0U) == 0x80U; }

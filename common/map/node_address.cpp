@@ -57,13 +57,13 @@ tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view 
   std::string_view rest = argument.substr(scheme.size());
   if (const auto unit = take_behind(rest, '/'); unit && !unit->empty()) {
     const auto value = number(*unit, 0, 255);
-    if (!value) return wrong(fmt::format("the unit id '{}' is not 0 … 255", *unit));
+    if (!value) return wrong(fmt::format("the unit id '{}' is not 0 to 255", *unit));
     node.unit = static_cast<std::uint8_t>(*value);
   }
   const bool bracketed = take_brackets(rest, node.host);
   if (const auto port = take_behind(rest, ':')) {
     const auto value = number(*port, 1, 65535);
-    if (!value) return wrong(fmt::format("the port '{}' is not 1 … 65535", *port));
+    if (!value) return wrong(fmt::format("the port '{}' is not 1 to 65535", *port));
     node.port = static_cast<std::uint16_t>(*value);
   }
   if (!bracketed) node.host = rest;

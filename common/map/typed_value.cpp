@@ -12,9 +12,9 @@ std::string encode_scaled(double value, const Point& point, std::uint16_t* regis
   const std::string units = point.units.empty() ? "" : fmt::format(" {}", point.units);
   switch (codec::encode_published(value, point.format, point.scale, registers)) {
     case codec::ScaleError::not_a_number:
-      return fmt::format("not a number; send {:g} … {:g}{}", least, most, units);
+      return fmt::format("not a number; send {:g} to {:g}{}", least, most, units);
     case codec::ScaleError::out_of_range:
-      return fmt::format("{:g}{} is out of range; send {:g} … {:g}{}", value, units, least, most, units);
+      return fmt::format("{:g}{} is out of range; send {:g} to {:g}{}", value, units, least, most, units);
     case codec::ScaleError::none: break;
   }
   return {};

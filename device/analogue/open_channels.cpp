@@ -68,7 +68,7 @@ class Opener {
     if (std::isfinite(value) && accepts(output, value)) return;
     error(*output.point, fmt::format("{} cannot be driven to its {} value {}; set '{}' to one in its range{}",
                                      name_of(output), which, value, which,
-                                     output.point->pwm.present() ? ", 0 … 100 %" : ""));
+                                     output.point->pwm.present() ? ", 0 to 100 %" : ""));
   }
 
   const std::string& sysfs_;

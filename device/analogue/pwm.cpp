@@ -74,7 +74,7 @@ tl::expected<PwmOutput, std::string> PwmOutput::open(const std::string& sysfs, c
   if (wanted.channel >= chip->channels)
     return Error(
         fmt::format("{} has no channel {}; it has {}", chip->described(), wanted.channel,
-                    chip->channels == 0 ? "none" : fmt::format("channels 0 … {}", chip->channels - 1)));
+                    chip->channels == 0 ? "none" : fmt::format("channels 0 to {}", chip->channels - 1)));
   const std::string name = fmt::format("{} channel {}", chip->described(), wanted.channel);
   const std::string folder = fmt::format("{}pwm{}/", chip->folder, wanted.channel);
   std::error_code missing;

@@ -22,7 +22,7 @@ std::string names_of_lines(const Chip& chip) {
   std::string text;
   for (const std::string& name : chip.lines) {
     if (name.empty()) continue;
-    if (++count > enough) return text + ", …";
+    if (++count > enough) return text + ", ...";
     text += fmt::format("{}'{}'", count == 1 ? "" : ", ", name);
   }
   return text;
@@ -88,7 +88,7 @@ tl::expected<FoundLine, std::string> Inventory::find_by_offset(const std::string
   const std::size_t lines = (*chip)->lines.size();
   if (offset >= lines)
     return tl::unexpected(
-        fmt::format("{} has no line {}; it has lines 0 … {}", (*chip)->name, offset, lines - 1));
+        fmt::format("{} has no line {}; it has lines 0 to {}", (*chip)->name, offset, lines - 1));
   return FoundLine{*chip, offset};
 }
 

@@ -24,7 +24,7 @@ tl::expected<void, std::string> check_servable(const Map& map) {
   for (const Point& point : map.points) {
     if (holds_bits(point.table) || !range(point).overlaps(identity::reserved)) continue;
     errors += fmt::format(
-        "{}point '{}': {} {} is in the area that every node keeps for its identity (0x{:04X} … 0x{:04X}); "
+        "{}point '{}': {} {} is in the area that every node keeps for its identity (0x{:04X} to 0x{:04X}); "
         "move it below",
         errors.empty() ? "" : "\n", point.name, to_string(point.table), point.address,
         identity::reserved.start(), identity::reserved.last());

@@ -16,7 +16,7 @@ std::string to_string(const Refusal& refusal) {
         table, first, last);
   return fmt::format(
       "{} {} to {} are rejected in one request and read in parts; if the device takes fewer than {} in one, "
-      "say so in the map: limits: {{{}: …}}",
+      "say so in the map: limits: {{{}: ...}}",
       table, first, last, refusal.range.count(), holds_bits(refusal.table) ? "read_bits" : "read_registers");
 }
 

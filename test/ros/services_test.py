@@ -89,7 +89,7 @@ class Services(ServicesTest):
     def test_what_cannot_be_written_is_told_with_what_can(self):
         for point, value, expected in (("nothing", "1", "there is no point 'nothing'"),
                                        ("pressure", "1", "pressure cannot be written"),
-                                       ("level", "70000", "-32768 … 32767"), ("level", "full", "is not a number"),
+                                       ("level", "70000", "-32768 to 32767"), ("level", "full", "is not a number"),
                                        ("speeds", "[1]", "give 3")):
             result = self.write(point, value)
             self.assertEqual((result.success, result.outcome), (False, WriteResponse.REFUSED))

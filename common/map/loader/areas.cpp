@@ -78,7 +78,7 @@ void check_reserved(const Areas& areas, const DraftPoints& points, Context& cont
       const Point& point = draft.point;
       if (!draft.placed || point.table != area.table || !range(point).overlaps(area.range)) continue;
       context.problems.error(draft.address_at,
-                             fmt::format("{} ({} {}) is in the reserved area {} … {} (line {})",
+                             fmt::format("{} ({} {}) is in the reserved area {} to {} (line {})",
                                          shown(point.name), to_string(point.table), point.address,
                                          area.range.start(), area.range.last(), area.at.line),
                              draft.addressless

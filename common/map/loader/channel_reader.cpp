@@ -53,7 +53,7 @@ void check_type(const Entry& channel, const Point& point, Context& context) {
   if (codec::is_scalable(point.format.type) && !codec::is_partial(point.format)) return;
   context.problems.error(channel.key_at,
                          fmt::format("'{}' does not apply to {}", channel.key, to_string(point.format.type)),
-                         "use a type that is a number in registers of its own: INT … ULINT, REAL or LREAL");
+                         "use a type that is a number in registers of its own: INT to ULINT, REAL or LREAL");
 }
 
 void read_safe(const Reader& reader, DraftPoint& draft, Context& context) {

@@ -19,7 +19,7 @@ bool is_bit(Type type) { return type == Type::BOOL; }
 /// What to do when a type needs the key.
 std::string missing(std::string_view key) {
   if (key == "offset") return "add 'offset: high' or 'offset: low'";
-  if (key == "bit") return "add 'bit: 0' … 'bit: 15'";
+  if (key == "bit") return "add 'bit: 0', or another one up to 15";
   return fmt::format("add '{}: BYTES'", key);
 }
 

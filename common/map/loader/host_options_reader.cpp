@@ -77,7 +77,7 @@ void check_deadband(const Reader& reader, const Point& point, Context& context) 
   if (!codec::is_scalable(point.format.type))
     context.problems.error(deadband->key_at,
                            fmt::format("'deadband' does not apply to {}", to_string(point.format.type)),
-                           "remove it; it is for numbers: SINT … ULINT, REAL and LREAL");
+                           "remove it; it is for numbers: SINT to ULINT, REAL and LREAL");
   else if (point.host.publish != HostOptions::Publish::on_change)
     context.problems.error(deadband->key_at, "'deadband' is for 'publish: on_change'",
                            "add it, or remove this");

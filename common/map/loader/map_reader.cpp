@@ -62,7 +62,7 @@ struct TableEntry {
 
 void find_points(const Entry& entry, Table table, std::vector<TableEntry>& found, Context& context) {
   const std::string expected = fmt::format("'{}' holds points", to_string(table));
-  if (!check_map(entry, expected, "write one 'name: …' a point below it", context)) return;
+  if (!check_map(entry, expected, "write one 'name: ...' a point below it", context)) return;
   for (const Entry& point : entry.children) found.push_back({&point, table});
 }
 
@@ -75,8 +75,8 @@ std::vector<TableEntry> find_points(const Reader& top, const Entry& root, Contex
                            "add 'mapping:' with the tables and their points");
     return found;
   }
-  if (!check_map(*mapping, "'mapping' holds the tables", "write 'coils:', 'holding_registers:' … below it",
-                 context))
+  if (!check_map(*mapping, "'mapping' holds the tables",
+                 "write 'coils:', 'holding_registers:' or another table below it", context))
     return found;
   const Reader reader(*mapping, Section::mapping, context);
   for (const Table table : tables)

@@ -21,11 +21,11 @@ bool tolerable(const Point& a, const Point& b) {
   return !(is_writable(a) && is_writable(b)) && !is_wired(a) && !is_wired(b);
 }
 
-/// "holding_registers 5 … 8".
+/// "holding_registers 5 to 8".
 std::string place(const Point& point) {
   const modbus::Range taken = range(point);
   if (taken.count() == 1) return fmt::format("{} {}", to_string(point.table), taken.start());
-  return fmt::format("{} {} … {}", to_string(point.table), taken.start(), taken.last());
+  return fmt::format("{} {} to {}", to_string(point.table), taken.start(), taken.last());
 }
 
 void report(const DraftPoint& draft, const DraftPoint& other, Context& context) {

@@ -27,7 +27,7 @@ std::string areas_of(const Preset& preset, Table table) {
   std::string text;
   for (const Preset::Area& area : preset.areas)
     if (area.table == table)
-      text += fmt::format("{}{} … {}", text.empty() ? "" : ", ", area.range.start(), area.range.last());
+      text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", area.range.start(), area.range.last());
   return text;
 }
 

@@ -34,7 +34,7 @@ std::string shown(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result = "'";
   for (std::size_t at = 0; at < text.size();) {
-    if (result.size() > longest) return result + "…'";
+    if (result.size() > longest) return result + "...'";
     const Character c = character_at(text, at);
     if (is_control(c.code) || turns_direction(c.code))
       result += ' ';

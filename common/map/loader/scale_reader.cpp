@@ -22,7 +22,7 @@ void read_scale(const Reader& reader, Point& point, Context& context) {
   if (!codec::is_scalable(point.format.type)) {
     context.problems.error(entry->key_at,
                            fmt::format("'scale' does not apply to {}", to_string(point.format.type)),
-                           "use a type that is a number: SINT … ULINT, REAL or LREAL");
+                           "use a type that is a number: SINT to ULINT, REAL or LREAL");
     return;
   }
   codec::Scale scale;

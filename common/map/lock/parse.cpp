@@ -36,7 +36,7 @@ bool is_conflict_marker(std::string_view line) {
 /// The word as a message shows it: names are short, other things need not be.
 std::string shown(std::string_view word) {
   const std::string text = printable(word.substr(0, 40));
-  return fmt::format("'{}{}'", text, word.size() > 40 ? "…" : "");
+  return fmt::format("'{}{}'", text, word.size() > 40 ? "..." : "");
 }
 
 std::optional<Table> table_of(std::string_view word) {

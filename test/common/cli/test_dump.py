@@ -35,7 +35,7 @@ class Dump(unittest.TestCase):
         self.refused(2, "cell.yaml does not say where the device is; give --at HOST[:PORT][/UNIT]", "cell.yaml")
 
     def test_a_wrong_place_is_said(self):
-        self.refused(2, "--at: the port '0' is not 1 … 65535; write tcp://HOST", "cell.yaml", "--at", "cell:0")
+        self.refused(2, "--at: the port '0' is not 1 to 65535; write tcp://HOST", "cell.yaml", "--at", "cell:0")
         self.refused(2, "--at: the unit id '256'", "cell.yaml", "--at", "tcp://cell/256")
 
     def test_a_pattern_has_to_match_a_point(self):

@@ -123,7 +123,7 @@ class NoNode(Live):
 
     def test_an_argument_that_names_no_node_is_a_wrong_call(self):
         said = self.refused(2, "tcp://127.0.0.1:0")
-        self.assertIn("the port '0' is not 1 … 65535; write tcp://HOST[:PORT][/UNIT]", said)
+        self.assertIn("the port '0' is not 1 to 65535; write tcp://HOST[:PORT][/UNIT]", said)
 
 
 if __name__ == "__main__":

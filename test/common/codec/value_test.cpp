@@ -26,13 +26,13 @@ std::string refusal(const Value& value, const Format& f) {
 }
 
 TEST(Value, An_integer_out_of_its_type_is_refused_and_the_range_is_named) {
-  EXPECT_EQ(refusal(std::int64_t{300}, format(Type::USINT)), "300 does not fit into USINT (0 … 255)");
+  EXPECT_EQ(refusal(std::int64_t{300}, format(Type::USINT)), "300 does not fit into USINT (0 to 255)");
   EXPECT_EQ(refusal(std::int64_t{-1}, format(Type::ULINT)),
-            "-1 does not fit into ULINT (0 … 18446744073709551615)");
-  EXPECT_EQ(refusal(std::int64_t{-129}, format(Type::SINT)), "-129 does not fit into SINT (-128 … 127)");
+            "-1 does not fit into ULINT (0 to 18446744073709551615)");
+  EXPECT_EQ(refusal(std::int64_t{-129}, format(Type::SINT)), "-129 does not fit into SINT (-128 to 127)");
   EXPECT_EQ(refusal(std::uint64_t{1} << 63, format(Type::LINT)).substr(0, 38),
             "9223372036854775808 does not fit into ");
-  EXPECT_EQ(refusal(std::uint64_t{65536}, format(Type::WORD)), "65536 does not fit into WORD (0 … 65535)");
+  EXPECT_EQ(refusal(std::uint64_t{65536}, format(Type::WORD)), "65536 does not fit into WORD (0 to 65535)");
 }
 
 TEST(Value, A_fraction_is_never_rounded_into_an_integer) {
@@ -52,8 +52,8 @@ TEST(Value, A_whole_double_is_an_integer_where_it_fits) {
   EXPECT_EQ(encoded(-2.0, Type::INT), Registers{0xFFFE});
   EXPECT_EQ(encoded(-0x1p63, Type::LINT), Registers{0x8000});
   EXPECT_EQ(encoded(0x1p63, Type::ULINT), Registers{0x8000});
-  EXPECT_THAT(refusal(1e5, format(Type::UINT)), HasSubstr("does not fit into UINT (0 … 65535)"));
-  EXPECT_THAT(refusal(-1.0, format(Type::USINT)), HasSubstr("does not fit into USINT (0 … 255)"));
+  EXPECT_THAT(refusal(1e5, format(Type::UINT)), HasSubstr("does not fit into UINT (0 to 65535)"));
+  EXPECT_THAT(refusal(-1.0, format(Type::USINT)), HasSubstr("does not fit into USINT (0 to 255)"));
   EXPECT_THAT(refusal(0x1p63, format(Type::LINT)), HasSubstr("does not fit into LINT"));
   EXPECT_THAT(refusal(0x1p64, format(Type::ULINT)), HasSubstr("does not fit into ULINT"));
   EXPECT_THAT(refusal(std::numeric_limits<double>::infinity(), format(Type::LINT)),

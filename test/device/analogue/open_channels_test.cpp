@@ -136,7 +136,7 @@ TEST_F(ChannelsOfAMap, Have_initial_and_safe_values_that_they_can_be_driven_to) 
   });
   const std::string said = error(wrong.build());
   EXPECT_THAT(said, HasSubstr("point 'second': pwmchip0 (fan) channel 0 is the channel of point 'fan' too"));
-  EXPECT_THAT(said, HasSubstr("initial value 101; set 'initial' to one in its range, 0 … 100 %"));
+  EXPECT_THAT(said, HasSubstr("initial value 101; set 'initial' to one in its range, 0 to 100 %"));
   EXPECT_THAT(said, HasSubstr("safe value 101"));
 }
 

@@ -86,7 +86,7 @@ TEST_F(PwmChannel, Without_its_chip_names_those_that_exist) {
 }
 
 TEST_F(PwmChannel, That_the_chip_does_not_have_names_those_it_has) {
-  EXPECT_EQ("pwmchip0 (fan) has no channel 2; it has channels 0 … 1", error("pwmchip0", 2));
+  EXPECT_EQ("pwmchip0 (fan) has no channel 2; it has channels 0 to 1", error("pwmchip0", 2));
 }
 
 TEST_F(PwmChannel, That_cannot_be_driven_gives_the_error) {

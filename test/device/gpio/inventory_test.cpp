@@ -46,7 +46,7 @@ TEST_F(Finding, What_is_not_there_is_answered_with_what_is) {
   EXPECT_THAT(inventory_.find(named("C")).error(), HasSubstr("named on gpiochip0: 'A', 'TWICE'"));
   EXPECT_THAT(inventory_.find(at("gpiochip7", 0)).error(), HasSubstr("gpiochip1 'expander' (2 lines)"));
   EXPECT_THAT(inventory_.find(at("board", 3)).error(),
-              HasSubstr("gpiochip0 has no line 3; it has lines 0 … 2"));
+              HasSubstr("gpiochip0 has no line 3; it has lines 0 to 2"));
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST_F(PumpClient, What_is_set_arrives) {
 TEST_F(PumpClient, A_value_that_is_none_of_its_point_is_refused_and_the_range_named) {
   const SetResult beyond = pump.speed.set(7000).get();
   EXPECT_EQ(beyond.outcome, Outcome::refused);
-  EXPECT_THAT(beyond.text, HasSubstr("0 … 6553.5 %"));
+  EXPECT_THAT(beyond.text, HasSubstr("0 to 6553.5 %"));
   const SetResult none = pump.speed.set(std::nan("")).get();
   EXPECT_EQ(none.outcome, Outcome::refused);
   const SetResult longer = pump.label.set("seventeen letters").get();

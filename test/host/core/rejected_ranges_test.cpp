@@ -80,7 +80,7 @@ TEST_F(RejectedRangesTest, A_device_that_takes_fewer_than_the_map_says_is_asked_
   EXPECT_THAT(run(), ElementsAre("0+25", "25+25", "50+25", "75+25"));
   const auto refusals = cycle->take_refusals();
   ASSERT_EQ(refusals.size(), 2U);
-  EXPECT_THAT(to_string(refusals[0]), testing::HasSubstr("limits: {read_registers: …}"));
+  EXPECT_THAT(to_string(refusals[0]), testing::HasSubstr("limits: {read_registers: ...}"));
 }
 
 TEST_F(RejectedRangesTest, A_function_that_the_device_does_not_know_is_not_tried_again) {

@@ -58,7 +58,7 @@ TEST(ValueText, Numbers_are_decimal_or_hexadecimal) {
 }
 
 TEST(ValueText, What_does_not_fit_is_refused_with_what_would) {
-  EXPECT_THAT(error_of("70000", point_of(codec::Type::UINT)), HasSubstr("0 … 65535"));
+  EXPECT_THAT(error_of("70000", point_of(codec::Type::UINT)), HasSubstr("0 to 65535"));
   EXPECT_THAT(error_of("1.5", point_of(codec::Type::INT)), HasSubstr("not a whole number"));
   EXPECT_THAT(error_of("fast", point_of(codec::Type::INT)), HasSubstr("'fast' is not a number"));
   EXPECT_THAT(error_of("", point_of(codec::Type::INT)), HasSubstr("not a number"));
@@ -78,7 +78,7 @@ TEST(ValueText, A_scaled_point_speaks_in_published_units) {
   EXPECT_EQ(parsed("-40", point), Registers{0});
   const Registers raw{615};
   EXPECT_EQ(format_value(raw.data(), point), "21.5");
-  EXPECT_THAT(error_of("5000", point), HasSubstr("5000 °C is out of range; send -3316.8 … 3236.7 °C"));
+  EXPECT_THAT(error_of("5000", point), HasSubstr("5000 °C is out of range; send -3316.8 to 3236.7 °C"));
   EXPECT_THAT(error_of("nan", point), HasSubstr("not a number"));
 }
 

@@ -128,7 +128,7 @@ TEST(Placement, An_area_reserved_over_a_point_of_the_lock_is_told) {
                            lock_of("coils 3 a\n"));
   EXPECT_EQ(
       text_of(result.diagnostics),
-      "m.yaml:3:19: error: 'a' (coils 3) is in the reserved area 2 … 4 (line 2); make the area smaller: "
+      "m.yaml:3:19: error: 'a' (coils 3) is in the reserved area 2 to 4 (line 2); make the area smaller: "
       "the lock has given the address before\n");
 }
 

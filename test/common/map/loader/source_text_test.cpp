@@ -45,7 +45,7 @@ TEST(SourceText, A_byte_order_mark_does_not_count) {
 
 TEST(SourceText, A_shown_text_is_one_short_line) {
   EXPECT_EQ(shown(std::string_view("a\nb")), "'a b'");
-  EXPECT_EQ(shown(std::string(100, 'x')), "'" + std::string(40, 'x') + "…'");
+  EXPECT_EQ(shown(std::string(100, 'x')), "'" + std::string(40, 'x') + "...'");
   std::string umlauts;
   for (int i = 0; i < 50; ++i) umlauts += "ü";
   EXPECT_TRUE(accepted(shown(umlauts))) << "no character is cut in two";
