@@ -23,25 +23,7 @@ std::string master_uri() { return fmt::format("the ROS master at {}", ros::maste
 
 }  // namespace
 
-MasterWatch::MasterWatch(Log& log) : log_(log), thread_([this] { run(); }) {}
-
-MasterWatch::~MasterWatch() {
-  {
-    const std::lock_guard lock(mutex_);
-    ended_ = true;
-  }
-  ends_.notify_one();
-  thread_.join();
-}
-
-void MasterWatch::run() {
-  std::unique_lock lock(mutex_);
-  do {
-    lock.unlock();
-    look();
-    lock.lock();
-  } while (!ends_.wait_for(lock, interval, [this] { return ended_; }));
-}
+MasterWatch::MasterWatch(Log& log) : log_(log), recurring_(interval, [this] { look(); }) {}
 
 /// What the master knows changes seldom, and may be much.
 void MasterWatch::learn() {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
-#include <mutex>
-#include <thread>
-
+#include "host/ros/recurring.hpp"
 #include "host/ros/rival_warnings.hpp"
 #include "host/ros1/registrations.hpp"
 
@@ -16,13 +13,8 @@ class MasterWatch {
  public:
   /// All topics and services must have been advertised.
   explicit MasterWatch(Log& log);
-  /// Waits for the question to the master in progress.
-  ~MasterWatch();
-  MasterWatch(const MasterWatch&) = delete;
-  MasterWatch& operator=(const MasterWatch&) = delete;
 
  private:
-  void run();
   void look();
   void learn();
 
@@ -31,10 +23,7 @@ class MasterWatch {
   unsigned looks_ = 0;
   RivalWarnings rivals_;
   Registrations::Known known_ = Registrations::Known::yes;
-  std::mutex mutex_;
-  std::condition_variable ends_;
-  bool ended_ = false;
-  std::thread thread_;  // last: it uses the others
+  Recurring recurring_;  // last: it uses the others
 };
 
 }  // namespace coupler::driver

@@ -12,23 +12,7 @@ constexpr auto interval = std::chrono::seconds(2);
 }  // namespace
 
 void Rivals::begin() {
-  thread_ = std::thread([this] {
-    std::unique_lock lock(mutex_);
-    while (!ends_.wait_for(lock, interval, [this] { return ended_; })) {
-      lock.unlock();
-      look();
-      lock.lock();
-    }
-  });
-}
-
-void Rivals::end() {
-  {
-    const std::lock_guard lock(mutex_);
-    ended_ = true;
-  }
-  ends_.notify_one();
-  if (thread_.joinable()) thread_.join();
+  recurring_.emplace(interval, [this] { look(); });
 }
 
 void Rivals::look() {

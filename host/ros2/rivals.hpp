@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
-#include <mutex>
+#include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "host/ros/recurring.hpp"
 #include "host/ros/rival_warnings.hpp"
 #include "host/ros2/rcl/node.hpp"
 
@@ -16,14 +15,11 @@ namespace coupler::driver {
 class Rivals {
  public:
   Rivals(rcl::Node& node, Log& log) : node_(node), log_(log) {}
-  ~Rivals() { end(); }
-  Rivals(const Rivals&) = delete;
-  Rivals& operator=(const Rivals&) = delete;
 
   /// Before begin(): a topic of this node, with its namespace.
   void watch(const std::string& topic) { topics_.push_back(topic); }
   void begin();
-  void end();
+  void end() { recurring_.reset(); }
 
  private:
   void look();
@@ -32,10 +28,7 @@ class Rivals {
   Log& log_;
   std::vector<std::string> topics_;
   RivalWarnings warnings_;
-  std::mutex mutex_;
-  std::condition_variable ends_;
-  bool ended_ = false;
-  std::thread thread_;  // last: it uses the others
+  std::optional<Recurring> recurring_;  // last: it uses the others
 };
 
 }  // namespace coupler::driver
