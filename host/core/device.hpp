@@ -65,6 +65,9 @@ class Device {
   DeviceSnapshot statistics() const { return statistics_.snapshot(); }
   std::vector<PointQuality> qualities() const { return qualities_.snapshot(clock_.now()); }
   PointQuality quality(std::uint32_t point) const { return qualities_.of(point, clock_.now()); }
+  /// Another number, once qualities() or what statistics() tells of the connection is not what it was, for
+  /// another reason than that time has passed.
+  std::uint64_t revision() const { return statistics_.revision() + qualities_.revision(); }
 
  private:
   Time connect();

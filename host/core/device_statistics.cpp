@@ -39,6 +39,7 @@ void DeviceStatistics::identified(Identity::Verdict verdict, const identity::Mac
   const std::lock_guard lock(mutex_);
   now_.identity = verdict;
   now_.machine = machine;
+  ++revision_;
 }
 
 void DeviceStatistics::online() {
@@ -46,12 +47,14 @@ void DeviceStatistics::online() {
   now_.online = true;
   now_.trouble.clear();
   ++now_.connections;
+  ++revision_;
 }
 
 void DeviceStatistics::offline(const std::string& trouble) {
   const std::lock_guard lock(mutex_);
   now_.online = false;
   now_.trouble = trouble;
+  ++revision_;
 }
 
 DeviceSnapshot DeviceStatistics::snapshot() const {

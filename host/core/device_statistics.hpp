@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -51,10 +52,13 @@ class DeviceStatistics {
   void offline(const std::string& trouble);
 
   DeviceSnapshot snapshot() const;
+  /// Another number, once `online`, `trouble` or `identity` has been set.
+  std::uint64_t revision() const { return revision_; }
 
  private:
   mutable std::mutex mutex_;
   DeviceSnapshot now_;
+  std::atomic<std::uint64_t> revision_{0};
 };
 
 }  // namespace coupler::driver

@@ -47,6 +47,7 @@ class DeviceThread {
   DeviceSnapshot statistics() const { return device_.statistics(); }
   std::vector<PointQuality> qualities() const { return device_.qualities(); }
   PointQuality quality(std::uint32_t point) const { return device_.quality(point); }
+  std::uint64_t revision() const { return device_.revision(); }
 
  private:
   void run();

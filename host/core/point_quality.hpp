@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -27,6 +29,7 @@ struct PointQuality {
     not_wanted   ///< nobody listens to it, so that it is not read
   };
   State state = State::never_read;
+  Time stale_from = Time::max();                      ///< of a good one: if nothing new comes
   std::optional<Time> last_good{};                    ///< of the last value
   std::optional<modbus::Exception> last_exception{};  ///< the last one there was, however long ago
   std::optional<WriteResult::Outcome> last_write{};   ///< of the last one that no newer one superseded
@@ -39,8 +42,7 @@ std::string_view to_string(PointQuality::State state);
 /// The quality of each point of a device; read from any thread.
 class PointQualities {
  public:
-  /// What `map` views must outlive it.
-  explicit PointQualities(const Map& map) : map_(map), points_(map.points.size()) {}
+  explicit PointQualities(const Map& map);
 
   void good(Span<const std::uint32_t> points, Time at);
   void exception(Span<const std::uint32_t> points, modbus::Exception code);
@@ -53,9 +55,13 @@ class PointQualities {
   /// By point, as of `now`. Points that can only be written stay never_read.
   std::vector<PointQuality> snapshot(Time now) const;
   PointQuality of(std::uint32_t point, Time now) const;
+  /// Another number, once a snapshot would tell another state, exception or write for another reason than
+  /// that time has passed.
+  std::uint64_t revision() const { return revision_; }
 
  private:
   struct Entry {
+    Duration patience{};  ///< what is older is stale
     std::optional<Time> last_good{};
     std::optional<modbus::Exception> last_exception{};
     std::optional<WriteResult::Outcome> last_write{};
@@ -63,13 +69,13 @@ class PointQualities {
     bool failing = false;
     bool rejected = false;
   };
-  PointQuality quality_of(const Entry& entry, const Point& point, Time now) const;
-  PointQuality::State state_of(const Entry& entry, const Point& point, Time now) const;
+  PointQuality quality_of(const Entry& entry, Time now) const;
+  PointQuality::State state_of(const Entry& entry, Time now) const;
 
-  Map map_;
   mutable std::mutex mutex_;
   std::vector<Entry> points_;
   bool online_ = false;
+  std::atomic<std::uint64_t> revision_{0};
 };
 
 }  // namespace coupler::driver

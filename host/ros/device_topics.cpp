@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/map/loader/load.hpp"
+#include "host/ros/status.hpp"
 #include "host/ros/traced_transport.hpp"
 
 namespace coupler::driver {
@@ -60,14 +61,19 @@ bool DeviceTopics::end() {
   return thread_.end();
 }
 
-bool DeviceTopics::report(Time now) {
+bool DeviceTopics::report(Time now, bool anyway) {
+  const std::uint64_t revision = thread_.revision();
+  if (!anyway && revision == seen_ && now <= stale_from_ && now < status_due_) return false;
+  seen_ = revision;
+  stale_from_ = Time::max();
   const DeviceSnapshot device = thread_.statistics();
   std::vector<PointQuality> points = thread_.qualities();
+  for (const PointQuality& point : points) stale_from_ = std::min(stale_from_, point.stale_from);
   for (std::uint32_t i = 0; i < points.size(); ++i)
     if (const auto state = points[i].state; is_readable(map_.points[i]) && listeners_.is_unwanted(i) &&
                                             (state == State::stale || state == State::never_read))
       points[i].state = State::not_wanted;
-  status_(device, points, now);
+  if (status_(device, points, now)) status_due_ = now + status_interval;
   thread_.report_held_back();
   if (const auto line = refused_lines_.due(now)) on_report(Level::warning, *line);
   return diagnostics_.update(device, points);

@@ -29,8 +29,8 @@ class DeviceTopics : public Sink {
   bool end();
 
   /// Publishes the status where it is due, and says what diagnostics are to tell next: true if at once. To be
-  /// called about ten times a second.
-  bool report(Time now);
+  /// called about ten times a second; it looks closer where there is news, a status is due, or `anyway`.
+  bool report(Time now, bool anyway);
 
   void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) override;
   void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) override;
@@ -51,6 +51,9 @@ class DeviceTopics : public Sink {
   DeviceServices services_;
   std::unique_ptr<Transport> transport_;
   DeviceThread thread_;
+  std::uint64_t seen_ = 0;  ///< the thread's revision
+  Time stale_from_{};       ///< the first of the points that are good
+  Time status_due_{};
   WriteHandler writes_;
   LineLimit refused_lines_;
   std::vector<std::shared_ptr<void>> subscriptions_;

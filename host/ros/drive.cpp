@@ -55,9 +55,10 @@ int drive(const Devices& devices, Node& node) {
   for (Time diagnosed = Time::min(); node.is_running() && !Ending::asked;
        std::this_thread::sleep_for(report_interval)) {
     const Time now = std::chrono::steady_clock::now();
-    bool due = diagnosed == Time::min() || now - diagnosed >= diagnostics_interval;
-    for (const auto& device : topics) due |= device->report(now);
-    if (!due) continue;
+    const bool due = diagnosed == Time::min() || now - diagnosed >= diagnostics_interval;
+    bool news = due;
+    for (const auto& device : topics) news |= device->report(now, due);
+    if (!news) continue;
     diagnosed = now;
     node.publish_diagnostics();
   }

@@ -85,9 +85,9 @@ class Node : public Log {
   /// std_msgs/Bool, latched.
   virtual std::function<void(bool)> advertise_online(const std::string& topic) = 0;
   /// coupler_driver/Status, latched; published when a quality, the identity or `online` is not what it was,
-  /// and after a second. To be called from one thread.
+  /// and after a second: then true. To be called from one thread.
   using PublishStatus =
-      std::function<void(const DeviceSnapshot&, const std::vector<PointQuality>&, Time now)>;
+      std::function<bool(const DeviceSnapshot&, const std::vector<PointQuality>&, Time now)>;
   virtual PublishStatus advertise_status(const std::string& topic, const Map& map) = 0;
   virtual std::unique_ptr<ServiceThread> make_service_thread() = 0;
 

@@ -12,6 +12,9 @@
 
 namespace coupler::driver {
 
+/// The status is published at least as often.
+constexpr auto status_interval = std::chrono::seconds(1);
+
 /// The message of `<name>/status`, coupler_driver/Status of either ROS: what is to be published, and when.
 template <class Message>
 class Status {
@@ -27,7 +30,7 @@ class Status {
   /// True if the message is to be published now: a quality, the identity or `online` is not what it was, or a
   /// second has passed. Its stamp is left to the caller.
   bool update(const DeviceSnapshot& device, const std::vector<PointQuality>& points, Time now) {
-    if (!fill(device, points, now) && published_ != Time::min() && now - published_ < longest_interval)
+    if (!fill(device, points, now) && published_ != Time::min() && now - published_ < status_interval)
       return false;
     published_ = now;
     return true;
@@ -39,7 +42,6 @@ class Status {
   using PointStatus = typename Points::value_type;
   using State = PointQuality::State;
   using Outcome = WriteResult::Outcome;
-  static constexpr auto longest_interval = std::chrono::seconds(1);
 
   template <class T, class U>
   static bool assign(T& field, const U& value) {

@@ -74,9 +74,10 @@ Node::PublishStatus Ros1Node::advertise_status(const std::string& topic, const M
   const auto status = std::make_shared<Status<coupler_driver::Status>>(map);
   return [status, publisher = handle_.advertise<coupler_driver::Status>(topic, 1, true)](
              const DeviceSnapshot& device, const std::vector<PointQuality>& points, Time now) {
-    if (!status->update(device, points, now)) return;
+    if (!status->update(device, points, now)) return false;
     status->message().header.stamp = ros::Time::now();
     publisher.publish(status->message());
+    return true;
   };
 }
 

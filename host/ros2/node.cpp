@@ -145,9 +145,10 @@ Node::PublishStatus Ros2Node::advertise_status(const std::string& topic, const M
   const auto publisher = make_publisher<Message>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)});
   return [this, status, publisher](const DeviceSnapshot& device, const std::vector<PointQuality>& points,
                                    Time now) {
-    if (!status->update(device, points, now)) return;
+    if (!status->update(device, points, now)) return false;
     status->message().header.stamp = clock_.now();
     publisher->publish(status->message());
+    return true;
   };
 }
 

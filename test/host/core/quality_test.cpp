@@ -48,6 +48,35 @@ TEST_F(QualityTest, A_point_that_the_device_does_not_have_is_rejected) {
   EXPECT_GE(engine->statistics().rejected_ranges, 1U);
 }
 
+TEST_F(QualityTest, There_is_another_revision_when_something_else_is_to_be_told) {
+  start(MapBuilder().holding("a", 5).holding("b", 6));
+  run_for(milliseconds(50));
+  std::uint64_t revision = engine->revision();
+  const auto is_another = [&] { return engine->revision() != std::exchange(revision, engine->revision()); };
+  run_for(milliseconds(1000));
+  EXPECT_FALSE(is_another()) << "good remains good";
+  device.next_errors.push_back(ExceptionReply{modbus::Exception::server_device_busy});
+  run_for(milliseconds(100));
+  EXPECT_TRUE(is_another()) << "an exception";
+  run_for(milliseconds(100));
+  EXPECT_TRUE(is_another()) << "it is good again";
+  device.next_errors.push_back(TransportFailure{"reset"});
+  run_for(milliseconds(100));
+  EXPECT_TRUE(is_another()) << "the connection is lost";
+}
+
+TEST_F(QualityTest, A_good_point_says_from_when_on_it_will_be_stale) {
+  start(MapBuilder().holding("a", 5));
+  run_for(milliseconds(50));
+  const Time stale_from = quality("a").stale_from;
+  EXPECT_GT(stale_from, clock.now());
+  engine->want(0, false);
+  clock.sleep_until(stale_from);
+  EXPECT_EQ(quality("a").state, State::good);
+  clock.advance(milliseconds(1));
+  EXPECT_EQ(quality("a").state, State::stale);
+}
+
 TEST_F(QualityTest, While_the_link_is_down_every_point_is_offline) {
   start(MapBuilder().holding("a", 5));
   run_for(milliseconds(50));
