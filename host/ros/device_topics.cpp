@@ -8,7 +8,6 @@
 
 #include "common/map/loader/load.hpp"
 #include "host/ros/status.hpp"
-#include "host/ros/traced_transport.hpp"
 
 namespace coupler::driver {
 namespace {
@@ -89,7 +88,8 @@ void DeviceTopics::on_registers(const ReadSpan& span, Span<const std::uint16_t> 
     const modbus::Range place = read_range(map_.points[index]);
     const std::uint16_t* value = &registers[place.start() - std::size_t{span.range.start()}];
     publishers_[index]->publish(value, at);
-    if (services_.next_value().is_wanted(index)) services_.next_value().bring(value, place.count());
+    if (services_.next_value().is_wanted(index))
+      services_.next_value().bring(value, place.count(), transport_->asked());
   }
 }
 

@@ -11,6 +11,7 @@
 #include "host/ros/device_services.hpp"
 #include "host/ros/diagnostics.hpp"
 #include "host/ros/node.hpp"
+#include "host/ros/traced_transport.hpp"
 
 namespace coupler::driver {
 
@@ -49,7 +50,7 @@ class DeviceTopics : public Sink {
   Node::PublishStatus status_;
   Diagnostics diagnostics_;
   DeviceServices services_;
-  std::unique_ptr<Transport> transport_;
+  std::unique_ptr<TracedTransport> transport_;
   DeviceThread thread_;
   std::uint64_t seen_ = 0;  ///< the thread's revision
   Time stale_from_{};       ///< the first of the points that are good

@@ -15,12 +15,13 @@ namespace coupler::driver {
 /// One who waits for the next value of a point: the connection's thread brings what it has read.
 class NextValue {
  public:
-  /// The registers of the first value of `point` that comes from now on (bit tables: each bit as one
+  /// The registers of the first value of `point` that is asked for from now on (bit tables: each bit as one
   /// register, 0 or 1), or nullopt if none has come until `deadline` or end(), or while the device is
   /// offline: there is nothing to wait for. For one thread.
   std::optional<std::vector<std::uint16_t>> wait(std::uint32_t point, Time deadline) {
     std::unique_lock lock(mutex_);
     value_.reset();
+    since_ = std::chrono::steady_clock::now();
     wanted_ = point;
     came_.wait_until(lock, deadline, [this] { return value_.has_value() || !online_ || ended_; });
     wanted_ = nobody;
@@ -29,9 +30,11 @@ class NextValue {
 
   /// Whether there is somebody; costs nothing.
   bool is_wanted(std::uint32_t point) const { return wanted_.load(std::memory_order_relaxed) == point; }
-  void bring(const std::uint16_t* registers, std::size_t count) {
+  /// What the device was asked for before somebody waited may be older than the wait.
+  void bring(const std::uint16_t* registers, std::size_t count, Time asked) {
     {
       const std::lock_guard lock(mutex_);
+      if (asked < since_) return;
       value_.emplace(registers, registers + count);
       wanted_ = nobody;
     }
@@ -63,6 +66,7 @@ class NextValue {
   std::mutex mutex_;
   std::condition_variable came_;
   std::optional<std::vector<std::uint16_t>> value_;
+  Time since_{};  ///< the wait
   bool online_ = false;
   bool ended_ = false;
 };

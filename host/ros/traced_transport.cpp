@@ -30,20 +30,20 @@ Result<> TracedTransport::connect() {
 }
 
 Result<> TracedTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
-  const Time begun = now();
-  return told(transport_->read_bits(table, range, bits), begun, [&] { return describe_read(table, range); });
+  asked_ = now();
+  return told(transport_->read_bits(table, range, bits), asked_, [&] { return describe_read(table, range); });
 }
 
 Result<> TracedTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
-  const Time begun = now();
-  return told(transport_->read_registers(table, range, registers), begun,
+  asked_ = now();
+  return told(transport_->read_registers(table, range, registers), asked_,
               [&] { return describe_read(table, range); });
 }
 
 Result<> TracedTransport::read_file_record(std::uint16_t file, std::uint16_t record,
                                            Span<std::uint16_t> registers) {
-  const Time begun = now();
-  return told(transport_->read_file_record(file, record, registers), begun, [&] {
+  asked_ = now();
+  return told(transport_->read_file_record(file, record, registers), asked_, [&] {
     return fmt::format("read file {} from {}, {} registers", file, record, registers.size());
   });
 }

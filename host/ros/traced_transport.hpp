@@ -9,11 +9,15 @@
 
 namespace coupler::driver {
 
-/// Shows each request at ROS's debug level: what it was, its result, and how long it took.
+/// Shows each request at ROS's debug level: what it was, its result, and how long it took. Knows when the
+/// last one began.
 class TracedTransport : public Transport {
  public:
   TracedTransport(std::string name, std::unique_ptr<Transport> transport, Log& log)
       : name_(std::move(name)), transport_(std::move(transport)), log_(log) {}
+
+  /// Of the last read, in its thread.
+  Time asked() const { return asked_; }
 
   Result<> connect() override;
   void close() override { transport_->close(); }
@@ -38,6 +42,7 @@ class TracedTransport : public Transport {
   std::string name_;
   std::unique_ptr<Transport> transport_;
   Log& log_;
+  Time asked_{};
   Time sent_{};
 };
 

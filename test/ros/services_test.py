@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Services answer when the result is known, and say what it was."""
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 from coupler_driver.msg import PointStatus
 from coupler_driver.srv import Read, Write
@@ -10,7 +12,7 @@ from std_srvs.srv import SetBool
 from support import process, testing
 from support.device import ILLEGAL_ADDRESS, Device, Refuse
 from support.latest import LatestDiagnostics, LatestStatus, values
-from support.patience import NO_TIMEOUT, PATIENCE
+from support.patience import NO_TIMEOUT, PATIENCE, QUIET
 from support.topics import response_of
 
 MAP = """
@@ -134,6 +136,25 @@ class Services(ServicesTest):
         self.assertEqual(self.call("read", Read, "pressure").value, "21.5")
         self.device.tables["holding_registers"][10:13] = [7, 8, 9]
         self.assertEqual(self.call("read", Read, "speeds").value, "[7, 8, 9]")
+
+    def test_a_value_that_is_under_way_when_it_is_called_is_not_the_next_one(self):
+        is_under_way, may_come = threading.Event(), threading.Event()
+
+        def answer(request):
+            reply = self.device.serve(request)
+            if request.function == 4 and not is_under_way.is_set():
+                is_under_way.set()
+                may_come.wait(PATIENCE)
+            return reply
+
+        self.device.answer = answer
+        self.assertTrue(is_under_way.wait(PATIENCE))
+        self.device.tables["input_registers"][0] = 43
+        with ThreadPoolExecutor() as pool:
+            read = pool.submit(self.call, "read", Read, "pressure")
+            time.sleep(QUIET)  # nothing tells that the driver has the call
+            may_come.set()
+            self.assertEqual(read.result().value, "21.5")
 
 
 class ServicesOffline(ServicesTest):

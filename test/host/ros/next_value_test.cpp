@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::uint32_t point = 3;
 
-Time far_away() { return std::chrono::steady_clock::now() + std::chrono::minutes(10); }
+Time now() { return std::chrono::steady_clock::now(); }
+Time far_away() { return now() + std::chrono::minutes(10); }
 
 /// Calls `then` in another thread as soon as somebody waits.
 template <class Then>
@@ -41,8 +42,22 @@ TEST(NextValue, A_value_that_comes_while_the_device_is_online_is_given) {
   NextValue next;
   next.online(true);
   const std::uint16_t value = 7;
-  std::thread device = once_wanted(next, [&] { next.bring(&value, 1); });
+  std::thread device = once_wanted(next, [&] { next.bring(&value, 1, now()); });
   EXPECT_EQ(next.wait(point, far_away()), std::vector<std::uint16_t>{7});
+  device.join();
+}
+
+TEST(NextValue, A_value_that_was_asked_for_before_is_not_the_next_one) {
+  NextValue next;
+  next.online(true);
+  const std::uint16_t old = 7;
+  const std::uint16_t value = 8;
+  const Time before = now();
+  std::thread device = once_wanted(next, [&] {
+    next.bring(&old, 1, before);
+    next.bring(&value, 1, now());
+  });
+  EXPECT_EQ(next.wait(point, far_away()), std::vector<std::uint16_t>{8});
   device.join();
 }
 
