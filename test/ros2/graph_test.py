@@ -66,10 +66,11 @@ class Names(GraphTest):
         wait_until(lambda: services() == wanted, "the services")
 
     def test_the_node_has_the_name_of_its_device(self):
+        # Each a name of its own: a peer may go on seeing a node that ended at once, if rmw_fastrtps hears of it late.
         for arguments, node in (
-                (("--map", self.map()), "/shown_driver"),
-                (("--ros-args", "-p", f"map:={self.map()}"), "/shown_driver"),
-                (("--map", self.map(), "--name", "other"), "/other_driver"),
+                (("--map", self.map("lathe")), "/lathe_driver"),
+                (("--ros-args", "-p", f"map:={self.map('valve')}"), "/valve_driver"),
+                (("--map", self.map(), "--name", "called"), "/called_driver"),
                 (("--map", self.map(), "--ros-args", "-p", "name:=other"), "/other_driver"),
                 (("--map", self.map(), "--name", "cell/press"), "/cell_press_driver"),
                 (("--map", self.map("cell/belt")), "/cell_belt_driver"),
@@ -80,15 +81,14 @@ class Names(GraphTest):
                 driver = self.driver(*arguments)
                 self.appears(node)
                 driver.end()
-                wait_until(lambda gone=node: gone not in nodes(), "its end")
 
     def test_with_an_address_alone_the_node_is_named_after_it_before_the_device_is_there(self):
-        port = free_port()
+        port, other, third = free_port(), free_port(), free_port()
         for arguments, node in (
                 (("--address", "127.0.0.1", "--port", port), f"/coupler_127_0_0_1_{port}_driver"),
                 (("--address", "localhost", "--port", port, "--unit", 3), f"/localhost_{port}_unit3_driver"),
-                (("--map", f"tcp://127.0.0.1:{port}"), f"/coupler_127_0_0_1_{port}_driver"),
-                (("--ros-args", "-p", "address:=127.0.0.1", "-p", f"port:={port}"), f"/coupler_127_0_0_1_{port}_driver"),
+                (("--map", f"tcp://127.0.0.1:{other}"), f"/coupler_127_0_0_1_{other}_driver"),
+                (("--ros-args", "-p", "address:=127.0.0.1", "-p", f"port:={third}"), f"/coupler_127_0_0_1_{third}_driver"),
                 (("--address", "127.0.0.1", "--port", port, "--name", "press"), "/press_driver"),
                 (("--address", "127.0.0.1", "--port", port, "--ros-args", "-r", "__node:=io"), "/io")):
             with self.subTest(arguments):
