@@ -9,7 +9,7 @@ from support.parameters import (BOOL, REAL, SERVICES, TEXT, TEXTS, UNSET, WHOLE,
 from support.peer import Peer
 from support.ports import free_port
 from support.ros import polled
-from support.topics import Subscription, next_message, qos, wait_until
+from support.topics import Subscription, qos, wait_until
 
 MAP = """
 name: {name}
@@ -101,8 +101,9 @@ class Declared(ParametersTest):
 
     def test_types_of_messages_are_told(self):
         self.start()
-        message = next_message("/given/status", Status)
-        self.assertTrue(message.online)
+        status = Subscription("/given/status", Status)
+        self.addCleanup(status.close)
+        status.wait_for(lambda message: message.online)  # the latched one may be from before the connection
         wait_until(lambda: polled.get_publishers_info_by_topic("/given/status"), "its publisher")
         info = polled.get_publishers_info_by_topic("/given/status")[0]
         known = self.service("/given_driver/get_type_description", GetTypeDescription)(
