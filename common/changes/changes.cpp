@@ -3,11 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <unordered_map>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "common/changes/details.hpp"
 #include "common/map/diff.hpp"
+#include "common/map/fields.hpp"
+#include "common/map/written.hpp"
 
 namespace coupler::changes {
 namespace {
@@ -49,6 +54,53 @@ void add_contract(const Difference& difference, std::vector<Change>& changes) {
   }
 }
 
+/// Zero of something is nothing, for example a rate of its own.
+template <class Key, class Value>
+std::string text_of(const Key& field, const Value& value) {
+  if (field.unit.empty()) return written(value);
+  return value == Value{} ? std::string() : fmt::format("{} {}", written(value), field.unit);
+}
+template <class Key, class Rep, class Period>
+std::string text_of(const Key& /*field*/, std::chrono::duration<Rep, Period> value) {
+  return value.count() == 0 ? "none" : written(value);
+}
+
+/// "queue-size-changed" names `queue_size`.
+bool names(std::string_view rule, std::string_view key) {
+  std::string own(key);
+  std::replace(own.begin(), own.end(), '_', '-');
+  return rule.find(own) != std::string_view::npos;
+}
+
+/// Several keys may be told as one change.
+template <class Struct>
+void add_fields(const Struct& older, const Struct& newer, std::string_view point,
+                std::vector<Change>& changes) {
+  const std::size_t first = changes.size();
+  for_each_field(older, newer, [&](const auto& field, const auto& before, const auto& now) {
+    if (before == now) return;
+    const std::string name = names(field.change, field.key) ? std::string() : fmt::format("{} ", field.key);
+    std::string from = name + text_of(field, before);
+    std::string to = name + text_of(field, now);
+    if (changes.size() > first && changes.back().rule == field.change) {
+      changes.back().older += ", " + from;
+      changes.back().newer += ", " + to;
+    } else {
+      changes.push_back({std::string(field.change), Severity::compatible, std::string(point), std::move(from),
+                         std::move(to)});
+    }
+  });
+}
+
+void add_all_fields(const Map& older, const Map& newer, std::vector<Change>& changes) {
+  add_fields(older.connection, newer.connection, {}, changes);
+  add_fields(older.polling, newer.polling, {}, changes);
+  add_fields(older.limits, newer.limits, {}, changes);
+  add_fields(older, newer, {}, changes);
+  add_fields(older.service, newer.service, {}, changes);
+  add_fields(older.service.watchdog, newer.service.watchdog, {}, changes);
+}
+
 template <class Described>
 void add_details(const Described& older, const Described& newer, std::string_view point,
                  std::vector<Change>& changes) {
@@ -72,6 +124,7 @@ std::unordered_map<Key, const Element*> indexed(Span<const Element> elements, Ke
 std::vector<Change> compare(const Map& older, const Map& newer) {
   std::vector<Change> changes;
   add_details(older, newer, {}, changes);
+  add_all_fields(older, newer, changes);
   const std::vector<Difference> contract = diff(older, newer);
   const auto differences = indexed<std::string_view>(
       Span<const Difference>(contract), [](const Difference& d) -> std::string_view { return d.point; });
@@ -79,8 +132,10 @@ std::vector<Change> compare(const Map& older, const Map& newer) {
   for (const Point& point : older.points) {
     if (const auto found = differences.find(point.name); found != differences.end())
       add_contract(*found->second, changes);
-    if (const auto found = points.find(point.name); found != points.end())
+    if (const auto found = points.find(point.name); found != points.end()) {
       add_details(point, *found->second, point.name, changes);
+      add_fields(point.host, found->second->host, point.name, changes);
+    }
   }
   for (const Difference& difference : contract)
     if (difference.kind == Difference::Kind::added) add_contract(difference, changes);

@@ -17,53 +17,18 @@ std::string joined(Span<const std::uint16_t> registers) {
   return fmt::format("[{}]", fmt::join(registers.begin(), registers.end(), ", "));
 }
 
-std::string_view text_of(Safe safe) {
-  switch (safe) {
-    case Safe::off: return "off";
-    case Safe::on: return "on";
-    case Safe::hold: return "hold";
-  }
-  return "?";
-}
-
-std::string_view text_of(Edge edge) {
-  switch (edge) {
-    case Edge::rising: return "rising";
-    case Edge::falling: return "falling";
-    case Edge::both: return "both";
-  }
-  return "?";
-}
-
-std::string_view text_of(Bias bias) {
-  switch (bias) {
-    case Bias::as_is: return "";
-    case Bias::none: return ", bias none";
-    case Bias::pull_up: return ", bias pull_up";
-    case Bias::pull_down: return ", bias pull_down";
-  }
-  return "?";
-}
-
-std::string_view text_of(Drive drive) {
-  switch (drive) {
-    case Drive::push_pull: return "";
-    case Drive::open_drain: return ", drive open_drain";
-    case Drive::open_source: return ", drive open_source";
-  }
-  return "?";
-}
-
 std::string text_of(const Line& line) {
   if (!line.present()) return {};
   return fmt::format(
       "{}{}{}{}{}", line.name.empty() ? fmt::format("{} {}", line.chip, line.offset) : std::string(line.name),
-      line.active_low ? ", active_low" : "", text_of(line.bias), text_of(line.drive),
+      line.active_low ? ", active_low" : "",
+      line.bias == Bias::as_is ? "" : fmt::format(", bias {}", to_string(line.bias)),
+      line.drive == Drive::push_pull ? "" : fmt::format(", drive {}", to_string(line.drive)),
       line.debounce.count() > 0 ? fmt::format(", debounce {}", line.debounce) : "");
 }
 
 std::string text_of(const EdgeOf& edge) {
-  return edge.present() ? fmt::format("{} edges of {}", text_of(edge.edge), edge.input) : "";
+  return edge.present() ? fmt::format("{} edges of {}", to_string(edge.edge), edge.input) : "";
 }
 
 std::string text_of(const Iio& iio) {
@@ -76,7 +41,7 @@ std::string text_of(const Pwm& pwm) {
 
 std::string safe_text(const Point& point) {
   const bool has_value = point.safe == Safe::on && !point.safe_value.empty();
-  return has_value ? joined(point.safe_value) : std::string(text_of(point.safe));
+  return has_value ? joined(point.safe_value) : std::string(to_string(point.safe));
 }
 
 /// Nothing said and zeroes said are the same.
@@ -86,35 +51,9 @@ std::string initial_text(const Point& point) {
   return "0";
 }
 
-std::string publish_text(const HostOptions& host) {
-  if (host.publish == HostOptions::Publish::always) return "always";
-  return fmt::format("on_change, deadband {}, max_interval {}", host.deadband, host.max_interval);
-}
-
-std::string write_text(const HostOptions& host) {
-  constexpr std::string_view functions[] = {"automatic", "single", "multiple"};
-  return fmt::format("function {}, queue {}{}", functions[static_cast<std::size_t>(host.write_function)],
-                     host.write_queue == HostOptions::WriteQueue::latest ? "latest" : "every",
-                     host.verify_write ? ", verified" : "");
-}
-
 std::string deadman_text(const HostOptions& host) {
   return host.deadman.present() ? fmt::format("{} after {}", joined(host.deadman.value), host.deadman.timeout)
                                 : "";
-}
-
-std::string polling_text(const Polling& polling) {
-  return fmt::format("discrete_read_continuous {}, gap {}; registers_read_continuous {}, gap {}",
-                     polling.discrete_continuous, polling.discrete_gap, polling.register_continuous,
-                     polling.register_gap);
-}
-
-std::string limits_text(const Limits& limits) {
-  return fmt::format(
-      "read {} registers, {} bits; write {} registers, {} bits; request_gap {}, connect_delay {}; "
-      "connections {}; mask_write {}",
-      limits.read_registers, limits.read_bits, limits.write_registers, limits.write_bits, limits.request_gap,
-      limits.connect_delay, limits.connections, limits.mask_write);
 }
 
 std::string unreadable_text(const Map& map) {
@@ -125,20 +64,12 @@ std::string unreadable_text(const Map& map) {
   return text;
 }
 
-std::string watchdog_text(const Watchdog& watchdog) {
-  if (!watchdog.present()) return {};
-  return fmt::format("{}, fed by {}, {} recovery", watchdog.timeout,
-                     watchdog.fed_by == Watchdog::FedBy::any ? "any" : "write",
-                     watchdog.recovery == Watchdog::Recovery::automatic ? "automatic" : "manual");
-}
-
 std::string watchdog_text(const WatchdogSequences& watchdog) {
   if (!watchdog.present()) return {};
   std::string fed_by = "any request";
   if (!watchdog.feed.empty())
     fed_by = fmt::format("{} {}", to_string(watchdog.feed[0].table), watchdog.feed[0].address);
-  return fmt::format("{}, fed by {}, {} recovery", watchdog.timeout, fed_by,
-                     watchdog.recovery == Watchdog::Recovery::automatic ? "automatic" : "manual");
+  return fmt::format("{}, fed by {}, {} recovery", watchdog.timeout, fed_by, to_string(watchdog.recovery));
 }
 
 std::string sim_text(const Map& map) {
@@ -153,7 +84,6 @@ std::string sim_text(const Map& map) {
 }  // namespace
 
 std::vector<Detail> details_of(const Point& point) {
-  const HostOptions& host = point.host;
   return {
       {"description-changed", documentation, std::string(point.description)},
       {"units-changed", documentation, std::string(point.units)},
@@ -165,36 +95,17 @@ std::vector<Detail> details_of(const Point& point) {
       {"iio-changed", compatible, text_of(point.iio)},
       {"pwm-changed", compatible, text_of(point.pwm)},
       {"read-address-changed", compatible, point.read_address ? fmt::to_string(*point.read_address) : ""},
-      {"rate-changed", compatible, host.rate > 0 ? fmt::format("{} Hz", host.rate) : ""},
-      {"publish-changed", compatible, publish_text(host)},
-      {"latch-changed", compatible, fmt::to_string(host.latch)},
-      {"queue-size-changed", compatible, fmt::to_string(host.queue_size)},
-      {"write-changed", compatible, write_text(host)},
-      {"deadman-changed", compatible, deadman_text(host)},
+      {"deadman-changed", compatible, deadman_text(point.host)},
   };
 }
 
 std::vector<Detail> details_of(const Map& map) {
-  const Connection& connection = map.connection;
-  const Service& service = map.service;
+  const Span<const std::string_view> allow = map.service.allow;
   return {
       {"name-changed", compatible, std::string(map.name)},
-      {"connection-changed", compatible,
-       fmt::format("{} port {} unit {}, timeout {}", connection.address, connection.port, connection.unit,
-                   connection.timeout)},
-      {"map-rate-changed", compatible, fmt::format("{} Hz", map.polling.rate)},
-      {"polling-changed", compatible, polling_text(map.polling)},
-      {"limits-changed", compatible, limits_text(map.limits)},
       {"unreadable-changed", compatible, unreadable_text(map)},
-      {"on-reconnect-changed", compatible, map.on_reconnect == OnReconnect::drop ? "drop" : "restore"},
-      {"on-shutdown-changed", compatible, map.on_shutdown == OnShutdown::hold ? "hold" : "safe"},
-      {"poll-changed", compatible, map.poll == Poll::all ? "all" : "subscribed"},
-      {"listen-changed", compatible, std::string(service.listen)},
-      {"allow-changed", compatible,
-       fmt::format("{}", fmt::join(service.allow.begin(), service.allow.end(), ", "))},
-      {"watchdog-changed", compatible, watchdog_text(service.watchdog)},
+      {"allow-changed", compatible, fmt::format("{}", fmt::join(allow.begin(), allow.end(), ", "))},
       {"coupler-watchdog-changed", compatible, watchdog_text(map.coupler_watchdog)},
-      {"readback-changed", compatible, fmt::to_string(service.readback)},
       {"sim-changed", compatible, sim_text(map)},
   };
 }

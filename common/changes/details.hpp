@@ -9,7 +9,8 @@
 
 namespace coupler::changes {
 
-/// One thing that a map says and that the fingerprint does not contain.
+/// One thing that a map says and that the fingerprint does not contain, besides the keys of
+/// common/map/fields.hpp.
 struct Detail {
   std::string_view rule;  ///< what a change of it is called
   Severity severity;      ///< compatible or documentation

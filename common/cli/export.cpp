@@ -9,7 +9,7 @@
 #include "common/cli/complain.hpp"
 #include "common/cli/map_argument.hpp"
 #include "common/cli/report.hpp"
-#include "common/formats/exporter.hpp"
+#include "common/formats/exporters.hpp"
 #include "common/generate/output.hpp"
 
 namespace coupler::cli {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/base/enumeration.hpp"
 #include "common/codec/order.hpp"
 #include "common/codec/type.hpp"
 
@@ -12,8 +13,17 @@ namespace coupler::codec {
 /// The half of a register that holds an 8-bit value. `high` is the first byte on the wire in
 /// big-endian order; with swapped bytes (Order::BADC) it is the second.
 enum class Half : std::uint8_t { high, low };
+constexpr Enumeration<Half, 2> enumeration(Half) {
+  return {"Half", {{Half::high, "high"}, {Half::low, "low"}}};
+}
 
 enum class Encoding : std::uint8_t { utf8, ascii, latin1 };
+constexpr Enumeration<Encoding, 3> enumeration(Encoding) {
+  return {"Encoding",
+          {{Encoding::utf8, "utf8", "utf-8"},
+           {Encoding::ascii, "ascii"},
+           {Encoding::latin1, "latin1", "latin-1"}}};
+}
 
 /// How one value stands in its registers (or, BOOL in a bit table, in one bit).
 struct Format {

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string_view>
+
+#include "common/base/enumeration.hpp"
 
 namespace coupler::codec {
 
@@ -15,6 +16,17 @@ enum class Order : std::uint8_t {
   BADC,  ///< the two bytes of each register swapped
   DCBA,  ///< both: little endian throughout
 };
+/// "AB" and "BA" are for values of one register.
+constexpr Enumeration<Order, 6> enumeration(Order) {
+  return {"Order",
+          {{Order::ABCD, "ABCD"},
+           {Order::CDAB, "CDAB"},
+           {Order::BADC, "BADC"},
+           {Order::DCBA, "DCBA"},
+           {Order::ABCD, "ABCD", "AB"},
+           {Order::BADC, "BADC", "BA"}}};
+}
+using coupler::to_string;
 
 constexpr Order make_order(bool words_reversed, bool bytes_swapped) {
   if (words_reversed) return bytes_swapped ? Order::DCBA : Order::CDAB;
@@ -30,22 +42,7 @@ constexpr std::uint16_t swap_bytes(std::uint16_t word) {
 /// "ABCD" …; for a value of one register "AB" or "BA".
 constexpr std::string_view to_string(Order order, bool one_register) {
   if (one_register) return bytes_swapped(order) ? "BA" : "AB";
-  switch (order) {
-    case Order::ABCD: return "ABCD";
-    case Order::CDAB: return "CDAB";
-    case Order::BADC: return "BADC";
-    case Order::DCBA: return "DCBA";
-  }
-  return "?";
-}
-
-/// Reads "ABCD", "CDAB", "BADC", "DCBA", "AB" (= ABCD) and "BA" (= BADC); nothing else.
-constexpr std::optional<Order> parse_order(std::string_view text) {
-  if (text == "ABCD" || text == "AB") return Order::ABCD;
-  if (text == "CDAB") return Order::CDAB;
-  if (text == "BADC" || text == "BA") return Order::BADC;
-  if (text == "DCBA") return Order::DCBA;
-  return std::nullopt;
+  return to_string(order);
 }
 
 }  // namespace coupler::codec

@@ -88,13 +88,4 @@ TextError encode_text(std::string_view text, const Format& format, std::uint16_t
   return TextError::none;
 }
 
-std::string_view to_string(Encoding encoding) {
-  switch (encoding) {
-    case Encoding::utf8: return "utf-8";
-    case Encoding::ascii: return "ascii";
-    case Encoding::latin1: return "latin-1";
-  }
-  return "?";
-}
-
 }  // namespace coupler::codec

@@ -26,6 +26,4 @@ enum class TextError : std::uint8_t {
 /// error.
 TextError encode_text(std::string_view text, const Format& format, std::uint16_t* registers);
 
-std::string_view to_string(Encoding encoding);
-
 }  // namespace coupler::codec

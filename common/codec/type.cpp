@@ -1,31 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/codec/type.hpp"
 
-#include <array>
-#include <utility>
-
 namespace coupler::codec {
 namespace {
-
-constexpr std::array<std::pair<Type, std::string_view>, 17> names{{
-    {Type::BOOL, "BOOL"},
-    {Type::BYTE, "BYTE"},
-    {Type::WORD, "WORD"},
-    {Type::DWORD, "DWORD"},
-    {Type::LWORD, "LWORD"},
-    {Type::SINT, "SINT"},
-    {Type::INT, "INT"},
-    {Type::DINT, "DINT"},
-    {Type::LINT, "LINT"},
-    {Type::USINT, "USINT"},
-    {Type::UINT, "UINT"},
-    {Type::UDINT, "UDINT"},
-    {Type::ULINT, "ULINT"},
-    {Type::REAL, "REAL"},
-    {Type::LREAL, "LREAL"},
-    {Type::CHAR, "CHAR"},
-    {Type::STRING, "STRING"},
-}};
 
 bool same_letters(std::string_view a, std::string_view upper) {
   if (a.size() != upper.size()) return false;
@@ -38,15 +15,9 @@ bool same_letters(std::string_view a, std::string_view upper) {
 
 }  // namespace
 
-std::string_view to_string(Type type) {
-  for (const auto& [value, name] : names)
-    if (value == type) return name;
-  return "?";
-}
-
 std::optional<Type> parse_type(std::string_view name) {
-  for (const auto& [value, upper] : names)
-    if (same_letters(name, upper)) return value;
+  for (const auto& type : enumeration_of<Type>.words)
+    if (same_letters(name, type.word)) return type.value;
   return std::nullopt;
 }
 

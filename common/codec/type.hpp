@@ -5,6 +5,8 @@
 #include <optional>
 #include <string_view>
 
+#include "common/base/enumeration.hpp"
+
 namespace coupler::codec {
 
 /// Data types of IEC 61131-3 (2013), table 10, as far as they fit into registers.
@@ -28,6 +30,27 @@ enum class Type : std::uint8_t {
   CHAR,
   STRING,
 };
+constexpr Enumeration<Type, 17> enumeration(Type) {
+  return {"Type",
+          {{Type::BOOL, "BOOL"},
+           {Type::BYTE, "BYTE"},
+           {Type::WORD, "WORD"},
+           {Type::DWORD, "DWORD"},
+           {Type::LWORD, "LWORD"},
+           {Type::SINT, "SINT"},
+           {Type::INT, "INT"},
+           {Type::DINT, "DINT"},
+           {Type::LINT, "LINT"},
+           {Type::USINT, "USINT"},
+           {Type::UINT, "UINT"},
+           {Type::UDINT, "UDINT"},
+           {Type::ULINT, "ULINT"},
+           {Type::REAL, "REAL"},
+           {Type::LREAL, "LREAL"},
+           {Type::CHAR, "CHAR"},
+           {Type::STRING, "STRING"}}};
+}
+using coupler::to_string;
 
 /// Width of one value in bits; 0 for STRING, whose width is its length.
 constexpr unsigned width(Type type) {
@@ -52,8 +75,6 @@ constexpr unsigned width(Type type) {
   }
   return 0;
 }
-
-std::string_view to_string(Type type);
 
 /// The type of that name, in any case ("uint", "UINT").
 std::optional<Type> parse_type(std::string_view name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/formats/csv_export.hpp"
+#include "common/formats/exporters.hpp"
 
 #include <algorithm>
 #include <map>
@@ -12,8 +12,10 @@
 #include "common/formats/csv.hpp"
 #include "common/formats/entries.hpp"
 #include "common/formats/map_writer.hpp"
+#include "common/map/fields.hpp"
 #include "common/map/loader/document.hpp"
 #include "common/map/loader/keys.hpp"
+#include "common/map/written.hpp"
 
 namespace coupler::formats {
 namespace {
@@ -41,7 +43,7 @@ void add_format(const Point& point, Cells& cells) {
   }
   const unsigned width = codec::width(format.type);
   if (format.type == codec::Type::BOOL) cells["bit"] = fmt::to_string(format.bit);
-  if (width == 8) cells["offset"] = format.half == codec::Half::high ? "high" : "low";
+  if (width == 8) cells["offset"] = codec::to_string(format.half);
   if (width > 16 || codec::bytes_swapped(format.order))
     cells["order"] = codec::to_string(format.order, width <= 16);
   if (point.scale.present()) cells["scale"] = scale_text(point.scale);
@@ -56,45 +58,40 @@ Cells cells_of(const Point& point) {
   if (!holds_bits(point.table)) add_format(point, cells);
   if (point.count > 1) cells["count"] = fmt::to_string(point.count);
   const Access usual = is_writable(point.table) ? Access::read_write : Access::read;
-  if (point.access != usual) cells["access"] = point.access == Access::read ? "read" : "write";
+  if (point.access != usual) cells["access"] = to_string(point.access);
   if (point.read_address) cells["read_address"] = fmt::to_string(*point.read_address);
   cells["units"] = point.units;
   cells["description"] = point.description;
   return cells;
 }
 
+/// What the host does with the point has a meaning for it.
+bool applies(About about, const Point& point) {
+  if (about == About::reading) return is_readable(point);
+  return about != About::writing || is_writable(point);
+}
+
 /// From the model, too: `defaults` are worked in.
 void add_host_options(const Point& point, const Entry* defaults, Cells& cells) {
-  const HostOptions& host = point.host;
-  if (is_readable(point)) {
-    if (host.rate > 0) cells["rate"] = fmt::to_string(host.rate);
-    if (host.publish == HostOptions::Publish::on_change) {
-      cells["publish"] = "on_change";
-      if (host.deadband > 0) cells["deadband"] = fmt::to_string(host.deadband);
-      if (host.max_interval.count() > 0)
-        cells["max_interval"] = fmt::format("{}ms", host.max_interval.count());
-    }
-    if (host.latch) cells["latch"] = "true";
+  HostOptions host = point.host;
+  if (host.publish != HostOptions::Publish::on_change) {  // `defaults` may have what goes with it
+    host.deadband = 0;
+    host.max_interval = {};
   }
-  if (host.queue_size != HostOptions{}.queue_size) cells["queue_size"] = fmt::to_string(host.queue_size);
-  if (!is_writable(point)) return;
-  if (host.write_function != HostOptions::WriteFunction::automatic)
-    cells["write_function"] =
-        host.write_function == HostOptions::WriteFunction::single ? "single" : "multiple";
-  if (host.verify_write) cells["verify_write"] = "true";
-  if (host.write_queue == HostOptions::WriteQueue::every) cells["write_queue"] = "every";
+  for_each_field(host, HostOptions{}, [&](const auto& field, const auto& value, const auto& usual) {
+    if (value != usual && applies(field.about, point)) cells[std::string(field.key)] = written(value);
+  });
   const Entry* deadman = defaults != nullptr ? find(*defaults, "deadman") : nullptr;
-  if (host.deadman.present() && deadman != nullptr) cells["deadman"] = flow(*deadman);
+  if (is_writable(point) && host.deadman.present() && deadman != nullptr) cells["deadman"] = flow(*deadman);
 }
 
 /// The rest, and a deadman of the point's own, as it stands in the file.
 void add_file_keys(const Entry& entry, Cells& cells) {
-  const std::set<std::string_view> from_model{"address", "type", "order", "offset", "bit", "length",
-                                              "encoding", "ignore_byteorder", "count", "scale", "access",
-                                              "read_address", "units", "description",
-                                              // add_host_options()
-                                              "rate", "publish", "deadband", "max_interval", "latch",
-                                              "queue_size", "write_function", "verify_write", "write_queue"};
+  std::set<std::string_view> from_model{
+      "address",          "type",  "order", "offset", "bit",          "length", "encoding",
+      "ignore_byteorder", "count", "scale", "access", "read_address", "units",  "description"};
+  const HostOptions host;
+  for_each_field(host, [&](const auto& field, const auto&) { from_model.insert(field.key); });
   for (const Entry& option : entry.children)
     if (from_model.count(option.key) == 0)
       cells[option.key] = option.kind == Entry::Kind::scalar ? option.text : flow(option);

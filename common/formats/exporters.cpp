@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/formats/exporters.hpp"
+
 #include <algorithm>
 #include <iterator>
-
-#include "common/formats/csv_export.hpp"
-#include "common/formats/exporter.hpp"
-#include "common/formats/home_assistant_export.hpp"
-#include "common/formats/telegraf_export.hpp"
-#include "common/formats/wireshark_export.hpp"
 
 namespace coupler::formats {
 namespace {

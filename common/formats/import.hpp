@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/formats/importer.hpp"
+#include "common/formats/importers.hpp"
 #include "common/map/diagnostic.hpp"
 #include "common/map/owned_map.hpp"
 

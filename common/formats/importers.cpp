@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include "common/formats/importers.hpp"
 
-#include "common/formats/csv_import.hpp"
-#include "common/formats/importer.hpp"
-#include "common/formats/origin_import.hpp"
-#include "common/formats/unslave_import.hpp"
-#ifdef COUPLER_WITH_PUGIXML
-#include "common/formats/modbuspal_import.hpp"
-#endif
+#include <algorithm>
+#include <iterator>
 
 namespace coupler::formats {
 namespace {

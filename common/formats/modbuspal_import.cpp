@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/formats/modbuspal_import.hpp"
+#include "common/formats/importers.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/formats/telegraf_export.hpp"
+#include "common/formats/exporters.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "common/codec/decimal.hpp"
+#include "common/generate/code.hpp"
 #include "common/generate/literal.hpp"
 #include "common/generate/rows.hpp"
 
@@ -79,34 +79,22 @@ constexpr char text[] =
 
 constexpr Map map{{
     {map_name},
-    {{{address}, {port}, {unit}, {timeout}ms}},  // address, port, unit, timeout
-    {{{rate}, {discrete_continuous}, {discrete_gap}, {register_continuous}, {register_gap}}},  // rate in Hz, joining of bits, of registers
-    {{{read_registers}, {read_bits}, {write_registers}, {write_bits}, {request_gap}ms, {connect_delay}ms, {connections}, {mask_write}}},  // limits
+    {connection},  // {connection_keys}
+    {polling},  // {polling_keys}
+    {limits},  // {limits_keys}
     {points_name},
     {sim_name},
     fingerprint,
     {{text, sizeof text - 1}},
     0x{crc:08x},  // CRC-32 of the text
     {{{listen}, {allow_name}, {watchdog}, {readback}}},  // listen, allow, watchdog, readback
-    OnReconnect::{on_reconnect}, OnShutdown::{on_shutdown}, {unreadable_name},
+    {on_reconnect}, {on_shutdown}, {unreadable_name},
     {coupler_watchdog},  // timeout, recovery, feed every, arm, feed, reset, how it shows that it has expired
-    Poll::{poll},
+    {poll},
 }};
 
 }}  // namespace coupler::maps::{name}
 )";
-
-std::string_view enumerator(Watchdog::Recovery recovery) {
-  return recovery == Watchdog::Recovery::automatic ? "Watchdog::Recovery::automatic"
-                                                   : "Watchdog::Recovery::manual";
-}
-
-std::string watchdog(const Watchdog& watchdog) {
-  if (!watchdog.present()) return "{}";
-  return fmt::format("{{{}ms, Watchdog::FedBy::{}, {}}}", watchdog.timeout.count(),
-                     watchdog.fed_by == Watchdog::FedBy::any ? "any" : "write",
-                     enumerator(watchdog.recovery));
-}
 
 std::string coupler_watchdog(const WatchdogSequences& watchdog) {
   if (!watchdog.present()) return "{}";
@@ -115,8 +103,8 @@ std::string coupler_watchdog(const WatchdogSequences& watchdog) {
     refusal = fmt::format("::coupler::modbus::Exception{{{}}}", static_cast<unsigned>(*watchdog.refusal));
   std::string alarm = "{}";
   if (const auto& at = watchdog.alarm)
-    alarm = fmt::format("WatchdogSequences::Write{{Table::{}, {}, {}, {}}}", to_string(at->table),
-                        at->address, at->value, at->if_different);
+    alarm = fmt::format("WatchdogSequences::Write{{{}, {}, {}, {}}}", enumerator(at->table), at->address,
+                        at->value, at->if_different);
   return fmt::format("{{{}ms, {}, {}ms, {}, {}, {}, {}, {}}}", watchdog.timeout.count(),
                      enumerator(watchdog.recovery), watchdog.feed_every.count(),
                      watchdog.arm.empty() ? "{}" : "watchdog_arm",
@@ -150,9 +138,6 @@ std::string table_header(const Map& map, const Stamp& stamp) {
 }
 
 std::string table_source(const Map& map, const Stamp& stamp) {
-  const Connection& at = map.connection;
-  const Polling& poll = map.polling;
-  const Limits& limits = map.limits;
   using fmt::arg;
   return fmt::format(
       source_form, arg("name", stamp.name), arg("source", comment(stamp.source)),
@@ -163,26 +148,20 @@ std::string table_source(const Map& map, const Stamp& stamp) {
                 "and what few points have: counter, latched, count, scale, iio, pwm, safe registers, read "
                 "address, host.",
                 map.points)),
-      arg("sim", array("SimWire sim", "From, to, invert, period of a square wave.", map.sim)),
+      arg("sim", array("SimWire sim", keys_of<SimWire>(), map.sim)),
       arg("allow", array("::std::string_view allow", "Who may connect.", map.service.allow)),
       arg("unreadable", array("Unreadable unreadable", "What is never read.", map.unreadable)),
       arg("unreadable_name", map.unreadable.empty() ? "{}" : "unreadable"),
       arg("sequences", sequences(map.coupler_watchdog)),
       arg("coupler_watchdog", coupler_watchdog(map.coupler_watchdog)),
-      arg("on_reconnect", map.on_reconnect == OnReconnect::drop ? "drop" : "restore"),
-      arg("on_shutdown", map.on_shutdown == OnShutdown::hold ? "hold" : "safe"),
-      arg("poll", map.poll == Poll::all ? "all" : "subscribed"), arg("listen", literal(map.service.listen)),
+      arg("on_reconnect", enumerator(map.on_reconnect)), arg("on_shutdown", enumerator(map.on_shutdown)),
+      arg("poll", enumerator(map.poll)), arg("listen", literal(map.service.listen)),
       arg("allow_name", map.service.allow.empty() ? "{}" : "allow"),
-      arg("watchdog", watchdog(map.service.watchdog)), arg("readback", map.service.readback),
+      arg("watchdog", aggregate(map.service.watchdog)), arg("readback", map.service.readback),
       arg("text", literal_lines(map.text, "    ")), arg("map_name", literal(map.name)),
-      arg("address", literal(at.address)), arg("port", at.port), arg("unit", at.unit),
-      arg("timeout", at.timeout.count()), arg("rate", codec::decimal(poll.rate)),
-      arg("discrete_continuous", poll.discrete_continuous), arg("discrete_gap", poll.discrete_gap),
-      arg("register_continuous", poll.register_continuous), arg("register_gap", poll.register_gap),
-      arg("read_registers", limits.read_registers), arg("read_bits", limits.read_bits),
-      arg("write_registers", limits.write_registers), arg("write_bits", limits.write_bits),
-      arg("request_gap", limits.request_gap.count()), arg("connect_delay", limits.connect_delay.count()),
-      arg("connections", limits.connections), arg("mask_write", limits.mask_write),
+      arg("connection", aggregate(map.connection)), arg("connection_keys", keys_of<Connection>()),
+      arg("polling", aggregate(map.polling)), arg("polling_keys", keys_of<Polling>()),
+      arg("limits", aggregate(map.limits)), arg("limits_keys", keys_of<Limits>()),
       arg("points_name", map.points.empty() ? "{}" : "points"),
       arg("sim_name", map.sim.empty() ? "{}" : "sim"), arg("fingerprint", map.fingerprint),
       arg("crc", map.text_crc));

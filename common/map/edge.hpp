@@ -4,9 +4,14 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/base/enumeration.hpp"
+
 namespace coupler {
 
 enum class Edge : std::uint8_t { rising, falling, both };
+constexpr Enumeration<Edge, 3> enumeration(Edge) {
+  return {"Edge", {{Edge::rising, "rising"}, {Edge::falling, "falling"}, {Edge::both, "both"}}};
+}
 
 /// The edges of a discrete input.
 struct EdgeOf {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 
+#include "common/base/enumeration.hpp"
 #include "common/base/span.hpp"
 
 namespace coupler {
@@ -42,5 +43,21 @@ struct HostOptions {
   bool verify_write = false;  ///< read back after a write
   Deadman deadman{};
 };
+
+constexpr Enumeration<HostOptions::Publish, 2> enumeration(HostOptions::Publish) {
+  using Publish = HostOptions::Publish;
+  return {"HostOptions::Publish", {{Publish::always, "always"}, {Publish::on_change, "on_change"}}};
+}
+constexpr Enumeration<HostOptions::WriteFunction, 3> enumeration(HostOptions::WriteFunction) {
+  using Function = HostOptions::WriteFunction;
+  return {"HostOptions::WriteFunction",
+          {{Function::automatic, "automatic", ""},
+           {Function::single, "single"},
+           {Function::multiple, "multiple"}}};
+}
+constexpr Enumeration<HostOptions::WriteQueue, 2> enumeration(HostOptions::WriteQueue) {
+  using Queue = HostOptions::WriteQueue;
+  return {"HostOptions::WriteQueue", {{Queue::latest, "latest"}, {Queue::every, "every"}}};
+}
 
 }  // namespace coupler

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/base/enumeration.hpp"
 #include "common/base/span.hpp"
 #include "common/map/point.hpp"
 #include "common/map/service.hpp"
@@ -58,16 +59,25 @@ enum class OnReconnect : std::uint8_t {
   drop,    ///< writes that found no link are lost
   restore  ///< the last value of every output that was written is written again
 };
+constexpr Enumeration<OnReconnect, 2> enumeration(OnReconnect) {
+  return {"OnReconnect", {{OnReconnect::drop, "drop"}, {OnReconnect::restore, "restore"}}};
+}
 enum class OnShutdown : std::uint8_t {
   hold,  ///< outputs stay as they are
   safe   ///< outputs go to their safe values: Point::safe, Point::safe_value
 };
+constexpr Enumeration<OnShutdown, 2> enumeration(OnShutdown) {
+  return {"OnShutdown", {{OnShutdown::hold, "hold"}, {OnShutdown::safe, "safe"}}};
+}
 
 /// Which points the driver reads.
 enum class Poll : std::uint8_t {
   all,
   subscribed  ///< those that somebody listens to
 };
+constexpr Enumeration<Poll, 2> enumeration(Poll) {
+  return {"Poll", {{Poll::all, "all"}, {Poll::subscribed, "subscribed"}}};
+}
 
 /// One wire of the simulated chip: `from` an output `to` an input, or a square wave `to` an input.
 struct SimWire {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "common/base/enumeration.hpp"
 #include "common/base/span.hpp"
 #include "common/codec/format.hpp"
 #include "common/codec/scale.hpp"
@@ -19,15 +20,8 @@ namespace coupler {
 
 /// What the master may do with a point.
 enum class Access : std::uint8_t { read, write, read_write };
-
-/// As a map writes it.
-constexpr std::string_view to_string(Access access) {
-  switch (access) {
-    case Access::read: return "read";
-    case Access::write: return "write";
-    case Access::read_write: return "read_write";
-  }
-  return "?";
+constexpr Enumeration<Access, 3> enumeration(Access) {
+  return {"Access", {{Access::read, "read"}, {Access::write, "write"}, {Access::read_write, "read_write"}}};
 }
 
 /// One named value of a coupler. A literal type, so that a generated table is constant data.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/base/enumeration.hpp"
 #include "common/base/span.hpp"
 
 namespace coupler {
@@ -27,6 +28,14 @@ struct Watchdog {
   constexpr bool present() const { return timeout.count() > 0; }
   constexpr bool needs_reset() const { return present() && recovery == Recovery::manual; }
 };
+
+constexpr Enumeration<Watchdog::FedBy, 2> enumeration(Watchdog::FedBy) {
+  return {"Watchdog::FedBy", {{Watchdog::FedBy::any, "any"}, {Watchdog::FedBy::write, "write"}}};
+}
+constexpr Enumeration<Watchdog::Recovery, 2> enumeration(Watchdog::Recovery) {
+  using Recovery = Watchdog::Recovery;
+  return {"Watchdog::Recovery", {{Recovery::automatic, "automatic"}, {Recovery::manual, "manual"}}};
+}
 
 /// How a node serves the map.
 struct Service {

@@ -3,7 +3,8 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
+
+#include "common/base/enumeration.hpp"
 
 namespace coupler {
 
@@ -17,15 +18,13 @@ constexpr bool holds_bits(Table table) { return table == Table::coils || table =
 constexpr bool is_writable(Table table) { return table == Table::coils || table == Table::holding_registers; }
 constexpr std::size_t index(Table table) { return static_cast<std::size_t>(table); }
 
-/// The key under `mapping:`.
-constexpr std::string_view to_string(Table table) {
-  switch (table) {
-    case Table::coils: return "coils";
-    case Table::discrete_inputs: return "discrete_inputs";
-    case Table::input_registers: return "input_registers";
-    case Table::holding_registers: return "holding_registers";
-  }
-  return "?";
+/// The keys under `mapping:`.
+constexpr Enumeration<Table, 4> enumeration(Table) {
+  return {"Table",
+          {{Table::coils, "coils"},
+           {Table::discrete_inputs, "discrete_inputs"},
+           {Table::input_registers, "input_registers"},
+           {Table::holding_registers, "holding_registers"}}};
 }
 
 }  // namespace coupler

@@ -67,7 +67,7 @@ std::string watchdog_words(const Watchdog& watchdog) {
                      watchdog.fed_by == Watchdog::FedBy::any
                          ? "any request of a client that has written an output"
                          : "writes",
-                     watchdog.recovery == Watchdog::Recovery::automatic ? "automatic" : "manual");
+                     to_string(watchdog.recovery));
 }
 
 FactGroup service(const Map& map) {

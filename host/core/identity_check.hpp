@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/enumeration.hpp"
 #include "common/map/diff.hpp"
 #include "host/core/node_map.hpp"
 
@@ -15,6 +16,9 @@ enum class Verify {
   warn,     ///< say so and go on
   off       ///< do not ask
 };
+constexpr Enumeration<Verify, 3> enumeration(Verify) {
+  return {"Verify", {{Verify::require, "require"}, {Verify::warn, "warn"}, {Verify::off, "off"}}};
+}
 
 /// How the device's map compares with the driver's.
 struct Identity {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "common/base/enumeration.hpp"
 #include "common/map/host.hpp"
 #include "common/map/loader/names.hpp"
 #include "common/map/loader/nearest.hpp"
@@ -52,22 +53,14 @@ Outcome set_timeout(Settings& settings, const SettingKey& key, const std::string
 }
 
 Outcome set_verify(Settings& settings, const std::string& text) {
-  if (text == "require")
-    settings.verify = Verify::require;
-  else if (text == "warn")
-    settings.verify = Verify::warn;
   // ROS reads "off" as a boolean where a parameter comes from YAML.
-  else if (text == "off" || text == "false")
-    settings.verify = Verify::off;
-  else
-    return wrong("verify", text, "require, warn or off");
-  return {};
+  settings.verify = parse_word<Verify>(text == "false" ? "off" : text);
+  return settings.verify ? Outcome{} : wrong("verify", text, "require, warn or off");
 }
 
 Outcome set_poll(Settings& settings, const std::string& text) {
-  if (text != "all" && text != "subscribed") return wrong("poll", text, "all or subscribed");
-  settings.poll = text == "all" ? Poll::all : Poll::subscribed;
-  return {};
+  settings.poll = parse_word<Poll>(text);
+  return settings.poll ? Outcome{} : wrong("poll", text, "all or subscribed");
 }
 
 Outcome set_text(std::optional<std::string>& field, std::string_view key, const std::string& text) {
@@ -162,11 +155,11 @@ std::optional<std::string> text_of(const Settings& settings, std::string_view ke
   const auto number = [](const auto& field) {
     return field ? std::optional(fmt::to_string(*field)) : std::nullopt;
   };
-  const auto word = [](bool is_set, std::string_view said) {
-    return is_set ? std::optional(std::string(said)) : std::nullopt;
+  const auto word = [](const auto& field) {
+    return field ? std::optional(std::string(coupler::to_string(*field))) : std::nullopt;
   };
   if (key == "map") return settings.map;
-  if (key == "maps") return word(!settings.maps.empty(), fmt::format("{}", fmt::join(settings.maps, ",")));
+  if (key == "maps" && !settings.maps.empty()) return fmt::format("{}", fmt::join(settings.maps, ","));
   if (key == "name") return settings.name;
   if (key == "address") return settings.address;
   if (key == "port") return number(settings.port);
@@ -174,11 +167,9 @@ std::optional<std::string> text_of(const Settings& settings, std::string_view ke
   if (key == "rate") return number(settings.rate);
   if (key == "timeout" && settings.timeout)
     return fmt::to_string(std::chrono::duration<double>(*settings.timeout).count());
-  if (key == "verify" && settings.verify)
-    return *settings.verify == Verify::require ? "require"
-           : *settings.verify == Verify::warn  ? "warn"
-                                               : "off";
-  return word(key == "poll" && settings.poll, settings.poll == Poll::subscribed ? "subscribed" : "all");
+  if (key == "verify") return word(settings.verify);
+  if (key == "poll") return word(settings.poll);
+  return std::nullopt;
 }
 
 std::vector<std::string_view> setting_names() {

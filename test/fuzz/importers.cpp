@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "common/formats/exporter.hpp"
+#include "common/formats/exporters.hpp"
 #include "common/formats/import.hpp"
 #include "common/map/loader/load.hpp"
 #include "test/fuzz/require.hpp"

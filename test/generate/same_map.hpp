@@ -5,20 +5,18 @@
 
 #include <algorithm>
 
-#include "common/map/map.hpp"
+#include "common/map/fields.hpp"
 
 namespace coupler::testing {
 
 static_assert(model_version == 5, "Compare the new fields of the model here, too");
 
-inline void expect_same(const Line& a, const Line& b) {
-  EXPECT_EQ(a.chip, b.chip);
-  EXPECT_EQ(a.offset, b.offset);
-  EXPECT_EQ(a.name, b.name);
-  EXPECT_EQ(a.active_low, b.active_low);
-  EXPECT_EQ(a.bias, b.bias);
-  EXPECT_EQ(a.drive, b.drive);
-  EXPECT_EQ(a.debounce, b.debounce);
+/// What fields_of() lists.
+template <class Struct>
+void expect_same_fields(const Struct& a, const Struct& b) {
+  for_each_field(a, b, [](const auto& field, const auto& value, const auto& other) {
+    EXPECT_EQ(value, other) << field.key;
+  });
 }
 
 inline void expect_same(const codec::Format& a, const codec::Format& b) {
@@ -30,25 +28,12 @@ inline void expect_same(const codec::Format& a, const codec::Format& b) {
   EXPECT_EQ(a.encoding, b.encoding);
 }
 
-inline void expect_same(const EdgeOf& a, const EdgeOf& b) {
-  EXPECT_EQ(a.input, b.input);
-  EXPECT_EQ(a.edge, b.edge);
-}
-
 inline void expect_same(Span<const std::uint16_t> a, Span<const std::uint16_t> b) {
   EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
 }
 
 inline void expect_same(const HostOptions& a, const HostOptions& b) {
-  EXPECT_EQ(a.rate, b.rate);
-  EXPECT_EQ(a.publish, b.publish);
-  EXPECT_EQ(a.deadband, b.deadband);
-  EXPECT_EQ(a.max_interval, b.max_interval);
-  EXPECT_EQ(a.latch, b.latch);
-  EXPECT_EQ(a.queue_size, b.queue_size);
-  EXPECT_EQ(a.write_function, b.write_function);
-  EXPECT_EQ(a.write_queue, b.write_queue);
-  EXPECT_EQ(a.verify_write, b.verify_write);
+  expect_same_fields(a, b);
   EXPECT_EQ(a.deadman.timeout, b.deadman.timeout);
   expect_same(a.deadman.value, b.deadman.value);
 }
@@ -61,64 +46,24 @@ inline void expect_same(const Point& a, const Point& b) {
   EXPECT_EQ(a.access, b.access);
   expect_same(a.initial, b.initial);
   EXPECT_EQ(a.safe, b.safe);
-  expect_same(a.line, b.line);
+  expect_same_fields(a.line, b.line);
   EXPECT_EQ(a.description, b.description);
   EXPECT_EQ(a.units, b.units);
-  expect_same(a.counter, b.counter);
-  expect_same(a.latched, b.latched);
+  expect_same_fields(a.counter, b.counter);
+  expect_same_fields(a.latched, b.latched);
   EXPECT_EQ(a.count, b.count);
-  EXPECT_EQ(a.scale.gain, b.scale.gain);
-  EXPECT_EQ(a.scale.offset, b.scale.offset);
-  EXPECT_EQ(a.iio.device, b.iio.device);
-  EXPECT_EQ(a.iio.channel, b.iio.channel);
-  EXPECT_EQ(a.pwm.chip, b.pwm.chip);
-  EXPECT_EQ(a.pwm.channel, b.pwm.channel);
-  EXPECT_EQ(a.pwm.period, b.pwm.period);
+  expect_same_fields(a.scale, b.scale);
+  expect_same_fields(a.iio, b.iio);
+  expect_same_fields(a.pwm, b.pwm);
   expect_same(a.safe_value, b.safe_value);
   EXPECT_EQ(a.read_address, b.read_address);
   expect_same(a.host, b.host);
 }
 
-inline void expect_same(const SimWire& a, const SimWire& b) {
-  EXPECT_EQ(a.from, b.from);
-  EXPECT_EQ(a.to, b.to);
-  EXPECT_EQ(a.invert, b.invert);
-  EXPECT_EQ(a.square, b.square);
-}
-
-inline void expect_same(const Connection& a, const Connection& b) {
-  EXPECT_EQ(a.address, b.address);
-  EXPECT_EQ(a.port, b.port);
-  EXPECT_EQ(a.unit, b.unit);
-  EXPECT_EQ(a.timeout, b.timeout);
-}
-
-inline void expect_same(const Polling& a, const Polling& b) {
-  EXPECT_EQ(a.rate, b.rate);
-  EXPECT_EQ(a.discrete_continuous, b.discrete_continuous);
-  EXPECT_EQ(a.discrete_gap, b.discrete_gap);
-  EXPECT_EQ(a.register_continuous, b.register_continuous);
-  EXPECT_EQ(a.register_gap, b.register_gap);
-}
-
-inline void expect_same(const Limits& a, const Limits& b) {
-  EXPECT_EQ(a.read_registers, b.read_registers);
-  EXPECT_EQ(a.read_bits, b.read_bits);
-  EXPECT_EQ(a.write_registers, b.write_registers);
-  EXPECT_EQ(a.write_bits, b.write_bits);
-  EXPECT_EQ(a.request_gap, b.request_gap);
-  EXPECT_EQ(a.connect_delay, b.connect_delay);
-  EXPECT_EQ(a.connections, b.connections);
-  EXPECT_EQ(a.mask_write, b.mask_write);
-}
-
 inline void expect_same(const Service& a, const Service& b) {
-  EXPECT_EQ(a.listen, b.listen);
+  expect_same_fields(a, b);
   EXPECT_TRUE(std::equal(a.allow.begin(), a.allow.end(), b.allow.begin(), b.allow.end()));
-  EXPECT_EQ(a.watchdog.timeout, b.watchdog.timeout);
-  EXPECT_EQ(a.watchdog.fed_by, b.watchdog.fed_by);
-  EXPECT_EQ(a.watchdog.recovery, b.watchdog.recovery);
-  EXPECT_EQ(a.readback, b.readback);
+  expect_same_fields(a.watchdog, b.watchdog);
 }
 
 inline void expect_same(const WatchdogSequences::Write& a, const WatchdogSequences::Write& b) {
@@ -148,23 +93,21 @@ inline void expect_same(const WatchdogSequences& a, const WatchdogSequences& b) 
 /// Every field of the model, deep.
 inline void expect_same(const Map& a, const Map& b) {
   EXPECT_EQ(a.name, b.name);
-  expect_same(a.connection, b.connection);
-  expect_same(a.polling, b.polling);
-  expect_same(a.limits, b.limits);
+  expect_same_fields(a.connection, b.connection);
+  expect_same_fields(a.polling, b.polling);
+  expect_same_fields(a.limits, b.limits);
   ASSERT_EQ(a.points.size(), b.points.size());
   for (std::size_t i = 0; i < a.points.size(); ++i) {
     SCOPED_TRACE(a.points[i].name);
     expect_same(a.points[i], b.points[i]);
   }
   ASSERT_EQ(a.sim.size(), b.sim.size());
-  for (std::size_t i = 0; i < a.sim.size(); ++i) expect_same(a.sim[i], b.sim[i]);
+  for (std::size_t i = 0; i < a.sim.size(); ++i) expect_same_fields(a.sim[i], b.sim[i]);
   EXPECT_EQ(a.fingerprint, b.fingerprint);
   EXPECT_EQ(a.text, b.text);
   EXPECT_EQ(a.text_crc, b.text_crc);
   expect_same(a.service, b.service);
-  EXPECT_EQ(a.on_reconnect, b.on_reconnect);
-  EXPECT_EQ(a.on_shutdown, b.on_shutdown);
-  EXPECT_EQ(a.poll, b.poll);
+  expect_same_fields(a, b);
   ASSERT_EQ(a.unreadable.size(), b.unreadable.size());
   for (std::size_t i = 0; i < a.unreadable.size(); ++i) {
     EXPECT_EQ(a.unreadable[i].table, b.unreadable[i].table);

@@ -7,6 +7,7 @@
 
 #include <tl/expected.hpp>
 
+#include "common/base/enumeration.hpp"
 #include "common/map/table.hpp"
 
 namespace coupler::loader {
@@ -24,6 +25,9 @@ enum class Addressing : std::uint8_t {
   /// So a number alone never has five digits: the ten thousandth input register is 310000, and 10000 is none.
   modicon,
 };
+constexpr Enumeration<Addressing, 2> enumeration(Addressing) {
+  return {"Addressing", {{Addressing::zero_based, "zero_based"}, {Addressing::modicon, "modicon"}}};
+}
 
 struct AddressError {
   std::string what;

@@ -8,7 +8,7 @@
 
 #include "common/map/loader/json_comments.hpp"
 #include "common/map/loader/source_text.hpp"
-#include "common/map/loader/syntax_check.hpp"
+#include "common/map/loader/syntax.hpp"
 
 namespace coupler::loader {
 namespace {

@@ -28,9 +28,7 @@ std::optional<Area> read_area(const Entry& entry, std::string_view key, Addressi
   }
   const std::size_t errors = context.problems.errors();
   Table table = Table::coils;
-  area.choice("table",
-              {Table::coils, Table::discrete_inputs, Table::input_registers, Table::holding_registers},
-              table);
+  area.choice("table", table);
   if (context.problems.errors() != errors) return std::nullopt;
   const auto from = read_end(area, "from", table, addressing, context);
   const auto to = read_end(area, "to", table, addressing, context);

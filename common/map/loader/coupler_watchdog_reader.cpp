@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/coupler_watchdog_reader.hpp"
+#include "common/map/loader/map_keys.hpp"
 
 #include <algorithm>
 #include <set>
@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "common/map/loader/preset_fields.hpp"
+#include "common/map/loader/preset_watchdog.hpp"
 
 namespace coupler::loader {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/edge_reader.hpp"
+#include "common/map/loader/point_keys.hpp"
 
 #include <algorithm>
 #include <unordered_map>
@@ -29,19 +29,13 @@ bool counts(Type type) {
 /// Nothing if the key is absent or wrong.
 EdgeOf read_edge(const Reader& point, std::string_view key, DraftPoint& draft, Context& context) {
   EdgeOf edge;
-  const Entry* entry = point.find(key);
-  if (entry == nullptr) return edge;
-  if (entry->kind != Entry::Kind::map) {
-    point.wrong(key, "a map with 'of' and 'edge'");
-    return edge;
-  }
-  const Reader reader(*entry, Section::edge, context);
-  reader.choice("edge", {Edge::rising, Edge::falling, Edge::both}, edge.edge);
-  if (const Entry* input = reader.find("of")) {
+  const auto reader = point.inside(key, "a map with 'of' and 'edge'");
+  if (!reader) return edge;
+  reader->fields(edge);
+  if (const Entry* input = reader->find("of")) {
     draft.edge_at = input->at;
-    reader.text("of", edge.input);
   } else {
-    context.problems.error(entry->key_at, fmt::format("'{}' has no 'of'", key),
+    context.problems.error(point.find(key)->key_at, fmt::format("'{}' has no 'of'", key),
                            "add 'of: NAME', the discrete input whose edges count");
   }
   return edge;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/format_reader.hpp"
+#include "common/map/loader/point_keys.hpp"
 
 #include <fmt/format.h>
+
+#include "common/map/loader/scalar.hpp"
 
 namespace coupler::loader {
 namespace {
 
-using codec::Encoding;
 using codec::Format;
-using codec::Half;
 using codec::Order;
 using codec::Type;
 
@@ -64,11 +64,12 @@ bool check_order(const Entry& order, Type type, Context& context) {
 }
 
 void read_order(const Reader& reader, Order map_order, Format& format, Context& context) {
-  std::optional<Order> own;
-  reader.choice<std::optional<Order>>(
-      "order", {Order::ABCD, Order::CDAB, Order::BADC, Order::DCBA, Order::ABCD, Order::BADC}, own);
-  if (own && !check_order(*reader.find("order"), format.type, context)) own.reset();
-  const Order order = own.value_or(map_order);
+  Order order = map_order;
+  const std::size_t errors = context.problems.errors();
+  reader.choice("order", order);
+  const Entry* own = reader.find("order");
+  if (own != nullptr && context.problems.errors() == errors && !check_order(*own, format.type, context))
+    order = map_order;
   const bool several = codec::width(format.type) > 16;
   format.order = codec::make_order(several && words_reversed(order), bytes_swapped(order));
 }
@@ -78,6 +79,12 @@ void read_text_order(const Reader& reader, Format& format, Context& context) {
   bool ignore_byteorder = false;
   reader.boolean("ignore_byteorder", ignore_byteorder);
   format.order = ignore_byteorder ? Order::ABCD : Order::BADC;
+}
+
+constexpr std::string_view expected = "a number other than 0, or a map of 'gain' and 'offset'";
+
+std::optional<double> bare_number(const Entry& entry) {
+  return entry.kind == Entry::Kind::scalar && !entry.quoted ? parse_number(entry.text) : std::nullopt;
 }
 
 }  // namespace
@@ -90,19 +97,38 @@ void read_format(const Reader& reader, const Entry& point, Order order, Format& 
         reader.has("bit") ? "add 'type: BOOL'" : "add 'type: INT', or what the registers hold");
     return;
   }
-  using T = Type;
-  reader.choice("type",
-                {T::BOOL, T::BYTE, T::WORD, T::DWORD, T::LWORD, T::SINT, T::INT, T::DINT, T::LINT, T::USINT,
-                 T::UINT, T::UDINT, T::ULINT, T::REAL, T::LREAL, T::CHAR, T::STRING},
-                format.type);
+  reader.choice("type", format.type);
   if (context.problems.errors() != errors) return;
   check_type_keys(reader, point, format.type, context);
-  if (is_byte(format.type)) reader.choice("offset", {Half::high, Half::low}, format.half);
+  if (is_byte(format.type)) reader.choice("offset", format.half);
   if (is_bit(format.type)) reader.integer("bit", format.bit);
   if (!is_text(format.type)) return read_order(reader, order, format, context);
   reader.integer("length", format.length);
-  reader.choice("encoding", {Encoding::utf8, Encoding::ascii, Encoding::latin1}, format.encoding);
+  reader.choice("encoding", format.encoding);
   read_text_order(reader, format, context);
+}
+
+void read_scale(const Reader& reader, Point& point, Context& context) {
+  const Entry* entry = reader.find("scale");
+  if (entry == nullptr) return;
+  if (!codec::is_scalable(point.format.type)) {
+    context.problems.error(entry->key_at,
+                           fmt::format("'scale' does not apply to {}", to_string(point.format.type)),
+                           "use a type that is a number: SINT to ULINT, REAL or LREAL");
+    return;
+  }
+  codec::Scale scale;
+  if (entry->kind == Entry::Kind::map) {
+    const Reader inside(*entry, Section::scale, context);
+    inside.fields(scale);
+    if (scale.gain == 0) inside.wrong("gain", "a number other than 0");
+  } else if (const auto gain = bare_number(*entry)) {
+    scale.gain = *gain;
+    if (scale.gain == 0) reader.wrong("scale", expected);
+  } else {
+    reader.wrong("scale", expected);
+  }
+  if (scale.gain != 0) point.scale = scale;
 }
 
 }  // namespace coupler::loader

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "common/map/loader/value_reader.hpp"
+#include "common/map/loader/point_keys.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -17,21 +17,6 @@ struct Complaint {
   std::string what;
   std::string remedy;
 };
-
-void read_publishing(const Reader& reader, HostOptions& options) {
-  reader.number("rate", options.rate);
-  reader.choice("publish", {HostOptions::Publish::always, HostOptions::Publish::on_change}, options.publish);
-  reader.duration("max_interval", options.max_interval);
-  reader.boolean("latch", options.latch);
-  reader.integer("queue_size", options.queue_size);
-}
-
-void read_writing(const Reader& reader, HostOptions& options) {
-  reader.choice("write_function", {WriteFunction::single, WriteFunction::multiple}, options.write_function);
-  reader.boolean("verify_write", options.verify_write);
-  reader.choice("write_queue", {HostOptions::WriteQueue::latest, HostOptions::WriteQueue::every},
-                options.write_queue);
-}
 
 Deadman read_deadman(const Entry& entry, const Point& point, Context& context) {
   Deadman deadman;
@@ -55,25 +40,29 @@ std::vector<Complaint> complaints(const Reader& reader, const Point& point) {
   const auto refuse = [&](std::string_view key, std::string what, std::string remedy) {
     if (reader.has(key)) found.push_back({key, std::move(what), std::move(remedy)});
   };
-  if (!is_readable(point))
-    for (const std::string_view key : {"rate", "publish", "max_interval", "latch"})
-      refuse(key, fmt::format("'{}' is for a point that is read, this one has 'access: write'", key),
-             "remove it");
+  const auto refuse_about = [&](About about, std::string_view done, std::string_view access) {
+    const auto what = [&](std::string_view key) {
+      return fmt::format("'{}' is for a point that is {}, this one has 'access: {}'", key, done, access);
+    };
+    for_each_field(point.host, [&](const auto& field, const auto&) {
+      const bool known = find_key(field.key, section_of(point.table)) != nullptr;
+      if (field.about == about && known) refuse(field.key, what(field.key), "remove it");
+    });
+    if (about == About::writing) refuse("deadman", what("deadman"), "remove it");
+  };
+  if (!is_readable(point)) refuse_about(About::reading, "read", "write");
   if (!is_readable(point) && point.host.verify_write)
     refuse("verify_write", "'verify_write' reads the point back, this one has 'access: write'",
            "remove one of the two");
   if (!on_change)
     refuse("max_interval", "'max_interval' is for 'publish: on_change'", "add it, or remove this");
-  if (is_writable(point.table) && !is_writable(point))
-    for (const std::string_view key : {"write_function", "verify_write", "write_queue", "deadman"})
-      refuse(key, fmt::format("'{}' is for a point that is written, this one has 'access: read'", key),
-             "remove it");
+  if (is_writable(point.table) && !is_writable(point)) refuse_about(About::writing, "written", "read");
   return found;
 }
 
 void check_deadband(const Reader& reader, const Point& point, Context& context) {
   const Entry* deadband = holds_bits(point.table) ? nullptr : reader.find("deadband");
-  if (deadband == nullptr) return;
+  if (deadband == nullptr || !is_readable(point)) return;
   if (!codec::is_scalable(point.format.type))
     context.problems.error(deadband->key_at,
                            fmt::format("'deadband' does not apply to {}", to_string(point.format.type)),
@@ -96,19 +85,12 @@ void check_write_function(const Reader& reader, Point& point, Context& context) 
 
 }  // namespace
 
-HostDefaults read_host_defaults(const Reader& top, Context& context) {
+HostDefaults read_host_defaults(const Reader& top) {
   HostDefaults defaults;
-  const Entry* entry = top.find("defaults");
-  if (entry == nullptr) return defaults;
-  if (entry->kind != Entry::Kind::map) {
-    top.wrong("defaults", "a map of what the host does with points");
-    return defaults;
-  }
-  const Reader reader(*entry, Section::defaults, context);
-  read_publishing(reader, defaults.options);
-  reader.number("deadband", defaults.options.deadband);
-  read_writing(reader, defaults.options);
-  defaults.deadman = reader.find("deadman");
+  const auto reader = top.inside("defaults", "a map of what the host does with points");
+  if (!reader) return defaults;
+  reader->fields(defaults.options);
+  defaults.deadman = reader->find("deadman");
   return defaults;
 }
 
@@ -117,21 +99,17 @@ void read_host_options(const Reader& reader, const HostDefaults& defaults, Draft
   Point& point = draft.point;
   HostOptions& options = point.host;
   options = defaults.options;
-  const bool bits = holds_bits(point.table);
-  read_publishing(reader, options);
-  if (!bits) reader.number("deadband", options.deadband);
-  const bool number = !bits && codec::is_scalable(point.format.type);
+  reader.fields(options);
+  const bool number = !holds_bits(point.table) && codec::is_scalable(point.format.type);
   if (!number) options.deadband = 0;
-  if (is_writable(point.table)) read_writing(reader, options);
   for (Complaint& wrong : complaints(reader, point))
     context.problems.error(reader.find(wrong.key)->key_at, std::move(wrong.what), std::move(wrong.remedy));
   if (!draft.placed) return;
   check_deadband(reader, point, context);
   if (!is_writable(point)) {
-    const HostOptions usual;
-    options.write_function = usual.write_function;
-    options.write_queue = usual.write_queue;
-    options.verify_write = usual.verify_write;
+    for_each_field(options, HostOptions{}, [](const auto& field, auto& value, const auto& usual) {
+      if (field.about == About::writing) value = usual;
+    });
     return;
   }
   if (!is_readable(point)) options.verify_write = false;

@@ -11,7 +11,7 @@ struct HostDefaults {
   HostOptions options;
   const Entry* deadman = nullptr;  ///< its value is of each point's type
 };
-HostDefaults read_host_defaults(const Reader& top, Context& context);
+HostDefaults read_host_defaults(const Reader& top);
 
 /// How the host treats the point: its own keys, and the defaults that apply to it. Its access, and if it is
 /// placed its format, count and scale must be known.

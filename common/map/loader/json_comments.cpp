@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/map/loader/source_text.hpp"
-#include "common/map/loader/syntax_check.hpp"
+#include "common/map/loader/syntax.hpp"
 
 namespace coupler::loader {
 namespace {

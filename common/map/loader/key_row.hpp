@@ -2,6 +2,7 @@
 // How key_table.cpp writes its rows down.
 #pragma once
 
+#include "common/base/enumeration.hpp"
 #include "common/map/loader/keys.hpp"
 
 namespace coupler::loader {
@@ -13,6 +14,10 @@ struct Row : Key {
     row.least = from;
     row.most = to;
     return row;
+  }
+  template <class E>
+  constexpr Row one_of() const {
+    return one_of(JoinedWords<E>::text());
   }
   constexpr Row one_of(std::string_view words) const {
     Row row = *this;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/map/loader/address.hpp"
 #include "common/map/loader/key_row.hpp"
+#include "common/map/map.hpp"
 #include "common/modbus/limits.hpp"
 
 namespace coupler::loader {
@@ -57,7 +59,7 @@ constexpr Key keys[] = {
     // The map: this project's keys.
     project("addressing", S::map, K::choice, "modicon", "what the addresses count")
         .otherwise("zero_based")
-        .one_of("zero_based|modicon"),
+        .one_of<Addressing>(),
     project("preset", S::map, K::preset, "wago_750", "a kind of coupler, and what is true of all of them"),
     project("limits", S::map, K::section, "{read_registers: 64}", "what the device takes in one request")
         .holds(S::limits),
@@ -83,14 +85,11 @@ constexpr Key keys[] = {
         .holds(S::holding_register),
     // Points.
     origin("address", point, K::address, "0", "where the point is in its table"),
-    origin("type", registers, K::choice, "INT", "data type of IEC 61131-3")
-        .needed()
-        .one_of(
-            "BOOL|BYTE|WORD|DWORD|LWORD|SINT|INT|DINT|LINT|USINT|UINT|UDINT|ULINT|REAL|LREAL|CHAR|STRING"),
+    origin("type", registers, K::choice, "INT", "data type of IEC 61131-3").needed().one_of<codec::Type>(),
     origin("offset", registers, K::choice, "high", "which byte of the register an 8-bit value is")
         .only_for(byte_types)
         .needed_with("address")
-        .one_of("high|low"),
+        .one_of<codec::Half>(),
     origin("length", registers, K::integer, "12", "bytes of a STRING")
         .only_for("STRING")
         .needed()
@@ -98,14 +97,14 @@ constexpr Key keys[] = {
     origin("encoding", registers, K::choice, "utf-8", "how a STRING is encoded")
         .only_for("STRING")
         .otherwise("utf-8")
-        .one_of("utf-8|ascii|latin-1"),
+        .one_of<codec::Encoding>(),
     origin("ignore_byteorder", registers, K::boolean, "true",
            "a STRING's first character is in the high byte")
         .only_for("STRING")
         .otherwise("false"),
     project("order", registers, K::choice, "ABCD",
             "order of the bytes, A the most significant; AB or BA for one register")
-        .one_of("ABCD|CDAB|BADC|DCBA|AB|BA"),
+        .one_of<codec::Order>(),
     project("bit", registers, K::integer, "3", "which bit of the register a BOOL is")
         .only_for("BOOL")
         .needed_with("address")
@@ -113,8 +112,7 @@ constexpr Key keys[] = {
     project("description", point, K::text, "the left door", "for people"),
     project("units", point, K::text, "mm", "for people"),
     project("initial", point, K::value, "0", "value when the node starts"),
-    project("access", point, K::choice, "read", "what the master may do with it")
-        .one_of("read|write|read_write"),
+    project("access", point, K::choice, "read", "what the master may do with it").one_of<Access>(),
     project("counter", registers, K::section, "{of: pulse, edge: rising}",
             "counts the edges of a discrete input")
         .holds(S::edge),
@@ -129,14 +127,13 @@ constexpr Key keys[] = {
     project("safe", S::coil, K::choice, "off",
             "what the output does when nobody is in command; an array takes a list of on and off, too")
         .otherwise("off")
-        .one_of("off|on|hold")
+        .one_of<Safe>()
         .or_bits(),
     project("active_low", bits | line, K::boolean, "true", "on is the low level").otherwise("false"),
-    project("bias", bits | line, K::choice, "pull_up", "the line's resistor")
-        .one_of("none|pull_up|pull_down"),
+    project("bias", bits | line, K::choice, "pull_up", "the line's resistor").one_of<Bias>(),
     project("drive", S::coil | S::coil_line, K::choice, "open_drain", "how the line is driven")
         .otherwise("push_pull")
-        .one_of("push_pull|open_drain|open_source"),
+        .one_of<Drive>(),
     project("debounce", S::discrete_input | S::input_line, K::duration, "5ms",
             "how long a level must last to count")
         .within(0, 60),
@@ -154,7 +151,7 @@ constexpr Key keys[] = {
     project("rate", treatment, K::number, "1", "polling rate in Hz").within(0.001, 10000),
     project("publish", treatment, K::choice, "on_change", "when a value is published")
         .otherwise("always")
-        .one_of("always|on_change"),
+        .one_of<HostOptions::Publish>(),
     project("deadband", registers | S::defaults, K::number, "0.5", "changes up to this are not published")
         .otherwise("0")
         .within(0, most_double),
@@ -165,11 +162,11 @@ constexpr Key keys[] = {
         .otherwise("10")
         .within(1, 10000),
     project("write_function", writing, K::choice, "single", "function codes of writes: 5 and 6, or 15 and 16")
-        .one_of("single|multiple"),
+        .one_of<HostOptions::WriteFunction>(),
     project("verify_write", writing, K::boolean, "true", "read back after a write").otherwise("false"),
     project("write_queue", writing, K::choice, "every", "which of the waiting writes are sent")
         .otherwise("latest")
-        .one_of("latest|every"),
+        .one_of<HostOptions::WriteQueue>(),
     project("deadman", writing, K::section, "{timeout: 1s, value: 0}",
             "what is written when no message comes")
         .holds(S::deadman),
@@ -178,20 +175,18 @@ constexpr Key keys[] = {
     project("defaults", S::map, K::section, "{rate: 5}", "how the host treats all points").holds(S::defaults),
     project("on_reconnect", S::map, K::choice, "restore", "what becomes of outputs when the link returns")
         .otherwise("drop")
-        .one_of("drop|restore"),
+        .one_of<OnReconnect>(),
     project("on_shutdown", S::map, K::choice, "safe", "what becomes of outputs when the driver ends")
         .otherwise("hold")
-        .one_of("hold|safe"),
+        .one_of<OnShutdown>(),
     project("poll", S::map, K::choice, "subscribed", "which points the driver reads")
         .otherwise("all")
-        .one_of("all|subscribed"),
+        .one_of<Poll>(),
     project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
             "addresses that the device refuses")
         .lists(S::area),
     project("$schema", S::map, K::text, "map.schema.json", "in a JSON file: the schema, for editors"),
-    project("table", S::area, K::choice, "coils", "the area's table")
-        .needed()
-        .one_of("coils|discrete_inputs|input_registers|holding_registers"),
+    project("table", S::area, K::choice, "coils", "the area's table").needed().one_of<Table>(),
     project("from", S::area, K::address, "8", "its first address").needed(),
     project("to", S::area, K::address, "15", "its last address").needed(),
     // `scale:`, `iio:`, `pwm:`, `deadman:`
@@ -241,19 +236,17 @@ constexpr Key keys[] = {
         .within(0.001, most_seconds),
     // `counter:` and `latched:`
     project("of", S::edge, K::text, "pulse", "the discrete input").needed(),
-    project("edge", S::edge, K::choice, "rising", "which of its edges")
-        .otherwise("rising")
-        .one_of("rising|falling|both"),
+    project("edge", S::edge, K::choice, "rising", "which of its edges").otherwise("rising").one_of<Edge>(),
     // `watchdog:`
     project("timeout", S::watchdog, K::duration, "500ms", "the longest silence of a master")
         .needed()
         .within(0.01, most_seconds),
     project("fed_by", S::watchdog, K::choice, "any", "which requests count")
         .otherwise("any")
-        .one_of("any|write"),
+        .one_of<Watchdog::FedBy>(),
     project("recovery", S::watchdog, K::choice, "automatic", "how outputs are freed again")
         .otherwise("automatic")
-        .one_of("automatic|manual"),
+        .one_of<Watchdog::Recovery>(),
     project("heartbeat", S::watchdog, K::address, "100", "the register that a PLC's program watches"),
 };
 

@@ -8,16 +8,12 @@
 #include <fmt/format.h>
 
 #include "common/map/loader/addressed_text.hpp"
-#include "common/map/loader/coupler_watchdog_reader.hpp"
-#include "common/map/loader/edge_reader.hpp"
+#include "common/map/loader/map_keys.hpp"
 #include "common/map/loader/names.hpp"
-#include "common/map/loader/overlap.hpp"
+#include "common/map/loader/point_keys.hpp"
 #include "common/map/loader/point_reader.hpp"
 #include "common/map/loader/preset.hpp"
 #include "common/map/loader/rules.hpp"
-#include "common/map/loader/service_reader.hpp"
-#include "common/map/loader/settings_reader.hpp"
-#include "common/map/loader/sim_reader.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -37,15 +33,15 @@ std::string_view read_name(const Reader& top, const Entry& root, Context& contex
   return name;
 }
 
-PointDefaults read_point_defaults(const Reader& top, Context& context) {
+PointDefaults read_point_defaults(const Reader& top) {
   PointDefaults defaults;
   bool bytes_reversed = false;
   bool most_significant_first = false;
-  top.choice("addressing", {Addressing::zero_based, Addressing::modicon}, defaults.addressing);
+  top.choice("addressing", defaults.addressing);
   top.boolean("byteorder_reverse", bytes_reversed);
   top.boolean("wordorder_reverse", most_significant_first);
   defaults.order = codec::make_order(!most_significant_first, bytes_reversed);
-  defaults.host = read_host_defaults(top, context);
+  defaults.host = read_host_defaults(top);
   return defaults;
 }
 
@@ -135,10 +131,10 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   head.name = read_name(top, root, context);
   head.connection = read_connection(top, context);
   head.polling = read_polling(top);
-  head.limits = read_limits(top, context);
+  head.limits = read_limits(top);
   head.service = read_service(top, context);
-  top.choice("on_shutdown", {OnShutdown::hold, OnShutdown::safe}, head.on_shutdown);
-  const PointDefaults defaults = read_point_defaults(top, context);
+  top.fields(head);
+  const PointDefaults defaults = read_point_defaults(top);
   const Areas unreadable = read_areas(top, "unreadable", defaults.addressing, context);
   const Areas reserved = read_areas(top, "reserve", defaults.addressing, context);
   OpenPoints points = read_places(find_points(top, root, context), defaults, context);
@@ -153,8 +149,6 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   check_unreadable(unreadable, drafts, context);
   check_reserved(reserved, drafts, context);
   head.unreadable = context.map.keep(sorted_unreadable(unreadable));
-  top.choice("on_reconnect", {OnReconnect::drop, OnReconnect::restore}, head.on_reconnect);
-  top.choice("poll", {Poll::all, Poll::subscribed}, head.poll);
   if (context.problems.has_errors()) return;
 
   const auto left_out =

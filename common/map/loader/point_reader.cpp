@@ -3,13 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "common/map/loader/channel_reader.hpp"
-#include "common/map/loader/edge_reader.hpp"
-#include "common/map/loader/format_reader.hpp"
-#include "common/map/loader/line_reader.hpp"
+#include "common/map/loader/point_keys.hpp"
 #include "common/map/loader/reader.hpp"
-#include "common/map/loader/scale_reader.hpp"
-#include "common/map/loader/value_reader.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -88,7 +83,7 @@ void read_access(const Reader& reader, Point& point, Context& context) {
   const Entry* entry = reader.find("access");
   if (entry == nullptr) return;
   Access access = point.access;
-  reader.choice("access", {Access::read, Access::write, Access::read_write}, access);
+  reader.choice("access", access);
   if (access == Access::read || is_writable(point.table))
     point.access = access;
   else

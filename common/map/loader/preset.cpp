@@ -7,7 +7,7 @@
 
 #include "common/map/loader/document.hpp"
 #include "common/map/loader/nearest.hpp"
-#include "common/map/loader/preset_fields.hpp"
+#include "common/map/loader/preset_watchdog.hpp"
 
 namespace coupler::loader {
 namespace {

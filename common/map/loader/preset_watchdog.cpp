@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/map/loader/preset_watchdog.hpp"
 
-#include "common/map/loader/preset_fields.hpp"
+#include <algorithm>
+
 #include "common/map/loader/scalar.hpp"
 
 namespace coupler::loader {
@@ -82,6 +83,23 @@ tl::expected<PresetWatchdog, Position> parse_preset_watchdog(const Entry& entry)
   for (const Entry& part : entry.children)
     if (!parse_part(part, watchdog)) return tl::make_unexpected(part.key_at);
   return watchdog;
+}
+
+const Entry* child(const Entry& entry, std::string_view key) {
+  const auto found = std::find_if(entry.children.begin(), entry.children.end(),
+                                  [&](const Entry& e) { return e.key == key; });
+  return found == entry.children.end() ? nullptr : &*found;
+}
+
+std::optional<std::uint16_t> word(const Entry& entry) {
+  const auto value = parse_unsigned(entry.text);
+  if (!value || *value > 0xFFFF) return std::nullopt;
+  return static_cast<std::uint16_t>(*value);
+}
+
+std::optional<std::uint16_t> word(const Entry& entry, std::string_view key) {
+  const Entry* found = child(entry, key);
+  return found != nullptr ? word(*found) : std::nullopt;
 }
 
 }  // namespace coupler::loader

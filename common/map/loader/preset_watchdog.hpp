@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
-#include <tl/expected.hpp>
+#include <string_view>
 #include <vector>
+
+#include <tl/expected.hpp>
 
 #include "common/map/loader/entry.hpp"
 #include "common/map/watchdog_sequences.hpp"
@@ -27,5 +30,11 @@ struct PresetWatchdog {
 
 /// `watchdog:` of a preset file. The error is where something of it makes no sense.
 tl::expected<PresetWatchdog, Position> parse_preset_watchdog(const Entry& entry);
+
+// What elements of a preset file consist of. nullptr, nullopt: there is no such thing.
+const Entry* child(const Entry& entry, std::string_view key);
+/// An address or the value of a register.
+std::optional<std::uint16_t> word(const Entry& entry);
+std::optional<std::uint16_t> word(const Entry& entry, std::string_view key);
 
 }  // namespace coupler::loader

@@ -89,6 +89,14 @@ std::string_view Reader::missing() const {
   return {};
 }
 
+std::optional<Reader> Reader::inside(std::string_view key, std::string_view expected) const {
+  const Entry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  if (entry->kind == Entry::Kind::map) return Reader(*entry, field(key)->key->inside, context_);
+  wrong(key, expected);
+  return std::nullopt;
+}
+
 void Reader::wrong(std::string_view key, std::string_view expected) const {
   const Field& f = *field(key);
   context_.problems.error(f.value->at,
@@ -158,20 +166,20 @@ std::optional<std::chrono::microseconds> Reader::duration_in_range(std::string_v
   return std::nullopt;
 }
 
-std::optional<std::size_t> Reader::choice_index(std::string_view key) const {
+std::string_view Reader::chosen_word(std::string_view key) const {
   const Entry* entry = find(key);
-  if (entry == nullptr) return std::nullopt;
+  if (entry == nullptr) return {};
   const Key& known = *field(key)->key;
   const auto choices = words(known.choices);
   const std::string given =
       entry->kind == Entry::Kind::scalar ? folded(entry->text, known.owner) : std::string();
-  for (std::size_t i = 0; i < choices.size(); ++i)
-    if (given == folded(choices[i], known.owner)) return i;
+  for (const std::string_view choice : choices)
+    if (given == folded(choice, known.owner)) return choice;
   context_.problems.error(
       entry->at,
       fmt::format("'{}' is one of {}, not {}", known.name, fmt::join(choices, ", "), shown(*entry)),
       nearest_or(given, choices, fmt::format("write it as in '{}: {}'", known.name, known.example)));
-  return std::nullopt;
+  return {};
 }
 
 void Reader::too_fine(std::string_view key) const { wrong(key, "a whole number of milliseconds"); }

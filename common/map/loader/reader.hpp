@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cassert>
 #include <chrono>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "common/base/enumeration.hpp"
+#include "common/map/fields.hpp"
 #include "common/map/loader/context.hpp"
 #include "common/map/loader/entry.hpp"
 #include "common/map/loader/keys.hpp"
@@ -30,6 +31,22 @@ class Reader {
   std::string_view missing() const;
   std::string_view example(std::string_view key) const { return find_key(key, section_)->example; }
 
+  /// By the type of `out`.
+  template <class T>
+  void read(std::string_view key, T& out) const {
+    if constexpr (std::is_same_v<T, bool>)
+      boolean(key, out);
+    else if constexpr (std::is_enum_v<T>)
+      choice(key, out);
+    else if constexpr (std::is_integral_v<T>)
+      integer(key, out);
+    else if constexpr (std::is_same_v<T, double>)
+      number(key, out);
+    else if constexpr (std::is_same_v<T, std::string_view>)
+      text(key, out);
+    else
+      duration(key, out);
+  }
   template <class T>
   void integer(std::string_view key, T& out) const {
     if (const auto value = integer_in_range(key)) out = static_cast<T>(*value);
@@ -49,14 +66,21 @@ class Reader {
     else
       too_fine(key);
   }
-  /// `values` stand for the words of Key::choices, in their order.
-  template <class E>
-  void choice(std::string_view key, std::initializer_list<E> values, E& out) const {
-    if (const auto chosen = choice_index(key)) {
-      assert(*chosen < values.size());
-      out = values.begin()[*chosen];
-    }
+  /// All keys of fields_of(Struct) that are given; those of another section cannot be.
+  template <class Struct>
+  void fields(Struct& out) const {
+    for_each_field(out, [this](const auto& listed, auto& value) {
+      if (field(listed.key) != nullptr) read(listed.key, value);
+    });
   }
+
+  template <class E>
+  void choice(std::string_view key, E& out) const {
+    if (const auto value = parse_word<E>(chosen_word(key))) out = *value;
+  }
+
+  /// The map below a key. Nothing if the key is absent, or, which is a problem, not a map as `expected` says.
+  std::optional<Reader> inside(std::string_view key, std::string_view expected) const;
 
   /// "'key' is …, not …", with the key's example as the remedy.
   void wrong(std::string_view key, std::string_view expected) const;
@@ -74,7 +98,8 @@ class Reader {
   const Field* field(std::string_view key) const;
   std::optional<std::int64_t> integer_in_range(std::string_view key) const;
   std::optional<std::chrono::microseconds> duration_in_range(std::string_view key) const;
-  std::optional<std::size_t> choice_index(std::string_view key) const;
+  /// One of Key::choices, or empty.
+  std::string_view chosen_word(std::string_view key) const;
   void too_fine(std::string_view key) const;
 
   Section section_;

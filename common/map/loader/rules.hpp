@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a map must keep beyond each key by itself. Names and overlaps have files of their own.
+// What a map must keep beyond each key by itself. Names have a file of their own.
 #pragma once
 
 #include "common/map/loader/context.hpp"
@@ -16,5 +16,9 @@ void check_sizes(const DraftPoints& points, const Limits& limits, Context& conte
 
 /// One warning for a map that counts from zero by default although most of its numbers look like Modicon's.
 void warn_of_modicon_numbers(const DraftPoints& points, Context& context);
+
+/// Points that share a bit. That is a warning when at most one of the two is writable and neither has a line,
+/// otherwise an error; each point is reported once, against one that stands before it in the file.
+void check_overlaps(const DraftPoints& points, Context& context);
 
 }  // namespace coupler::loader

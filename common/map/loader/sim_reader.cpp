@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/sim_reader.hpp"
+#include "common/map/loader/map_keys.hpp"
 
 #include <algorithm>
 #include <unordered_map>
@@ -20,10 +20,7 @@ class SimReader {
   SimWire wire(const Entry& entry) {
     const Reader reader(entry, Section::wire, context_);
     SimWire wire;
-    reader.text("from", wire.from);
-    reader.text("to", wire.to);
-    reader.boolean("invert", wire.invert);
-    reader.duration("square", wire.square);
+    reader.fields(wire);
     check_source(reader, entry);
     if (const Entry* to = reader.find("to"))
       check_input(*to);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/value_reader.hpp"
+#include "common/map/loader/point_keys.hpp"
 
 #include <fmt/format.h>
 

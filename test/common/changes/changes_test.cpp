@@ -79,6 +79,14 @@ TEST(Changes, What_a_side_does_by_itself_is_compatible) {
               ElementsAre("compatible rate-changed speed:  -> 2 Hz"));
 }
 
+TEST(Changes, Keys_that_are_told_as_one_change_are_named_with_their_values) {
+  EXPECT_THAT(changes_by("rate: 10", "rate: 10\nlimits: {read_bits: 8, request_gap: 5ms}"),
+              ElementsAre("compatible limits-changed : read_bits 2000, request_gap none -> read_bits 8, "
+                          "request_gap 5ms"));
+  EXPECT_THAT(changes_by("units: rpm", "units: rpm, publish: on_change, deadband: 2"),
+              ElementsAre("compatible publish-changed speed: always, deadband 0 -> on_change, deadband 2"));
+}
+
 TEST(Changes, What_only_people_read_is_documentation) {
   EXPECT_THAT(changes_by("units: rpm", "units: Hz"),
               ElementsAre("documentation units-changed speed: rpm -> Hz"));

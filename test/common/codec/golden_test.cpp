@@ -36,7 +36,7 @@ Format format_of(const json& c) {
     f.encoding = encoding_of(c.at("encoding"));
     return f;
   }
-  f.order = parse_order(c.at("order").get<std::string>()).value();
+  f.order = parse_word<Order>(c.at("order").get<std::string>()).value();
   f.half = c.value("offset", "high") == "low" ? Half::low : Half::high;
   f.bit = c.value("bit", std::uint8_t{0});
   return f;

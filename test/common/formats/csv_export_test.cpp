@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/formats/csv_export.hpp"
+#include "common/formats/exporters.hpp"
 
 #include <gmock/gmock.h>
 

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "common/formats/exporter.hpp"
+#include "common/formats/exporters.hpp"
 #include "common/map/loader/load.hpp"
 #include "test/common/formats/imported.hpp"
 

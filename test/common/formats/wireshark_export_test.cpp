@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the dissector does is proved with tshark, on captured traffic: test/peers/with_dissector.py.
-#include "common/formats/wireshark_export.hpp"
+#include "common/formats/exporters.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mistakes that yaml-cpp lets pass, found by a second look at the text.
+// A second look at the text: mistakes that yaml-cpp lets pass, and what those mean that it finds.
 #pragma once
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
+
+#include "common/map/loader/entry.hpp"
 
 namespace coupler::loader {
 
@@ -18,5 +21,16 @@ bool has_colon(std::string_view text, std::size_t at, std::string_view key);
 /// Where a comma is missing in a JSON document: bare words and numbers hold no blanks, but yaml-cpp reads
 /// `"b": 2 "c"` as the text `2 "c"`.
 std::optional<std::size_t> missing_comma(std::size_t at, std::string_view bare_text);
+
+/// Why a text is no document. Thrown through yaml-cpp, which knows no other way to stop; never leaves
+/// document.cpp.
+struct SyntaxError {
+  Position at;
+  std::string what;
+  std::string remedy;
+};
+
+/// yaml-cpp's `message` about `offset` of `text`, in words that help.
+SyntaxError explain(std::string_view text, std::size_t offset, std::string_view message);
 
 }  // namespace coupler::loader

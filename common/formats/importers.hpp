@@ -30,6 +30,26 @@ struct Importer {
   ReadForeign read;
 };
 
+// A function for each format.
+
+/// A table of points: one row a point, one column a key of the map's points, `table` and `name` among them,
+/// in any order. With a column `unit`, one map a unit. docs/import-export.md describes the columns.
+std::vector<ForeignUnit> read_csv(std::string_view text, loader::Problems& problems);
+
+/// ModbusPal's projects (.xmpp): the coils and holding registers of its slaves. Registers are UINT; those
+/// that an automation feeds as SINT16, SINT32 or FLOAT32 are INT, DINT or REAL. Neither the DTD nor any other
+/// entity is ever looked at.
+std::vector<ForeignUnit> read_modbuspal(std::string_view text, loader::Problems& problems);
+
+/// The origin's files (bitmeal/ros-modbus-device-driver), and maps of this project: they are written again in
+/// one style. Comments are told, and go.
+std::vector<ForeignUnit> read_origin(std::string_view text, loader::Problems& problems);
+
+/// Unslave's config.json (https://unserver.xyz/docs/unslave): values of coils (C), discrete inputs (DI),
+/// input registers (IR) and holding registers (HR). It knows no names and no types: the points are skeletons,
+/// UINT, called after their place.
+std::vector<ForeignUnit> read_unslave(std::string_view text, loader::Problems& problems);
+
 /// All of them; what was left out of the build is not there.
 Span<const Importer> importers();
 

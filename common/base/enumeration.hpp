@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the values of an enumeration are called, written once, beside it: a function `enumeration(E)` that
+// returns an Enumeration. The key table, the reader, the generated code and all that shows a map take the
+// words from there.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+namespace coupler {
+
+template <class E>
+struct Word {
+  E value;
+  std::string_view name;         ///< in C++
+  std::string_view word = name;  ///< in a map; empty: a map cannot say it, it holds where nothing is said
+};
+
+/// `words` are in the order in which messages list them.
+template <class E, std::size_t N>
+struct Enumeration {
+  std::string_view type;  ///< in C++, without the namespace
+  Word<E> words[N];
+};
+
+/// All there is for E.
+template <class E>
+constexpr auto enumeration_of = enumeration(E{});
+
+template <class E>
+constexpr const Word<E>* find_word(E value) {
+  for (const Word<E>& each : enumeration_of<E>.words)
+    if (each.value == value) return &each;
+  return nullptr;
+}
+
+/// As a map writes it; what a map cannot say by its name in C++.
+template <class E, class = decltype(enumeration(E{}))>
+constexpr std::string_view to_string(E value) {
+  const Word<E>* found = find_word(value);
+  if (found == nullptr) return "?";
+  return found->word.empty() ? found->name : found->word;
+}
+
+/// What the word of a map stands for.
+template <class E>
+constexpr std::optional<E> parse_word(std::string_view word) {
+  for (const Word<E>& each : enumeration_of<E>.words)
+    if (!word.empty() && each.word == word) return each.value;
+  return std::nullopt;
+}
+
+/// The words of a map, separated by "|".
+template <class E>
+class JoinedWords {
+ public:
+  static constexpr std::string_view text() { return {joined.letters, joined.size}; }
+
+ private:
+  static constexpr std::size_t room() {
+    std::size_t size = 0;
+    for (const Word<E>& each : enumeration_of<E>.words) size += each.word.size() + 1;
+    return size;
+  }
+  struct Joined {
+    char letters[room()] = {};
+    std::size_t size = 0;
+  };
+  static constexpr Joined join() {
+    Joined result;
+    for (const Word<E>& each : enumeration_of<E>.words) {
+      if (each.word.empty()) continue;
+      if (result.size > 0) result.letters[result.size++] = '|';
+      for (const char letter : each.word) result.letters[result.size++] = letter;
+    }
+    return result;
+  }
+  static constexpr Joined joined = join();
+};
+
+}  // namespace coupler
