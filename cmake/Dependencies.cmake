@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Finds what the rooms link. What is optional and absent is named in one line, with its remedy.
+# Finds what the modules link. What is optional and absent is named in one line, with its remedy.
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(yaml-cpp REQUIRED)
@@ -19,7 +19,7 @@ if(NOT libmodbus_FOUND)
                  "(no libmodbus; apt install libmodbus-dev)")
 endif()
 
-# OFF, or the folder of device/gpio that speaks to it: libgpiod 2 shares no API with libgpiod 1.
+# OFF, or the folder of coupler/device/gpio that speaks to it: libgpiod 2 shares no API with libgpiod 1.
 set(COUPLER_WITH_GPIOD OFF)
 if(NOT COUPLER_GPIOD STREQUAL OFF)
   pkg_check_modules(libgpiod IMPORTED_TARGET libgpiod>=1.6)

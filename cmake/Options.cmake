@@ -44,18 +44,18 @@ if(COUPLER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 add_library(coupler_flags INTERFACE)
-target_include_directories(coupler_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_options(coupler_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow
   -ffp-contract=off  # no fused multiply-add: a scaled value has the same last bit on every machine
   $<$<BOOL:${COUPLER_WERROR}>:-Werror>)
+
+# Of every program here, also of those that are made from a map.
 if(COUPLER_SANITIZE)
-  target_compile_options(coupler_flags INTERFACE
-    -fsanitize=${COUPLER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1 -g1
+  add_compile_options(-fsanitize=${COUPLER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1 -g1
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # among the checks GCC sees paths that are none: its manual warns
-  target_link_options(coupler_flags INTERFACE -fsanitize=${COUPLER_SANITIZE})
+  add_link_options(-fsanitize=${COUPLER_SANITIZE})
 endif()
 if(COUPLER_COVERAGE)
-  target_compile_options(coupler_flags INTERFACE --coverage -O0)
-  target_link_options(coupler_flags INTERFACE --coverage)
+  add_compile_options(--coverage -O0)
+  add_link_options(--coverage)
 endif()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages: `cpack` in a build of the preset release makes coupler-node (the program and its service; neither ROS
 # nor a compiler needed) and coupler-tools (the program coupler). scripts/build-packages does it for a board too.
-# What goes into which one is said by install() in the rooms, COMPONENT node or tools.
+# What goes into which one is said by install() in the modules, COMPONENT node or tools.
 include(GNUInstallDirs)
 
 set(CPACK_GENERATOR DEB)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The ROS driver's messages, and coupler_ros: what a target links that includes headers of ROS. Sets COUPLER_WITH_ROS to the
-# version of ROS that is there, 1 or 2, or to OFF. host/ros has what both need; the target coupler_ros differs.
+# version of ROS that is there, 1 or 2, or to OFF. coupler/host/ros has what both need; the target coupler_ros differs.
 set(COUPLER_WITH_ROS OFF)
 set(messages BoolArray.msg PointStatus.msg Status.msg)
 set(services Read.srv Write.srv)

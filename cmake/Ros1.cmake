@@ -14,21 +14,21 @@ if(NOT catkin_FOUND)
 endif()
 set(COUPLER_WITH_ROS 1)
 
-add_message_files(DIRECTORY host/ros/msg FILES ${messages})
-add_service_files(DIRECTORY host/ros/srv FILES ${services})
+add_message_files(DIRECTORY host/msg FILES ${messages})
+add_service_files(DIRECTORY host/srv FILES ${services})
 generate_messages(DEPENDENCIES std_msgs)
 catkin_package(CATKIN_DEPENDS roscpp std_msgs std_srvs diagnostic_updater message_runtime)
 # Where rosmsg and rossrv look for them; our folders are not at the top.
 foreach(file ${messages} ${services})
   get_filename_component(kind ${file} EXT)
   string(SUBSTRING ${kind} 1 -1 kind)
-  configure_file(host/ros/${kind}/${file} ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME}/${kind}/${file} COPYONLY)
+  configure_file(host/${kind}/${file} ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME}/${kind}/${file} COPYONLY)
 endforeach()
-# catkin wants shared libraries and devel/lib; the rooms are small static libraries.
+# catkin wants shared libraries and devel/lib; the modules are small static libraries.
 set(BUILD_SHARED_LIBS OFF)
 
 # It also gives its definitions and include folders to every target of the project. Here those that need ROS link
-# coupler_ros. The other rooms compile alike with and without ROS, so that the compiler's cache serves both.
+# coupler_ros. The other modules compile alike with and without ROS, so that the compiler's cache serves both.
 get_directory_property(definitions COMPILE_DEFINITIONS)
 set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "" INCLUDE_DIRECTORIES "")
 add_library(coupler_ros INTERFACE)

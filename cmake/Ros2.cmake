@@ -47,8 +47,8 @@ set(COUPLER_WITH_ROS 2)
 find_package(type_description_interfaces QUIET)  # not in Humble
 
 # The target that generates must have the name of the package.
-list(TRANSFORM messages PREPEND "${PROJECT_SOURCE_DIR}/host/ros:msg/" OUTPUT_VARIABLE files)
-list(TRANSFORM services PREPEND "${PROJECT_SOURCE_DIR}/host/ros:srv/")
+list(TRANSFORM messages PREPEND "${PROJECT_SOURCE_DIR}/host:msg/" OUTPUT_VARIABLE files)
+list(TRANSFORM services PREPEND "${PROJECT_SOURCE_DIR}/host:srv/")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
 rosidl_generate_interfaces(${PROJECT_NAME} ${files} ${services} DEPENDENCIES std_msgs)
 ament_export_dependencies(rosidl_default_runtime std_msgs)
@@ -57,7 +57,7 @@ rosidl_generator_py_get_typesupports(python)
 list(TRANSFORM python PREPEND ${PROJECT_NAME}_s__)
 add_custom_target(${PROJECT_NAME}_generate_messages DEPENDS ${PROJECT_NAME} ${python})
 
-# ament gives its definition to every target of the project. The other rooms compile alike with and without ROS, so that the
+# ament gives its definition to every target of the project. The other modules compile alike with and without ROS, so that the
 # compiler's cache serves both.
 get_directory_property(definitions COMPILE_DEFINITIONS)
 set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "")

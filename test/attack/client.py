@@ -9,7 +9,7 @@ import adu as modbus
 
 # Seconds that tell hanging from working, on any machine. How long answers may take is the bystander's business.
 LATE = 10.0
-PATIENCE = 5.0  # seconds for the rest of a frame, and for a client to read: device/net/connection.hpp
+PATIENCE = 5.0  # seconds for the rest of a frame, and for a client to read: coupler/device/net/connection.hpp
 
 
 class Client:

@@ -9,7 +9,7 @@ from client import LATE, Client
 from real_time import ask_for_real_time
 from support.served import Served
 
-CONNECTIONS = 256  # as many at a time: device/net/tcp_server.hpp
+CONNECTIONS = 256  # as many at a time: coupler/device/net/tcp_server.hpp
 STATE, TRIPS = 0xFF0B, 0xFF17  # of the watchdog: docs/identity.md
 
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/map/owned_map.hpp"
+#include "coupler/map/owned_map.hpp"
 
 namespace coupler::fakes {
 

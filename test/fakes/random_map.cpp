@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "common/codec/type.hpp"
+#include "coupler/codec/type.hpp"
 
 namespace coupler::fakes {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/map/map.hpp"
+#include "coupler/map/map.hpp"
 
 namespace coupler::fakes {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "device/core/server.hpp"
+#include "coupler/device/core/server.hpp"
 #include "test/device/core/node_under_test.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/fuzz/require.hpp"
@@ -20,9 +20,9 @@ using modbus::Function;
 constexpr std::uint16_t broken_line = 7;
 
 /// Hardware of which one output and one input are broken.
-class PartlyBrokenLines : public node::Lines {
+class PartlyBrokenLines : public device::Lines {
  public:
-  bool read(modbus::Range inputs, Span<std::uint16_t> levels, node::TimePoint) override {
+  bool read(modbus::Range inputs, Span<std::uint16_t> levels, device::TimePoint) override {
     if (inputs.contains(broken_line)) return false;
     if (inputs.contains(0)) levels[0] = 1;
     return true;
@@ -130,7 +130,7 @@ class Engine {
   explicit Engine(const Map& map)
       : memory_(map),
         watchdog_(map.service.watchdog),
-        links_(node::EdgePoints::links_for(map)),
+        links_(device::EdgePoints::links_for(map)),
         handler_(map, memory_.image, lines_, statistics_, watchdog_, links_),
         server_(map.connection.unit, handler_, statistics_) {}
 
@@ -172,14 +172,14 @@ class Engine {
     sent_.insert(sent_.end(), adu.begin(), adu.begin() + size);
   }
 
-  node::OwnedImage memory_;
+  device::OwnedImage memory_;
   PartlyBrokenLines lines_;
-  node::Statistics statistics_;
-  node::Peer peer_;
-  node::OutputWatchdog watchdog_;
-  std::vector<node::EdgePoints::Link> links_;
-  node::Handler handler_;
-  node::Server server_;
+  device::Statistics statistics_;
+  device::Peer peer_;
+  device::OutputWatchdog watchdog_;
+  std::vector<device::EdgePoints::Link> links_;
+  device::Handler handler_;
+  device::Server server_;
   modbus::Framer framer_;
   std::vector<std::uint8_t> sent_;
 };

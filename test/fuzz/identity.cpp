@@ -7,19 +7,19 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/map/identity.hpp"
-#include "common/modbus/file_record.hpp"
-#include "host/core/node_map.hpp"
+#include "coupler/host/core/node_map.hpp"
+#include "coupler/map/identity.hpp"
+#include "coupler/modbus/file_record.hpp"
 #include "test/fuzz/require.hpp"
 
 namespace coupler::fuzz {
 namespace {
 
-using driver::Result;
+using host::Result;
 using modbus::Bytes;
 
 /// A device that answers with the input, and is gone when that ends.
-class Impostor : public driver::Transport {
+class Impostor : public host::Transport {
  public:
   explicit Impostor(Bytes answers) : answers_(answers) {}
 
@@ -35,14 +35,14 @@ class Impostor : public driver::Transport {
                 record + registers.size() <= modbus::records_per_file,
             "the driver asks for records that a file can have");
     const Bytes size = take(1);
-    if (size.empty()) return driver::fail(driver::NotConnected{});
+    if (size.empty()) return host::fail(host::NotConnected{});
     const bool right = size[0] == 255;
     const Bytes reply = right ? reply_around(take(2 * registers.size()), registers.size()) : take(size[0]);
     const auto parsed = modbus::parse_file_reply(reply, registers);
     require(parsed || !right, "a right reply is taken");
     if (parsed) return done();
-    if (parsed.error().exception) return driver::fail(driver::ExceptionReply{*parsed.error().exception});
-    return driver::fail(driver::BadFrame{});
+    if (parsed.error().exception) return host::fail(host::ExceptionReply{*parsed.error().exception});
+    return host::fail(host::BadFrame{});
   }
 
   Result<> connect() override { return {}; }
@@ -51,7 +51,7 @@ class Impostor : public driver::Transport {
   Result<> read_bits(Table, modbus::Range, std::uint8_t*) override { return unexpected(); }
   Result<> send(const modbus::WriteRequest&) override { return unexpected(); }
   Result<> receive(const modbus::WriteRequest&) override { return unexpected(); }
-  Woken wait_until(driver::Time) override { return Woken::by_time; }
+  Woken wait_until(host::Time) override { return Woken::by_time; }
   void wake() override {}
 
  private:
@@ -70,7 +70,7 @@ class Impostor : public driver::Transport {
   }
 
   Result<> done() const {
-    if (answers_.empty()) return driver::fail(driver::NotConnected{});
+    if (answers_.empty()) return host::fail(host::NotConnected{});
     return {};
   }
   static Result<> unexpected() {
@@ -97,13 +97,13 @@ void check_head(const identity::Head& head) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace coupler;
   fuzz::Impostor device(modbus::Bytes(data, size));
-  const auto head = driver::read_identity(device);
+  const auto head = host::read_identity(device);
   if (!head || !*head) return 0;
   fuzz::check_head(**head);
-  const auto text = driver::fetch_map_text(device, (*head)->map_size);
+  const auto text = host::fetch_map_text(device, (*head)->map_size);
   fuzz::require(!text || text->size() == (*head)->map_size, "the text is as long as the device said");
-  const auto machine = driver::read_machine(device);
-  for (const char c : machine ? driver::to_string(*machine) : std::string())
+  const auto machine = host::read_machine(device);
+  for (const char c : machine ? host::to_string(*machine) : std::string())
     fuzz::require(c >= ' ' && c <= '~', "what is told of a machine is printable ASCII");
   return 0;
 }

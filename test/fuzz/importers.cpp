@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "common/formats/exporters.hpp"
-#include "common/formats/import.hpp"
-#include "common/map/loader/load.hpp"
+#include "coupler/formats/exporters.hpp"
+#include "coupler/formats/import.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "test/fuzz/require.hpp"
 
 namespace coupler::fuzz {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "common/map/lock/lock.hpp"
+#include "coupler/map/lock/lock.hpp"
 #include "test/fuzz/require.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "common/map/diff.hpp"
-#include "common/map/identity.hpp"
-#include "common/map/loader/load.hpp"
+#include "coupler/map/diff.hpp"
+#include "coupler/map/identity.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "test/device/core/node_under_test.hpp"
 #include "test/fuzz/require.hpp"
 
@@ -36,7 +36,7 @@ void check_points(const Map& map) {
 
 /// Every point has its cells, unless a node would refuse the map for it.
 void check_image(const Map& map) {
-  const node::OwnedImage memory(map);
+  const device::OwnedImage memory(map);
   for (const Point& point : map.points) {
     if (!holds_bits(point.table) && range(point).overlaps(identity::reserved)) return;
     require(memory.image.find(point.table, range(point)).size() == range(point).count(),

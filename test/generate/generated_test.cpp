@@ -3,7 +3,7 @@
 #include <iterator>
 
 #include "beckhoff_map.hpp"
-#include "common/map/loader/load.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "example_map.hpp"
 #include "hard_hooks.hpp"
 #include "hard_map.hpp"
@@ -78,7 +78,7 @@ TEST(Generated, The_header_knows_the_fingerprint_at_compile_time) {
 
 TEST(Generated, Hooks_of_everything_that_is_hard_to_write_in_cpp_compile) {
   maps::hard::NodeHooks hooks;
-  node::Hooks& port = hooks;
+  device::Hooks& port = hooks;
   const std::vector<std::uint16_t> zero(2000);
   for (std::uint32_t i = 0; i < maps::hard::map.points.size(); ++i)
     EXPECT_TRUE(port.accept(i, zero.data())) << maps::hard::map.points[i].name;

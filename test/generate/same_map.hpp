@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "common/map/fields.hpp"
+#include "coupler/map/fields.hpp"
 
 namespace coupler::testing {
 

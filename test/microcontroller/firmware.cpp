@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node without an operating system: what a port has instead of device/net, device/gpio and device/node. It
-// takes one request from a static buffer and writes the reply to the debugger's console. Everything that it
-// uses is in static memory.
+// A node without an operating system: what a port has instead of coupler/device/net, coupler/device/gpio and
+// coupler/device/node. It takes one request from a static buffer and writes the reply to the debugger's
+// console. Everything that it uses is in static memory.
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
 
-#include "device/core/server.hpp"
+#include "coupler/device/core/server.hpp"
 #include "example_map.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 /// A debugger's service (Arm semihosting), which QEMU offers too.
@@ -118,23 +118,25 @@ void answer_all() {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device
 
 // What the linker wants of every port: the entry, where a failed assertion ends, and the deallocation that
 // the table of a virtual destructor names and nobody calls.
 extern "C" void start() {
-  using namespace coupler::node;
+  using namespace coupler::device;
   const auto size = Image::size_for(map);
   if (size.areas > std::size(areas) || size.cells > std::size(cells)) fail("the map needs a larger image");
   if (EdgePoints::links_for(map) > std::size(links)) fail("the map needs more links");
   answer_all();
   stop_well();
 }
-extern "C" void __assert_func(const char*, int, const char*, const char* what) { coupler::node::fail(what); }
+extern "C" void __assert_func(const char*, int, const char*, const char* what) {
+  coupler::device::fail(what);
+}
 /// What the chip reads at reset: the stack, and where to begin.
 extern "C" const std::uint8_t stack_top[];
 [[gnu::section(".vectors"), gnu::used]] const void* const vectors[] = {stack_top,
                                                                        reinterpret_cast<const void*>(start)};
 
-void operator delete(void*) noexcept { coupler::node::fail("something was deallocated"); }
-void operator delete(void*, std::size_t) noexcept { coupler::node::fail("something was deallocated"); }
+void operator delete(void*) noexcept { coupler::device::fail("something was deallocated"); }
+void operator delete(void*, std::size_t) noexcept { coupler::device::fail("something was deallocated"); }

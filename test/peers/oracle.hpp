@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "device/net/descriptor.hpp"
+#include "coupler/device/net/descriptor.hpp"
 
 namespace coupler::oracle {
 
@@ -38,8 +38,8 @@ class Oracle {
  private:
   std::unique_ptr<modbus_t, decltype(&modbus_free)> context_;
   std::unique_ptr<modbus_mapping_t, decltype(&modbus_mapping_free)> mapping_;
-  node::Descriptor servers_end_;
-  node::Descriptor our_end_;
+  device::Descriptor servers_end_;
+  device::Descriptor our_end_;
 };
 
 /// The node, over TCP.
@@ -50,7 +50,7 @@ class Peer {
   Bytes ask(const Bytes& request);
 
  private:
-  node::Descriptor socket_;
+  device::Descriptor socket_;
   bool connected_;
 };
 

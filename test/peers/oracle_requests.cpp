@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <random>
 
-#include "common/modbus/limits.hpp"
+#include "coupler/modbus/limits.hpp"
 #include "test/peers/oracle.hpp"
 
 namespace coupler::oracle {

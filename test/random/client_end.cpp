@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "test/random/client_end.hpp"
 
-#include "common/vectors/cases.hpp"
+#include "coupler/vectors/cases.hpp"
 
 namespace coupler::random {
 namespace {

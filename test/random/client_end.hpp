@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "host/client/point.hpp"
+#include "coupler/host/client/point.hpp"
 #include "test/random/values.hpp"
 
 namespace coupler::random {

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <optional>
 
-#include "device/node/point_hooks.hpp"
+#include "coupler/device/node/point_hooks.hpp"
 #include "test/random/values.hpp"
 
 namespace coupler::random {
@@ -15,7 +15,7 @@ namespace coupler::random {
 class FirmwareEnd {
  public:
   virtual ~FirmwareEnd() = default;
-  virtual node::Hooks& hooks() = 0;
+  virtual device::Hooks& hooks() = 0;
   /// Called in serving_began().
   std::function<void()> when_serving;
   /// set_POINT(value); false if it is refused, or no such function is there.

@@ -11,21 +11,21 @@
 #include <mutex>
 #include <optional>
 
-#include "device/node/io_service.hpp"
+#include "coupler/device/node/io_service.hpp"
 
 namespace coupler::random {
 
 /// Work for the node's thread, and the end of it.
-class NodeEnd::Bell : public node::Watcher {
+class NodeEnd::Bell : public device::Watcher {
  public:
-  explicit Bell(node::Loop& loop) : loop_(loop), event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
-    if (!loop_.watch(event_.get(), node::Interest::read, *this)) std::abort();
+  explicit Bell(device::Loop& loop) : loop_(loop), event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+    if (!loop_.watch(event_.get(), device::Interest::read, *this)) std::abort();
   }
   virtual ~Bell() { loop_.forget(event_.get(), *this); }
   Bell(const Bell&) = delete;
   Bell& operator=(const Bell&) = delete;
 
-  void ready(node::TimePoint) override {
+  void ready(device::TimePoint) override {
     std::uint64_t rung = 0;
     if (::read(event_.get(), &rung, sizeof rung) != sizeof rung) return;
     const std::lock_guard lock(mutex_);
@@ -46,31 +46,31 @@ class NodeEnd::Bell : public node::Watcher {
   std::atomic<bool> is_over{false};
 
  private:
-  node::Loop& loop_;
-  node::Descriptor event_;
+  device::Loop& loop_;
+  device::Descriptor event_;
   std::mutex mutex_;
   std::optional<std::packaged_task<void()>> work_;
 };
 
 namespace {
 
-struct Unheard : node::Pulse {
+struct Unheard : device::Pulse {
   void beat() override {}
 };
 
 }  // namespace
 
-NodeEnd::NodeEnd(const Map& map, node::Hooks* hooks)
+NodeEnd::NodeEnd(const Map& map, device::Hooks* hooks)
     : simulated_(std::any_of(map.points.begin(), map.points.end(), has_hardware)) {
-  auto listener = node::listen_on("127.0.0.1", 0);
-  auto wiring = node::prepare_wiring(map, simulated_, nullptr, false, log_);
+  auto listener = device::listen_on("127.0.0.1", 0);
+  auto wiring = device::prepare_wiring(map, simulated_, nullptr, false, log_);
   if (!listener || !wiring) std::abort();
   duty_.map = &map;
   duty_.listener = *std::move(listener);
-  duty_.memory = std::make_unique<node::Memory>(map, node::TimePoint::clock::now());
+  duty_.memory = std::make_unique<device::Memory>(map, device::TimePoint::clock::now());
   if (hooks != nullptr) hooks->allow_setting();
   if (hooks != nullptr)
-    duty_.hooked = std::make_unique<node::HookedPoints>(map, duty_.memory->image(), *hooks);
+    duty_.hooked = std::make_unique<device::HookedPoints>(map, duty_.memory->image(), *hooks);
   duty_.wiring = (*wiring)->take_over();
   bell_ = std::make_unique<Bell>(loop_);
   thread_ = std::thread([this] { run(); });
@@ -83,9 +83,9 @@ NodeEnd::~NodeEnd() {
 }
 
 void NodeEnd::run() {
-  node::IoService service(duty_, loop_, log_);
+  device::IoService service(duty_, loop_, log_);
   Unheard pulse;
-  service.run([this](node::TimePoint) { return bell_->is_over.load(); }, pulse);
+  service.run([this](device::TimePoint) { return bell_->is_over.load(); }, pulse);
 }
 
 std::uint16_t NodeEnd::port() const {

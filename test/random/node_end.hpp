@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "device/net/loop.hpp"
-#include "device/node/duty.hpp"
+#include "coupler/device/net/loop.hpp"
+#include "coupler/device/node/duty.hpp"
 #include "test/device/core/fake_log.hpp"
 
 namespace coupler::random {
@@ -16,7 +16,7 @@ namespace coupler::random {
 class NodeEnd {
  public:
   /// Both outlive it; `hooks` may be null.
-  NodeEnd(const Map& map, node::Hooks* hooks);
+  NodeEnd(const Map& map, device::Hooks* hooks);
   ~NodeEnd();
   NodeEnd(const NodeEnd&) = delete;
   NodeEnd& operator=(const NodeEnd&) = delete;
@@ -37,9 +37,9 @@ class NodeEnd {
   class Bell;
 
   const bool simulated_;
-  node::FakeLog log_;
-  node::Loop loop_;
-  node::Duty duty_;
+  device::FakeLog log_;
+  device::Loop loop_;
+  device::Duty duty_;
   std::unique_ptr<Bell> bell_;
   std::thread thread_;
 };

@@ -12,7 +12,7 @@
 #include <sstream>
 #include <thread>
 
-#include "device/node/program.hpp"
+#include "coupler/device/node/program.hpp"
 #include "test/random/subject.hpp"
 
 namespace coupler::random {
@@ -103,7 +103,7 @@ int run_client(const Subject& subject, const char* port) {
 int run_firmware(const Subject& subject, int argc, char** argv) {
   const auto firmware = subject.firmware();
   firmware->when_serving = [&] { std::thread(show, std::cref(subject), std::ref(*firmware)).detach(); };
-  return node::main_with(*subject.map, firmware->hooks(), argc, argv);
+  return device::main_with(*subject.map, firmware->hooks(), argc, argv);
 }
 
 }  // namespace

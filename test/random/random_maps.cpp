@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "common/generate/member.hpp"
-#include "common/map/loader/load.hpp"
+#include "coupler/generate/member.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "test/fakes/random_map.hpp"
 
 namespace coupler::random {
@@ -60,7 +60,7 @@ std::string firmware(const std::string& name, const Map& map) {
   }
   return fmt::format(
       "class Firmware_{0} : public maps::{0}::NodeHooks, public FirmwareEnd {{\n"
-      "  node::Hooks& hooks() override {{ return *this; }}\n"
+      "  device::Hooks& hooks() override {{ return *this; }}\n"
       "  void serving_began() override {{ if (when_serving) when_serving(); }}\n{1}"
       "  bool put(std::uint32_t point, [[maybe_unused]] const Values& values) override {{\n"
       "    switch (point) {{\n{2}      default: return false;\n    }}\n  }}\n}};\n"

@@ -8,8 +8,8 @@
 #include <set>
 #include <thread>
 
-#include "common/map/loader/load.hpp"
-#include "common/vectors/cases.hpp"
+#include "coupler/map/loader/load.hpp"
+#include "coupler/vectors/cases.hpp"
 #include "test/generate/same_map.hpp"
 #include "test/random/node_end.hpp"
 #include "test/random/subject.hpp"

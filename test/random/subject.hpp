@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "common/vectors/cases.hpp"
+#include "coupler/vectors/cases.hpp"
 #include "test/random/client_end.hpp"
 #include "test/random/firmware_end.hpp"
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "common/codec/value.hpp"
+#include "coupler/codec/value.hpp"
 
 namespace coupler::random {
 

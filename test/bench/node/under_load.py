@@ -11,7 +11,7 @@ import sys
 
 from support.served import Served
 
-PRIORITY = 10  # of the process that answers under --realtime, device/node/realtime.hpp
+PRIORITY = 10  # of the process that answers under --realtime, coupler/device/node/realtime.hpp
 AHEAD = 20
 CASES = {"fc3": "FC 3, 10 registers", "fc5": "FC 5"}
 CONNECTIONS = (1, 16)

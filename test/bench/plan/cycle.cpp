@@ -11,9 +11,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "common/map/loader/load.hpp"
-#include "common/plan/cost.hpp"
-#include "host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/map/loader/load.hpp"
+#include "coupler/plan/cost.hpp"
 
 namespace {
 
@@ -33,12 +33,12 @@ class Reader {
   }
 
  private:
-  static void check(const driver::Result<>& result) {
+  static void check(const host::Result<>& result) {
     if (result) return;
     fmt::print(stderr, "coupler_bench_cycle: {}\n", to_string(result.error()));
     std::exit(3);
   }
-  driver::ModbusTransport transport_;
+  host::ModbusTransport transport_;
   std::array<std::uint8_t, modbus::max_read_bits> bits_{};
   std::array<std::uint16_t, modbus::max_read_registers> registers_{};
 };

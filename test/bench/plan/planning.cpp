@@ -6,8 +6,8 @@
 #include <chrono>
 #include <random>
 
-#include "common/map/owned_map.hpp"
-#include "common/plan/strategy.hpp"
+#include "coupler/map/owned_map.hpp"
+#include "coupler/plan/strategy.hpp"
 
 namespace {
 

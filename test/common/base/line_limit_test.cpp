@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/base/line_limit.hpp"
+#include "coupler/base/line_limit.hpp"
 
 #include <gtest/gtest.h>
 

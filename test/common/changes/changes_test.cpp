@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/changes/changes.hpp"
+#include "coupler/changes/changes.hpp"
 
 #include <gmock/gmock.h>
 
-#include "common/map/loader/load.hpp"
+#include "coupler/map/loader/load.hpp"
 
 namespace coupler::changes {
 namespace {

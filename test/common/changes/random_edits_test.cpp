@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "common/changes/changes.hpp"
-#include "common/map/diff.hpp"
-#include "common/map/loader/load.hpp"
+#include "coupler/changes/changes.hpp"
+#include "coupler/map/diff.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "test/fakes/random_map.hpp"
 
 namespace coupler::changes {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/codec/decimal.hpp"
+#include "coupler/codec/decimal.hpp"
 
 #include <gtest/gtest.h>
 

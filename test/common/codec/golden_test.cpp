@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/codec/value.hpp"
+#include "coupler/codec/value.hpp"
 #include "test/support/paths.hpp"
 
 namespace coupler::codec {

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/codec/scale.hpp"
+#include "coupler/codec/scale.hpp"
 #include "test/support/paths.hpp"
 
 namespace coupler::codec {

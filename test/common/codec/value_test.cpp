@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/codec/value.hpp"
+#include "coupler/codec/value.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/formats/exporters.hpp"
+#include "coupler/formats/exporters.hpp"
 
 #include <gmock/gmock.h>
 
 #include <filesystem>
 
-#include "common/map/loader/load.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "test/common/formats/imported.hpp"
 #include "test/support/paths.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/formats/csv.hpp"
+#include "coupler/formats/csv.hpp"
 
 #include <gmock/gmock.h>
 

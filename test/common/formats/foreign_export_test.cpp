@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "common/formats/exporters.hpp"
-#include "common/map/loader/load.hpp"
+#include "coupler/formats/exporters.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "test/common/formats/imported.hpp"
 
 namespace coupler::test {

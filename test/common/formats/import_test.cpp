@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What holds for every importer.
-#include "common/formats/import.hpp"
+#include "coupler/formats/import.hpp"
 
 #include <gmock/gmock.h>
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/map/loader/load.hpp"
+#include "coupler/map/loader/load.hpp"
 
 namespace coupler::test {
 

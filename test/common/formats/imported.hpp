@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/formats/import.hpp"
+#include "coupler/formats/import.hpp"
 
 namespace coupler::test {
 

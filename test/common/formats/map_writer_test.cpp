@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/formats/map_writer.hpp"
+#include "coupler/formats/map_writer.hpp"
 
 #include <gtest/gtest.h>
 
-#include "common/formats/entries.hpp"
-#include "common/map/loader/document.hpp"
+#include "coupler/formats/entries.hpp"
+#include "coupler/map/loader/document.hpp"
 
 namespace coupler::formats {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/formats/names.hpp"
+#include "coupler/formats/names.hpp"
 
 #include <gtest/gtest.h>
 
-#include "common/map/loader/names.hpp"
+#include "coupler/map/loader/names.hpp"
 
 namespace coupler::formats {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/map/loader/load.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "test/common/formats/imported.hpp"
 #include "test/support/paths.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the dissector does is proved with tshark, on captured traffic: test/peers/with_dissector.py.
-#include "common/formats/exporters.hpp"
+#include "coupler/formats/exporters.hpp"
 
 #include <gmock/gmock.h>
 
-#include "common/map/loader/load.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "test/common/formats/imported.hpp"
 
 namespace coupler::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/generate/generate.hpp"
+#include "coupler/generate/generate.hpp"
 
 #include <gmock/gmock.h>
 
@@ -31,8 +31,8 @@ TEST(Generate, Every_file_says_where_it_comes_from) {
 
 TEST(Generate, Both_programs_run_the_one_table) {
   const auto files = generate(testing::sample()->map(), stamp);
-  EXPECT_THAT(files[2].content, HasSubstr("driver::main_with(&::coupler::maps::cell::map, "));
-  EXPECT_THAT(files.back().content, HasSubstr("node::main_with(::coupler::maps::cell::map, "));
+  EXPECT_THAT(files[2].content, HasSubstr("host::main_with(&::coupler::maps::cell::map, "));
+  EXPECT_THAT(files.back().content, HasSubstr("device::main_with(::coupler::maps::cell::map, "));
 }
 
 TEST(Generate, The_same_map_gives_the_same_bytes) {

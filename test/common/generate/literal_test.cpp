@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/generate/literal.hpp"
+#include "coupler/generate/literal.hpp"
 
 #include <gtest/gtest.h>
 
-#include "common/generate/identifier.hpp"
+#include "coupler/generate/identifier.hpp"
 
 namespace coupler::generate {
 namespace {

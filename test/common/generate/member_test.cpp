@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/generate/member.hpp"
+#include "coupler/generate/member.hpp"
 
 #include <gmock/gmock.h>
 

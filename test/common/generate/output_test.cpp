@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/generate/output.hpp"
+#include "coupler/generate/output.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

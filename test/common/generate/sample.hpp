@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "common/map/owned_map.hpp"
+#include "coupler/map/owned_map.hpp"
 
 namespace coupler::testing {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/diagnostic.hpp"
+#include "coupler/map/diagnostic.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/diff.hpp"
+#include "coupler/map/diff.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

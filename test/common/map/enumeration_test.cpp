@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/base/enumeration.hpp"
+#include "coupler/base/enumeration.hpp"
 
 #include <gtest/gtest.h>
 
-#include "common/map/map.hpp"
+#include "coupler/map/map.hpp"
 
 namespace coupler {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/fingerprint.hpp"
+#include "coupler/map/fingerprint.hpp"
 
 #include <gtest/gtest.h>
 

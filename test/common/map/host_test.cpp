@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/host.hpp"
+#include "coupler/map/host.hpp"
 
 #include <gtest/gtest.h>
 

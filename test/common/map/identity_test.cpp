@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/identity.hpp"
+#include "coupler/map/identity.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "common/map/lookup_by_name.hpp"
+#include "coupler/map/lookup_by_name.hpp"
 
 namespace coupler {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/network.hpp"
+#include "coupler/map/network.hpp"
 
 #include <gtest/gtest.h>
 

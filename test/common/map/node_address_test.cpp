@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/node_address.hpp"
+#include "coupler/map/node_address.hpp"
 
 #include <gmock/gmock.h>
 

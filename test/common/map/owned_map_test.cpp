@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/owned_map.hpp"
+#include "coupler/map/owned_map.hpp"
 
 #include <gtest/gtest.h>
 
-#include "common/map/crc32.hpp"
+#include "coupler/map/crc32.hpp"
 #include "test/common/map/sample_points.hpp"
 
 namespace coupler {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/printable.hpp"
+#include "coupler/map/printable.hpp"
 
 #include <gtest/gtest.h>
 

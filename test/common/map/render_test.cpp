@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "common/map/diagnostic.hpp"
+#include "coupler/map/diagnostic.hpp"
 
 namespace coupler {
 namespace {

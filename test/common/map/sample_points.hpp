@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/map/owned_map.hpp"
+#include "coupler/map/owned_map.hpp"
 
 namespace coupler::test {
 

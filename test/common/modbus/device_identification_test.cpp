@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/modbus/device_identification.hpp"
-#include "common/modbus/limits.hpp"
+#include "coupler/modbus/device_identification.hpp"
+#include "coupler/modbus/limits.hpp"
 
 namespace coupler::modbus {
 namespace {

@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "common/modbus/file_record.hpp"
-#include "common/modbus/limits.hpp"
+#include "coupler/modbus/file_record.hpp"
+#include "coupler/modbus/limits.hpp"
 
 namespace coupler::modbus {
 namespace {

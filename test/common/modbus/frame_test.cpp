@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/modbus/frame.hpp"
+#include "coupler/modbus/frame.hpp"
 
 namespace coupler::modbus {
 namespace {

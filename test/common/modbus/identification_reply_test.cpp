@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/modbus/identification_reply.hpp"
+#include "coupler/modbus/identification_reply.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/modbus/limits.hpp"
+#include "coupler/modbus/limits.hpp"
 
 namespace coupler::modbus {
 namespace {

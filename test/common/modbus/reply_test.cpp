@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "common/modbus/limits.hpp"
-#include "common/modbus/reply.hpp"
+#include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/reply.hpp"
 
 namespace coupler::modbus {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/modbus/request.hpp"
+#include "coupler/modbus/request.hpp"
 
 namespace coupler::modbus {
 namespace {

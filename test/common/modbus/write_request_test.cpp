@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/modbus/write_request.hpp"
+#include "coupler/modbus/write_request.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/pages/commands.hpp"
+#include "coupler/pages/commands.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/pages/escape.hpp"
+#include "coupler/pages/escape.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/pages/facts.hpp"
+#include "coupler/pages/facts.hpp"
 
 #include <gtest/gtest.h>
 

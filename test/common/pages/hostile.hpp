@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/pages/document.hpp"
+#include "coupler/pages/document.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/pages/html.hpp"
+#include "coupler/pages/html.hpp"
 
 #include <gmock/gmock.h>
 

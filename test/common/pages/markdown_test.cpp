@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/pages/markdown.hpp"
+#include "coupler/pages/markdown.hpp"
 
 #include <gmock/gmock.h>
 

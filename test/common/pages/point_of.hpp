@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/map/point.hpp"
+#include "coupler/map/point.hpp"
 
 namespace coupler::test {
 

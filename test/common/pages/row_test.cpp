@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/pages/row.hpp"
+#include "coupler/pages/row.hpp"
 
 #include <gtest/gtest.h>
 
-#include "common/pages/words.hpp"
+#include "coupler/pages/words.hpp"
 #include "test/common/pages/point_of.hpp"
 
 namespace coupler::pages {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/plan/cost.hpp"
+#include "coupler/plan/cost.hpp"
 
 #include <gtest/gtest.h>
 

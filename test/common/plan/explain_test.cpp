@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/plan/explain.hpp"
+#include "coupler/plan/explain.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/plan/intervals.hpp"
+#include "coupler/plan/intervals.hpp"
 
 #include <gtest/gtest.h>
 

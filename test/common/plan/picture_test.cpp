@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/plan/picture.hpp"
+#include "coupler/plan/picture.hpp"
 
 #include <gmock/gmock.h>
 
-#include "common/plan/picture_layout.hpp"
+#include "coupler/plan/picture_layout.hpp"
 #include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/plan/planner.hpp"
+#include "coupler/plan/planner.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

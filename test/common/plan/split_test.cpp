@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/plan/split.hpp"
+#include "coupler/plan/split.hpp"
 
 #include <gtest/gtest.h>
 
-#include "common/plan/planner.hpp"
+#include "coupler/plan/planner.hpp"
 #include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 

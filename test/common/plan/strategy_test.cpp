@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/plan/strategy.hpp"
+#include "coupler/plan/strategy.hpp"
 
 #include <gtest/gtest.h>
 

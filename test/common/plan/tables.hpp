@@ -2,7 +2,7 @@
 // Short names for rows of test data.
 #pragma once
 
-#include "common/map/table.hpp"
+#include "coupler/map/table.hpp"
 
 namespace coupler::plan {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The patterns are those of ECMAScript, which std::regex knows.
-#include "common/schema/pattern.hpp"
+#include "coupler/schema/pattern.hpp"
 
 #include <gtest/gtest.h>
 
 #include <regex>
 
-#include "common/map/loader/names.hpp"
-#include "common/map/loader/scalar.hpp"
-#include "common/map/network.hpp"
+#include "coupler/map/loader/names.hpp"
+#include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/network.hpp"
 
 namespace coupler::schema {
 namespace {

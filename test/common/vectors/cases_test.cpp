@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/vectors/cases.hpp"
+#include "coupler/vectors/cases.hpp"
 
 #include <gmock/gmock.h>
 

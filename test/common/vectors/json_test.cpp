@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/vectors/json.hpp"
+#include "coupler/vectors/json.hpp"
 
 #include <gtest/gtest.h>
 

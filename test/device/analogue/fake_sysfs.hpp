@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "device/net/descriptor.hpp"
+#include "coupler/device/net/descriptor.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 
 /// A folder with ordinary files where a kernel would have its own: they take every value.
 class FakeSysfs {
@@ -99,4 +99,4 @@ class FakeSysfs {
   }
 };
 
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/analogue/iio.hpp"
+#include "coupler/device/analogue/iio.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "test/device/analogue/fake_sysfs.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST_F(IioChannels, That_cannot_be_driven_give_the_error) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

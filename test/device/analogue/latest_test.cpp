@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/analogue/latest.hpp"
+#include "coupler/device/analogue/latest.hpp"
 
 #include <gtest/gtest.h>
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using Sample = tl::expected<double, int>;
@@ -42,4 +42,4 @@ TEST_F(LatestSample, Is_an_error_when_no_other_came_for_too_long) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/analogue/open_channels.hpp"
+#include "coupler/device/analogue/open_channels.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "device/analogue/sampler.hpp"
+#include "coupler/device/analogue/sampler.hpp"
 #include "test/device/analogue/fake_sysfs.hpp"
 #include "test/device/core/fake_log.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using codec::Type;
@@ -147,4 +147,4 @@ TEST(SamplingPeriod, Is_that_of_the_map_within_limits) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

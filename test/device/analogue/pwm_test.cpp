@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/analogue/pwm.hpp"
+#include "coupler/device/analogue/pwm.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "test/device/analogue/fake_sysfs.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using std::chrono::microseconds;
@@ -97,4 +97,4 @@ TEST_F(PwmChannel, That_cannot_be_driven_gives_the_error) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/core/analogue_points.hpp"
+#include "coupler/device/core/analogue_points.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "test/device/core/node_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using codec::Type;
@@ -238,4 +238,4 @@ TEST(AnaloguePoints, A_write_to_an_output_arms_the_watchdog_which_drives_lines_a
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

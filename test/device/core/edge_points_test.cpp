@@ -4,7 +4,7 @@
 
 #include "test/device/core/node_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using codec::Type;
@@ -136,4 +136,4 @@ TEST_F(Counting, Lost_events_are_counted_and_shown) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "device/core/channels.hpp"
+#include "coupler/device/core/channels.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 
 /// Channels that remember how they were driven and fail when told to. All by the addresses of their points.
 class FakeChannels : public Channels {
@@ -37,4 +37,4 @@ class FakeChannels : public Channels {
   double most = 100;
 };
 
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "device/core/lines.hpp"
+#include "coupler/device/core/lines.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 
 /// Hardware that remembers how it was driven and fails when told to.
 class FakeLines : public Lines {
@@ -65,4 +65,4 @@ class FakeLines : public Lines {
   std::map<std::uint16_t, std::uint16_t> inputs_;
 };
 
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "device/core/log.hpp"
+#include "coupler/device/core/log.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 
 class FakeLog : public Log {
  public:
@@ -14,4 +14,4 @@ class FakeLog : public Log {
   std::vector<std::string> lines;
 };
 
-}  // namespace coupler::node
+}  // namespace coupler::device

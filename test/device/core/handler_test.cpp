@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/map/fingerprint.hpp"
+#include "coupler/map/fingerprint.hpp"
 #include "test/device/core/node_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using fakes::MapBuilder;
@@ -122,4 +122,4 @@ TEST_F(Handling, Requests_and_exceptions_are_counted) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

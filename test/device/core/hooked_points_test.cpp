@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/core/hooked_points.hpp"
+#include "coupler/device/core/hooked_points.hpp"
 
 #include <gmock/gmock.h>
 
 #include "test/device/core/node_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using codec::Type;
@@ -137,4 +137,4 @@ TEST_F(HookedNode, The_code_is_told_to_make_its_outputs_safe) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

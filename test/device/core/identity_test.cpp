@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "common/codec/number.hpp"
-#include "common/map/identity.hpp"
-#include "device/core/map_file.hpp"
+#include "coupler/codec/number.hpp"
+#include "coupler/device/core/map_file.hpp"
+#include "coupler/map/identity.hpp"
 #include "test/device/core/node_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using fakes::MapBuilder;
@@ -139,4 +139,4 @@ TEST(MapFile, A_long_text_is_the_same_when_it_is_put_together_again) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/map/identity.hpp"
+#include "coupler/map/identity.hpp"
 #include "test/device/core/node_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using codec::Type;
@@ -126,4 +126,4 @@ TEST(Image, The_identity_area_is_always_there) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

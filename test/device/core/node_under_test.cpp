@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-namespace coupler::node {
+namespace coupler::device {
 
 Pdu pdu(int function, std::initializer_list<int> fields, const Pdu& rest) {
   Pdu bytes{static_cast<std::uint8_t>(function)};
@@ -28,4 +28,4 @@ Pdu NodeUnderTest::ask(Peer& who, const Pdu& request) {
   return Pdu(reply.data(), reply.data() + size);
 }
 
-}  // namespace coupler::node
+}  // namespace coupler::device

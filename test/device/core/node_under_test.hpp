@@ -4,12 +4,12 @@
 #include <initializer_list>
 #include <vector>
 
-#include "device/core/handler.hpp"
+#include "coupler/device/core/handler.hpp"
 #include "test/device/core/fake_channels.hpp"
 #include "test/device/core/fake_lines.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 
 using Pdu = std::vector<std::uint8_t>;
 
@@ -47,4 +47,4 @@ struct NodeUnderTest {
   Handler handler{map, image, Hardware(lines, &analogue), statistics, watchdog, links};
 };
 
-}  // namespace coupler::node
+}  // namespace coupler::device

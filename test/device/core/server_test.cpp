@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "device/core/server.hpp"
+#include "coupler/device/core/server.hpp"
 #include "test/device/core/node_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::ElementsAre;
@@ -34,4 +34,4 @@ TEST_F(Serving, Other_units_get_silence_and_are_counted) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/map/identity.hpp"
+#include "coupler/map/identity.hpp"
 #include "test/device/core/node_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using fakes::MapBuilder;
@@ -266,4 +266,4 @@ TEST(WithoutWatchdog, Nothing_ever_happens_and_the_state_is_0) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

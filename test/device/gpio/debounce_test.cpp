@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "device/gpio/debounce.hpp"
+#include "coupler/device/gpio/debounce.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using std::chrono::milliseconds;
@@ -66,4 +66,4 @@ TEST_F(Debouncing, Only_levels_that_settle_are_counted_as_edges) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "device/gpio/edge_tally.hpp"
+#include "coupler/device/gpio/edge_tally.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 TEST(EdgeTally, Edges_are_counted_by_kind_and_told_once) {
@@ -41,4 +41,4 @@ TEST(EdgeTally, A_known_loss_is_not_counted_again_when_the_next_edge_shows_it) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "device/gpio/grouped_lines.hpp"
+#include "coupler/device/gpio/grouped_lines.hpp"
 #include "test/device/core/fake_log.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using modbus::Range;
@@ -228,4 +228,4 @@ TEST(CountedLines, Edges_are_told_by_address_and_losses_logged_once_per_burst) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "device/gpio/inventory.hpp"
+#include "coupler/device/gpio/inventory.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::HasSubstr;
@@ -50,4 +50,4 @@ TEST_F(Finding, What_is_not_there_is_answered_with_what_is) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

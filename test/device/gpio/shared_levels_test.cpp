@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "device/gpio/grouped_lines.hpp"
+#include "coupler/device/gpio/grouped_lines.hpp"
 #include "test/device/core/fake_log.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using modbus::Range;
@@ -66,4 +66,4 @@ TEST(SharedLevels, What_one_process_drove_the_others_know) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

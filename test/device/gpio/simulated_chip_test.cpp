@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include "device/gpio/simulated_chip.hpp"
+#include "coupler/device/gpio/simulated_chip.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using codec::Type;
@@ -162,4 +162,4 @@ TEST(SimulatedChip, Unplugged_it_refuses_everything_and_changes_nothing) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -9,12 +9,12 @@
 #include <string>
 #include <utility>
 
-#include "device/gpio/backend.hpp"
-#include "device/gpio/wire.hpp"
+#include "coupler/device/gpio/backend.hpp"
+#include "coupler/device/gpio/wire.hpp"
 #include "test/device/core/fake_log.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using fakes::MapBuilder;
@@ -354,4 +354,4 @@ TEST_F(Wires, Outputs_that_are_to_be_held_are_safe_on_an_unplugged_chip_too) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

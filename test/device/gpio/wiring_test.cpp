@@ -2,11 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "device/gpio/wiring.hpp"
+#include "coupler/device/gpio/wiring.hpp"
 #include "test/device/core/fake_log.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using fakes::MapBuilder;
@@ -32,4 +32,4 @@ TEST(PreparedWiring, A_chip_that_does_not_exist_is_named_with_its_point_and_the_
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "device/keeper/backoff.hpp"
+#include "coupler/device/keeper/backoff.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using std::chrono::milliseconds;
@@ -23,4 +23,4 @@ TEST(KeeperBackoff, A_process_that_lived_long_is_started_at_once_again) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

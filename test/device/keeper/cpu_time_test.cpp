@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/keeper/cpu_time.hpp"
+#include "coupler/device/keeper/cpu_time.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -10,9 +10,9 @@
 #include <functional>
 #include <thread>
 
-#include "device/keeper/child.hpp"
+#include "coupler/device/keeper/child.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using std::chrono::milliseconds;
@@ -161,4 +161,4 @@ TEST_F(RealProcess, One_that_sleeps_does_not_wait) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -11,11 +11,11 @@
 #include <thread>
 #include <utility>
 
-#include "device/keeper/keeper.hpp"
-#include "device/keeper/shared_array.hpp"
+#include "coupler/device/keeper/keeper.hpp"
+#include "coupler/device/keeper/shared_array.hpp"
 #include "test/device/core/fake_log.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::AllOf;
@@ -328,4 +328,4 @@ TEST_F(Kept, A_process_that_cannot_be_killed_does_not_hang_the_keeper) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

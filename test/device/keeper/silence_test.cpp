@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/keeper/silence.hpp"
+#include "coupler/device/keeper/silence.hpp"
 
 #include <gtest/gtest.h>
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using std::chrono::milliseconds;
@@ -98,4 +98,4 @@ TEST_F(Watched, A_glance_counts_for_no_longer_than_it_took) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -4,7 +4,7 @@
 #include "test/device/net/counting_heap.hpp"
 #include "test/device/net/tcp_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using fakes::allocations;
@@ -74,4 +74,4 @@ TEST(Allocations, Making_room_costs_none) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

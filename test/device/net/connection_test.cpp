@@ -4,7 +4,7 @@
 
 #include "test/device/net/tcp_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::ElementsAreArray;
@@ -170,4 +170,4 @@ TEST_F(Connecting, A_client_that_never_reads_is_owed_little_and_dropped_and_the_
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "device/net/client_address.hpp"
+#include "coupler/device/net/client_address.hpp"
 #include "test/device/net/tcp_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::ElementsAre;
@@ -94,4 +94,4 @@ TEST(Accepting, Who_is_on_the_list_is_served) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

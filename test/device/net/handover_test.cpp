@@ -5,7 +5,7 @@
 
 #include "test/device/net/tcp_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::ElementsAreArray;
@@ -92,4 +92,4 @@ TEST(HandingOver, Who_has_written_an_output_feeds_the_watchdog_of_the_next) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

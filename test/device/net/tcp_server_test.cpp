@@ -8,10 +8,10 @@
 
 #include <csignal>
 
-#include "device/net/signals.hpp"
+#include "coupler/device/net/signals.hpp"
 #include "test/device/net/tcp_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::ElementsAreArray;
@@ -238,4 +238,4 @@ TEST(Stopping, A_terminal_that_is_closed_is_a_reason_to_stop) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "device/core/server.hpp"
-#include "device/net/tcp_server.hpp"
+#include "coupler/device/core/server.hpp"
+#include "coupler/device/net/tcp_server.hpp"
 #include "test/device/core/fake_log.hpp"
 #include "test/device/core/node_under_test.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 
 /// An ADU of unit 1.
 inline Pdu adu(std::uint16_t transaction, const Pdu& pdu) {
@@ -119,4 +119,4 @@ struct TcpUnderTest {
   TcpServer tcp;
 };
 
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -3,9 +3,9 @@
 
 #include <csignal>
 
-#include "device/node/farewell.hpp"
+#include "coupler/device/node/farewell.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using namespace std::chrono_literals;
@@ -40,4 +40,4 @@ TEST(Farewell, Has_every_statistic_that_is_not_0_in_one_line) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -4,12 +4,12 @@
 
 #include <stdexcept>
 
-#include "device/node/guarded_hooks.hpp"
-#include "device/node/point_hooks.hpp"
+#include "coupler/device/node/guarded_hooks.hpp"
+#include "coupler/device/node/point_hooks.hpp"
 #include "test/device/core/fake_log.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using codec::Type;
@@ -87,4 +87,4 @@ TEST(PointHooks, A_value_is_set_in_the_process_that_serves_and_nowhere_else) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

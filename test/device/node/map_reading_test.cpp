@@ -10,9 +10,9 @@
 #include <memory_resource>
 #include <thread>
 
-#include "device/node/map_reading.hpp"
+#include "coupler/device/node/map_reading.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::HasSubstr;
@@ -101,4 +101,4 @@ TEST_F(Reading, The_process_has_none_of_the_descriptors_but_the_log) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

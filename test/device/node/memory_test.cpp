@@ -4,10 +4,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "device/node/memory.hpp"
+#include "coupler/device/node/memory.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using codec::Type;
@@ -128,4 +128,4 @@ TEST(NodeMemory, The_watchdog_waits_anew_and_what_expired_stays_expired) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -16,10 +16,10 @@
 #include <string>
 #include <string_view>
 
-#include "device/node/stderr_log.hpp"
+#include "coupler/device/node/stderr_log.hpp"
 #include "test/device/node/stderr_reader.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::StartsWith;
@@ -194,4 +194,4 @@ TEST(NeverWait, Until_it_is_asked_it_waits_as_programs_do) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "device/node/options.hpp"
+#include "coupler/device/node/options.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using testing::HasSubstr;
@@ -75,4 +75,4 @@ TEST(NodeOptions, Help_is_status_0_and_shows_an_example) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

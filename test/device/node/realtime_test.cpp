@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/node/realtime.hpp"
+#include "coupler/device/node/realtime.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -14,9 +14,9 @@
 #include <string>
 #include <thread>
 
-#include "device/node/urgent_mutex.hpp"
+#include "coupler/device/node/urgent_mutex.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 /// The exit status of a process of its own that does this: the test's is to stay as it is.
@@ -102,4 +102,4 @@ TEST_F(Realtime, Who_holds_a_mutex_that_an_urgent_thread_waits_for_is_as_urgent)
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -7,11 +7,11 @@
 #include <csignal>
 #include <string>
 
-#include "device/keeper/child.hpp"
-#include "device/net/signals.hpp"
-#include "device/node/reload.hpp"
+#include "coupler/device/keeper/child.hpp"
+#include "coupler/device/net/signals.hpp"
+#include "coupler/device/node/reload.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 /// A process with the node's name that answers one SIGHUP.
@@ -59,4 +59,4 @@ TEST(Reload, Another_program_is_not_sent_a_signal) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "device/node/servable.hpp"
+#include "coupler/device/node/servable.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using codec::Type;
@@ -44,4 +44,4 @@ TEST(Servable, What_is_no_address_in_allow_is_named) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

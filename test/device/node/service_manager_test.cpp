@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <string>
 
-#include "device/node/service_manager.hpp"
+#include "coupler/device/node/service_manager.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 /// A manager's socket with a name that the kernel chooses.
@@ -98,4 +98,4 @@ TEST(Unmanaged, Nobody_is_told) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

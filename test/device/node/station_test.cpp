@@ -6,11 +6,11 @@
 
 #include <utility>
 
-#include "device/node/station.hpp"
+#include "coupler/device/node/station.hpp"
 #include "test/device/core/fake_log.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 using codec::Type;
@@ -142,4 +142,4 @@ TEST(BuiltIn, A_node_without_a_file_ignores_the_wish_to_reload) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

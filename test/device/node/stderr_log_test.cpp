@@ -6,9 +6,9 @@
 
 #include <string>
 
-#include "device/node/stderr_log.hpp"
+#include "coupler/device/node/stderr_log.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 std::string stderr_stream() {
@@ -102,4 +102,4 @@ TEST(StderrLog, Nobody_who_reads_it_is_no_reason_to_end) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

@@ -13,9 +13,9 @@
 #include <string>
 #include <utility>
 
-#include "device/net/descriptor.hpp"
+#include "coupler/device/net/descriptor.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 
 /// Stands in the place of whoever reads this process's stderr, and reads when it wants.
 class StderrReader {
@@ -70,4 +70,4 @@ class StderrReader {
   Descriptor stderr_end_;
 };
 
-}  // namespace coupler::node
+}  // namespace coupler::device

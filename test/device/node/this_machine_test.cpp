@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/node/this_machine.hpp"
+#include "coupler/device/node/this_machine.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include "test/device/analogue/fake_sysfs.hpp"
 
-namespace coupler::node {
+namespace coupler::device {
 namespace {
 
 /// A machine with everything that a serial is looked for in.
@@ -102,4 +102,4 @@ TEST_F(ThisMachine, The_hostname_is_the_kernels) {
 }
 
 }  // namespace
-}  // namespace coupler::node
+}  // namespace coupler::device

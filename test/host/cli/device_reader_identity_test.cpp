@@ -10,7 +10,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using State = Reading::State;
-using Verdict = driver::Identity::Verdict;
+using Verdict = host::Identity::Verdict;
 
 /// A node of this project that serves `its` map.
 struct OnNode : Looking {
@@ -67,7 +67,7 @@ TEST(DeviceReader, Of_a_node_whose_map_cannot_be_compared_nothing_is_read) {
 TEST(DeviceReader, The_map_is_compared_again_at_every_connect) {
   OnNode node(MapBuilder().coil("a", 0), MapBuilder().coil("a", 0));
   EXPECT_EQ(node.reader.look().failed(), 0U);
-  node.device.next_errors = {driver::TransportFailure{"gone"}};
+  node.device.next_errors = {host::TransportFailure{"gone"}};
   EXPECT_FALSE(node.reader.look().online());
   const MapPtr other = MapBuilder().coil("a", 7).build();
   node.device.serve(other->map());
@@ -79,7 +79,7 @@ TEST(DeviceReader, The_map_is_compared_again_at_every_connect) {
 
 TEST(DeviceReader, A_coupler_that_ignores_the_question_for_its_identity_is_read_over_a_new_connection) {
   Looking looking(MapBuilder().coil("a", 0));
-  looking.device.next_errors = {driver::Timeout{std::chrono::milliseconds(9)}};
+  looking.device.next_errors = {host::Timeout{std::chrono::milliseconds(9)}};
   const Snapshot now = looking.reader.look();
   EXPECT_EQ(now.failed(), 0U);
   EXPECT_EQ(now.identity, std::nullopt);
@@ -93,7 +93,7 @@ TEST(DeviceReader, A_node_that_falls_silent_while_it_gives_its_map_is_no_foreign
     // The answer to the first question comes; the next request is that for the map.
     node.device.refuses = [&node](const std::string& request) -> std::optional<modbus::Exception> {
       if (request.rfind("read file", 0) == 0)
-        node.device.next_errors = {driver::Timeout{std::chrono::milliseconds(9)}};
+        node.device.next_errors = {host::Timeout{std::chrono::milliseconds(9)}};
       return std::nullopt;
     };
   };

@@ -41,7 +41,7 @@ TEST(DeviceReader, It_writes_nothing_whatever_the_map_wants_at_a_connect) {
   watchdog.arm = watchdog.feed = watchdog.reset = {&write, 1};
   Looking looking(builder);
   looking.reader.look();
-  looking.device.next_errors = {driver::TransportFailure{"gone"}};
+  looking.device.next_errors = {host::TransportFailure{"gone"}};
   looking.reader.look();
   looking.reader.look();
   EXPECT_THAT(looking.requests(), Each(Not(StartsWith("write"))));
@@ -185,14 +185,14 @@ TEST(DeviceReader, The_pauses_of_the_map_are_kept) {
   builder.head().limits.connect_delay = std::chrono::milliseconds(700);
   builder.head().limits.request_gap = std::chrono::milliseconds(40);
   Looking looking(builder);
-  const driver::Time start = looking.clock.now();
+  const host::Time start = looking.clock.now();
   looking.reader.look();  // the identity, two reads
   EXPECT_EQ(looking.clock.now() - start, std::chrono::milliseconds(700 + 2 * 40));
 }
 
 TEST(DeviceReader, A_device_that_is_not_there_has_no_values) {
   Looking looking(MapBuilder().coil("a", 0));
-  looking.device.refuse_connect = driver::NotConnected{"refused"};
+  looking.device.refuse_connect = host::NotConnected{"refused"};
   const Snapshot now = looking.reader.look();
   EXPECT_EQ(now.trouble, "refused");
   EXPECT_EQ(now.readings.at(0).state, State::failed);
@@ -204,14 +204,14 @@ TEST(DeviceReader, A_device_that_falls_silent_keeps_the_values_of_this_look_only
   looking.reader.look();
   looking.device.during_read = [&looking] {
     if (looking.device.requests.back() == "read holding_registers 0+1")
-      looking.device.next_errors = {driver::Timeout{std::chrono::milliseconds(9)}};
+      looking.device.next_errors = {host::Timeout{std::chrono::milliseconds(9)}};
   };
   Snapshot now = looking.reader.look();
   EXPECT_EQ(now.trouble, "no reply within 9 ms");
   EXPECT_EQ(looking.of(now, "a").state, State::good);
   EXPECT_EQ(looking.of(now, "b").why, "no reply within 9 ms");
   EXPECT_FALSE(looking.device.connected);
-  looking.device.refuse_connect = driver::NotConnected{"refused"};
+  looking.device.refuse_connect = host::NotConnected{"refused"};
   now = looking.reader.look();
   EXPECT_EQ(looking.of(now, "a").state, State::failed);
   EXPECT_TRUE(looking.of(now, "a").registers.empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/cli/dump_json.hpp"
+#include "coupler/host/cli/dump_json.hpp"
 
 #include <gtest/gtest.h>
 

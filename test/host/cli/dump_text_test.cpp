@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "host/cli/dump_text.hpp"
+#include "coupler/host/cli/dump_text.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::cli {

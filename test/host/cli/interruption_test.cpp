@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/cli/interruption.hpp"
+#include "coupler/host/cli/interruption.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

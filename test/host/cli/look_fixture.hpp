@@ -7,16 +7,16 @@
 #include <utility>
 #include <vector>
 
-#include "host/cli/device_reader.hpp"
+#include "coupler/host/cli/device_reader.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_clock.hpp"
 #include "test/host/core/fake_device.hpp"
 
 namespace coupler::cli::test {
 
-using driver::test::FakeClock;
-using driver::test::FakeDevice;
 using fakes::MapBuilder;
+using host::test::FakeClock;
+using host::test::FakeDevice;
 
 /// A device without a network and what looks at it.
 struct Looking {

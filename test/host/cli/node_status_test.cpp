@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/cli/node_status.hpp"
+#include "coupler/host/cli/node_status.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,9 +9,9 @@
 namespace coupler::cli {
 namespace {
 
-using driver::ExceptionReply;
-using driver::Timeout;
-using driver::test::FakeDevice;
+using host::ExceptionReply;
+using host::Timeout;
+using host::test::FakeDevice;
 using modbus::Exception;
 using survey::IdentificationPage;
 using testing::ElementsAre;
@@ -38,7 +38,7 @@ struct NodeStatusTest : testing::Test {
   void refuse_identity() { device.missing.insert({Table::input_registers, identity::reserved.start()}); }
 
   FakeDevice device;
-  driver::Result<IdentificationPage> identification = IdentificationPage{{{1, "cell"}}, {}};
+  host::Result<IdentificationPage> identification = IdentificationPage{{{1, "cell"}}, {}};
 };
 
 TEST_F(NodeStatusTest, A_node_tells_all_of_it) {
@@ -72,8 +72,8 @@ TEST_F(NodeStatusTest, A_foreign_coupler_tells_its_identification) {
 
 TEST_F(NodeStatusTest, A_foreign_coupler_may_refuse_that_or_ignore_it) {
   refuse_identity();
-  const std::vector<driver::Error> errors{ExceptionReply{Exception::illegal_function}, silence};
-  for (const driver::Error& error : errors) {
+  const std::vector<host::Error> errors{ExceptionReply{Exception::illegal_function}, silence};
+  for (const host::Error& error : errors) {
     identification = tl::make_unexpected(error);
     const NodeStatus status = look();
     EXPECT_EQ(status.trouble, "");
@@ -94,9 +94,9 @@ TEST_F(NodeStatusTest,
 
 TEST_F(NodeStatusTest, Who_answers_nothing_is_no_foreign_coupler) {
   device.next_errors = {silence};
-  identification = tl::make_unexpected(driver::Error(silence));
+  identification = tl::make_unexpected(host::Error(silence));
   EXPECT_EQ(look().trouble, "no reply within 9 ms");
-  device.refuse_connect = driver::NotConnected{"refused"};
+  device.refuse_connect = host::NotConnected{"refused"};
   EXPECT_EQ(look().trouble, "refused");
 }
 
@@ -105,13 +105,13 @@ TEST_F(NodeStatusTest, A_unit_that_its_gateway_cannot_reach_is_no_foreign_couple
   device.next_errors = {away};
   EXPECT_EQ(look().trouble, "exception 0B (gateway target failed to respond)");
   refuse_identity();
-  identification = tl::make_unexpected(driver::Error(away));
+  identification = tl::make_unexpected(host::Error(away));
   EXPECT_EQ(look().trouble, "exception 0B (gateway target failed to respond)");
 }
 
 TEST_F(NodeStatusTest, A_node_that_falls_silent_has_what_it_told_until_then) {
   serve();
-  identification = tl::make_unexpected(driver::Error(silence));
+  identification = tl::make_unexpected(host::Error(silence));
   const NodeStatus status = look();
   EXPECT_EQ(status.trouble, "no reply within 9 ms");
   EXPECT_EQ(hostname_of(status.machine), "cell-7");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/cli/screen.hpp"
+#include "coupler/host/cli/screen.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/cli/status_report.hpp"
+#include "coupler/host/cli/status_report.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -34,7 +34,7 @@ struct PumpClient : ::testing::Test {
     return condition();
   }
 
-  driver::test::ModbusServer server;
+  host::test::ModbusServer server;
   maps::pump::Client pump{options()};
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/backoff.hpp"
+#include "coupler/host/core/backoff.hpp"
 
 #include <gtest/gtest.h>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using std::chrono::milliseconds;
@@ -23,4 +23,4 @@ TEST(Backoff, After_a_success_it_begins_anew) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/coupler_watchdog.hpp"
+#include "coupler/host/core/coupler_watchdog.hpp"
 
 #include <gmock/gmock.h>
 
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/device_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using modbus::Exception;
@@ -312,4 +312,4 @@ TEST_F(CouplerWatchdogTest, A_map_without_one_makes_no_request_for_it) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

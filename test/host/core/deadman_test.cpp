@@ -4,7 +4,7 @@
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/device_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using codec::Type;
@@ -87,4 +87,4 @@ TEST_F(DeadmanTest, A_deadman_value_that_was_lost_is_written_again) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

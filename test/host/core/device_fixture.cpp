@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "common/map/identity.hpp"
+#include "coupler/map/identity.hpp"
 
-namespace coupler::driver::test {
+namespace coupler::host::test {
 
 TimedDevice::~TimedDevice() = default;
 
@@ -47,4 +47,4 @@ void DeviceTest::push(std::string_view point, std::uint16_t value, WriteListener
   engine->push(write);
 }
 
-}  // namespace coupler::driver::test
+}  // namespace coupler::host::test

@@ -6,13 +6,13 @@
 #include <optional>
 #include <string_view>
 
-#include "host/core/device.hpp"
+#include "coupler/host/core/device.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_clock.hpp"
 #include "test/host/core/fake_device.hpp"
 #include "test/host/core/recording_sink.hpp"
 
-namespace coupler::driver::test {
+namespace coupler::host::test {
 
 /// A device that takes its time.
 class TimedDevice : public FakeDevice {
@@ -49,4 +49,4 @@ struct DeviceTest : testing::Test {
   std::optional<Device> engine;
 };
 
-}  // namespace coupler::driver::test
+}  // namespace coupler::host::test

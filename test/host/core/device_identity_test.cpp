@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "common/map/fingerprint.hpp"
+#include "coupler/map/fingerprint.hpp"
 #include "test/host/core/device_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using std::chrono::milliseconds;
@@ -149,4 +149,4 @@ TEST_F(DeviceIdentityTest, With_off_nobody_asks) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/device.hpp"
+#include "coupler/host/core/device.hpp"
 
 #include <gmock/gmock.h>
 
 #include "test/host/core/device_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using std::chrono::milliseconds;
@@ -193,4 +193,4 @@ TEST_F(DeviceTest, Pauses_that_the_device_needs_are_kept) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/device_thread.hpp"
+#include "coupler/host/core/device_thread.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <future>
 
-#include "host/core/write_ticket.hpp"
+#include "coupler/host/core/write_ticket.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_device.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using fakes::MapBuilder;
@@ -110,4 +110,4 @@ TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

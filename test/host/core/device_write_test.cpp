@@ -5,7 +5,7 @@
 
 #include "test/host/core/device_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using std::chrono::milliseconds;
@@ -134,4 +134,4 @@ TEST_F(DeviceWriteTest, A_map_of_outputs_that_cannot_be_read_is_online_by_its_wr
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

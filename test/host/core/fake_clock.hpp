@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "host/core/clock.hpp"
+#include "coupler/host/core/clock.hpp"
 
-namespace coupler::driver::test {
+namespace coupler::host::test {
 
 /// Time passes only when somebody says so, or sleeps.
 class FakeClock : public Clock {
@@ -18,4 +18,4 @@ class FakeClock : public Clock {
   Time now_ = Time{} + std::chrono::hours(1);
 };
 
-}  // namespace coupler::driver::test
+}  // namespace coupler::host::test

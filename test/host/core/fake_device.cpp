@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "common/map/identity.hpp"
-#include "common/modbus/request.hpp"
+#include "coupler/map/identity.hpp"
+#include "coupler/modbus/request.hpp"
 
-namespace coupler::driver::test {
+namespace coupler::host::test {
 namespace {
 
 /// "write coil 5", "write registers 7+4", "write mask 3"
@@ -165,4 +165,4 @@ Result<> FakeDevice::put(Table table, modbus::Range range,
   return {};
 }
 
-}  // namespace coupler::driver::test
+}  // namespace coupler::host::test

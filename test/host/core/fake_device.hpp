@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/map/map.hpp"
-#include "host/core/transport.hpp"
+#include "coupler/host/core/transport.hpp"
+#include "coupler/map/map.hpp"
 
-namespace coupler::driver::test {
+namespace coupler::host::test {
 
 /// A Modbus device without a network: four tables, a list of what was asked, and the failures a test plans.
 class FakeDevice : public Transport {
@@ -77,4 +77,4 @@ class FakeDevice : public Transport {
   bool idle_ = false;  ///< somebody is in wait_until()
 };
 
-}  // namespace coupler::driver::test
+}  // namespace coupler::host::test

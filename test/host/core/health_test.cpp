@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/health.hpp"
+#include "coupler/host/core/health.hpp"
 #include "test/fakes/map_builder.hpp"
 
 #include <gmock/gmock.h>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using testing::HasSubstr;
@@ -73,4 +73,4 @@ TEST_F(HealthTest, Writes_that_did_not_arrive_are_a_warning_while_they_happen) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/histogram.hpp"
+#include "coupler/host/core/histogram.hpp"
 
 #include <gtest/gtest.h>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using std::chrono::microseconds;
@@ -38,4 +38,4 @@ TEST(Histogram, What_is_too_long_for_it_is_still_counted) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/identity_check.hpp"
+#include "coupler/host/core/identity_check.hpp"
 
 #include <gmock/gmock.h>
 
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_device.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using fakes::MapBuilder;
@@ -147,4 +147,4 @@ TEST_F(IdentityCheck, A_timeout_is_no_verdict) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

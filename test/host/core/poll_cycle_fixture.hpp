@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "host/core/poll_cycle.hpp"
+#include "coupler/host/core/poll_cycle.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::driver::test {
+namespace coupler::host::test {
 
 /// A cycle, and a device in which some addresses are missing and every request takes its time.
 struct PollCycleTest : testing::Test {
@@ -74,4 +74,4 @@ inline fakes::MapBuilder registers(std::initializer_list<unsigned> addresses) {
   return builder;
 }
 
-}  // namespace coupler::driver::test
+}  // namespace coupler::host::test

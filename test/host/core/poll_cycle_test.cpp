@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/poll_cycle.hpp"
+#include "coupler/host/core/poll_cycle.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 
 #include "test/host/core/poll_cycle_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using fakes::MapBuilder;
@@ -151,4 +151,4 @@ TEST_F(PollCycleTest, What_was_learned_is_kept_when_wishes_change) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/publish_policy.hpp"
+#include "coupler/host/core/publish_policy.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "common/codec/number.hpp"
+#include "coupler/codec/number.hpp"
 #include "test/host/core/fake_clock.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using namespace std::chrono_literals;
@@ -119,4 +119,4 @@ TEST_F(PublishPolicyTest, Renewed_the_same_value_is_news_once) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

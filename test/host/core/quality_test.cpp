@@ -4,7 +4,7 @@
 
 #include "test/host/core/device_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using std::chrono::milliseconds;
@@ -139,4 +139,4 @@ TEST_F(QualityTest, The_verdict_on_the_identity_is_told) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

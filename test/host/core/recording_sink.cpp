@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "test/host/core/recording_sink.hpp"
 
-namespace coupler::driver::test {
+namespace coupler::host::test {
 
 RecordingSink::RecordingSink(const Map& map) : map_(map) {}
 RecordingSink::~RecordingSink() = default;
@@ -24,4 +24,4 @@ int RecordingSink::reported(const std::string& text) const {
   return count;
 }
 
-}  // namespace coupler::driver::test
+}  // namespace coupler::host::test

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "common/map/map.hpp"
-#include "host/core/sink.hpp"
+#include "coupler/host/core/sink.hpp"
+#include "coupler/map/map.hpp"
 
-namespace coupler::driver::test {
+namespace coupler::host::test {
 
 /// Keeps what it is told.
 class RecordingSink : public Sink {
@@ -33,4 +33,4 @@ class RecordingSink : public Sink {
   Map map_;
 };
 
-}  // namespace coupler::driver::test
+}  // namespace coupler::host::test

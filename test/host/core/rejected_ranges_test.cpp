@@ -6,7 +6,7 @@
 
 #include "test/host/core/poll_cycle_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using fakes::MapBuilder;
@@ -154,4 +154,4 @@ TEST_F(RandomDeviceTest, Exactly_what_the_device_has_is_read_and_soon_nothing_is
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

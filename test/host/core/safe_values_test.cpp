@@ -5,7 +5,7 @@
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/device_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using codec::Type;
@@ -122,4 +122,4 @@ TEST_F(SafeValuesTest, A_reconnect_restores_them_and_not_what_was_before) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/schedule.hpp"
+#include "coupler/host/core/schedule.hpp"
 
 #include <gtest/gtest.h>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using std::chrono::milliseconds;
@@ -39,4 +39,4 @@ TEST_F(ScheduleTest, A_cycle_that_ends_on_the_next_deadline_has_missed_it) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

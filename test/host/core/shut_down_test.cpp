@@ -4,7 +4,7 @@
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/device_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using codec::Type;
@@ -95,4 +95,4 @@ TEST_F(ShutDownTest, Writes_that_still_wait_are_dropped_before_the_safe_values) 
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/value_text.hpp"
+#include "coupler/host/core/value_text.hpp"
 
 #include <gmock/gmock.h>
 
 #include <vector>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using testing::HasSubstr;
@@ -121,4 +121,4 @@ TEST(ValueText, What_is_shown_can_be_given_back) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/watchdog_writes.hpp"
+#include "coupler/host/core/watchdog_writes.hpp"
 
 #include <gmock/gmock.h>
 
 #include "test/host/core/fake_device.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using modbus::Exception;
@@ -76,4 +76,4 @@ TEST_F(WatchdogWrites, A_refusal_is_told_with_what_to_do) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

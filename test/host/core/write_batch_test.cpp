@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/write_batch.hpp"
+#include "coupler/host/core/write_batch.hpp"
 
 #include <gmock/gmock.h>
 
-#include "common/modbus/request.hpp"
+#include "coupler/modbus/request.hpp"
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using codec::Type;
@@ -105,4 +105,4 @@ TEST_F(WriteBatchTest, An_array_of_coils_is_one_request) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/write_queue.hpp"
+#include "coupler/host/core/write_queue.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 
 #include "test/fakes/map_builder.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using codec::Type;
@@ -190,4 +190,4 @@ TEST_F(WriteQueueTest, A_value_is_on_its_way_from_push_to_result) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

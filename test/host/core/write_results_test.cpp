@@ -6,7 +6,7 @@
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/device_fixture.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using codec::Type;
@@ -191,4 +191,4 @@ TEST_F(WriteResultsTest, A_value_that_is_none_of_its_point_is_refused) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/core/write_values.hpp"
+#include "coupler/host/core/write_values.hpp"
 
 #include <gmock/gmock.h>
 
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_device.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using codec::Half;
@@ -79,4 +79,4 @@ TEST_F(WriteValuesTest, Nothing_is_written_when_the_rest_of_the_register_cannot_
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

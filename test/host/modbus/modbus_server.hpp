@@ -15,9 +15,9 @@
 
 #include <arpa/inet.h>
 
-#include "host/modbus/event.hpp"
+#include "coupler/host/modbus/event.hpp"
 
-namespace coupler::driver::test {
+namespace coupler::host::test {
 
 /// A socket on a loopback port that the kernel gave it, which it keeps to itself.
 class LoopbackSocket {
@@ -106,4 +106,4 @@ class ModbusServer {
   LoopbackServer server_;  // last: its thread uses the others
 };
 
-}  // namespace coupler::driver::test
+}  // namespace coupler::host::test

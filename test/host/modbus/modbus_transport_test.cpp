@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/modbus_transport.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "test/host/modbus/modbus_server.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using modbus::Range;
@@ -286,4 +286,4 @@ TEST(ModbusTransport, A_device_without_files_answers_an_exception) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

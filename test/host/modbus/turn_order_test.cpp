@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/modbus/turn_order.hpp"
+#include "coupler/host/modbus/turn_order.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 struct TurnOrderTest : testing::Test {
@@ -123,4 +123,4 @@ TEST_F(TurnOrderTest, Who_claims_all_turns_has_each_until_the_claim_ends) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/modbus/unit_transport.hpp"
+#include "coupler/host/modbus/unit_transport.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,13 @@
 #include <map>
 #include <thread>
 
-#include "host/core/device_thread.hpp"
-#include "host/core/write_ticket.hpp"
-#include "host/modbus/make_transports.hpp"
+#include "coupler/host/core/device_thread.hpp"
+#include "coupler/host/core/write_ticket.hpp"
+#include "coupler/host/modbus/make_transports.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/modbus/modbus_server.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using modbus::Range;
@@ -323,4 +323,4 @@ TEST_F(UnitTransportTest, Every_write_has_one_result_while_all_units_write_and_t
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -4,13 +4,13 @@
 
 #include <thread>
 
-#include "host/core/device_thread.hpp"
-#include "host/core/write_ticket.hpp"
-#include "host/modbus/modbus_transport.hpp"
+#include "coupler/host/core/device_thread.hpp"
+#include "coupler/host/core/write_ticket.hpp"
+#include "coupler/host/modbus/modbus_transport.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/modbus/modbus_server.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using Outcome = WriteResult::Outcome;
@@ -116,4 +116,4 @@ TEST_F(WriteStorm, What_was_written_last_stands_in_the_device) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros/next_value.hpp"
+#include "coupler/host/ros/next_value.hpp"
 
 #include <gtest/gtest.h>
 
 #include <thread>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 constexpr std::uint32_t point = 3;
@@ -62,4 +62,4 @@ TEST(NextValue, A_value_that_was_asked_for_before_is_not_the_next_one) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

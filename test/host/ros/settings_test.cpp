@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros/settings.hpp"
+#include "coupler/host/ros/settings.hpp"
 
 #include <gtest/gtest.h>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 TEST(Settings, The_stronger_side_wins_where_it_says_something) {
@@ -45,4 +45,4 @@ TEST(Settings, What_is_not_set_stays_as_the_map_has_it) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros1/arguments.hpp"
+#include "coupler/host/ros1/arguments.hpp"
 
 #include <gmock/gmock.h>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using testing::HasSubstr;
@@ -108,4 +108,4 @@ TEST(Arguments, Help_ends_with_0_and_has_an_example) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

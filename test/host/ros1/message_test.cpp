@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros1/messages.hpp"
+#include "coupler/host/ros1/messages.hpp"
 
 #include <gmock/gmock.h>
 
 #include <type_traits>
 #include <vector>
 
-#include "common/pages/ros_message.hpp"
+#include "coupler/pages/ros_message.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using testing::ElementsAre;
@@ -136,4 +136,4 @@ TEST(Message, A_wrong_number_of_elements_is_refused_with_the_right_one) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

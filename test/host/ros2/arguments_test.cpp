@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros2/arguments.hpp"
+#include "coupler/host/ros2/arguments.hpp"
 
 #include <gmock/gmock.h>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using testing::ElementsAre;
@@ -61,4 +61,4 @@ TEST(Arguments, Help_has_ROS_2s_examples) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

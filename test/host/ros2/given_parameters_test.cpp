@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/ros2/given_parameters.hpp"
+#include "coupler/host/ros2/given_parameters.hpp"
 
 #include <gmock/gmock.h>
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 using testing::ElementsAre;
@@ -108,4 +108,4 @@ TEST(GivenParameters, A_section_for_a_driver_of_another_name_is_told_unless_this
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

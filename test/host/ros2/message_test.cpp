@@ -3,10 +3,10 @@
 
 #include <rosidl_runtime_cpp/traits.hpp>
 
-#include "common/pages/ros_message.hpp"
-#include "host/ros2/messages.hpp"
+#include "coupler/host/ros2/messages.hpp"
+#include "coupler/pages/ros_message.hpp"
 
-namespace coupler::driver {
+namespace coupler::host {
 namespace {
 
 Point point_of(codec::Type type, std::uint16_t count) {
@@ -50,4 +50,4 @@ TEST(Message, The_bits_of_several_words_follow_each_other) {
 }
 
 }  // namespace
-}  // namespace coupler::driver
+}  // namespace coupler::host

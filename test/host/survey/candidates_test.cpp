@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/survey/candidates.hpp"
+#include "coupler/host/survey/candidates.hpp"
 
 #include <gmock/gmock.h>
 
 #include <fmt/format.h>
 
-#include "common/codec/number.hpp"
-#include "host/survey/draft.hpp"
+#include "coupler/codec/number.hpp"
+#include "coupler/host/survey/draft.hpp"
 
 namespace coupler::survey {
 namespace {

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "host/survey/master.hpp"
-#include "host/survey/watcher.hpp"
+#include "coupler/host/survey/master.hpp"
+#include "coupler/host/survey/watcher.hpp"
 #include "test/host/core/fake_clock.hpp"
 
 namespace coupler::survey::test {
 
-using driver::test::FakeClock;
+using host::test::FakeClock;
 
 /// A device without a network, strict as most are: a read with one address that it has not is refused.
 class ForeignDevice : public Master {
@@ -27,7 +27,7 @@ class ForeignDevice : public Master {
   std::uint32_t most_bits = 2000;
   modbus::Exception too_many = modbus::Exception::illegal_data_value;
   std::set<std::uint32_t> seams;  ///< registers that no read may run into from below
-  std::function<std::optional<driver::Error>(std::size_t request)> fails;  ///< counted from 1
+  std::function<std::optional<host::Error>(std::size_t request)> fails;    ///< counted from 1
   std::map<std::uint8_t, std::vector<IdentificationPage>> identification;  ///< by access
   std::function<void()> before_request;
 
@@ -46,7 +46,7 @@ class ForeignDevice : public Master {
 
   Result<> connect() override {
     ++connects;
-    if (refuses_connections) return driver::fail(driver::NotConnected{"connection refused"});
+    if (refuses_connections) return host::fail(host::NotConnected{"connection refused"});
     connected_ = true;
     return {};
   }
@@ -69,7 +69,7 @@ class ForeignDevice : public Master {
     if (const auto error = next_failure()) return tl::make_unexpected(*error);
     const auto found = identification.find(static_cast<std::uint8_t>(wanted.access));
     if (found == identification.end())
-      return driver::fail(driver::ExceptionReply{modbus::Exception::illegal_function});
+      return host::fail(host::ExceptionReply{modbus::Exception::illegal_function});
     for (const IdentificationPage& page : found->second)
       if (!page.objects.empty() && page.objects.begin()->first >= wanted.object) return page;
     return found->second.back();
@@ -79,14 +79,14 @@ class ForeignDevice : public Master {
   Result<> refuse(modbus::Exception code) {
     ++refusals;
     if (closes_in_place_of_refusing)
-      return driver::fail(driver::TransportFailure{"the device closed the connection"});
-    return driver::fail(driver::ExceptionReply{code});
+      return host::fail(host::TransportFailure{"the device closed the connection"});
+    return host::fail(host::ExceptionReply{code});
   }
-  std::optional<driver::Error> next_failure() {
+  std::optional<host::Error> next_failure() {
     if (before_request) before_request();
     ++requests;
-    if (!connected_) return driver::NotConnected{"asked without a connection"};
-    if (units.count(unit_) == 0) return driver::Timeout{std::chrono::milliseconds(1000)};
+    if (!connected_) return host::NotConnected{"asked without a connection"};
+    if (units.count(unit_) == 0) return host::Timeout{std::chrono::milliseconds(1000)};
     return fails ? fails(requests) : std::nullopt;
   }
 

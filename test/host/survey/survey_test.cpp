@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/survey/survey.hpp"
+#include "coupler/host/survey/survey.hpp"
 
 #include <gmock/gmock.h>
 
-#include "common/codec/number.hpp"
-#include "common/map/loader/load.hpp"
-#include "host/survey/draft.hpp"
-#include "host/survey/identification.hpp"
+#include "coupler/codec/number.hpp"
+#include "coupler/host/survey/draft.hpp"
+#include "coupler/host/survey/identification.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "test/host/survey/foreign_device.hpp"
 
 namespace coupler::survey {
@@ -69,10 +69,10 @@ TEST_F(SurveyTest, Nobody_there_is_a_complete_survey) {
 }
 
 TEST_F(SurveyTest, An_exception_is_an_answer_unless_a_gateway_gives_it) {
-  device_.fails = [](std::size_t request) -> std::optional<driver::Error> {
-    if (request == 1) return driver::ExceptionReply{modbus::Exception::gateway_target_failed_to_respond};
-    if (request == 2) return driver::ExceptionReply{modbus::Exception::gateway_path_unavailable};
-    if (request == 3) return driver::ExceptionReply{modbus::Exception::illegal_function};
+  device_.fails = [](std::size_t request) -> std::optional<host::Error> {
+    if (request == 1) return host::ExceptionReply{modbus::Exception::gateway_target_failed_to_respond};
+    if (request == 2) return host::ExceptionReply{modbus::Exception::gateway_path_unavailable};
+    if (request == 3) return host::ExceptionReply{modbus::Exception::illegal_function};
     return std::nullopt;
   };
   device_.units = {1, 2, 3};
@@ -89,8 +89,8 @@ TEST_F(SurveyTest, A_unit_that_closes_in_place_of_refusing_is_found_by_another_t
 
 TEST_F(SurveyTest, The_only_unit_may_be_silent_about_three_tables) {
   device_.fill(Table::discrete_inputs, 0, 9);
-  device_.fails = [](std::size_t request) -> std::optional<driver::Error> {
-    if (request <= 3) return driver::Timeout{std::chrono::milliseconds(1000)};
+  device_.fails = [](std::size_t request) -> std::optional<host::Error> {
+    if (request <= 3) return host::Timeout{std::chrono::milliseconds(1000)};
     return std::nullopt;
   };
   EXPECT_THAT(look({1}).units, ElementsAre(1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/survey/table_survey.hpp"
+#include "coupler/host/survey/table_survey.hpp"
 
 #include <gmock/gmock.h>
 
@@ -147,8 +147,8 @@ TEST_F(TableSurveyTest, A_device_that_closes_in_place_of_refusing_is_soon_asked_
 
 TEST_F(TableSurveyTest, One_lost_answer_is_asked_for_again) {
   device_.fill(registers, 0, 249);
-  device_.fails = [](std::size_t request) -> std::optional<driver::Error> {
-    if (request == 2) return driver::TransportFailure{"the device closed the connection"};
+  device_.fails = [](std::size_t request) -> std::optional<host::Error> {
+    if (request == 2) return host::TransportFailure{"the device closed the connection"};
     return std::nullopt;
   };
   const auto findings = look(registers, Range::of(0, 250));
@@ -159,7 +159,7 @@ TEST_F(TableSurveyTest, One_lost_answer_is_asked_for_again) {
 }
 
 TEST_F(TableSurveyTest, A_device_that_stays_silent_does_not_cost_hours) {
-  device_.fails = [](std::size_t) { return driver::Timeout{std::chrono::milliseconds(1000)}; };
+  device_.fails = [](std::size_t) { return host::Timeout{std::chrono::milliseconds(1000)}; };
   const auto findings = look(registers);
   EXPECT_TRUE(findings.gave_up_at.has_value());
   EXPECT_LE(device_.requests, std::size_t{most_timeouts} + 10);
@@ -168,16 +168,16 @@ TEST_F(TableSurveyTest, A_device_that_stays_silent_does_not_cost_hours) {
 
 TEST_F(TableSurveyTest, A_device_that_is_gone_ends_the_survey) {
   device_.fill(registers, 0, 124);
-  device_.fails = [this](std::size_t request) -> std::optional<driver::Error> {
+  device_.fails = [this](std::size_t request) -> std::optional<host::Error> {
     if (request < 3) return std::nullopt;
     device_.refuses_connections = true;
-    return driver::TransportFailure{"the device closed the connection"};
+    return host::TransportFailure{"the device closed the connection"};
   };
   const auto findings = look(registers);
   EXPECT_FALSE(complete_);
   EXPECT_THAT(findings.readable(), ElementsAre(Range::of(0, 125)));
   ASSERT_TRUE(inquiry_.broke_off().has_value());
-  EXPECT_EQ(driver::to_string(*inquiry_.broke_off()), "connection refused");
+  EXPECT_EQ(host::to_string(*inquiry_.broke_off()), "connection refused");
   EXPECT_EQ(device_.requests, 3U);
 }
 
@@ -192,8 +192,8 @@ TEST_F(TableSurveyTest, Who_watches_can_end_it_and_keeps_what_was_found) {
 
 TEST_F(TableSurveyTest, A_busy_device_is_asked_again_later) {
   device_.fill(registers, 0, 9);
-  device_.fails = [](std::size_t request) -> std::optional<driver::Error> {
-    if (request <= 2) return driver::ExceptionReply{modbus::Exception::server_device_busy};
+  device_.fails = [](std::size_t request) -> std::optional<host::Error> {
+    if (request <= 2) return host::ExceptionReply{modbus::Exception::server_device_busy};
     return std::nullopt;
   };
   EXPECT_THAT(look(registers, Range::of(0, 10)).readable(), ElementsAre(Range::of(0, 10)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/address.hpp"
+#include "coupler/map/loader/address.hpp"
 
 #include <gtest/gtest.h>
 

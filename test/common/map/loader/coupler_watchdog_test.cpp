@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "common/map/loader/preset.hpp"
+#include "coupler/map/loader/preset.hpp"
 #include "test/common/map/loader/loaded.hpp"
 
 namespace coupler {

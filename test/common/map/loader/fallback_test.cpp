@@ -2,7 +2,7 @@
 // What the table of keys says of an absent key, and editors show, is what the loader does.
 #include <gtest/gtest.h>
 
-#include "common/map/loader/keys.hpp"
+#include "coupler/map/loader/keys.hpp"
 #include "test/common/map/loader/loaded.hpp"
 #include "test/generate/same_map.hpp"
 

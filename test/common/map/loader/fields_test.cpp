@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/fields.hpp"
+#include "coupler/map/fields.hpp"
 
 #include <string_view>
 #include <tuple>
@@ -9,8 +9,8 @@
 
 #include <gmock/gmock.h>
 
-#include "common/map/loader/keys.hpp"
-#include "common/map/written.hpp"
+#include "coupler/map/loader/keys.hpp"
+#include "coupler/map/written.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -47,7 +47,7 @@ constexpr bool lists_all = fields<Struct> == members<Struct>;
 static_assert(lists_all<Connection> && lists_all<Polling> && lists_all<Limits> && lists_all<Watchdog> &&
                   lists_all<SimWire> && lists_all<Line> && lists_all<EdgeOf> && lists_all<codec::Scale> &&
                   lists_all<Iio> && lists_all<Pwm>,
-              "A member without its key in common/map/fields.hpp");
+              "A member without its key in coupler/map/fields.hpp");
 static_assert(fields<HostOptions> + 1 == members<HostOptions>, "The one more is deadman");
 static_assert(fields<Service> + 2 == members<Service>, "The two more are allow and watchdog");
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/json_comments.hpp"
+#include "coupler/map/loader/json_comments.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/keys.hpp"
+#include "coupler/map/loader/keys.hpp"
 
 #include <gtest/gtest.h>
 

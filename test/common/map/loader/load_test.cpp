@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "common/map/crc32.hpp"
-#include "common/map/fingerprint.hpp"
+#include "coupler/map/crc32.hpp"
+#include "coupler/map/fingerprint.hpp"
 #include "test/common/map/loader/loaded.hpp"
 #include "test/support/paths.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "common/map/loader/load.hpp"
+#include "coupler/map/loader/load.hpp"
 
 namespace coupler::test {
 

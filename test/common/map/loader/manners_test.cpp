@@ -3,7 +3,7 @@
 // test/maps/bad.
 #include <gtest/gtest.h>
 
-#include "common/codec/scale.hpp"
+#include "coupler/codec/scale.hpp"
 #include "test/common/map/loader/loaded.hpp"
 
 namespace coupler {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/nearest.hpp"
+#include "coupler/map/loader/nearest.hpp"
 
 #include <gtest/gtest.h>
 

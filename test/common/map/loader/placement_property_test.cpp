@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "common/map/lock/lock.hpp"
+#include "coupler/map/lock/lock.hpp"
 #include "test/common/map/loader/loaded.hpp"
 
 namespace coupler {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/preset.hpp"
+#include "coupler/map/loader/preset.hpp"
 
 #include <gtest/gtest.h>
 

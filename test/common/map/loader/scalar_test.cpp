@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/scalar.hpp"
+#include "coupler/map/loader/scalar.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/loader/source_text.hpp"
+#include "coupler/map/loader/source_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/map/lock/lock.hpp"
+#include "coupler/map/lock/lock.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+# One library and one test program a module.
+#
+# A cold build reads the same headers hundreds of times, so they are translated once (precompiled headers), and the files
+# of a test program three at a time. Neither may hide a missing include: scripts/lint compiles each file by itself.
+# -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON and -DCOUPLER_TEST_UNITY=1 build each file by itself, too.
+include(GoogleTest)
+
+# Their macros must be those of the files that use them: one for libraries, one for test programs.
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/nothing.cpp CONTENT "int main() {}\n")
+add_library(coupler_headers STATIC ${PROJECT_BINARY_DIR}/nothing.cpp)
+target_link_libraries(coupler_headers PRIVATE coupler_flags tl::expected fmt::fmt)
+target_precompile_headers(coupler_headers PRIVATE
+  <algorithm> <array> <chrono> <cstdint> <functional> <map> <memory> <optional> <string> <string_view> <utility> <variant>
+  <vector> <fmt/format.h> <tl/expected.hpp>)
+if(BUILD_TESTING)
+  add_executable(coupler_test_headers ${PROJECT_BINARY_DIR}/nothing.cpp)
+  target_link_libraries(coupler_test_headers PRIVATE coupler_flags GTest::gmock)
+  target_precompile_headers(coupler_test_headers PRIVATE
+    <algorithm> <array> <chrono> <cstdint> <functional> <map> <memory> <optional> <string> <string_view> <thread>
+    <utility> <variant> <vector> <gmock/gmock.h>)
+endif()
+
+# coupler_install(…): install(…). `colcon build --symlink-install` puts one that knows no COMPONENT in its place.
+macro(coupler_install)
+  if(COMMAND _install)
+    _install(${ARGN})
+  else()
+    install(${ARGN})
+  endif()
+endmacro()
+
+# coupler_module(NAME SOURCES a.cpp … LINKS lib … [HEADERS <h> …]): the library of one module. LINKS are public. HEADERS are
+# precompiled for it alone, in place of those that most modules share: where they cost more, or where fmt is not linked.
+# COUPLER_INCLUDE is the folder in which #include finds its headers. Who links it gets no flags of ours but C++17.
+function(coupler_module name)
+  cmake_parse_arguments(module "" "" "SOURCES;LINKS;HEADERS" ${ARGN})
+  add_library(${name} STATIC ${module_SOURCES})
+  target_compile_features(${name} PUBLIC cxx_std_17)
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${COUPLER_INCLUDE}>)
+  target_link_libraries(${name} PUBLIC ${module_LINKS} PRIVATE $<BUILD_INTERFACE:coupler_flags>)
+  if(module_HEADERS)
+    target_precompile_headers(${name} PRIVATE ${module_HEADERS})
+  else()
+    target_precompile_headers(${name} REUSE_FROM coupler_headers)
+  endif()
+endfunction()
+
+# Several files as one. CMake's own UNITY_BUILD writes absolute paths, with which no two clones could share the
+# compiler's cache.
+set(COUPLER_TEST_UNITY 3 CACHE STRING "How many files of a test program are compiled as one")
+function(coupler_unite out)
+  set(files ${ARGN})
+  set(united)
+  set(i 0)
+  while(files)
+    list(SUBLIST files 0 ${COUPLER_TEST_UNITY} batch)
+    list(REMOVE_ITEM files ${batch})
+    set(text)
+    foreach(file IN LISTS batch)
+      get_filename_component(file ${file} ABSOLUTE)
+      file(RELATIVE_PATH file ${PROJECT_SOURCE_DIR} ${file})
+      string(APPEND text "#include \"${file}\"\n")
+    endforeach()
+    set(unity ${CMAKE_CURRENT_BINARY_DIR}/Unity/${out}_${i}.cpp)
+    file(GENERATE OUTPUT ${unity} CONTENT "${text}")
+    list(APPEND united ${unity})
+    math(EXPR i "${i} + 1")
+  endwhile()
+  set(${out} ${united} PARENT_SCOPE)
+endfunction()
+
+# coupler_test(NAME SOURCES … LINKS …): a test program; each of its tests is a CTest test. The time limit only tells one
+# that hangs from one that works on a slow machine under ThreadSanitizer.
+function(coupler_test name)
+  cmake_parse_arguments(test "" "" "SOURCES;LINKS" ${ARGN})
+  if(COUPLER_TEST_UNITY GREATER 1)
+    coupler_unite(${name} ${test_SOURCES})
+    set(test_SOURCES ${${name}})
+  endif()
+  add_executable(${name} ${test_SOURCES})
+  target_link_libraries(${name} PRIVATE coupler_flags ${test_LINKS} coupler_test_paths GTest::gmock GTest::gtest_main)
+  target_precompile_headers(${name} REUSE_FROM coupler_test_headers)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/test/bin)
+  gtest_discover_tests(${name} TEST_PREFIX "${name}: " DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
+endfunction()

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/changes/changes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/changes/details.hpp"
+#include "coupler/map/diff.hpp"
+#include "coupler/map/fields.hpp"
+#include "coupler/map/written.hpp"
+
+namespace coupler::changes {
+namespace {
+
+/// The fields of canonical_line() but the name, by which points are matched.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 11> rules{{
+    {"table", "table-changed"},
+    {"address", "address-moved"},
+    {"part", "part-moved"},
+    {"type", "type-changed"},
+    {"order", "order-changed"},
+    {"count", "count-changed"},
+    {"length", "length-changed"},
+    {"encoding", "encoding-changed"},
+    {"ignore_byteorder", "ignore-byteorder-changed"},
+    {"scale", "scale-changed"},
+    {"access", "access-changed"},
+}};
+
+std::string rule_of(std::string_view field) {
+  const auto* const found =
+      std::find_if(rules.begin(), rules.end(), [field](const auto& rule) { return rule.first == field; });
+  return std::string(found->second);
+}
+
+void add_contract(const Difference& difference, std::vector<Change>& changes) {
+  const Severity severity = is_breaking(difference.kind) ? Severity::breaking : Severity::compatible;
+  switch (difference.kind) {
+    case Difference::Kind::missing:
+      changes.push_back({"point-removed", severity, difference.point, difference.what, {}});
+      return;
+    case Difference::Kind::added:
+      changes.push_back({"point-added", severity, difference.point, {}, difference.what});
+      return;
+    case Difference::Kind::changed:
+      for (const auto& [field, older, newer] : difference.fields)
+        changes.push_back({rule_of(field), severity, difference.point, older, newer});
+      return;
+  }
+}
+
+/// Zero of something is nothing, for example a rate of its own.
+template <class Key, class Value>
+std::string text_of(const Key& field, const Value& value) {
+  if (field.unit.empty()) return written(value);
+  return value == Value{} ? std::string() : fmt::format("{} {}", written(value), field.unit);
+}
+template <class Key, class Rep, class Period>
+std::string text_of(const Key& /*field*/, std::chrono::duration<Rep, Period> value) {
+  return value.count() == 0 ? "none" : written(value);
+}
+
+/// "queue-size-changed" names `queue_size`.
+bool names(std::string_view rule, std::string_view key) {
+  std::string own(key);
+  std::replace(own.begin(), own.end(), '_', '-');
+  return rule.find(own) != std::string_view::npos;
+}
+
+/// Several keys may be told as one change.
+template <class Struct>
+void add_fields(const Struct& older, const Struct& newer, std::string_view point,
+                std::vector<Change>& changes) {
+  const std::size_t first = changes.size();
+  for_each_field(older, newer, [&](const auto& field, const auto& before, const auto& now) {
+    if (before == now) return;
+    const std::string name = names(field.change, field.key) ? std::string() : fmt::format("{} ", field.key);
+    std::string from = name + text_of(field, before);
+    std::string to = name + text_of(field, now);
+    if (changes.size() > first && changes.back().rule == field.change) {
+      changes.back().older += ", " + from;
+      changes.back().newer += ", " + to;
+    } else {
+      changes.push_back({std::string(field.change), Severity::compatible, std::string(point), std::move(from),
+                         std::move(to)});
+    }
+  });
+}
+
+void add_all_fields(const Map& older, const Map& newer, std::vector<Change>& changes) {
+  add_fields(older.connection, newer.connection, {}, changes);
+  add_fields(older.polling, newer.polling, {}, changes);
+  add_fields(older.limits, newer.limits, {}, changes);
+  add_fields(older, newer, {}, changes);
+  add_fields(older.service, newer.service, {}, changes);
+  add_fields(older.service.watchdog, newer.service.watchdog, {}, changes);
+}
+
+template <class Described>
+void add_details(const Described& older, const Described& newer, std::string_view point,
+                 std::vector<Change>& changes) {
+  auto a = details_of(older);
+  auto b = details_of(newer);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (a[i].value != b[i].value)
+      changes.push_back({std::string(a[i].rule), a[i].severity, std::string(point), std::move(a[i].value),
+                         std::move(b[i].value)});
+}
+
+template <class Key, class Element, class KeyOf>
+std::unordered_map<Key, const Element*> indexed(Span<const Element> elements, KeyOf key_of) {
+  std::unordered_map<Key, const Element*> index;
+  for (const Element& element : elements) index.emplace(key_of(element), &element);
+  return index;
+}
+
+}  // namespace
+
+std::vector<Change> compare(const Map& older, const Map& newer) {
+  std::vector<Change> changes;
+  add_details(older, newer, {}, changes);
+  add_all_fields(older, newer, changes);
+  const std::vector<Difference> contract = diff(older, newer);
+  const auto differences = indexed<std::string_view>(
+      Span<const Difference>(contract), [](const Difference& d) -> std::string_view { return d.point; });
+  const auto points = indexed<std::string_view>(newer.points, [](const Point& point) { return point.name; });
+  for (const Point& point : older.points) {
+    if (const auto found = differences.find(point.name); found != differences.end())
+      add_contract(*found->second, changes);
+    if (const auto found = points.find(point.name); found != points.end()) {
+      add_details(point, *found->second, point.name, changes);
+      add_fields(point.host, found->second->host, point.name, changes);
+    }
+  }
+  for (const Difference& difference : contract)
+    if (difference.kind == Difference::Kind::added) add_contract(difference, changes);
+  return changes;
+}
+
+std::optional<Severity> worst(const std::vector<Change>& changes) {
+  if (changes.empty()) return std::nullopt;
+  return std::min_element(changes.begin(), changes.end(),
+                          [](const Change& a, const Change& b) { return a.severity < b.severity; })
+      ->severity;
+}
+
+}  // namespace coupler::changes

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coupler/cli/commands.hpp"
+#include "coupler/cli/locked_map.hpp"
+#include "coupler/cli/map_argument.hpp"
+#include "coupler/cli/report.hpp"
+
+namespace coupler::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> maps;
+  bool json = false;
+  bool locked = false;
+};
+
+Exit check(const Arguments& arguments) {
+  Exit exit = ok;
+  for (const std::string& file : arguments.maps) {
+    const MapArgument argument = get_map(file, arguments.locked ? LockUse::exact : LockUse::renew);
+    const LoadResult& loaded = argument.loaded;
+    exit = std::max(exit, argument.exit);
+    if (arguments.json) {
+      std::puts(json_report(file, loaded).c_str());
+    } else {
+      print(loaded.diagnostics);
+      std::fputs(lock_report(loaded.lock).c_str(), stdout);
+      if (loaded.map) std::puts(summary(file, loaded.map->map()).c_str());
+    }
+  }
+  return exit;
+}
+
+}  // namespace
+
+void add_check(Program& program, Exit& exit) {
+  auto command =
+      program.add_command("check", "Say what is wrong with a map, where, and what to do about it.");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      .add_option("MAP", arguments->maps,
+                  "YAML or JSON files; - is standard input; tcp://HOST[:PORT][/UNIT] is a node")
+      .required()
+      .type_name("");
+  command.add_flag("--json", arguments->json,
+                   "One JSON object per map on standard output, for editors and scripts");
+  command.add_flag("--locked", arguments->locked,
+                   "Write nothing; a lock that is missing or not up to date is an error. For CI");
+  command.footer(
+      "Example:\n  coupler check device.yaml\nPoints without an address get one, which is kept in "
+      "device.yaml.lock beside the map.\nExits with 0 if every map is good, with 1 if one is not.");
+  command.callback([arguments, &exit] { exit = check(*arguments); });
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "coupler/cli/commands.hpp"
+#include "coupler/cli/complain.hpp"
+#include "coupler/cli/map_argument.hpp"
+#include "coupler/cli/report.hpp"
+#include "coupler/formats/exporters.hpp"
+#include "coupler/generate/output.hpp"
+
+namespace coupler::cli {
+namespace {
+
+struct Arguments {
+  std::string map;
+  std::string to;
+  std::string out;
+  bool list = false;
+};
+
+std::string names_of_formats() {
+  std::string names;
+  for (const formats::Exporter& exporter : formats::exporters())
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", exporter.name);
+  return names;
+}
+
+Exit run(const Arguments& arguments) {
+  if (arguments.list) {
+    for (const formats::Exporter& exporter : formats::exporters())
+      fmt::print("{:<15}  {}\n", exporter.name, exporter.summary);
+    return ok;
+  }
+  if (arguments.map.empty() || arguments.to.empty())
+    return complain("export", bad_call, "MAP and --to FORMAT are required", "see `coupler export --help`");
+  const formats::Exporter* exporter = formats::find_exporter(arguments.to);
+  if (exporter == nullptr)
+    return complain("export", bad_call, fmt::format("'{}' is not a format that can be written", arguments.to),
+                    "give one of " + names_of_formats());
+  const MapArgument argument = get_map(arguments.map);
+  print(argument.loaded.diagnostics);
+  if (!argument.loaded.map) return argument.exit;
+  const formats::Export exported = exporter->write(argument.map());
+  print(exported.losses.diagnostics(arguments.map));
+  if (arguments.out.empty()) {
+    std::fputs(exported.text.c_str(), stdout);
+    return ok;
+  }
+  if (const auto outcome = generate::write_if_changed(arguments.out, exported.text); !outcome)
+    return complain("export", bad_call, outcome.error(), "give a file that you may write with --out");
+  return ok;
+}
+
+}  // namespace
+
+void add_export(Program& program, Exit& exit) {
+  auto command = program.add_command("export", "Write a map as a file of another program.");
+  const auto arguments = std::make_shared<Arguments>();
+  command.add_option("MAP", arguments->map, map_help).type_name("");
+  command.add_option("--to", arguments->to, "What to write: see --list").type_name("FORMAT");
+  command.add_option("--out", arguments->out, "Where to write it; default: standard output")
+      .type_name("FILE");
+  command.add_flag("--list", arguments->list, "Print the formats");
+  command.footer(
+      "Example:\n  coupler export device.yaml --to csv --out device.csv\n"
+      "What the format cannot say is on standard error.");
+  command.callback([arguments, &exit] { exit = run(*arguments); });
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/formats/import.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <tl/expected.hpp>
+
+#include "coupler/cli/commands.hpp"
+#include "coupler/cli/complain.hpp"
+#include "coupler/cli/report.hpp"
+#include "coupler/generate/output.hpp"
+#include "coupler/map/loader/source_text.hpp"
+
+namespace coupler::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string format;
+  std::string file;
+  std::string out;
+  formats::ImportOptions options;
+  unsigned unit = 0;
+  bool list = false;
+};
+
+std::string names_of_formats() {
+  std::string names;
+  for (const formats::Importer& importer : formats::importers())
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", importer.name);
+  return names;
+}
+
+/// No more than what is told to be too much for a map.
+tl::expected<std::string, std::string> read(std::istream& in) {
+  std::string text(loader::max_text_size + 1, '\0');
+  try {
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  } catch (const std::exception&) {  // a folder: libstdc++'s buffer throws on a failed read
+    return tl::unexpected<std::string>(std::strerror(EISDIR));
+  }
+  if (in.bad()) return tl::unexpected<std::string>(std::strerror(errno != 0 ? errno : EIO));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+tl::expected<std::string, std::string> read_file(const std::string& path) {
+  if (path == "-") return read(std::cin);
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return tl::unexpected<std::string>(std::strerror(errno));
+  return read(in);
+}
+
+/// "plant.yaml" for unit 3 of several: "plant_3.yaml".
+fs::path path_of(const std::string& out, const formats::ImportedMap& map, bool several) {
+  fs::path path(out);
+  if (several && map.unit)
+    path.replace_filename(fmt::format("{}_{}{}", path.stem().string(), *map.unit, path.extension().string()));
+  return path;
+}
+
+Exit write(const Arguments& arguments, const formats::ImportResult& result) {
+  const bool several = result.maps.size() > 1;
+  if (several && arguments.out.empty()) {
+    std::string units;
+    for (const formats::ImportedMap& map : result.maps)
+      units += fmt::format("{}{}", units.empty() ? "" : ", ", map.unit.value_or(0));
+    return complain("import", bad_call, fmt::format("{} has several units: {}", arguments.file, units),
+                    "choose one with --unit, or write a map for each with --out");
+  }
+  for (const formats::ImportedMap& imported : result.maps) {
+    if (arguments.out.empty()) {
+      std::fputs(imported.text.c_str(), stdout);
+      continue;
+    }
+    const fs::path path = path_of(arguments.out, imported, several);
+    if (const auto outcome = generate::write_if_changed(path, imported.text); !outcome)
+      return complain("import", bad_call, outcome.error(), "give a file that you may write with --out");
+    std::puts(summary(path.string(), imported.map->map()).c_str());
+  }
+  return ok;
+}
+
+Exit run(const Arguments& arguments) {
+  if (arguments.list) {
+    for (const formats::Importer& importer : formats::importers())
+      fmt::print("{:<10}  {}\n", importer.name, importer.summary);
+    return ok;
+  }
+  if (arguments.file.empty())
+    return complain("import", bad_call, "FORMAT and FILE are required", "see `coupler import --help`");
+  const formats::Importer* importer = formats::find_importer(arguments.format);
+  if (importer == nullptr)
+    return complain("import", bad_call,
+                    fmt::format("'{}' is not a format that can be read", arguments.format),
+                    "give one of " + names_of_formats());
+  const std::string file = arguments.file == "-" ? "<stdin>" : arguments.file;
+  const auto text = read_file(arguments.file);
+  if (!text) {
+    fmt::print(stderr, "{}: error: the file cannot be read: {}; give the path of a file\n", file,
+               text.error());
+    return bad_input;
+  }
+  const formats::ImportResult result = formats::import_text(*importer, *text, file, arguments.options);
+  print(result.diagnostics);
+  return result.maps.empty() ? bad_input : write(arguments, result);
+}
+
+}  // namespace
+
+void add_import(Program& program, Exit& exit) {
+  auto command = program.add_command("import", "Make a map from another program's file.");
+  const auto arguments = std::make_shared<Arguments>();
+  command.add_option("FORMAT", arguments->format, "What the file is: see --list").type_name("");
+  command.add_option("FILE", arguments->file, "The file; - is standard input").type_name("");
+  command
+      .add_option(
+          "--out", arguments->out,
+          "Where to write the map; default: standard output. Of several units each gets a file: MAP_1.yaml …")
+      .type_name("MAP");
+  command.add_option("--name", arguments->options.name, "Name of the map; default: the file's")
+      .type_name("NAME");
+  auto unit = command.add_option("--unit", arguments->unit, "Only this unit of the file")
+                  .in_range(0, 255)
+                  .type_name("N");
+  command.add_flag("--list", arguments->list, "Print the formats");
+  command.footer(
+      "Example:\n  coupler import csv points.csv --name press --out press.yaml\n"
+      "What was mended, and what could not be carried over, is on standard error, with its place in the "
+      "file.");
+  command.callback([arguments, unit, &exit] {
+    if (unit.given()) arguments->options.unit = arguments->unit;
+    exit = run(*arguments);
+  });
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// coupler: what a person or a build does with maps at the command line.
+#include <string>
+
+#include "coupler/base/standard_files.hpp"
+#include "coupler/base/version.hpp"
+#include "coupler/cli/commands.hpp"
+
+static_assert(coupler::version == COUPLER_VERSION, "coupler/base/version.hpp and CMakeLists.txt differ");
+
+int main(int argc, char** argv) {
+  coupler::open_standard_files();
+  coupler::cli::Program program{"OpenCoupler: makes both sides of a Modbus/TCP coupler from one map.",
+                                "coupler"};
+  program.version("coupler " COUPLER_VERSION);
+  program.footer(
+      "Example:\n  coupler check device.yaml\n`coupler COMMAND --help` tells more of one command.");
+  program.explain([](const std::string& command, const std::string& what) {
+    return command + ": error: " + what + "; see `" + command + " --help`\n";
+  });
+
+  auto exit = coupler::cli::ok;
+  coupler::cli::add_check(program, exit);
+  coupler::cli::add_diff(program, exit);
+  coupler::cli::add_dump(program, exit);
+  coupler::cli::add_export(program, exit);
+  coupler::cli::add_generate(program, exit);
+  coupler::cli::add_import(program, exit);
+  coupler::cli::add_init(program, exit);
+  coupler::cli::add_plan(program, exit);
+  coupler::cli::add_probe(program, exit);
+  coupler::cli::add_schema(program, exit);
+  coupler::cli::add_status(program, exit);
+  if (const auto done = program.parse(argc, argv)) return *done;
+  return exit;
+}

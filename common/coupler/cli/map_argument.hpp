@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// MAP, as every command takes it: a YAML or JSON file, - for standard input, or tcp://HOST[:PORT][/UNIT] for
+// the map that a node serves.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "coupler/cli/exit.hpp"
+#include "coupler/map/loader/load.hpp"
+#include "coupler/map/node_address.hpp"
+
+namespace coupler::cli {
+
+/// What a help text calls it.
+constexpr auto map_help = "YAML or JSON file; - is standard input; tcp://HOST[:PORT][/UNIT] is a node";
+
+struct MapArgument {
+  LoadResult loaded;
+  Exit exit = ok;                   ///< how the command ends if there is no map
+  std::optional<NodeAddress> node;  ///< where it was found, if on a node
+
+  /// To be called if there is one. From a node, its connection is the one that was given.
+  Map map() const { return node ? found_at(loaded.map->map(), *node) : loaded.map->map(); }
+};
+
+/// Gets the map. Every problem is in the diagnostics. With `renew` the lock of a file is written if that
+/// changes (see load_and_lock()); a node's map has none. `argument` stays where it is.
+MapArgument get_map(const std::string& argument, LockUse use = LockUse::read);
+
+/// The same, or REVISION:PATH of git, unless there is a file of that name.
+MapArgument get_version(const std::string& argument);
+
+}  // namespace coupler::cli

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "coupler/cli/commands.hpp"
+#include "coupler/cli/map_argument.hpp"
+#include "coupler/cli/plan_report.hpp"
+#include "coupler/cli/report.hpp"
+#include "coupler/plan/picture.hpp"
+
+namespace coupler::cli {
+namespace {
+
+struct Arguments {
+  std::string map;
+  double rtt = 1;  ///< ms
+  bool json = false;
+  std::string svg;
+};
+
+bool write_file(const std::string& path, const std::string& content) {
+  std::ofstream file(path, std::ios::binary);
+  file << content;
+  file.close();
+  return !file.fail();
+}
+
+void warn_if_too_much(const std::string& file, const Map& map, const plan::Link& link) {
+  const double load = plan::load(plan::make_read_plan(map), link);
+  if (load > 1)
+    fmt::print(
+        stderr,
+        "{}: warning: the reads need {} of the time, so cycles will be left out; lower `rate`, for the map "
+        "or for points that change slowly, or make the requests fewer\n",
+        file, percent(load));
+}
+
+Exit run(const Arguments& arguments) {
+  const MapArgument argument = get_map(arguments.map);
+  print(argument.loaded.diagnostics);
+  if (!argument.loaded.map) return argument.exit;
+  const Map map = argument.map();
+  plan::Link link;
+  link.round_trip = std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::duration<double, std::milli>(arguments.rtt));
+  link.pause = map.limits.request_gap;
+  if (!arguments.svg.empty() && !write_file(arguments.svg, plan::picture(map, plan::make_read_plan(map)))) {
+    fmt::print(stderr, "coupler plan: error: cannot write {}; give a file that you may write with --svg\n",
+               arguments.svg);
+    return bad_call;
+  }
+  if (arguments.json)
+    std::puts(plan_json(arguments.map, map, link).c_str());
+  else
+    std::fputs(plan_text(arguments.map, map, link).c_str(), stdout);
+  warn_if_too_much(arguments.map, map, link);
+  return ok;
+}
+
+}  // namespace
+
+void add_plan(Program& program, Exit& exit) {
+  auto command = program.add_command(
+      "plan", "Show the requests that read a map, why each ends where it does, and how long they take.");
+  const auto arguments = std::make_shared<Arguments>();
+  command.add_option("MAP", arguments->map, map_help).required().type_name("");
+  command
+      .add_option("--rtt", arguments->rtt,
+                  "Milliseconds from a request to its reply, network and device together; default 1")
+      .positive()
+      .type_name("MS");
+  command.add_flag("--json", arguments->json, "One JSON object on standard output, for scripts");
+  command.add_option("--svg", arguments->svg, "Write a picture of the address spaces").type_name("FILE");
+  command.footer(
+      "Example:\n  coupler plan device.yaml --rtt 2.5 --svg device.svg\n"
+      "The driver makes the same requests. It warns when they do not fit into their time.");
+  command.callback([arguments, &exit] { exit = run(*arguments); });
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/cli/report.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "coupler/map/fingerprint.hpp"
+#include "coupler/map/printable.hpp"
+
+namespace coupler::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string_view singular(Table table) {
+  switch (table) {
+    case Table::coils: return "coil";
+    case Table::discrete_inputs: return "discrete input";
+    case Table::input_registers: return "input register";
+    case Table::holding_registers: return "holding register";
+  }
+  return {};
+}
+
+std::string counted(std::ptrdiff_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string by_table(const Map& map) {
+  std::string out;
+  for (const Table table : tables) {
+    const auto count = std::count_if(map.points.begin(), map.points.end(),
+                                     [table](const Point& point) { return point.table == table; });
+    if (count != 0) out += fmt::format("{}{}", out.empty() ? "" : ", ", counted(count, singular(table)));
+  }
+  return out.empty() ? out : " (" + out + ")";
+}
+
+ordered_json to_json(const Diagnostic& diagnostic) {
+  ordered_json notes = ordered_json::array();
+  for (const Diagnostic::Note& note : diagnostic.notes)
+    notes.push_back({{"line", note.line}, {"column", note.column}, {"what", note.what}});
+  return {{"severity", diagnostic.severity == Diagnostic::Severity::error ? "error" : "warning"},
+          {"file", diagnostic.file},
+          {"line", diagnostic.line},
+          {"column", diagnostic.column},
+          {"what", diagnostic.what},
+          {"remedy", diagnostic.remedy},
+          {"notes", std::move(notes)}};
+}
+
+}  // namespace
+
+std::string summary(const std::string& file, const Map& map) {
+  return fmt::format("{}: ok: {}, {}{}, fingerprint {}", printable(file), map.name,
+                     counted(static_cast<std::ptrdiff_t>(map.points.size()), "point"), by_table(map),
+                     fingerprint_text(map.fingerprint));
+}
+
+std::string json_report(const std::string& file, const LoadResult& loaded) {
+  ordered_json report{{"file", file},
+                      {"ok", loaded.map != nullptr},
+                      {"name", nullptr},
+                      {"points", nullptr},
+                      {"fingerprint", nullptr},
+                      {"lock", nullptr},
+                      {"diagnostics", ordered_json::array()}};
+  if (loaded.map) {
+    const Map& map = loaded.map->map();
+    report["name"] = map.name;
+    report["points"] = map.points.size();
+    report["fingerprint"] = fingerprint_text(map.fingerprint);
+  }
+  const NewLock& lock = loaded.lock;
+  if (!lock.text.empty())
+    report["lock"] = {{"file", lock.path}, {"allocated", lock.allocated}, {"retired", lock.retired}};
+  for (const Diagnostic& diagnostic : loaded.diagnostics)
+    report["diagnostics"].push_back(to_json(diagnostic));
+  // A diagnostic may quote bytes that are not UTF-8.
+  return report.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace coupler::cli

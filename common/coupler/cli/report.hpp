@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said of a map that was read: texts for people, JSON for programs.
+#pragma once
+
+#include <string>
+
+#include "coupler/map/loader/load.hpp"
+#include "coupler/map/loader/print.hpp"
+
+namespace coupler::cli {
+
+/// "device.yaml: ok: device, 3 points (1 coil, 2 discrete inputs), fingerprint 0123456789abcdef"
+std::string summary(const std::string& file, const Map& map);
+
+/// One line of JSON: {file, ok, name, points, fingerprint, lock, diagnostics: [{severity, file, line, column,
+/// what, remedy}]}. name, points and fingerprint are null if there is no map; lock is null unless it was
+/// written, then {file, allocated: [names], retired: [names]}.
+std::string json_report(const std::string& file, const LoadResult& loaded);
+
+}  // namespace coupler::cli

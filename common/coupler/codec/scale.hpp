@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scaled values: what the host publishes, a Float64, <-> registers. No heap, no exceptions.
+#pragma once
+
+#include <cstdint>
+
+#include "coupler/codec/format.hpp"
+
+namespace coupler::codec {
+
+/// Published value = raw × gain + offset.
+struct Scale {
+  double gain = 1;  ///< finite, not 0
+  double offset = 0;
+
+  constexpr bool present() const { return gain != 1 || offset != 0; }
+};
+
+/// The types that can be scaled: SINT … ULINT, REAL, LREAL.
+constexpr bool is_scalable(Type type) {
+  return width(type) >= 8 && type != Type::BYTE && type != Type::WORD && type != Type::DWORD &&
+         type != Type::LWORD && type != Type::CHAR;
+}
+
+/// The published value of a scalable type's registers. Integers above 2^53 lose their last digits.
+double published(const std::uint16_t* registers, const Format& format, const Scale& scale);
+
+enum class ScaleError : std::uint8_t { none, not_a_number, out_of_range };
+
+/// Writes the registers whose published value is nearest to `value`, and leaves other bits of a shared
+/// register alone. If there are none, the registers are unchanged.
+ScaleError encode_published(double value, const Format& format, const Scale& scale, std::uint16_t* registers);
+
+/// The same for a measurement: beyond an end of the type's range it becomes that end. `value` is no NaN.
+void encode_nearest(double value, const Format& format, const Scale& scale, std::uint16_t* registers);
+
+struct PublishedRange {
+  double least;
+  double most;
+};
+PublishedRange published_range(Type type, const Scale& scale);
+
+}  // namespace coupler::codec

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/codec/text.hpp"
+
+namespace coupler::codec {
+namespace {
+
+std::uint8_t wire_byte(const std::uint16_t* registers, const Format& format, std::size_t i) {
+  const bool first_is_low = bytes_swapped(format.order);
+  const bool low = (i % 2 == 0) == first_is_low;
+  return static_cast<std::uint8_t>(low ? registers[i / 2] & 0xFF : registers[i / 2] >> 8);
+}
+
+void set_wire_byte(std::uint16_t* registers, const Format& format, std::size_t i, std::uint8_t byte) {
+  const bool first_is_low = bytes_swapped(format.order);
+  const bool low = (i % 2 == 0) == first_is_low;
+  std::uint16_t& word = registers[i / 2];
+  word = static_cast<std::uint16_t>(low ? (word & 0xFF00) | byte : (word & 0x00FF) | (byte << 8));
+}
+
+/// The code point at the front of `text`, which is shortened by it; -1 if `text` does not begin with valid
+/// UTF-8 (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
+std::int32_t take_code_point(std::string_view& text) {
+  const auto lead = static_cast<std::uint8_t>(text.front());
+  text.remove_prefix(1);
+  if (lead < 0x80) return lead;
+  const unsigned more = lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : 1;
+  if (lead < 0xC2 || lead > 0xF4 || text.size() < more) return -1;
+  auto code = static_cast<std::int32_t>(lead & (0x3F >> more));
+  for (unsigned i = 0; i < more; ++i) {
+    const auto byte = static_cast<std::uint8_t>(text.front());
+    if ((byte & 0xC0) != 0x80) return -1;
+    text.remove_prefix(1);
+    code = (code << 6) | (byte & 0x3F);
+  }
+  constexpr std::int32_t smallest[] = {0, 0x80, 0x800, 0x10000};
+  if (code < smallest[more] || code > 0x10FFFF || (code >= 0xD800 && code <= 0xDFFF)) return -1;
+  return code;
+}
+
+/// Calls put(byte) for each byte of `text` in the encoding; false where a character has none.
+template <class Put>
+bool for_each_encoded(std::string_view text, Encoding encoding, Put&& put) {
+  while (!text.empty()) {
+    const std::string_view before = text;
+    const std::int32_t code = take_code_point(text);
+    if (code < 0) return false;
+    if (encoding == Encoding::utf8) {
+      for (const char c : before.substr(0, before.size() - text.size())) put(static_cast<std::uint8_t>(c));
+    } else {
+      if (code > (encoding == Encoding::ascii ? 0x7F : 0xFF)) return false;
+      put(static_cast<std::uint8_t>(code));
+    }
+  }
+  return true;
+}
+
+void append_decoded(std::uint8_t byte, Encoding encoding, std::string& text) {
+  if (byte < 0x80 || encoding == Encoding::utf8) {
+    text.push_back(static_cast<char>(byte));
+  } else if (encoding == Encoding::ascii) {
+    text.push_back('?');
+  } else {
+    text.push_back(static_cast<char>(0xC0 | (byte >> 6)));
+    text.push_back(static_cast<char>(0x80 | (byte & 0x3F)));
+  }
+}
+
+}  // namespace
+
+void decode_text(const std::uint16_t* registers, const Format& format, std::string& text) {
+  text.clear();
+  for (std::size_t i = 0; i < format.length; ++i) {
+    const std::uint8_t byte = wire_byte(registers, format, i);
+    if (byte == 0) return;
+    append_decoded(byte, format.encoding, text);
+  }
+}
+
+TextError encode_text(std::string_view text, const Format& format, std::uint16_t* registers) {
+  std::size_t size = 0;
+  if (!for_each_encoded(text, format.encoding, [&](std::uint8_t) { ++size; }))
+    return TextError::not_encodable;
+  if (size > format.length) return TextError::too_long;
+  for (std::size_t i = 0; i < codec::registers(format); ++i) registers[i] = 0;
+  std::size_t at = 0;
+  for_each_encoded(text, format.encoding,
+                   [&](std::uint8_t byte) { set_wire_byte(registers, format, at++, byte); });
+  return TextError::none;
+}
+
+}  // namespace coupler::codec

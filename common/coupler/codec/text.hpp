@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "coupler/base/span.hpp"
+#include "coupler/codec/format.hpp"
+
+namespace coupler::codec {
+
+/// The text of a STRING, as UTF-8. It ends at the first NUL or at `format.length` bytes. Bytes that the
+/// encoding does not know become '?' (ascii) or stay as they are (utf-8). `text` keeps its capacity from call
+/// to call.
+void decode_text(const std::uint16_t* registers, const Format& format, std::string& text);
+
+/// Why a text does not fit into a STRING.
+enum class TextError : std::uint8_t {
+  none,
+  too_long,      ///< more than `format.length` bytes once encoded
+  not_encodable  ///< a character that ascii or latin-1 does not have, or not UTF-8 at all
+};
+
+/// Writes UTF-8 `text`, padded with NUL, into codec::registers(format) registers; nothing is written on an
+/// error.
+TextError encode_text(std::string_view text, const Format& format, std::uint16_t* registers);
+
+}  // namespace coupler::codec

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/codec/value.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "coupler/codec/number.hpp"
+#include "coupler/codec/text.hpp"
+
+namespace coupler::codec {
+namespace {
+
+using Result = tl::expected<void, std::string>;
+
+template <class T>
+Value widen(T value) {
+  if constexpr (std::is_floating_point_v<T>)
+    return value;
+  else if constexpr (std::is_signed_v<T>)
+    return std::int64_t{value};
+  else
+    return std::uint64_t{value};
+}
+
+template <class To>
+tl::unexpected<std::string> out_of_range(const Value& value, Type type) {
+  if constexpr (std::is_floating_point_v<To>)
+    return tl::make_unexpected(fmt::format("{} does not fit into {}", to_string(value), to_string(type)));
+  else
+    return tl::make_unexpected(fmt::format("{} does not fit into {} ({} to {})", to_string(value),
+                                           to_string(type), +std::numeric_limits<To>::min(),
+                                           +std::numeric_limits<To>::max()));
+}
+
+template <class To, class From>
+bool fits(From from) {
+  if constexpr (std::is_floating_point_v<To>) {
+    if constexpr (std::is_same_v<From, double> && std::is_same_v<To, float>)
+      return !std::isfinite(from) || std::fabs(from) <= std::numeric_limits<float>::max();
+    return true;
+  } else if constexpr (std::is_floating_point_v<From>) {  // the largest may have no double, one more has
+    return from >= static_cast<From>(std::numeric_limits<To>::min()) &&
+           from < std::ldexp(From{1}, std::numeric_limits<To>::digits);
+  } else if constexpr (std::is_signed_v<From>) {
+    if constexpr (std::is_signed_v<To>)
+      return from >= std::numeric_limits<To>::min() && from <= std::numeric_limits<To>::max();
+    else
+      return from >= 0 && static_cast<std::uint64_t>(from) <= std::numeric_limits<To>::max();
+  } else {
+    return from <= static_cast<std::uint64_t>(std::numeric_limits<To>::max());
+  }
+}
+
+template <class To>
+Result put_number(const Value& value, const Format& format, std::uint16_t* registers) {
+  return std::visit(
+      [&](const auto& v) -> Result {
+        using From = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<From, bool> || std::is_same_v<From, std::string>) {
+          return tl::make_unexpected(fmt::format("'{}' is not a number", to_string(value)));
+        } else {
+          if constexpr (std::is_floating_point_v<From> && !std::is_floating_point_v<To>)
+            if (v != std::trunc(v))
+              return tl::make_unexpected(
+                  fmt::format("{} is not a whole number, as {} needs", v, to_string(format.type)));
+          if (!fits<To>(v)) return out_of_range<To>(value, format.type);
+          put(static_cast<To>(v), format, registers);
+          return {};
+        }
+      },
+      value);
+}
+
+Result put_text(const Value& value, const Format& format, std::uint16_t* registers) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text == nullptr) return tl::make_unexpected(fmt::format("{} is not a text", to_string(value)));
+  switch (encode_text(*text, format, registers)) {
+    case TextError::too_long:
+      return tl::make_unexpected(fmt::format("'{}' is longer than {} bytes", *text, format.length));
+    case TextError::not_encodable:
+      return tl::make_unexpected(
+          fmt::format("'{}' cannot be written in {}", *text, to_string(format.encoding)));
+    case TextError::none: break;
+  }
+  return {};
+}
+
+}  // namespace
+
+Value decode(const std::uint16_t* registers, const Format& format) {
+  if (format.type == Type::BOOL) return decode_part(registers[0], format) != 0;
+  if (format.type == Type::STRING) {
+    std::string text;
+    decode_text(registers, format, text);
+    return text;
+  }
+  return with_number(format.type,
+                     [&](auto zero) -> Value { return widen(take<decltype(zero)>(format, registers)); });
+}
+
+Result encode(const Value& value, const Format& format, std::uint16_t* registers) {
+  if (format.type == Type::STRING) return put_text(value, format, registers);
+  if (format.type == Type::BOOL) {
+    const bool* on = std::get_if<bool>(&value);
+    if (on == nullptr)
+      return tl::make_unexpected(fmt::format("{} is neither true nor false", to_string(value)));
+    put(static_cast<std::uint8_t>(*on), format, registers);
+    return {};
+  }
+  return with_number(format.type,
+                     [&](auto zero) { return put_number<decltype(zero)>(value, format, registers); });
+}
+
+std::string to_string(const Value& value) {
+  return std::visit(
+      [](const auto& v) -> std::string {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::string>)
+          return v;
+        else
+          return fmt::format("{}", v);
+      },
+      value);
+}
+
+}  // namespace coupler::codec

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables as spreadsheets and databases write them (RFC 4180), with what they disagree about: separators ';',
+// ',' or tab, lines that end with CR LF or LF.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coupler/map/loader/problems.hpp"
+
+namespace coupler::formats {
+
+struct Cell {
+  std::string text;  ///< without quotes, and without blanks around it if there were none
+  loader::Position at;
+};
+using Row = std::vector<Cell>;
+
+/// All rows that are not empty; empty with the first error in `problems` if a quote is never closed, or text
+/// follows a closed one. The separator is the one that the first line has most of, outside quotes.
+std::vector<Row> parse_csv(std::string_view text, loader::Problems& problems);
+
+/// The text as a cell of a file whose separator is ',': in quotes where they are needed.
+std::string csv_cell(std::string_view text);
+
+}  // namespace coupler::formats

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/formats/importers.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "coupler/formats/csv.hpp"
+#include "coupler/formats/entries.hpp"
+#include "coupler/map/loader/document.hpp"
+#include "coupler/map/loader/keys.hpp"
+#include "coupler/map/loader/letters.hpp"
+#include "coupler/map/loader/nearest.hpp"
+#include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/table.hpp"
+
+namespace coupler::formats {
+namespace {
+
+using loader::Entry;
+using loader::Problems;
+using loader::Section;
+using loader::shown;
+using loader::ValueKind;
+
+constexpr Section any_point =
+    Section::coil | Section::discrete_input | Section::input_register | Section::holding_register;
+
+struct Column {
+  std::string key;
+  const loader::Key* described = nullptr;  ///< nullptr: table, name, unit
+};
+
+std::vector<std::string_view> column_names() {
+  auto names = loader::key_names(any_point);
+  names.insert(names.end(), {"table", "name", "unit"});
+  return names;
+}
+
+/// "Read Address" -> "read_address"
+std::string key_of(std::string_view heading) {
+  std::string key = loader::lower(heading);
+  std::replace(key.begin(), key.end(), ' ', '_');
+  return key;
+}
+
+std::vector<Column> read_header(const Row& header, Problems& problems) {
+  std::vector<Column> columns;
+  for (const Cell& cell : header) {
+    Column column{key_of(cell.text), nullptr};
+    const bool twice = std::any_of(columns.begin(), columns.end(),
+                                   [&](const Column& c) { return !c.key.empty() && c.key == column.key; });
+    if (twice)
+      problems.error(cell.at, fmt::format("the column {} is there twice", shown(cell.text)), "remove one");
+    column.described = loader::find_key(column.key, any_point);
+    if (column.described == nullptr && column.key != "table" && column.key != "name" &&
+        column.key != "unit" && !column.key.empty()) {
+      const std::string_view near = loader::nearest(column.key, column_names());
+      problems.warning(
+          cell.at,
+          fmt::format("the column {} is not carried over: a point has no such key", shown(cell.text)),
+          near.empty() ? "leave it, or see docs/import-export.md for the columns"
+                       : fmt::format("did you mean '{}'?", near));
+      column.key.clear();
+    }
+    columns.push_back(std::move(column));
+  }
+  for (const std::string_view needed : {"table", "name", "address"})
+    if (std::none_of(columns.begin(), columns.end(), [&](const Column& c) { return c.key == needed; }))
+      problems.error(header.front().at, fmt::format("there is no column '{}'", needed),
+                     "begin with a line of headings, such as table,name,address,type");
+  return columns;
+}
+
+std::optional<Table> parse_table(std::string_view text) {
+  std::string word = key_of(text);
+  if (!word.empty() && word.back() != 's') word += 's';
+  for (const Table table : tables)
+    if (to_string(table) == word) return table;
+  return std::nullopt;
+}
+
+void place(Entry& entry, loader::Position at) {
+  entry.key_at = at;
+  entry.at = at;
+  for (Entry& child : entry.children) place(child, at);
+}
+
+/// "{of: pulse}" and "[1, 2]", as they stand in a map; nullopt if it is a plain text.
+std::optional<Entry> structured(const Cell& cell, Problems& problems) {
+  if (cell.text.empty() || (cell.text[0] != '{' && cell.text[0] != '[')) return std::nullopt;
+  Problems inside("");
+  auto entry = loader::parse_document(cell.text, inside);
+  if (!entry) {
+    for (const Diagnostic& diagnostic : std::move(inside).sorted())
+      problems.error(cell.at, diagnostic.what, diagnostic.remedy);
+    return Entry{};
+  }
+  place(*entry, cell.at);
+  return entry;
+}
+
+/// "0,5" for 0.5.
+bool has_decimal_comma(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || text.find(',', comma + 1) != std::string_view::npos) return false;
+  std::string number(text);
+  number[comma] = '.';
+  return loader::parse_number(number).has_value();
+}
+
+class RowReader {
+ public:
+  RowReader(const std::vector<Column>& columns, Problems& problems)
+      : columns_(columns), problems_(problems) {}
+
+  void read(const Row& row, std::vector<ForeignUnit>& units) {
+    if (row.size() > columns_.size()) {
+      problems_.error(row[columns_.size()].at,
+                      fmt::format("the row has {} cells, the headings are {}", row.size(), columns_.size()),
+                      "put text that contains the separator in quotes");
+      return;
+    }
+    const Cell* name = cell(row, "name");
+    const Cell* table_cell = cell(row, "table");
+    const auto table = table_cell != nullptr ? parse_table(table_cell->text) : std::nullopt;
+    if (!table) {
+      problems_.error(table_cell != nullptr ? table_cell->at : row.front().at,
+                      fmt::format("{} is no table", shown(table_cell != nullptr ? table_cell->text : "")),
+                      "write coils, discrete_inputs, input_registers or holding_registers");
+      return;
+    }
+    const loader::Position at = name != nullptr ? name->at : row.front().at;
+    Entry point = section(name != nullptr ? name->text : "", at);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (columns_[i].described != nullptr && !row[i].text.empty())
+        add(columns_[i], row[i], row, *table, point);
+    Entry& map = unit_of(row, units).map;
+    Entry& mapping = make_section(map, "mapping", at);
+    make_section(mapping, to_string(*table), at).children.push_back(std::move(point));
+  }
+
+ private:
+  const Cell* cell(const Row& row, std::string_view key) const {
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (columns_[i].key == key && !row[i].text.empty()) return &row[i];
+    return nullptr;
+  }
+
+  bool is_string(const Row& row) const {
+    const Cell* type = cell(row, "type");
+    return type != nullptr && loader::lower(type->text) == "string";
+  }
+
+  void add(const Column& column, const Cell& given, const Row& row, Table table, Entry& point) {
+    const loader::Key* own = loader::find_key(column.key, loader::section_of(table));
+    const loader::Key& key = own != nullptr ? *own : *column.described;
+    // A coil's type is BOOL whether it is said or not.
+    if (column.key == "type" && holds_bits(table) && loader::lower(given.text) == "bool") return;
+    const bool text = (key.kind == ValueKind::text && key.inside == Section::none) ||
+                      (key.kind == ValueKind::value && is_string(row));
+    if (!text) {
+      if (auto entry = structured(given, problems_)) {
+        entry->key = column.key;
+        point.children.push_back(std::move(*entry));
+        return;
+      }
+    }
+    Entry entry = scalar(column.key, given.text, given.at, text);
+    if (!text && has_decimal_comma(given.text)) {
+      std::replace(entry.text.begin(), entry.text.end(), ',', '.');
+      problems_.warning(given.at, fmt::format("{} is read as {}", shown(given.text), entry.text),
+                        "write a decimal point");
+    }
+    point.children.push_back(std::move(entry));
+  }
+
+  ForeignUnit& unit_of(const Row& row, std::vector<ForeignUnit>& units) {
+    std::optional<unsigned> wanted;
+    if (const Cell* given = cell(row, "unit")) {
+      const auto number = loader::parse_unsigned(given->text);
+      if (number && *number <= 255)
+        wanted = static_cast<unsigned>(*number);
+      else
+        problems_.error(given->at, fmt::format("{} is no unit id", shown(given->text)),
+                        "write a number from 0 to 255");
+    }
+    for (ForeignUnit& unit : units)
+      if (unit.unit == wanted) return unit;
+    ForeignUnit unit;
+    unit.unit = wanted;
+    unit.map = section("", row.front().at);
+    return units.emplace_back(std::move(unit));
+  }
+
+  const std::vector<Column>& columns_;
+  Problems& problems_;
+};
+
+/// `safe` of a point with nothing behind it on a node: what the driver leaves. nullptr if no point has one.
+const Entry* safe_for_the_driver(const Entry& map) {
+  const Entry* mapping = find(map, "mapping");
+  for (const Table table : {Table::coils, Table::holding_registers}) {
+    const Entry* points = mapping != nullptr ? find(*mapping, to_string(table)) : nullptr;
+    if (points == nullptr) continue;
+    for (const Entry& point : points->children) {
+      const Entry* safe = find(point, "safe");
+      const bool wired = table == Table::coils
+                             ? find(point, "line") != nullptr
+                             : find(point, "iio") != nullptr || find(point, "pwm") != nullptr;
+      if (safe != nullptr && !wired) return safe;
+    }
+  }
+  return nullptr;
+}
+
+void add_on_shutdown(Entry& map, Problems& problems) {
+  const Entry* safe = safe_for_the_driver(map);
+  if (safe == nullptr) return;
+  const loader::Position at = safe->at;
+  set(map, scalar("on_shutdown", "safe", at));
+  problems.warning(
+      at,
+      "'safe' of a point without a line, 'iio' or 'pwm' is what the driver leaves behind, so the "
+      "map says 'on_shutdown: safe'",
+      "empty such cells if the driver is to leave outputs as they are");
+}
+
+}  // namespace
+
+std::vector<ForeignUnit> read_csv(std::string_view text, Problems& problems) {
+  const std::vector<Row> rows = parse_csv(text, problems);
+  if (problems.has_errors()) return {};
+  if (rows.size() < 2) {
+    problems.error({1, 1}, "there are no points in the file",
+                   "write a line of headings and one line a point");
+    return {};
+  }
+  const std::vector<Column> columns = read_header(rows.front(), problems);
+  if (problems.has_errors()) return {};
+  std::vector<ForeignUnit> units;
+  RowReader reader(columns, problems);
+  for (auto row = rows.begin() + 1; row != rows.end(); ++row) reader.read(*row, units);
+  for (ForeignUnit& unit : units) add_on_shutdown(unit.map, problems);
+  return units;
+}
+
+}  // namespace coupler::formats

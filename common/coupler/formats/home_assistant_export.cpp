@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/formats/exporters.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "coupler/formats/entries.hpp"
+#include "coupler/formats/map_writer.hpp"
+#include "coupler/map/loader/letters.hpp"
+
+namespace coupler::formats {
+namespace {
+
+using codec::Type;
+
+constexpr int shortest_interval = 5;  // seconds; below it Home Assistant warns
+constexpr int float_decimals = 6;
+
+std::string text(std::string_view value) { return flow(scalar("", std::string(value), {}, true)); }
+
+/// "cell_north_speed"
+std::string unique_id(const Map& map, const std::string& name) {
+  std::string id = loader::lower(fmt::format("{}_{}", map.name, name));
+  std::replace_if(
+      id.begin(), id.end(), [](char c) { return !loader::is_letter(c) && !loader::is_digit(c); }, '_');
+  return id;
+}
+
+int interval_of(const Map& map, const Point& point) {
+  const double rate = point.host.rate > 0 ? point.host.rate : map.polling.rate;
+  return std::max(shortest_interval, static_cast<int>(std::ceil(1 / rate)));
+}
+
+std::string_view data_type_of(Type type) {
+  switch (type) {
+    case Type::INT: return "int16";
+    case Type::WORD:
+    case Type::UINT: return "uint16";
+    case Type::DINT: return "int32";
+    case Type::DWORD:
+    case Type::UDINT: return "uint32";
+    case Type::LINT: return "int64";
+    case Type::LWORD:
+    case Type::ULINT: return "uint64";
+    case Type::REAL: return "float32";
+    case Type::LREAL: return "float64";
+    case Type::STRING: return "string";
+    default: return "custom";  // bytes
+  }
+}
+
+std::string_view swap_of(const codec::Format& format) {
+  const bool bytes = codec::bytes_swapped(format.order);
+  if (codec::words_reversed(format.order)) return bytes ? "word_byte" : "word";
+  return bytes ? "byte" : "";
+}
+
+/// Decimals of the shortest text of the number: 0.25 has two.
+int decimals_of(double number) {
+  const std::string shown = fmt::format("{}", number);
+  const std::size_t exponent = shown.find("e-");
+  const std::size_t point = shown.find('.');
+  const std::size_t digits_end = std::min(exponent, shown.size());
+  int decimals = point == std::string::npos ? 0 : static_cast<int>(digits_end - point - 1);
+  if (exponent != std::string::npos) decimals += std::stoi(shown.substr(exponent + 2));
+  return std::min(decimals, 15);
+}
+
+/// The keys that say how the registers are read, one a line behind `indent`.
+std::string format_keys(const Point& point, std::string_view indent) {
+  const codec::Format& format = point.format;
+  std::string keys = fmt::format("{}data_type: {}\n", indent, data_type_of(format.type));
+  if (codec::width(format.type) == 8) {
+    // The byte as it stands on the wire, so nothing is to be swapped.
+    const char letter = format.type == Type::SINT ? 'b' : 'B';
+    keys += fmt::format(
+        "{}count: 1\n{}structure: \"{}\"\n", indent, indent,
+        codec::mask(format) == 0xFF00 ? fmt::format(">{}x", letter) : fmt::format(">x{}", letter));
+    return keys + (point.scale.present()
+                       ? fmt::format("{}precision: {}\n", indent,
+                                     std::max(decimals_of(point.scale.gain), decimals_of(point.scale.offset)))
+                       : fmt::format("{}precision: 0\n", indent));
+  }
+  if (format.type == Type::STRING) keys += fmt::format("{}count: {}\n", indent, codec::registers(format));
+  if (const std::string_view swap = swap_of(format); !swap.empty())
+    keys += fmt::format("{}swap: {}\n", indent, swap);
+  if (format.type == Type::REAL || format.type == Type::LREAL)
+    keys += fmt::format("{}precision: {}\n", indent, float_decimals);
+  else if (point.scale.present())
+    keys += fmt::format("{}precision: {}\n", indent,
+                        std::max(decimals_of(point.scale.gain), decimals_of(point.scale.offset)));
+  return keys;
+}
+
+/// Lists of entities, by what Home Assistant calls them.
+struct Entities {
+  std::string binary_sensors;
+  std::string switches;
+  std::string sensors;
+};
+
+class EntityWriter {
+ public:
+  EntityWriter(const Map& map, Losses& losses) : map_(map), losses_(losses) {}
+
+  Entities write() {
+    for (const Point& point : map_.points) {
+      if (point.count > 1)
+        losses_.add("arrays are entities that end in 0, 1 …", "nothing is to be done", point.name);
+      for (std::uint16_t element = 0; element < point.count; ++element) add(point, element);
+      tell_losses(point);
+    }
+    return std::move(entities_);
+  }
+
+ private:
+  static constexpr std::string_view indent = "        ";
+
+  std::string head(const Point& point, std::uint16_t element, modbus::Range place) const {
+    const auto name = point.count > 1 ? fmt::format("{} {}", point.name, element) : std::string(point.name);
+    const unsigned address = place.start() + static_cast<unsigned>(element) * codec::registers(point.format);
+    return fmt::format("      - name: {}\n{}unique_id: {}\n{}slave: {}\n{}address: {}\n{}scan_interval: {}\n",
+                       text(name), indent, unique_id(map_, name), indent, map_.connection.unit, indent,
+                       address, indent, interval_of(map_, point));
+  }
+
+  void add(const Point& point, std::uint16_t element) {
+    if (point.table == Table::coils && is_writable(point))
+      add_switch(point, element);
+    else if (!is_readable(point))
+      losses_.add("registers that are only written are left out",
+                  "write them with the action modbus.write_register", point.name);
+    else if (holds_bits(point.table))
+      entities_.binary_sensors +=
+          head(point, element, read_range(point)) +
+          fmt::format("{}input_type: {}\n", indent, point.table == Table::coils ? "coil" : "discrete_input");
+    else
+      add_register(point, element);
+  }
+
+  void add_switch(const Point& point, std::uint16_t element) {
+    std::string& out = entities_.switches;
+    out += head(point, element, range(point)) + fmt::format("{}write_type: coil\n", indent);
+    if (is_readable(point))
+      out +=
+          fmt::format("{}verify:\n{}  input_type: coil\n{}  address: {}\n{}  state_on: 1\n{}  state_off: 0\n",
+                      indent, indent, indent, read_range(point).start() + element, indent, indent);
+  }
+
+  void add_register(const Point& point, std::uint16_t element) {
+    const auto input_type = fmt::format("{}input_type: {}\n", indent,
+                                        point.table == Table::input_registers ? "input" : "holding");
+    if (point.format.type == Type::BOOL) {
+      if (codec::mask(point.format) != 1)
+        losses_.add("of a register's bits only the lowest can be a binary sensor, the others are left out",
+                    "make template binary sensors of the whole register", point.name);
+      else
+        entities_.binary_sensors += head(point, element, read_range(point)) + input_type;
+      return;
+    }
+    std::string& out = entities_.sensors;
+    out += head(point, element, read_range(point)) + input_type + format_keys(point, indent);
+    if (point.scale.gain != 1) out += fmt::format("{}scale: {}\n", indent, point.scale.gain);
+    if (point.scale.offset != 0) out += fmt::format("{}offset: {}\n", indent, point.scale.offset);
+    if (!point.units.empty()) out += fmt::format("{}unit_of_measurement: {}\n", indent, text(point.units));
+  }
+
+  void tell_losses(const Point& point) {
+    if (is_readable(point) &&
+        (point.host.rate > 0 ? point.host.rate : map_.polling.rate) > 1.0 / shortest_interval)
+      losses_.add("entities are read every 5 s, faster makes Home Assistant unstable",
+                  "nothing is to be done", point.name);
+    if (!point.description.empty())
+      losses_.add("descriptions are left out", "rename the entities", point.name);
+    if (holds_bits(point.table)) {
+      if (!point.units.empty())
+        losses_.add("switches and binary sensors have no units", "nothing is to be done", point.name);
+      return;
+    }
+    if (is_writable(point) && is_readable(point))
+      losses_.add("holding registers are sensors, writing them is left out",
+                  "use the action modbus.write_register", point.name);
+    if (point.format.type == Type::REAL || point.format.type == Type::LREAL)
+      losses_.add("floats are rounded to 6 decimals", "change 'precision' if that is too few", point.name);
+    if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
+      losses_.add("texts are taken for UTF-8", "nothing can be done but to keep to ASCII", point.name);
+  }
+
+  const Map& map_;
+  Losses& losses_;
+  Entities entities_;
+};
+
+std::string hub_of(const Map& map) {
+  const std::string_view host = map.connection.address.empty() ? "localhost" : map.connection.address;
+  const auto seconds = [](std::chrono::milliseconds time) {
+    return std::chrono::ceil<std::chrono::seconds>(time).count();
+  };
+  std::string hub =
+      fmt::format("modbus:\n  - name: {}\n    type: tcp\n    host: {}\n    port: {}\n    timeout: {}\n",
+                  text(map.name), text(host), map.connection.port, seconds(map.connection.timeout));
+  if (map.limits.connect_delay.count() > 0)
+    hub += fmt::format("    delay: {}\n", seconds(map.limits.connect_delay));
+  if (map.limits.request_gap.count() > 0)
+    hub += fmt::format("    message_wait_milliseconds: {}\n", map.limits.request_gap.count());
+  return hub;
+}
+
+}  // namespace
+
+Export write_home_assistant(const Map& map) {
+  Export out;
+  if (map.connection.address.empty())
+    out.losses.add("the map does not say where the device is: localhost is written",
+                   "write its address behind 'host:'");
+  const Entities entities = EntityWriter(map, out.losses).write();
+  add_sides(map, out.losses);
+  out.text = "# Made by `coupler export --to home-assistant`.\n" + hub_of(map);
+  if (!entities.binary_sensors.empty()) out.text += "    binary_sensors:\n" + entities.binary_sensors;
+  if (!entities.switches.empty()) out.text += "    switches:\n" + entities.switches;
+  if (!entities.sensors.empty()) out.text += "    sensors:\n" + entities.sensors;
+  return out;
+}
+
+}  // namespace coupler::formats

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/formats/exporters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace coupler::formats {
+namespace {
+
+using codec::Type;
+
+/// A basic string of TOML, quotes included.
+std::string literal(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      out += fmt::format("\\{}", c);
+    else if (byte < 0x20 || byte == 0x7F)
+      out += fmt::format("\\u{:04X}", byte);
+    else
+      out += c;
+  }
+  return out + '"';
+}
+
+/// A float of TOML, even if it is whole.
+std::string number(double value) {
+  const std::string text = fmt::to_string(value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::string_view register_of(Table table) {
+  switch (table) {
+    case Table::coils: return "coil";
+    case Table::discrete_inputs: return "discrete";
+    case Table::input_registers: return "input";
+    case Table::holding_registers: return "holding";
+  }
+  return {};
+}
+
+/// Of values of one register Telegraf takes only ABCD and DCBA where they are bytes, so they are called that
+/// whatever they are.
+std::string_view byte_order_of(const Point& point) {
+  if (holds_bits(point.table)) return "ABCD";
+  if (codec::width(point.format.type) <= 16)
+    return codec::bytes_swapped(point.format.order) ? "DCBA" : "ABCD";
+  return codec::to_string(point.format.order, false);
+}
+
+std::string type_of(const codec::Format& format) {
+  const char half = format.half == codec::Half::high ? 'H' : 'L';
+  switch (format.type) {
+    case Type::BOOL: return "BIT";
+    case Type::SINT: return fmt::format("INT8{}", half);
+    case Type::BYTE:
+    case Type::USINT:
+    case Type::CHAR: return fmt::format("UINT8{}", half);
+    case Type::INT: return "INT16";
+    case Type::WORD:
+    case Type::UINT: return "UINT16";
+    case Type::DINT: return "INT32";
+    case Type::DWORD:
+    case Type::UDINT: return "UINT32";
+    case Type::LINT: return "INT64";
+    case Type::LWORD:
+    case Type::ULINT: return "UINT64";
+    case Type::REAL: return "FLOAT32";
+    case Type::LREAL: return "FLOAT64";
+    case Type::STRING: return "STRING";
+  }
+  return {};
+}
+
+std::string field_of(const Point& point, std::uint16_t element) {
+  const auto address = read_range(point).start() + element * codec::registers(point.format);
+  const auto name = point.count > 1 ? fmt::format("{}_{}", point.name, element) : std::string(point.name);
+  std::string field = fmt::format("address = {}, name = {}", address, literal(name));
+  if (!holds_bits(point.table)) {
+    const codec::Format& format = point.format;
+    field += fmt::format(", type = \"{}\"", type_of(format));
+    if (format.type == Type::STRING) field += fmt::format(", length = {}", codec::registers(format));
+    if (format.type == Type::BOOL && format.bit != 0) field += fmt::format(", bit = {}", format.bit);
+    if (point.scale.gain != 1) field += fmt::format(", scale = {}", number(point.scale.gain));
+  }
+  return field;
+}
+
+/// "mm, the left door", or nothing.
+std::string comment_of(const Point& point) {
+  std::string text(point.units);
+  if (!point.units.empty() && !point.description.empty()) text += ", ";
+  text += point.description;
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '\x7F'; },
+      ' ');
+  return text.empty() ? text : "  # " + text;
+}
+
+/// Telegraf counts the address behind a field, too.
+bool is_at_the_end(const Point& point) { return read_range(point).end() > 0xFFFF; }
+
+void tell_losses(const Point& point, Losses& losses) {
+  if (point.scale.offset != 0)
+    losses.add("the offset of a scale is left out", "add it with [[processors.scale]]", point.name);
+  if (!point.units.empty() || !point.description.empty())
+    losses.add("units and descriptions are comments", "nothing is to be done", point.name);
+  if (point.host.rate > 0)
+    losses.add("points are read as often as the map says, not at rates of their own",
+               "put them into a second [[inputs.modbus]] with its own interval", point.name);
+  if (is_writable(point))
+    losses.add("Telegraf only reads, writing is left out", "nothing is to be done", point.name);
+  if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
+    losses.add("texts are taken for UTF-8", "convert the field where it is shown", point.name);
+  if (point.count > 1)
+    losses.add("arrays are fields that end in _0, _1 …", "nothing is to be done", point.name);
+}
+
+/// Whether the point can be a field; if not, it is told.
+bool is_field(const Point& point, Losses& losses) {
+  if (!is_readable(point))
+    losses.add("points that are only written are left out", "nothing is to be done: Telegraf only reads",
+               point.name);
+  else if (is_at_the_end(point))
+    losses.add("Telegraf refuses fields that end at address 65535, they are left out", "move the point",
+               point.name);
+  else
+    return true;
+  return false;
+}
+
+using Requests =
+    std::map<std::pair<Table, std::string_view>, std::string>;  // fields, by table and byte order
+
+std::string request_of(const Map& map, Table table, std::string_view order, const std::string& fields) {
+  std::string text = fmt::format(
+      "\n  [[inputs.modbus.request]]\n    slave_id = {}\n    byte_order = \"{}\"\n    register = \"{}\"\n    "
+      "measurement = {}\n",
+      map.connection.unit, order, register_of(table), literal(map.name));
+  const bool joins = holds_bits(table) ? map.polling.discrete_continuous : map.polling.register_continuous;
+  const bool has_holes = std::any_of(map.unreadable.begin(), map.unreadable.end(),
+                                     [table](const Unreadable& area) { return area.table == table; });
+  const unsigned gap = holds_bits(table) ? map.polling.discrete_gap : map.polling.register_gap;
+  const unsigned most = holds_bits(table) ? modbus::max_read_bits : modbus::max_read_registers;
+  if (joins && !has_holes && gap > 1)
+    text += fmt::format("    optimization = \"max_insert\"\n    optimization_max_register_fill = {}\n",
+                        std::min(gap - 1, most));
+  return text + "    fields = [\n" + fields + "    ]\n";
+}
+
+std::string connection_of(const Map& map) {
+  const std::string_view address = map.connection.address.empty() ? "localhost" : map.connection.address;
+  const bool is_ipv6 = address.find(':') != std::string_view::npos;
+  const auto interval = std::max(1L, std::lround(1000 / map.polling.rate));
+  std::string text = fmt::format(
+      "[[inputs.modbus]]\n  name = {}\n  controller = {}\n  timeout = \"{}ms\"\n  interval = \"{}ms\"\n"
+      "  configuration_type = \"request\"\n",
+      literal(map.name),
+      literal(fmt::format(is_ipv6 ? "tcp://[{}]:{}" : "tcp://{}:{}", address, map.connection.port)),
+      map.connection.timeout.count(), interval);
+  const Limits& limits = map.limits;
+  if (limits.connect_delay.count() > 0 || limits.request_gap.count() > 0)
+    text += fmt::format(
+        "\n  [inputs.modbus.workarounds]\n    pause_after_connect = \"{}ms\"\n    pause_between_requests = "
+        "\"{}ms\"\n",
+        limits.connect_delay.count(), limits.request_gap.count());
+  return text;
+}
+
+void tell_losses(const Map& map, Losses& losses) {
+  if (map.connection.address.empty())
+    losses.add("the map does not say where the device is: localhost is written",
+               "write its address behind tcp://");
+  const Limits usual;
+  if (map.limits.read_registers < usual.read_registers || map.limits.read_bits < usual.read_bits)
+    losses.add("Telegraf has no limit to what one read asks for but Modbus' own",
+               "see its workaround one_request_per_field if the device refuses");
+  add_sides(map, losses);
+}
+
+}  // namespace
+
+Export write_telegraf(const Map& map) {
+  Export out;
+  tell_losses(map, out.losses);
+  Requests requests;
+  for (const Point& point : map.points) {
+    if (!is_field(point, out.losses)) continue;
+    tell_losses(point, out.losses);
+    std::string& fields = requests[{point.table, byte_order_of(point)}];
+    for (std::uint16_t element = 0; element < point.count; ++element)
+      fields +=
+          fmt::format("      {{ {} }},{}\n", field_of(point, element), element == 0 ? comment_of(point) : "");
+  }
+  out.text = "# Made by `coupler export --to telegraf`.\n" + connection_of(map);
+  for (const auto& [key, fields] : requests) out.text += request_of(map, key.first, key.second, fields);
+  return out;
+}
+
+}  // namespace coupler::formats

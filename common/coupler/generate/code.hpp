@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values of the map as C++ writes them.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "coupler/base/enumeration.hpp"
+#include "coupler/codec/decimal.hpp"
+#include "coupler/generate/literal.hpp"
+#include "coupler/map/fields.hpp"
+
+namespace coupler::generate {
+
+/// "Table::coils"
+template <class E>
+std::string enumerator(E value) {
+  return std::string(enumeration_of<E>.type).append("::").append(find_word(value)->name);
+}
+
+inline std::string code(std::string_view text) { return literal(text); }
+inline std::string code(std::chrono::milliseconds duration) { return fmt::format("{}ms", duration.count()); }
+inline std::string code(std::chrono::microseconds duration) { return fmt::format("{}us", duration.count()); }
+inline std::string code(std::chrono::nanoseconds duration) { return fmt::format("{}ns", duration.count()); }
+template <class T>
+std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>, std::string> code(T value) {
+  if constexpr (std::is_enum_v<T>)
+    return enumerator(value);
+  else if constexpr (std::is_floating_point_v<T>)
+    return codec::decimal(value);
+  else
+    return fmt::to_string(value);
+}
+
+/// "true, 3000ms, Poll::all": the members of fields_of(), in their order.
+template <class Struct>
+std::string members(const Struct& object) {
+  std::string out;
+  for_each_field(object, [&](const auto&, const auto& value) {
+    if (!out.empty()) out += ", ";
+    out += code(value);
+  });
+  return out;
+}
+
+/// "{true, 3000ms}", or "{}" if all have their defaults.
+template <class Struct>
+std::string aggregate(const Struct& object) {
+  return has_defaults(object) ? "{}" : '{' + members(object) + '}';
+}
+
+/// "publish, deadband": their keys.
+template <class Struct>
+std::string keys_of() {
+  std::string out;
+  const Struct object{};
+  for_each_field(object, [&](const auto& field, const auto&) {
+    if (!out.empty()) out += ", ";
+    out += field.key;
+  });
+  return out;
+}
+
+}  // namespace coupler::generate

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/generate/member.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "coupler/codec/number.hpp"
+#include "coupler/codec/text.hpp"
+#include "coupler/generate/identifier.hpp"
+#include "coupler/generate/literal.hpp"
+#include "coupler/generate/rows.hpp"
+
+namespace coupler::generate {
+namespace {
+
+using codec::Type;
+
+// What a client has beside its points, and macros of the C library's headers.
+constexpr std::string_view taken[] = {
+    "Client",     "EOF",    "NULL",  "Session", "assert", "connect", "disconnect",
+    "each_point", "errno",  "linux", "major",   "map",    "minor",   "online",
+    "options",    "stderr", "stdin", "stdout",  "unix",   "use",     "wait_online"};
+
+std::string sanitized(std::string_view name) {
+  std::string out(name);
+  std::replace_if(
+      out.begin(), out.end(),
+      [](char c) { return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')); },
+      '_');
+  return out;
+}
+
+std::string_view cpp_number(Type type) {
+  switch (type) {
+    case Type::BOOL: return "bool";
+    case Type::SINT: return "::std::int8_t";
+    case Type::INT: return "::std::int16_t";
+    case Type::DINT: return "::std::int32_t";
+    case Type::LINT: return "::std::int64_t";
+    case Type::BYTE:
+    case Type::USINT: return "::std::uint8_t";
+    case Type::WORD:
+    case Type::UINT: return "::std::uint16_t";
+    case Type::DWORD:
+    case Type::UDINT: return "::std::uint32_t";
+    case Type::LWORD:
+    case Type::ULINT: return "::std::uint64_t";
+    case Type::REAL: return "float";
+    case Type::LREAL: return "double";
+    case Type::CHAR: return "char";
+    case Type::STRING: return "::std::string";
+  }
+  return {};
+}
+
+std::string value_range(const Point& point) {
+  const Type type = point.format.type;
+  if (type == Type::STRING)
+    return fmt::format(", at most {} bytes of {}", point.format.length,
+                       codec::to_string(point.format.encoding));
+  if (type == Type::BOOL || type == Type::CHAR) return {};
+  if (point.scale.present()) {
+    const auto [least, most] = codec::published_range(type, point.scale);
+    return fmt::format(", {:g} … {:g}", least, most);
+  }
+  if (type == Type::REAL || type == Type::LREAL) return {};
+  return codec::with_number(type, [](auto zero) {
+    using Ends = std::numeric_limits<decltype(zero)>;
+    return fmt::format(", {} … {}", +Ends::lowest(), +Ends::max());
+  });
+}
+
+}  // namespace
+
+std::vector<std::string> members(const Map& map) {
+  std::set<std::string> used(std::begin(taken), std::end(taken));
+  std::vector<std::string> names;
+  for (const Point& point : map.points) {
+    std::string name = sanitized(point.name);
+    while (!is_identifier(name) || used.count(name) != 0) name += '_';
+    used.insert(name);
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::string cpp_type(const Point& point) {
+  const std::string one(point.scale.present() ? "double" : cpp_number(point.format.type));
+  return point.count == 1 ? one : fmt::format("::std::array<{}, {}>", one, point.count);
+}
+
+std::string documentation(const Point& point) {
+  std::string out = point.description.empty() ? "" : comment(point.description) + ": ";
+  out += to_string(point.format.type);
+  if (point.count > 1) out += fmt::format(" × {}", point.count);
+  out += value_range(point);
+  if (!point.units.empty()) out += " " + comment(point.units);
+  return out + fmt::format("; {}.", place(point));
+}
+
+}  // namespace coupler::generate

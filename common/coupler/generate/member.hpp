@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a point looks in generated classes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coupler/map/map.hpp"
+
+namespace coupler::generate {
+
+/// An identifier for each point, in their order: its name, '/' as '_', and '_' behind it as often as needed
+/// to be no word of C++, nothing that the client has already, and no other point's.
+std::vector<std::string> members(const Map& map);
+
+/// The C++ type of its value: "bool", "::std::array<float, 4>" …
+std::string cpp_type(const Point& point);
+
+/// What it is, in what units and range, and where, for a documentation comment: one line.
+std::string documentation(const Point& point);
+
+}  // namespace coupler::generate

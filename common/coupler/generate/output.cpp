@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/generate/output.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace coupler::generate {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool holds(const fs::path& path, std::string_view content) {
+  std::error_code failed;
+  if (fs::file_size(path, failed) != content.size() || failed) return false;
+  std::ifstream in(path, std::ios::binary);
+  const std::string found{std::istreambuf_iterator<char>(in), {}};
+  return in && found == content;
+}
+
+tl::unexpected<std::string> cannot_write(const fs::path& path, const std::error_code& why) {
+  return tl::unexpected(fmt::format("cannot write {}: {}", path.string(), why.message()));
+}
+
+}  // namespace
+
+tl::expected<Outcome, std::string> write_if_changed(const fs::path& path, std::string_view content) {
+  if (holds(path, content)) return Outcome::unchanged;
+  // Two builds may generate into one folder at the same time: each has its own temporary file.
+  const fs::path temporary = fmt::format("{}.{}.new", path.string(), ::getpid());
+  errno = 0;
+  std::ofstream out(temporary, std::ios::binary);
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  std::error_code failed;
+  if (!out) {
+    failed.assign(errno != 0 ? errno : EIO, std::generic_category());
+  } else {
+    fs::rename(temporary, path, failed);
+  }
+  if (failed) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    return cannot_write(path, failed);
+  }
+  return Outcome::written;
+}
+
+}  // namespace coupler::generate

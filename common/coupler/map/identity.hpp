@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a node tells what it is: a few input registers and the map as a file. The driver reads them at every
+// connect. docs/identity.md holds the layout as a table.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "coupler/base/span.hpp"
+#include "coupler/map/map.hpp"
+#include "coupler/modbus/file_record.hpp"
+#include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/range.hpp"
+
+namespace coupler::identity {
+
+/// Input registers 0xFF00 … 0xFFFF and holding register 0xFF00 … 0xFFFF belong to the node.
+constexpr modbus::Range reserved = modbus::Range::of(0xFF00, 0x100);
+
+/// A node whose watchdog recovers manually maps this holding register: the code resets it, reading gives 0.
+constexpr modbus::Range watchdog_reset = modbus::Range::of(reserved.start(), 1);
+constexpr std::uint16_t watchdog_reset_code = 0xAA55;
+
+/// Places in the area, relative to reserved.start().
+enum : std::uint16_t {
+  at_magic = 0,            ///< "OCPL", 2 registers
+  at_layout = 2,           ///< layout version, now 1
+  at_fingerprint = 3,      ///< 4 registers, most significant first
+  at_map_size = 7,         ///< bytes, 2 registers, most significant first
+  at_map_crc = 9,          ///< CRC-32 of the map, 2 registers
+  at_watchdog_state = 11,  ///< 0 not configured, 1 idle, 2 armed, 3 expired
+  at_watchdog_left = 12,   ///< remaining time, ms (65535: that or more)
+  at_statistics = 13,      ///< from here: 32-bit counters, most significant register first
+  at_uptime = 13,          ///< seconds
+  at_requests = 15,
+  at_exceptions = 17,
+  at_connections = 19,  ///< accepted since start
+  at_hardware_errors = 21,
+  at_watchdog_trips = 23,
+  at_events_lost = 25,    ///< edges of counted inputs, at least
+  at_exceptions_of = 27,  ///< by code: 01, 02, 03, 04
+  at_refusals = 35,       ///< connections of clients that may not connect
+  at_evictions = 37,      ///< connections closed to make room
+  at_foreign_units = 39,  ///< requests for another unit id
+  at_bad_frames = 41,     ///< connections closed for what they sent
+  at_timeouts = 43,       ///< connections closed for what they did not send or read in time
+  at_further = 45,   ///< how many registers of further fields follow; the first nodes do not have this one
+  at_serial = 46,    ///< of the machine, a hash, 4 registers, most significant first; 0: unknown
+  at_hostname = 50,  ///< 32 registers, ASCII, two characters each, the first one high; zeros behind it
+  size = 82,
+};
+
+constexpr std::uint32_t magic = 0x4F43504C;  // "OCPL"
+constexpr std::uint16_t layout = 1;
+
+/// Registers that the driver reads at connect: up to the statistics.
+constexpr std::uint16_t head_size = at_statistics;
+/// Registers that every node has. A driver takes any other layout version for a foreign coupler, so fields
+/// are only ever appended, and a reader asks first how many there are and ignores those that it does not
+/// know.
+constexpr std::uint16_t report_size = at_further;
+/// Registers of the further fields that this program knows.
+constexpr std::uint16_t further_size = size - at_serial;
+
+struct Head {
+  std::uint64_t fingerprint = 0;
+  std::uint32_t map_size = 0;
+  std::uint32_t map_crc = 0;
+};
+
+/// What a node of this map says of itself.
+Head head_of(const Map& map);
+
+/// Registers at_magic … at_map_crc + 1; the rest of the area is the node's own.
+void write_head(const Head& head, std::uint16_t* area);
+
+/// nullopt if the registers do not begin with the magic and a layout that this program knows: a foreign
+/// coupler.
+std::optional<Head> read_head(const std::array<std::uint16_t, head_size>& area);
+
+/// What at_watchdog_state holds, by value.
+constexpr std::array<std::string_view, 4> watchdog_states{"not configured", "idle", "armed", "expired"};
+
+/// A counter of the statistics.
+struct Counter {
+  std::uint16_t at;
+  std::string_view key;   ///< for programs
+  std::string_view text;  ///< for people
+};
+constexpr std::array<Counter, 15> counters{{
+    {at_requests, "requests", "requests answered"},
+    {at_exceptions, "exceptions", "of these, with an exception"},
+    {at_exceptions_of, "exceptions_01", "exception 01 (illegal function)"},
+    {at_exceptions_of + 2, "exceptions_02", "exception 02 (illegal data address)"},
+    {at_exceptions_of + 4, "exceptions_03", "exception 03 (illegal data value)"},
+    {at_exceptions_of + 6, "exceptions_04", "exception 04 (server device failure)"},
+    {at_foreign_units, "foreign_units", "requests for another unit id"},
+    {at_connections, "connections", "connections accepted"},
+    {at_refusals, "connections_refused", "connections refused by 'allow'"},
+    {at_evictions, "connections_evicted", "connections closed to make room"},
+    {at_bad_frames, "connections_bad_frames", "connections closed for a bad frame"},
+    {at_timeouts, "connections_timed_out", "connections closed by a timeout"},
+    {at_hardware_errors, "hardware_errors", "hardware errors"},
+    {at_events_lost, "events_lost", "events lost"},
+    {at_watchdog_trips, "watchdog_trips", "times the watchdog expired"},
+}};
+
+/// What every node says of itself.
+struct Report {
+  Head head;
+  std::uint16_t watchdog_state = 0;
+  std::uint16_t watchdog_left = 0;                      ///< ms
+  std::uint32_t uptime = 0;                             ///< s
+  std::array<std::uint32_t, counters.size()> counts{};  ///< in the order of `counters`
+};
+
+/// nullopt: as read_head().
+std::optional<Report> read_report(const std::array<std::uint16_t, report_size>& area);
+
+/// Which machine a node runs on: two nodes with one map are told apart by it.
+struct Machine {
+  std::uint64_t serial = 0;         ///< a hash; 0: unknown
+  std::array<char, 64> hostname{};  ///< zeros behind it, if it is shorter; empty: unknown
+};
+
+/// A name that is too long is cut off.
+Machine machine_of(std::string_view hostname, std::uint64_t serial);
+std::string_view hostname_of(const Machine& machine);
+
+/// Registers at_further … size.
+void write_machine(const Machine& machine, std::uint16_t* area);
+
+/// `further` is from at_serial on, as many registers as the node has; what it does not have stays unknown.
+Machine read_machine(Span<const std::uint16_t> further);
+
+/// Where a piece of the map's text is, for FC 20: two bytes a record, most significant first,
+/// records_per_file records a file, files from 1 upward; an odd last byte is followed by a zero.
+using modbus::FileRecord;
+
+/// The record of the `first`-th register of the text (first = byte offset / 2), as many registers as one
+/// request may carry without leaving the file or the text of `map_size` bytes.
+FileRecord record_at(std::uint32_t first, std::uint32_t map_size);
+
+}  // namespace coupler::identity

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <tl/expected.hpp>
+
+#include "coupler/base/enumeration.hpp"
+#include "coupler/map/table.hpp"
+
+namespace coupler::loader {
+
+/// What an address in the file counts.
+enum class Addressing : std::uint8_t {
+  zero_based,  ///< the number is the address on the wire, 0 … 65535, decimal or hexadecimal
+  /// Modicon's numbers count from 1. The digits as they are written, leading zeros included, decide what they
+  /// mean:
+  ///   1 … 4 digits  the number alone, of whichever table: 1 is address 0
+  ///   5 digits      the table's digit (0 coils, 1 discrete inputs, 3 input registers, 4 holding registers),
+  ///   then
+  ///                 the number 0001 … 9999: 40001 is address 0
+  ///   6 digits      the table's digit, then the number 00001 … 65536: 465536 is address 65535
+  /// So a number alone never has five digits: the ten thousandth input register is 310000, and 10000 is none.
+  modicon,
+};
+constexpr Enumeration<Addressing, 2> enumeration(Addressing) {
+  return {"Addressing", {{Addressing::zero_based, "zero_based"}, {Addressing::modicon, "modicon"}}};
+}
+
+struct AddressError {
+  std::string what;
+  std::string remedy;
+};
+
+/// The address on the wire.
+tl::expected<std::uint16_t, AddressError> parse_address(std::string_view text, Table table,
+                                                        Addressing addressing);
+
+/// As parse_address() reads it.
+std::string address_text(std::uint16_t address, Table table, Addressing addressing);
+
+/// The zero-based number looks like one of Modicon's for this table: 10001 … 19999 for discrete inputs.
+/// Coils' numbers look like any other.
+bool looks_like_modicon(std::uint16_t address, Table table);
+
+}  // namespace coupler::loader

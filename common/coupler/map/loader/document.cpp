@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/map/loader/document.hpp"
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "coupler/map/loader/json_comments.hpp"
+#include "coupler/map/loader/source_text.hpp"
+#include "coupler/map/loader/syntax.hpp"
+
+namespace coupler::loader {
+namespace {
+
+/// Nothing, written out. yaml-cpp's mark of nothing that is not written is somewhere else.
+bool is_null_word(std::string_view text) {
+  const std::string_view word = text.substr(0, text.find_first_of(" \t\r\n,]}"));
+  return word == "~" || word == "null" || word == "Null" || word == "NULL";
+}
+
+constexpr std::size_t deepest = 16;  // a map needs five
+
+/// Builds the tree from yaml-cpp's events, and looks at the text again wherever yaml-cpp lets mistakes pass.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  TreeBuilder(std::string_view text, bool json)
+      : text_(text), end_(position_of(text, text.size())), json_(json) {}
+
+  Entry take() && { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ == 1) return;
+    if (text_.substr(offset(mark), 3) == "---")
+      fail(mark, "a second document begins", "keep one map in a file");
+    fail(mark, "text after the end of the map", "remove it");
+  }
+  void OnDocumentEnd() override {}
+
+  void OnAnchor(const YAML::Mark& mark, const std::string& name) override {
+    fail(mark, fmt::format("anchors are not supported, as '&{}'", name),
+         "write the values out where they are used");
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    fail(mark, "aliases are not supported", "write the values out where they are used");
+  }
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
+    if (awaits_key())
+      fail(mark, "an entry without a key", "write 'key: value', and a key called null in quotes");
+    if (!stack_.empty() && stack_.back().has_key) check_colon(stack_.back());
+    Entry entry;
+    entry.at = position(mark);
+    add(std::move(entry), !is_null_word(text_.substr(std::min(offset(mark), text_.size()))));
+  }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                const std::string& value) override {
+    if (tag != "!" || text_[offset(mark)] == '!') check_tag(mark, tag);  // it is "!" of quoted text, too
+    check_text_at(mark, value, tag == "!");
+    if (awaits_key()) return set_key(mark, value);
+    Entry entry;
+    entry.kind = Entry::Kind::scalar;
+    entry.at = position(mark);
+    entry.text = value;
+    entry.quoted = tag == "!";
+    add(std::move(entry), false);
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                       YAML::EmitterStyle::value style) override {
+    open(mark, tag, style, Entry::Kind::list);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                  YAML::EmitterStyle::value style) override {
+    open(mark, tag, style, Entry::Kind::map);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  /// A list or map that is not complete.
+  struct Open {
+    Entry entry;
+    bool block = false;
+    bool has_key = false;  ///< of the value that comes next
+    std::string key;
+    Position key_at;
+    std::size_t key_offset = 0;
+  };
+
+  static std::size_t offset(const YAML::Mark& mark) { return static_cast<std::size_t>(mark.pos); }
+  /// yaml-cpp may mean the newline that was added to the text.
+  Position position(const YAML::Mark& mark) const {
+    if (offset(mark) >= text_.size()) return end_;
+    return {mark.line + 1, mark.column + 1};
+  }
+  [[noreturn]] void fail(const YAML::Mark& mark, std::string what, std::string remedy) const {
+    throw SyntaxError{position(mark), std::move(what), std::move(remedy)};
+  }
+
+  bool awaits_key() const {
+    return !stack_.empty() && stack_.back().entry.kind == Entry::Kind::map && !stack_.back().has_key;
+  }
+
+  void check_tag(const YAML::Mark& mark, const std::string& tag) const {
+    if (!tag.empty() && tag != "?") fail(mark, "tags are not supported", "remove the '!' and its name");
+  }
+
+  void check_text_at(const YAML::Mark& mark, const std::string& value, bool quoted) const {
+    if (quoted_end(text_, offset(mark)) == std::string_view::npos)
+      fail(mark, "the quote is never closed", "close it where the text ends");
+    if (quoted || !json_) return;
+    if (const auto missing = missing_comma(offset(mark), value))
+      throw SyntaxError{position_of(text_, *missing), "',' is missing here",
+                        "separate entries with ','; put text that contains blanks in quotes"};
+  }
+
+  void check_colon(const Open& map) const {
+    if (has_colon(text_, map.key_offset, map.key)) return;
+    throw SyntaxError{map.key_at, fmt::format("':' is missing after {}", shown(map.key)),
+                      "write 'key: value', with a blank after the ':'"};
+  }
+
+  void set_key(const YAML::Mark& mark, const std::string& key) {
+    if (key == "<<") fail(mark, "merge keys ('<<') are not supported", "write the keys out");
+    Open& map = stack_.back();
+    map.has_key = true;
+    map.key = key;
+    map.key_at = position(mark);
+    map.key_offset = offset(mark);
+  }
+
+  void open(const YAML::Mark& mark, const std::string& tag, YAML::EmitterStyle::value style,
+            Entry::Kind kind) {
+    check_tag(mark, tag);
+    if (awaits_key()) fail(mark, "a key is not text", "write 'key: value'");
+    if (stack_.size() == deepest)
+      fail(mark, "the values are nested too deep", "a map has at most five levels");
+    Open opened;
+    opened.block = style == YAML::EmitterStyle::Block;
+    opened.entry.kind = kind;
+    opened.entry.at = position(mark);
+    stack_.push_back(std::move(opened));
+  }
+
+  void close() {
+    Open closed = std::move(stack_.back());
+    stack_.pop_back();
+    add(std::move(closed.entry), closed.block);
+  }
+
+  /// `placeless`: nothing, or a block; yaml-cpp's mark is then somewhere behind the key.
+  void add(Entry entry, bool placeless) {
+    if (stack_.empty()) {
+      root_ = std::move(entry);
+      return;
+    }
+    Open& parent = stack_.back();
+    if (parent.has_key) {
+      entry.key = std::move(parent.key);
+      entry.key_at = parent.key_at;
+      if (placeless) entry.at = entry.key_at;
+      parent.has_key = false;
+    }
+    parent.entry.children.push_back(std::move(entry));
+  }
+
+  std::string_view text_;
+  Position end_;
+  bool json_;
+  int documents_ = 0;
+  std::vector<Open> stack_;
+  Entry root_;
+};
+
+/// With a newline at the end yaml-cpp reports an open quote's beginning to the builder instead of stopping.
+Entry build_tree(const std::string& text, bool json) {
+  std::string yaml = text + '\n';
+  indent_with_blanks(yaml);
+  std::istringstream in(yaml);
+  TreeBuilder builder(text, json);
+  try {
+    YAML::Parser parser(in);
+    if (!parser.HandleNextDocument(builder))
+      throw SyntaxError{{1, 1}, "the file is empty", "describe a coupler in it"};
+    while (parser.HandleNextDocument(builder)) {
+    }
+  } catch (const YAML::Exception& e) {
+    throw explain(text, e.mark.pos < 0 ? 0 : static_cast<std::size_t>(e.mark.pos), e.msg);
+  }
+  return std::move(builder).take();
+}
+
+}  // namespace
+
+std::optional<Entry> parse_document(std::string_view text, Problems& problems) {
+  text = without_byte_order_mark(text);
+  if (!check_text(text, problems)) return std::nullopt;
+  std::string source(text);
+  const bool json = is_json(source);
+  if (json && !blank_comments(source, problems)) return std::nullopt;
+  try {
+    return build_tree(source, json);
+  } catch (const SyntaxError& e) {
+    problems.error(e.at, e.what, e.remedy);
+    return std::nullopt;
+  }
+}
+
+}  // namespace coupler::loader

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/map/loader/address.hpp"
+#include "coupler/map/loader/key_row.hpp"
+#include "coupler/map/map.hpp"
+#include "coupler/modbus/limits.hpp"
+
+namespace coupler::loader {
+namespace {
+
+using K = ValueKind;
+using S = Section;
+
+constexpr S bits = S::coil | S::discrete_input;
+constexpr S registers = S::input_register | S::holding_register;
+constexpr S point = bits | registers;
+constexpr S line = S::coil_line | S::input_line;
+constexpr S treatment = point | S::defaults;
+constexpr S writing = S::coil | S::holding_register | S::defaults;
+
+constexpr std::string_view byte_types = "BYTE|SINT|USINT|CHAR";
+constexpr double most_address = 65535;
+constexpr double most_seconds = 3600;
+constexpr double most_double = std::numeric_limits<double>::max();
+
+constexpr Key keys[] = {
+    // The map: the origin's keys.
+    origin("name", S::map, K::ros_name, "press", "namespace of the topics").needed(),
+    origin("address", S::map, K::host, "192.168.0.10", "host name or IP address of the coupler"),
+    origin("port", S::map, K::integer, "502", "TCP port").otherwise("502").within(1, 65535),
+    origin("unit", S::map, K::integer, "1", "unit id").otherwise("1").within(0, 255),
+    origin("timeout", S::map, K::seconds, "3", "longest wait for a reply")
+        .otherwise("3")
+        .within(0.001, most_seconds),
+    origin("rate", S::map, K::number, "10", "polling rate in Hz").otherwise("10").within(0.001, 10000),
+    origin("byteorder_reverse", S::map, K::boolean, "false", "the low byte of a register comes first")
+        .otherwise("false"),
+    origin("wordorder_reverse", S::map, K::boolean, "false",
+           "the most significant register of a value comes first")
+        .otherwise("false"),
+    origin("discrete_read_continuous", S::map, K::boolean, "false",
+           "unmapped bits between points may be read")
+        .otherwise("false"),
+    origin("discrete_read_separation_gap", S::map, K::integer, "64", "gap from which bits are read apart")
+        .otherwise("64")
+        .within(0, most_address),
+    origin("registers_read_continuous", S::map, K::boolean, "false",
+           "unmapped registers between points may be read")
+        .otherwise("false"),
+    origin("registers_read_separation_gap", S::map, K::integer, "12",
+           "gap from which registers are read apart")
+        .otherwise("12")
+        .within(0, most_address),
+    origin("register_read_separation_gap", S::map, K::integer, "12", "another spelling")
+        .spells("registers_read_separation_gap")
+        .within(0, most_address),
+    origin("mapping", S::map, K::section, "{coils: {valve: 0}}", "the points, by table")
+        .holds(S::mapping)
+        .needed(),
+    // The map: this project's keys.
+    project("addressing", S::map, K::choice, "modicon", "what the addresses count")
+        .otherwise("zero_based")
+        .one_of<Addressing>(),
+    project("preset", S::map, K::preset, "wago_750", "a kind of coupler, and what is true of all of them"),
+    project("limits", S::map, K::section, "{read_registers: 64}", "what the device takes in one request")
+        .holds(S::limits),
+    project("sim", S::map, K::section, "[{from: valve, to: valve_is_open}]", "wires of the simulated chip")
+        .lists(S::wire),
+    project("reserve", S::map, K::section, "[{table: coils, from: 8, to: 15}]", "addresses kept free")
+        .lists(S::area),
+    project("listen", S::map, K::ip_address, "127.0.0.1", "interface of the node"),
+    project("allow", S::map, K::list, "[192.168.0.0/24, 10.0.0.7]", "who may connect to the node"),
+    project("watchdog", S::map, K::section, "{timeout: 500ms}", "safe state when the master is silent")
+        .holds(S::watchdog),
+    project("readback", S::map, K::boolean, "true", "compare a line's level after driving it")
+        .otherwise("false"),
+    // The tables.
+    origin("coils", S::mapping, K::points, "{valve: 0}", "bits that can be written").holds(S::coil),
+    origin("discrete_inputs", S::mapping, K::points, "{button: 0}", "bits that can be read")
+        .holds(S::discrete_input),
+    origin("input_registers", S::mapping, K::points, "{weight: {address: 0, type: INT}}",
+           "registers that can be read")
+        .holds(S::input_register),
+    origin("holding_registers", S::mapping, K::points, "{speed: {address: 0, type: INT}}",
+           "registers that can be written")
+        .holds(S::holding_register),
+    // Points.
+    origin("address", point, K::address, "0", "where the point is in its table"),
+    origin("type", registers, K::choice, "INT", "data type of IEC 61131-3").needed().one_of<codec::Type>(),
+    origin("offset", registers, K::choice, "high", "which byte of the register an 8-bit value is")
+        .only_for(byte_types)
+        .needed_with("address")
+        .one_of<codec::Half>(),
+    origin("length", registers, K::integer, "12", "bytes of a STRING")
+        .only_for("STRING")
+        .needed()
+        .within(1, 2 * modbus::max_read_registers),
+    origin("encoding", registers, K::choice, "utf-8", "how a STRING is encoded")
+        .only_for("STRING")
+        .otherwise("utf-8")
+        .one_of<codec::Encoding>(),
+    origin("ignore_byteorder", registers, K::boolean, "true",
+           "a STRING's first character is in the high byte")
+        .only_for("STRING")
+        .otherwise("false"),
+    project("order", registers, K::choice, "ABCD",
+            "order of the bytes, A the most significant; AB or BA for one register")
+        .one_of<codec::Order>(),
+    project("bit", registers, K::integer, "3", "which bit of the register a BOOL is")
+        .only_for("BOOL")
+        .needed_with("address")
+        .within(0, 15),
+    project("description", point, K::text, "the left door", "for people"),
+    project("units", point, K::text, "mm", "for people"),
+    project("initial", point, K::value, "0", "value when the node starts"),
+    project("access", point, K::choice, "read", "what the master may do with it").one_of<Access>(),
+    project("counter", registers, K::section, "{of: pulse, edge: rising}",
+            "counts the edges of a discrete input")
+        .holds(S::edge),
+    project("latched", S::coil | S::holding_register, K::section, "{of: pulse, edge: rising}",
+            "set by an edge of a discrete input, cleared by writing 0")
+        .holds(S::edge),
+    project("line", S::coil, K::text, "{chip: gpiochip0, offset: 17}", "the GPIO line; just its name will do")
+        .holds(S::coil_line),
+    project("line", S::discrete_input, K::text, "{chip: gpiochip0, offset: 17}",
+            "the GPIO line; just its name will do")
+        .holds(S::input_line),
+    project("safe", S::coil, K::choice, "off",
+            "what the output does when nobody is in command; an array takes a list of on and off, too")
+        .otherwise("off")
+        .one_of<Safe>()
+        .or_bits(),
+    project("active_low", bits | line, K::boolean, "true", "on is the low level").otherwise("false"),
+    project("bias", bits | line, K::choice, "pull_up", "the line's resistor").one_of<Bias>(),
+    project("drive", S::coil | S::coil_line, K::choice, "open_drain", "how the line is driven")
+        .otherwise("push_pull")
+        .one_of<Drive>(),
+    project("debounce", S::discrete_input | S::input_line, K::duration, "5ms",
+            "how long a level must last to count")
+        .within(0, 60),
+    project("count", point, K::integer, "4", "an array of so many values")
+        .otherwise("1")
+        .within(1, modbus::max_read_bits),
+    project("scale", registers, K::number, "0.1", "published value = raw × gain + offset").holds(S::scale),
+    project("iio", registers, K::section, "{device: adc0, channel: voltage0}", "an analogue channel")
+        .holds(S::iio),
+    project("pwm", S::holding_register, K::section, "{chip: pwmchip0, channel: 0, period: 1ms}",
+            "a PWM channel; the value is its duty in percent")
+        .holds(S::pwm),
+    project("safe", S::holding_register, K::value, "0", "value when nobody is in command; or hold"),
+    // How the host treats a point: for one, or in `defaults:` for all.
+    project("rate", treatment, K::number, "1", "polling rate in Hz").within(0.001, 10000),
+    project("publish", treatment, K::choice, "on_change", "when a value is published")
+        .otherwise("always")
+        .one_of<HostOptions::Publish>(),
+    project("deadband", registers | S::defaults, K::number, "0.5", "changes up to this are not published")
+        .otherwise("0")
+        .within(0, most_double),
+    project("max_interval", treatment, K::duration, "1s", "the longest silence of a topic")
+        .within(0, most_seconds),
+    project("latch", treatment, K::boolean, "true", "late subscribers get the last value").otherwise("false"),
+    project("queue_size", treatment, K::integer, "10", "messages that wait for a subscriber")
+        .otherwise("10")
+        .within(1, 10000),
+    project("write_function", writing, K::choice, "single", "function codes of writes: 5 and 6, or 15 and 16")
+        .one_of<HostOptions::WriteFunction>(),
+    project("verify_write", writing, K::boolean, "true", "read back after a write").otherwise("false"),
+    project("write_queue", writing, K::choice, "every", "which of the waiting writes are sent")
+        .otherwise("latest")
+        .one_of<HostOptions::WriteQueue>(),
+    project("deadman", writing, K::section, "{timeout: 1s, value: 0}",
+            "what is written when no message comes")
+        .holds(S::deadman),
+    project("read_address", S::coil | S::holding_register, K::address, "512", "where the output reads back"),
+    // The map: the host's manners.
+    project("defaults", S::map, K::section, "{rate: 5}", "how the host treats all points").holds(S::defaults),
+    project("on_reconnect", S::map, K::choice, "restore", "what becomes of outputs when the link returns")
+        .otherwise("drop")
+        .one_of<OnReconnect>(),
+    project("on_shutdown", S::map, K::choice, "safe", "what becomes of outputs when the driver ends")
+        .otherwise("hold")
+        .one_of<OnShutdown>(),
+    project("poll", S::map, K::choice, "subscribed", "which points the driver reads")
+        .otherwise("all")
+        .one_of<Poll>(),
+    project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
+            "addresses that the device refuses")
+        .lists(S::area),
+    project("$schema", S::map, K::text, "map.schema.json", "in a JSON file: the schema, for editors"),
+    project("table", S::area, K::choice, "coils", "the area's table").needed().one_of<Table>(),
+    project("from", S::area, K::address, "8", "its first address").needed(),
+    project("to", S::area, K::address, "15", "its last address").needed(),
+    // `scale:`, `iio:`, `pwm:`, `deadman:`
+    project("gain", S::scale, K::number, "0.1", "raw is multiplied by it").otherwise("1"),
+    project("offset", S::scale, K::number, "-40", "and this is added").otherwise("0"),
+    project("device", S::iio, K::text, "adc0", "name or label of the device, or iio:device0").needed(),
+    project("channel", S::iio, K::text, "voltage0", "the channel's id").needed(),
+    project("chip", S::pwm, K::text, "pwmchip0", "the PWM chip").needed(),
+    project("channel", S::pwm, K::integer, "0", "its channel").needed().within(0, 255),
+    project("period", S::pwm, K::duration, "1ms", "of the pulses").needed().within(1e-6, 10),
+    project("timeout", S::deadman, K::duration, "1s", "the longest silence of the topic")
+        .needed()
+        .within(0.001, most_seconds),
+    project("value", S::deadman, K::value, "0", "what is written then").needed(),
+    // `line:`
+    project("chip", line, K::text, "gpiochip0", "the chip: name, device file or label"),
+    project("offset", line, K::integer, "17", "the line's number on the chip").within(0, 65535),
+    project("name", line, K::text, "GPIO17", "the line's name, instead of chip and offset"),
+    // `limits:`
+    project("read_registers", S::limits, K::integer, "125", "registers in one read")
+        .otherwise("125")
+        .within(1, modbus::max_read_registers),
+    project("read_bits", S::limits, K::integer, "2000", "bits in one read")
+        .otherwise("2000")
+        .within(1, modbus::max_read_bits),
+    project("write_registers", S::limits, K::integer, "123", "registers in one write")
+        .otherwise("123")
+        .within(1, modbus::max_write_registers),
+    project("write_bits", S::limits, K::integer, "1968", "bits in one write")
+        .otherwise("1968")
+        .within(1, modbus::max_write_bits),
+    project("request_gap", S::limits, K::duration, "5ms", "pause between a reply and the next request")
+        .otherwise("0ms")
+        .within(0, most_seconds),
+    project("connect_delay", S::limits, K::duration, "100ms", "pause after connecting")
+        .otherwise("0ms")
+        .within(0, most_seconds),
+    project("connections", S::limits, K::integer, "1", "connections that the device takes")
+        .otherwise("1")
+        .within(1, 65535),
+    project("mask_write", S::limits, K::boolean, "true", "the device has FC 22").otherwise("false"),
+    // `sim:`
+    project("from", S::wire, K::text, "valve", "the coil that drives the wire"),
+    project("to", S::wire, K::text, "valve_is_open", "the discrete input at its end").needed(),
+    project("invert", S::wire, K::boolean, "true", "the input is on when the coil is off").otherwise("false"),
+    project("square", S::wire, K::duration, "1s", "a square wave instead of a coil: its period")
+        .within(0.001, most_seconds),
+    // `counter:` and `latched:`
+    project("of", S::edge, K::text, "pulse", "the discrete input").needed(),
+    project("edge", S::edge, K::choice, "rising", "which of its edges").otherwise("rising").one_of<Edge>(),
+    // `watchdog:`
+    project("timeout", S::watchdog, K::duration, "500ms", "the longest silence of a master")
+        .needed()
+        .within(0.01, most_seconds),
+    project("fed_by", S::watchdog, K::choice, "any", "which requests count")
+        .otherwise("any")
+        .one_of<Watchdog::FedBy>(),
+    project("recovery", S::watchdog, K::choice, "automatic", "how outputs are freed again")
+        .otherwise("automatic")
+        .one_of<Watchdog::Recovery>(),
+    project("heartbeat", S::watchdog, K::address, "100", "the register that a PLC's program watches"),
+};
+
+}  // namespace
+
+Span<const Key> all_keys() { return keys; }
+
+}  // namespace coupler::loader

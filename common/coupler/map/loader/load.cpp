@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/map/loader/load.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <optional>
+
+#include <fmt/format.h>
+#include <tl/expected.hpp>
+
+#include "coupler/map/loader/document.hpp"
+#include "coupler/map/loader/map_reader.hpp"
+#include "coupler/map/loader/source_text.hpp"
+#include "coupler/map/lock/lock.hpp"
+
+namespace coupler {
+namespace {
+
+/// EFBIG: it has more than max_file_size bytes; not all of them were read.
+tl::expected<std::string, int> read_all(std::istream& in) {
+  std::string text;
+  std::array<char, 65536> piece{};
+  do {
+    in.read(piece.data(), piece.size());
+    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+    if (text.size() > max_file_size) return tl::make_unexpected(EFBIG);
+  } while (in);
+  return text;
+}
+
+/// The text, or the system's error number.
+tl::expected<std::string, int> read_file(const std::string& path) {
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return tl::make_unexpected(errno);
+  auto text = read_all(in);
+  if (in.bad()) return tl::make_unexpected(EISDIR);  // or another failed read, of which no number is left
+  return text;
+}
+
+LoadResult unreadable(const std::string& path, int error, std::string remedy) {
+  const std::string what =
+      error == EFBIG ? fmt::format("the file has more than {} MiB, and no map has", max_file_size >> 20)
+                     : fmt::format("the file cannot be read: {}", std::strerror(error));
+  return {nullptr, {{Diagnostic::Severity::error, path, 0, 0, what, std::move(remedy)}}};
+}
+
+/// The text that a node serves is the same map. Where addresses go is known for texts that somebody would
+/// write; another reading tells about the others.
+void check_filled_in(const Map& map, loader::Position first, loader::Problems& problems) {
+  const LoadResult served = load_map_with_lock(map.text, "", LockFile{}, map.name);
+  if (served.map != nullptr && served.map->map().fingerprint == map.fingerprint) return;
+  const auto error =
+      std::find_if(served.diagnostics.begin(), served.diagnostics.end(),
+                   [](const Diagnostic& d) { return d.severity == Diagnostic::Severity::error; });
+  problems.error(first,
+                 fmt::format("the addresses that the map leaves out cannot be filled in ({})",
+                             error == served.diagnostics.end() ? "it would be another map" : error->what),
+                 "write them into the map");
+}
+
+LoadResult load(std::string_view text, std::string_view file, LockFile lock, std::string_view name,
+                bool served) {
+  lock::Parsed known;
+  const std::string lock_text = lock.text.value_or("");
+  if (lock.text) known = lock::parse(*lock.text, lock.path);
+  // The map's own problems are told too; what its points would get beside a broken lock does not matter.
+  if (!known.diagnostics.empty()) lock.use = LockUse::renew;
+  loader::Placement placement{std::string(file), std::move(lock), std::move(known.lock), {}, {}};
+  placement.problems = std::move(known.diagnostics);
+
+  loader::Problems problems(file);
+  const auto map = OwnedMap::make();
+  loader::Context context{problems, *map};
+  context.name = name;
+  context.served = served;
+  if (const auto root = loader::parse_document(text, problems))
+    loader::read_map(*root, text, placement, context);
+  if (!problems.has_errors() && context.filled_in.line > 0)
+    check_filled_in(map->map(), context.filled_in, problems);
+  LoadResult result{nullptr, std::move(placement.problems)};
+  quote(result.diagnostics, lock_text);
+  if (!problems.has_errors() && !has_errors(result.diagnostics)) {
+    result.map = map;
+    result.point_lines = std::move(context.point_lines);
+    result.lock = std::move(placement.renewed);
+  }
+  Diagnostics of_map = std::move(problems).sorted();
+  quote(of_map, loader::without_byte_order_mark(text));
+  for (Diagnostic& diagnostic : of_map) result.diagnostics.push_back(std::move(diagnostic));
+  return result;
+}
+
+}  // namespace
+
+LoadResult load_map(std::string_view text, std::string_view file) {
+  return load(text, file, LockFile{}, {}, false);
+}
+
+LoadResult load_served_map(std::string_view text, std::string_view file) {
+  return load(text, file, LockFile{}, {}, true);
+}
+
+LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock,
+                              std::string_view name) {
+  return load(text, file, std::move(lock), name, false);
+}
+
+LoadResult load_map_file(const std::string& path, LockUse use, std::string_view name) {
+  if (path == "-") {
+    const auto text = read_all(std::cin);
+    if (!text) return unreadable("<stdin>", text.error(), "give it a map");
+    return load_map_with_lock(*text, "<stdin>", LockFile{}, name);
+  }
+  const auto text = read_file(path);
+  if (!text) return unreadable(path, text.error(), "give the path of a map");
+  LockFile lock{path + ".lock", std::nullopt, use};
+  auto lock_text = read_file(lock.path);
+  if (!lock_text && lock_text.error() != ENOENT)
+    return unreadable(lock.path, lock_text.error(),
+                      "it is the lock of the map: make it a file that can be read");
+  if (lock_text) lock.text = std::move(*lock_text);
+  return load_map_with_lock(*text, path, std::move(lock), name);
+}
+
+}  // namespace coupler

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/map/loader/names.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "coupler/map/loader/letters.hpp"
+
+namespace coupler::loader {
+namespace {
+
+constexpr std::string_view rule =
+    "begin with a letter and use letters, digits and '_', with '/' between parts";
+
+using FirstOfName = std::unordered_map<std::string_view, const DraftPoint*>;
+
+/// `name/write` is where the driver listens for values of `name`.
+const DraftPoint* written_by(std::string_view name, const FirstOfName& first) {
+  constexpr std::string_view suffix = "/write";
+  if (name.size() <= suffix.size() || name.substr(name.size() - suffix.size()) != suffix) return nullptr;
+  const auto found = first.find(name.substr(0, name.size() - suffix.size()));
+  return found != first.end() && is_writable(found->second->point) ? found->second : nullptr;
+}
+
+/// ROS 2 takes no part of a name that begins with a digit, as in "a/1b"; ROS 1 does.
+bool is_ros2_name(std::string_view name) {
+  for (std::size_t slash = name.find('/'); slash != std::string_view::npos; slash = name.find('/', slash + 1))
+    if (slash + 1 < name.size() && is_digit(name[slash + 1])) return false;
+  return true;
+}
+
+void warn_of_ros1_name(std::string_view name, Position at, Context& context) {
+  if (!is_ros2_name(name))
+    context.problems.warning(at, fmt::format("{} is a name in ROS 1 only", shown(name)),
+                             "for ROS 2 begin each part behind a '/' with a letter");
+}
+
+void check_topic(const DraftPoint& draft, const FirstOfName& first, Context& context) {
+  const std::string_view name = draft.point.name;
+  if (!is_relative_ros_name(name)) {
+    context.problems.error(draft.name_at, fmt::format("{} is not a valid ROS name", shown(name)),
+                           std::string(rule));
+  } else if (name == "online" || name == "status") {
+    context.problems.error(draft.name_at, fmt::format("'{}' is a topic of the driver itself", name),
+                           "give the point another name");
+  } else if (const DraftPoint* other = written_by(name, first)) {
+    context.problems.error(draft.name_at,
+                           fmt::format("{} is the topic that writes {} (line {})", shown(name),
+                                       shown(other->point.name), other->name_at.line),
+                           "give the point another name", {{other->name_at, "it is here"}});
+  } else {
+    warn_of_ros1_name(name, draft.name_at, context);
+  }
+}
+
+}  // namespace
+
+bool is_relative_ros_name(std::string_view name) {
+  if (name.empty() || !is_letter(name.front()) || name.back() == '/') return false;
+  const bool characters = std::all_of(
+      name.begin(), name.end(), [](char c) { return is_letter(c) || is_digit(c) || c == '_' || c == '/'; });
+  return characters && name.find("//") == std::string_view::npos;
+}
+
+void check_map_name(std::string_view name, Position at, Context& context) {
+  if (!is_relative_ros_name(name))
+    context.problems.error(at, fmt::format("{} is not a valid ROS name", shown(name)), std::string(rule));
+  else
+    warn_of_ros1_name(name, at, context);
+}
+
+void check_point_names(const DraftPoints& points, Context& context) {
+  FirstOfName first;
+  for (const DraftPoint& draft : points) {
+    const auto [found, is_new] = first.emplace(draft.point.name, &draft);
+    if (!is_new)
+      context.problems.error(draft.name_at,
+                             fmt::format("{} is already the name of a point, in line {}",
+                                         shown(draft.point.name), found->second->name_at.line),
+                             "give every point of the map a name of its own",
+                             {{found->second->name_at, "the other is here"}});
+  }
+  for (const DraftPoint& draft : points) check_topic(draft, first, context);
+}
+
+}  // namespace coupler::loader

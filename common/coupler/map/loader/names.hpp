@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include "coupler/map/loader/context.hpp"
+#include "coupler/map/loader/draft_point.hpp"
+
+namespace coupler::loader {
+
+/// A relative ROS graph name: a letter, then letters, digits, '_' and single '/' that do not end it.
+bool is_relative_ros_name(std::string_view name);
+
+/// The map's name is a namespace.
+void check_map_name(std::string_view name, Position at, Context& context);
+
+/// Points' names are ROS names, unique across the tables, and leave the driver's own topics alone.
+void check_point_names(const DraftPoints& points, Context& context);
+
+}  // namespace coupler::loader

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/map/loader/point_reader.hpp"
+
+#include <fmt/format.h>
+
+#include "coupler/map/loader/point_keys.hpp"
+#include "coupler/map/loader/reader.hpp"
+
+namespace coupler::loader {
+namespace {
+
+void read_address(const Entry* entry, Addressing addressing, DraftPoint& draft, Context& context) {
+  draft.addressless = entry == nullptr;
+  if (draft.addressless) return;
+  draft.address_at = entry->at;
+  if (entry->kind != Entry::Kind::scalar || entry->quoted) {
+    context.problems.error(entry->at, fmt::format("the address is a number, not {}", shown(*entry)),
+                           "write the number, without quotes");
+    return;
+  }
+  const auto address = parse_address(entry->text, draft.point.table, addressing);
+  if (address)
+    draft.point.address = *address;
+  else
+    context.problems.error(entry->at, address.error().what, address.error().remedy);
+}
+
+void check_range(const DraftPoint& draft, Context& context) {
+  const Point& point = draft.point;
+  const std::uint32_t size = std::uint32_t{point.count} * codec::registers(point.format);
+  if (modbus::Range::make(point.address, size)) return;
+  context.problems.error(draft.address_at,
+                         fmt::format("{} needs {} {} from {} on, past 65535", shown(point.name), size,
+                                     holds_bits(point.table) ? "addresses" : "registers", point.address),
+                         fmt::format("the last address for it is {}", 65536 - size));
+}
+
+/// An array's elements stand one behind the other, so they must fill whole registers.
+void read_count(const Reader& reader, Point& point, Context& context) {
+  const Entry* entry = reader.find("count");
+  if (entry == nullptr) return;
+  reader.integer("count", point.count);
+  if (point.count == 1 || holds_bits(point.table)) return;
+  const codec::Type type = point.format.type;
+  if (type == codec::Type::STRING || is_partial(point))
+    context.problems.error(entry->key_at, fmt::format("there are no arrays of {}", to_string(type)),
+                           type == codec::Type::STRING
+                               ? "write one point for each text"
+                               : "write one point each, or use a type of whole registers");
+}
+
+/// Hardware is behind single values.
+void check_array(const Reader& reader, const Point& point, Context& context) {
+  if (point.count == 1) return;
+  for (const std::string_view key : {"line", "counter", "latched", "iio", "pwm"}) {
+    if (find_key(key, section_of(point.table)) == nullptr) continue;
+    if (const Entry* entry = reader.find(key))
+      context.problems.error(entry->key_at, fmt::format("'{}' does not apply to an array", key),
+                             "write one point for each value");
+  }
+}
+
+void read_read_address(const Reader& reader, Addressing addressing, Point& point, Context& context) {
+  const Entry* entry = is_writable(point.table) ? reader.find("read_address") : nullptr;
+  if (entry == nullptr) return;
+  const auto address =
+      parse_address(entry->kind == Entry::Kind::scalar ? entry->text : "", point.table, addressing);
+  if (!address)
+    context.problems.error(entry->at, address.error().what, address.error().remedy);
+  else if (!is_readable(point))
+    context.problems.error(entry->key_at,
+                           "'read_address' is for a point that is read, this one has 'access: write'",
+                           "remove one of the two");
+  else if (!modbus::Range::make(*address, range(point).count()))
+    context.problems.error(entry->at,
+                           fmt::format("{} does not fit there, it would end past 65535", shown(point.name)),
+                           "write a smaller address");
+  else
+    point.read_address = *address;
+}
+
+void read_access(const Reader& reader, Point& point, Context& context) {
+  const Entry* entry = reader.find("access");
+  if (entry == nullptr) return;
+  Access access = point.access;
+  reader.choice("access", access);
+  if (access == Access::read || is_writable(point.table))
+    point.access = access;
+  else
+    context.problems.error(entry->at, fmt::format("{} can only be read", to_string(point.table)),
+                           "remove 'access'");
+}
+
+void check_has_options(const Entry& entry, Context& context) {
+  if (entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null) return;
+  const std::string given = entry.kind == Entry::Kind::scalar ? entry.text.substr(0, 10) : "0";
+  context.problems.error(
+      entry.at, fmt::format("{} has no type", shown(entry.key)),
+      fmt::format("write it as in '{}: {{address: {}, type: INT}}'", entry.key.substr(0, 40), given));
+}
+
+}  // namespace
+
+DraftPoint read_place(const Entry& entry, Table table, const Reader& options, const PointDefaults& defaults,
+                      Context& context) {
+  DraftPoint draft;
+  draft.entry = &entry;
+  draft.name_at = entry.key_at;
+  draft.address_at = entry.key_at;
+  Point& point = draft.point;
+  point.name = context.map.keep(entry.key);
+  point.table = table;
+  point.access = is_writable(table) ? Access::read_write : Access::read;
+  const bool bits = holds_bits(table);
+  const bool has_options = entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null;
+  const std::size_t errors = context.problems.errors();
+  if (!bits) check_has_options(entry, context);
+  read_address(bits && !has_options ? &entry : options.find("address"), defaults.addressing, draft, context);
+  if (!bits && has_options) read_format(options, entry, defaults.order, point.format, context);
+  draft.part_given = !bits && (options.has("offset") || options.has("bit"));
+  if (context.problems.errors() == errors) read_count(options, point, context);
+  if (context.problems.errors() == errors && !draft.addressless) check_range(draft, context);
+  const bool good = context.problems.errors() == errors;
+  draft.placed = good && !draft.addressless;
+  draft.addressless = good && draft.addressless;
+  read_access(options, point, context);
+  if (good) read_read_address(options, defaults.addressing, point, context);
+  return draft;
+}
+
+void read_rest(const Reader& options, const PointDefaults& defaults, DraftPoint& draft, Context& context) {
+  Point& point = draft.point;
+  if (draft.placed && !holds_bits(point.table)) read_scale(options, point, context);
+  if (const Entry* initial = options.find("initial"); draft.placed && initial != nullptr)
+    point.initial = read_value("initial", *initial, point, context);
+  if (holds_bits(point.table))
+    read_line(options, draft, context);
+  else
+    read_channel(options, draft, context);
+  read_edges(options, draft, context);
+  check_array(options, point, context);
+  read_host_options(options, defaults.host, draft, context);
+  options.text("description", point.description);
+  options.text("units", point.units);
+}
+
+}  // namespace coupler::loader

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/map/loader/reader.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "coupler/map/loader/letters.hpp"
+#include "coupler/map/loader/nearest.hpp"
+#include "coupler/map/loader/scalar.hpp"
+
+namespace coupler::loader {
+namespace {
+
+std::string_view canonical(const Key& key) { return key.same_as.empty() ? key.name : key.same_as; }
+
+bool is_bare(const Entry& value) { return value.kind == Entry::Kind::scalar && !value.quoted; }
+
+/// "UTF_8" and "utf-8" are the same word in the origin's files, not in this project's keys.
+std::string folded(std::string_view word, Owner owner) {
+  std::string result(word);
+  if (owner == Owner::project) return result;
+  result.erase(std::remove_if(result.begin(), result.end(), [](char c) { return c == '-' || c == '_'; }),
+               result.end());
+  return lower(result);
+}
+
+/// A word that is good elsewhere may still be another one with a letter wrong.
+std::string slip(std::string_view word, const std::vector<std::string_view>& candidates) {
+  const std::string_view near = nearest(word, candidates);
+  const bool one_letter = !near.empty() && edit_distance(lower(word), near) == 1;
+  return one_letter ? fmt::format("; or did you mean '{}'?", near) : std::string();
+}
+
+std::string range_text(const Key& key, std::string_view unit) {
+  const bool has_least = key.least != std::numeric_limits<double>::lowest();
+  return has_least ? fmt::format(" from {} to {}{}", key.least, key.most, unit) : std::string();
+}
+
+}  // namespace
+
+Reader::Reader(const Entry& map, Section section, Context& context) : section_(section), context_(context) {
+  if (map.kind != Entry::Kind::map) return;
+  for (const Entry& entry : map.children) check_key(entry);
+}
+
+void Reader::check_key(const Entry& entry) {
+  const Key* key = find_key(entry.key, section_);
+  if (key == nullptr) return unknown(entry);
+  const Field* first = field(canonical(*key));
+  if (first != nullptr)
+    return context_.problems.error(
+        entry.key_at,
+        fmt::format("'{}' is given twice, first in line {}", key->name, first->value->key_at.line),
+        "keep one of the two", {{first->value->key_at, "the first is here"}});
+  fields_.push_back({key, &entry});
+}
+
+void Reader::unknown(const Entry& entry) const {
+  const Section elsewhere = sections_with(entry.key);
+  if (elsewhere != Section::none) {
+    std::string places;
+    for (unsigned bit = 1; bit <= static_cast<unsigned>(Section::last); bit <<= 1U)
+      if (overlap(elsewhere, static_cast<Section>(bit)))
+        places += fmt::format("{}{}", places.empty() ? "" : ", ", describe(static_cast<Section>(bit)));
+    return context_.ignored(
+        entry.key_at, fmt::format("'{}' does not apply to {}", entry.key, describe(section_)),
+        fmt::format("remove it; it is a key of {}{}", places, slip(entry.key, key_names(section_))));
+  }
+  context_.ignored(entry.key_at, fmt::format("unknown key {} of {}", shown(entry.key), describe(section_)),
+                   suggestion(entry.key, key_names(section_)));
+}
+
+const Reader::Field* Reader::field(std::string_view key) const {
+  const auto found =
+      std::find_if(fields_.begin(), fields_.end(), [&](const Field& f) { return canonical(*f.key) == key; });
+  return found == fields_.end() ? nullptr : &*found;
+}
+
+const Entry* Reader::find(std::string_view key) const {
+  assert(find_key(key, section_) != nullptr);
+  const Field* found = field(key);
+  return found == nullptr ? nullptr : found->value;
+}
+
+std::string_view Reader::missing() const {
+  for (const Key& key : all_keys())
+    if (key.required && overlap(key.sections, section_) && field(key.name) == nullptr) return key.name;
+  return {};
+}
+
+std::optional<Reader> Reader::inside(std::string_view key, std::string_view expected) const {
+  const Entry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  if (entry->kind == Entry::Kind::map) return Reader(*entry, field(key)->key->inside, context_);
+  wrong(key, expected);
+  return std::nullopt;
+}
+
+void Reader::wrong(std::string_view key, std::string_view expected) const {
+  const Field& f = *field(key);
+  context_.problems.error(f.value->at,
+                          fmt::format("'{}' is {}, not {}", f.key->name, expected, shown(*f.value)),
+                          fmt::format("write it as in '{}: {}'", f.key->name, f.key->example));
+}
+
+void Reader::ignored(std::string_view key, std::string what, std::string remedy) const {
+  context_.ignored(field(key)->value->key_at, std::move(what), std::move(remedy));
+}
+
+std::optional<std::int64_t> Reader::integer_in_range(std::string_view key) const {
+  const Entry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const Key& known = *field(key)->key;
+  const auto value = is_bare(*entry) ? parse_integer(entry->text) : std::nullopt;
+  if (value && static_cast<double>(*value) >= known.least && static_cast<double>(*value) <= known.most)
+    return value;
+  wrong(key, "a whole number" + range_text(known, ""));
+  return std::nullopt;
+}
+
+void Reader::number(std::string_view key, double& out) const {
+  const Entry* entry = find(key);
+  if (entry == nullptr) return;
+  const Key& known = *field(key)->key;
+  const auto value = is_bare(*entry) ? parse_number(entry->text) : std::nullopt;
+  if (value && *value >= known.least && *value <= known.most)
+    out = *value;
+  else
+    wrong(key, "a number" + range_text(known, ""));
+}
+
+void Reader::boolean(std::string_view key, bool& out) const {
+  const Entry* entry = find(key);
+  if (entry == nullptr) return;
+  const auto value = is_bare(*entry) ? parse_boolean(entry->text) : std::nullopt;
+  if (value)
+    out = *value;
+  else
+    wrong(key, "true or false");
+}
+
+void Reader::text(std::string_view key, std::string_view& out) const {
+  const Entry* entry = find(key);
+  if (entry == nullptr) return;
+  if (entry->kind == Entry::Kind::scalar)
+    out = context_.map.keep(entry->text);
+  else
+    wrong(key, "text");
+}
+
+std::optional<std::chrono::microseconds> Reader::duration_in_range(std::string_view key) const {
+  const Entry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const Key& known = *field(key)->key;
+  const bool seconds = known.kind == ValueKind::seconds;
+  std::optional<std::chrono::microseconds> value;
+  if (entry->kind == Entry::Kind::scalar) {
+    const bool bare_number = seconds && !entry->quoted && parse_number(entry->text).has_value();
+    value = parse_duration(bare_number ? entry->text + "s" : entry->text);
+  }
+  const double in_seconds = value ? std::chrono::duration<double>(*value).count() : -1;
+  if (in_seconds >= known.least && in_seconds <= known.most) return value;
+  wrong(key, fmt::format("a duration{} with its unit (us, ms, s, min){}", range_text(known, " s"),
+                         seconds ? " or a number of seconds" : ""));
+  return std::nullopt;
+}
+
+std::string_view Reader::chosen_word(std::string_view key) const {
+  const Entry* entry = find(key);
+  if (entry == nullptr) return {};
+  const Key& known = *field(key)->key;
+  const auto choices = words(known.choices);
+  const std::string given =
+      entry->kind == Entry::Kind::scalar ? folded(entry->text, known.owner) : std::string();
+  for (const std::string_view choice : choices)
+    if (given == folded(choice, known.owner)) return choice;
+  context_.problems.error(
+      entry->at,
+      fmt::format("'{}' is one of {}, not {}", known.name, fmt::join(choices, ", "), shown(*entry)),
+      nearest_or(given, choices, fmt::format("write it as in '{}: {}'", known.name, known.example)));
+  return {};
+}
+
+void Reader::too_fine(std::string_view key) const { wrong(key, "a whole number of milliseconds"); }
+
+std::string shown(const Entry& value) {
+  switch (value.kind) {
+    case Entry::Kind::null: return "nothing";
+    case Entry::Kind::list: return "a list";
+    case Entry::Kind::map: return "a map";
+    case Entry::Kind::scalar: break;
+  }
+  return (value.quoted ? "the text " : "") + shown(std::string_view(value.text));
+}
+
+bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy, Context& context) {
+  if (entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null) return true;
+  context.problems.error(entry.at, fmt::format("{}, not {}", expected, shown(entry)), std::string(remedy));
+  return false;
+}
+
+bool may_be_of_the_origin(const Entry& root) {
+  const auto named = [](const Entry& map, Section section, const auto& is) {
+    return std::any_of(map.children.begin(), map.children.end(), [&](const Entry& entry) {
+      const Key* key = find_key(entry.key, section);
+      return key != nullptr && is(*key);
+    });
+  };
+  const auto ours = [](const Key& key) { return key.owner == Owner::project; };
+  const auto address = [](const Key& key) { return key.name == "address"; };
+  if (named(root, Section::map, ours)) return false;
+  for (const Entry& mapping : root.children) {
+    if (mapping.key != "mapping") continue;
+    for (const Entry& table : mapping.children)
+      for (const Table which : tables) {
+        if (table.key != to_string(which)) continue;
+        for (const Entry& point : table.children)
+          if (named(point, section_of(which), ours) ||
+              (point.kind != Entry::Kind::scalar && !named(point, section_of(which), address)))
+            return false;
+      }
+  }
+  return true;
+}
+
+}  // namespace coupler::loader

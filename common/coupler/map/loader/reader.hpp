@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "coupler/base/enumeration.hpp"
+#include "coupler/map/fields.hpp"
+#include "coupler/map/loader/context.hpp"
+#include "coupler/map/loader/entry.hpp"
+#include "coupler/map/loader/keys.hpp"
+
+namespace coupler::loader {
+
+/// One map of the file, read by the table of keys. Whatever is wrong becomes a problem; the getters then
+/// leave `out` as it was, as they do when the key is absent.
+class Reader {
+ public:
+  /// Checks the keys: known in this section, given once. `map` must be a map, or nothing.
+  Reader(const Entry& map, Section section, Context& context);
+
+  /// The value of the key, or nullptr.
+  const Entry* find(std::string_view key) const;
+  bool has(std::string_view key) const { return find(key) != nullptr; }
+  /// The first required key that is absent; empty if there is none. For sections without a type.
+  std::string_view missing() const;
+  std::string_view example(std::string_view key) const { return find_key(key, section_)->example; }
+
+  /// By the type of `out`.
+  template <class T>
+  void read(std::string_view key, T& out) const {
+    if constexpr (std::is_same_v<T, bool>)
+      boolean(key, out);
+    else if constexpr (std::is_enum_v<T>)
+      choice(key, out);
+    else if constexpr (std::is_integral_v<T>)
+      integer(key, out);
+    else if constexpr (std::is_same_v<T, double>)
+      number(key, out);
+    else if constexpr (std::is_same_v<T, std::string_view>)
+      text(key, out);
+    else
+      duration(key, out);
+  }
+  template <class T>
+  void integer(std::string_view key, T& out) const {
+    if (const auto value = integer_in_range(key)) out = static_cast<T>(*value);
+  }
+  void number(std::string_view key, double& out) const;
+  void boolean(std::string_view key, bool& out) const;
+  /// Kept by the map under construction.
+  void text(std::string_view key, std::string_view& out) const;
+  /// Whole units of Duration.
+  template <class Duration>
+  void duration(std::string_view key, Duration& out) const {
+    const auto value = duration_in_range(key);
+    if (!value) return;
+    const auto rounded = std::chrono::duration_cast<Duration>(*value);
+    if (rounded == *value)
+      out = rounded;
+    else
+      too_fine(key);
+  }
+  /// All keys of fields_of(Struct) that are given; those of another section cannot be.
+  template <class Struct>
+  void fields(Struct& out) const {
+    for_each_field(out, [this](const auto& listed, auto& value) {
+      if (field(listed.key) != nullptr) read(listed.key, value);
+    });
+  }
+
+  template <class E>
+  void choice(std::string_view key, E& out) const {
+    if (const auto value = parse_word<E>(chosen_word(key))) out = *value;
+  }
+
+  /// The map below a key. Nothing if the key is absent, or, which is a problem, not a map as `expected` says.
+  std::optional<Reader> inside(std::string_view key, std::string_view expected) const;
+
+  /// "'key' is …, not …", with the key's example as the remedy.
+  void wrong(std::string_view key, std::string_view expected) const;
+  /// The key says something that cannot be used here.
+  void ignored(std::string_view key, std::string what, std::string remedy) const;
+
+ private:
+  struct Field {
+    const Key* key;
+    const Entry* value;
+  };
+
+  void check_key(const Entry& entry);
+  void unknown(const Entry& entry) const;
+  const Field* field(std::string_view key) const;
+  std::optional<std::int64_t> integer_in_range(std::string_view key) const;
+  std::optional<std::chrono::microseconds> duration_in_range(std::string_view key) const;
+  /// One of Key::choices, or empty.
+  std::string_view chosen_word(std::string_view key) const;
+  void too_fine(std::string_view key) const;
+
+  Section section_;
+  Context& context_;
+  std::vector<Field> fields_;
+};
+
+/// The scalar's text as a message shows it; what else the value is ("a list") if it is no scalar.
+std::string shown(const Entry& value);
+
+/// The entry is a map, or nothing at all; otherwise a problem that says what `expected` is.
+bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy, Context& context);
+
+/// Nothing in the file is this project's alone, as far as that can be seen without reading it: neither a key
+/// nor a point that leaves its address out.
+bool may_be_of_the_origin(const Entry& root);
+
+}  // namespace coupler::loader

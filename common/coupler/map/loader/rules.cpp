@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/map/loader/rules.hpp"
+
+#include <unordered_map>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coupler/map/loader/address.hpp"
+
+namespace coupler::loader {
+namespace {
+
+/// The same text for the same line or channel, as far as the file tells. Empty: there is none.
+std::string hardware(const Point& point) {
+  // An ADC and a DAC of one device may number their channels alike.
+  if (point.iio.present())
+    return fmt::format("iio {} {} {}", to_string(point.table), point.iio.device, point.iio.channel);
+  if (point.pwm.present()) return fmt::format("pwm {} {}", point.pwm.chip, point.pwm.channel);
+  const Line& line = point.line;
+  if (!line.present()) return {};
+  if (!line.name.empty()) return std::string(line.name);
+  constexpr std::string_view folder = "/dev/";
+  const bool device_file = line.chip.substr(0, folder.size()) == folder;
+  return fmt::format("{} {}", device_file ? line.chip.substr(folder.size()) : line.chip, line.offset);
+}
+
+void check_size(const DraftPoint& draft, std::string_view key, std::uint16_t limit, Context& context) {
+  const std::uint32_t size = range(draft.point).count();
+  if (size > limit)
+    context.problems.error(draft.name_at,
+                           fmt::format("{} has {} {}, more than '{}' of 'limits' ({}) takes in one request",
+                                       shown(draft.point.name), size,
+                                       holds_bits(draft.point.table) ? "bits" : "registers", key, limit),
+                           fmt::format("make it shorter, or raise '{}' if the device takes more", key));
+}
+
+/// Bits of one address, and whose they are.
+struct Claim {
+  std::uint16_t mask;
+  const DraftPoint* owner;
+};
+
+bool is_wired(const Point& point) { return point.line.present() || is_analogue(point); }
+
+bool tolerable(const Point& a, const Point& b) {
+  return !(is_writable(a) && is_writable(b)) && !is_wired(a) && !is_wired(b);
+}
+
+/// "holding_registers 5 to 8".
+std::string place(const Point& point) {
+  const modbus::Range taken = range(point);
+  if (taken.count() == 1) return fmt::format("{} {}", to_string(point.table), taken.start());
+  return fmt::format("{} {} to {}", to_string(point.table), taken.start(), taken.last());
+}
+
+void report(const DraftPoint& draft, const DraftPoint& other, Context& context) {
+  std::string what =
+      fmt::format("{} ({}) overlaps {} ({}, line {})", shown(draft.point.name), place(draft.point),
+                  shown(other.point.name), place(other.point), other.address_at.line);
+  const Problems::Notes notes{{other.address_at, "the other is here"}};
+  if (tolerable(draft.point, other.point))
+    context.problems.warning(draft.address_at, std::move(what), "remove one of the two if that is not meant",
+                             notes);
+  else
+    context.problems.error(draft.address_at, std::move(what), "give one of the two another address", notes);
+}
+
+/// The claims on every address so far, those of writers once more: a reader may have been there before them.
+/// In either list those of one address share no bits, so there are at most sixteen of them and the whole
+/// check stays linear in the number of registers.
+class Claims {
+ public:
+  /// Takes what is free and returns who had the rest: one with whom sharing is an error, if there is any.
+  const DraftPoint* take(const DraftPoint& draft) {
+    const DraftPoint* found = take(draft, everyone_);
+    const DraftPoint* writer = is_writable(draft.point) ? take(draft, writers_) : nullptr;
+    return writer != nullptr && tolerable(draft.point, found->point) ? writer : found;
+  }
+
+ private:
+  using ByAddress = std::unordered_map<std::uint32_t, std::vector<Claim>>;
+
+  static const DraftPoint* take(const DraftPoint& draft, ByAddress& taken_so_far) {
+    const DraftPoint* found = nullptr;
+    const std::uint16_t mask = codec::mask(draft.point.format);
+    const modbus::Range taken = range(draft.point);
+    for (std::uint32_t address = taken.start(); address < taken.end(); ++address) {
+      auto& claims = taken_so_far[static_cast<std::uint32_t>(index(draft.point.table)) << 16U | address];
+      std::uint16_t free = mask;
+      for (Claim& claim : claims) {
+        if ((claim.mask & mask) == 0) continue;
+        free = static_cast<std::uint16_t>(free & ~claim.mask);
+        if (found == nullptr || tolerable(draft.point, found->point)) found = claim.owner;
+      }
+      if (free != 0) claims.push_back({free, &draft});
+    }
+    return found;
+  }
+
+  ByAddress everyone_;
+  ByAddress writers_;
+};
+
+}  // namespace
+
+void check_lines(const DraftPoints& points, Context& context) {
+  std::unordered_map<std::string, const DraftPoint*> first;
+  for (const DraftPoint& draft : points) {
+    std::string key = hardware(draft.point);
+    if (key.empty()) continue;
+    const auto [found, is_new] = first.emplace(std::move(key), &draft);
+    const std::string_view kind = is_analogue(draft.point) ? "channel" : "line";
+    if (!is_new)
+      context.problems.error(
+          draft.line_at,
+          fmt::format("the {}{} of {} is already that of {} (line {})", kind == "line" ? "GPIO " : "", kind,
+                      shown(draft.point.name), shown(found->second->point.name), found->second->line_at.line),
+          fmt::format("give each point a {} of its own", kind),
+          {{found->second->line_at, "the other is here"}});
+  }
+}
+
+void check_sizes(const DraftPoints& points, const Limits& limits, Context& context) {
+  for (const DraftPoint& draft : points) {
+    if (!draft.placed) continue;
+    const bool bits = holds_bits(draft.point.table);
+    const std::uint16_t most_read = bits ? limits.read_bits : limits.read_registers;
+    if (range(draft.point).count() > most_read || !is_writable(draft.point))
+      check_size(draft, bits ? "read_bits" : "read_registers", most_read, context);
+    else
+      check_size(draft, bits ? "write_bits" : "write_registers",
+                 bits ? limits.write_bits : limits.write_registers, context);
+  }
+}
+
+void warn_of_modicon_numbers(const DraftPoints& points, Context& context) {
+  const DraftPoint* first = nullptr;
+  std::size_t alike = 0;
+  std::size_t others = 0;
+  for (const DraftPoint& draft : points) {
+    if (!draft.placed || draft.addressless || draft.point.table == Table::coils) continue;
+    const bool similar = looks_like_modicon(draft.point.address, draft.point.table);
+    ++(similar ? alike : others);
+    if (similar && first == nullptr) first = &draft;
+  }
+  if (alike <= others) return;
+  const unsigned number = first->point.address;
+  context.problems.warning(
+      first->address_at,
+      fmt::format(
+          "{} is read as address {} on the wire, not as number {} of {} in Modicon's count (address {})",
+          number, number, number % 10000, to_string(first->point.table), number % 10000 - 1),
+      "write 'addressing: zero_based' at the top if that is meant, otherwise 'addressing: modicon'");
+}
+
+void check_overlaps(const DraftPoints& points, Context& context) {
+  Claims claims;
+  for (const DraftPoint& draft : points) {
+    if (!draft.placed) continue;
+    if (const DraftPoint* other = claims.take(draft)) report(draft, *other, context);
+  }
+}
+
+}  // namespace coupler::loader

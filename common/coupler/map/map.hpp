@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string_view>
+
+#include "coupler/base/enumeration.hpp"
+#include "coupler/base/span.hpp"
+#include "coupler/map/point.hpp"
+#include "coupler/map/service.hpp"
+#include "coupler/map/watchdog_sequences.hpp"
+#include "coupler/modbus/limits.hpp"
+
+namespace coupler {
+
+/// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
+/// not compile.
+constexpr int model_version = 5;
+
+/// Where the coupler is. ROS parameters and arguments override it.
+struct Connection {
+  std::string_view address;  ///< host name or IP address; empty: not in the map
+  std::uint16_t port = modbus::default_port;
+  std::uint8_t unit = 1;
+  std::chrono::milliseconds timeout{3000};
+};
+
+/// How the host reads it. A gap is the distance between the end of one point and the start of the next;
+/// points are joined when it is strictly below the limit and unmapped addresses may be read.
+struct Polling {
+  double rate = 10;  ///< Hz
+  bool discrete_continuous = false;
+  std::uint16_t discrete_gap = 64;
+  bool register_continuous = false;
+  std::uint16_t register_gap = 12;
+};
+
+/// What the device can take in one request, and how often.
+struct Limits {
+  std::uint16_t read_registers = 125;
+  std::uint16_t read_bits = 2000;
+  std::uint16_t write_registers = 123;
+  std::uint16_t write_bits = 1968;
+  std::chrono::milliseconds request_gap{0};    ///< pause between a reply and the next request
+  std::chrono::milliseconds connect_delay{0};  ///< pause between connecting and the first request
+  std::uint16_t connections = 1;
+  bool mask_write = false;  ///< the device has FC 22
+};
+
+/// Addresses that the device refuses: never read, not even to join the points around them.
+struct Unreadable {
+  Table table = Table::coils;
+  modbus::Range range;
+};
+
+/// What the host does when the link comes and goes.
+enum class OnReconnect : std::uint8_t {
+  drop,    ///< writes that found no link are lost
+  restore  ///< the last value of every output that was written is written again
+};
+constexpr Enumeration<OnReconnect, 2> enumeration(OnReconnect) {
+  return {"OnReconnect", {{OnReconnect::drop, "drop"}, {OnReconnect::restore, "restore"}}};
+}
+enum class OnShutdown : std::uint8_t {
+  hold,  ///< outputs stay as they are
+  safe   ///< outputs go to their safe values: Point::safe, Point::safe_value
+};
+constexpr Enumeration<OnShutdown, 2> enumeration(OnShutdown) {
+  return {"OnShutdown", {{OnShutdown::hold, "hold"}, {OnShutdown::safe, "safe"}}};
+}
+
+/// Which points the driver reads.
+enum class Poll : std::uint8_t {
+  all,
+  subscribed  ///< those that somebody listens to
+};
+constexpr Enumeration<Poll, 2> enumeration(Poll) {
+  return {"Poll", {{Poll::all, "all"}, {Poll::subscribed, "subscribed"}}};
+}
+
+/// One wire of the simulated chip: `from` an output `to` an input, or a square wave `to` an input.
+struct SimWire {
+  std::string_view from;  ///< a coil; empty: a square wave
+  std::string_view to;    ///< a discrete input
+  bool invert = false;
+  std::chrono::microseconds square{0};  ///< the wave's period, half of it on
+};
+
+/// One coupler. A view of constant data: a generated table, or what OwnedMap holds. Copy it to override a
+/// field.
+struct Map {
+  std::string_view name;  ///< namespace of the topics
+  Connection connection;
+  Polling polling;
+  Limits limits;
+  Span<const Point> points;  ///< sorted as canonical_less() says
+  Span<const SimWire> sim;
+  std::uint64_t fingerprint = 0;
+  std::string_view text;       ///< the file as it was read, UTF-8: what a node serves by FC 20
+  std::uint32_t text_crc = 0;  ///< crc32(text)
+  Service service{};
+  OnReconnect on_reconnect = OnReconnect::drop;
+  OnShutdown on_shutdown = OnShutdown::hold;
+  Span<const Unreadable> unreadable{};
+  WatchdogSequences coupler_watchdog{};
+  Poll poll = Poll::all;
+};
+
+/// The point of that name, or nullptr.
+const Point* find(const Map& map, std::string_view name);
+
+/// The order of the fingerprint: table, wire address, part of the register (whole, high, low, bit 0 … 15),
+/// name.
+bool canonical_less(const Point& a, const Point& b);
+
+}  // namespace coupler

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "coupler/base/enumeration.hpp"
+#include "coupler/base/span.hpp"
+#include "coupler/codec/format.hpp"
+#include "coupler/codec/scale.hpp"
+#include "coupler/map/channel.hpp"
+#include "coupler/map/edge.hpp"
+#include "coupler/map/host_options.hpp"
+#include "coupler/map/line.hpp"
+#include "coupler/map/table.hpp"
+#include "coupler/modbus/range.hpp"
+
+namespace coupler {
+
+/// What the master may do with a point.
+enum class Access : std::uint8_t { read, write, read_write };
+constexpr Enumeration<Access, 3> enumeration(Access) {
+  return {"Access", {{Access::read, "read"}, {Access::write, "write"}, {Access::read_write, "read_write"}}};
+}
+
+/// One named value of a coupler. A literal type, so that a generated table is constant data.
+struct Point {
+  std::string_view name;  ///< a valid ROS name, unique in the map
+  Table table = Table::coils;
+  std::uint16_t address = 0;  ///< on the wire
+  codec::Format format;
+  Access access = Access::read;
+  /// The value at start: range(point).count() registers as they stand on the wire, the bits of other points
+  /// zero (for bit tables as many elements, 0 or 1). Empty: all zero.
+  Span<const std::uint16_t> initial;
+  /// Of outputs with hardware (a coil with a line, a register with `iio` or `pwm`) when the node stops, and
+  /// what the driver leaves behind under on_shutdown: safe, or when it is asked to.
+  Safe safe = Safe::off;
+  Line line;
+  std::string_view description;
+  std::string_view units;
+  EdgeOf counter{};         ///< a register that counts an input's edges; a holding register can be preset
+  EdgeOf latched{};         ///< a coil, or a bit of a holding register: set by the edge, cleared by writing 0
+  std::uint16_t count = 1;  ///< values in the point, one behind the other; more than one: an array
+  codec::Scale scale{};     ///< registers: what the host publishes is a Float64
+  Iio iio{};
+  Pwm pwm{};
+  /// With Safe::on: what a register goes to, as `initial`. Coils: empty, that is on, or an element a bit.
+  Span<const std::uint16_t> safe_value{};
+  /// Holding registers and coils: where the output reads back, if not at its own address.
+  std::optional<std::uint16_t> read_address{};
+  HostOptions host{};
+};
+
+/// The addresses it occupies in its table (partial values: the register they share).
+constexpr modbus::Range range(const Point& point) {
+  return modbus::Range::of(point.address,
+                           static_cast<std::uint32_t>(point.count) * codec::registers(point.format));
+}
+
+/// Where the host reads it.
+constexpr modbus::Range read_range(const Point& point) {
+  return modbus::Range::of(point.read_address.value_or(point.address), range(point).count());
+}
+
+constexpr bool is_analogue(const Point& point) { return point.iio.present() || point.pwm.present(); }
+
+constexpr bool is_readable(const Point& point) { return point.access != Access::write; }
+constexpr bool is_writable(const Point& point) { return point.access != Access::read; }
+
+/// The node has something behind it: a line, a channel, or an input whose edges it shows.
+constexpr bool has_hardware(const Point& point) {
+  return point.line.present() || is_analogue(point) || point.counter.present() || point.latched.present();
+}
+
+/// What a master writes goes to the code of the firmware, where there is some; otherwise it is memory.
+constexpr bool is_hooked_output(const Point& point) { return is_writable(point) && !has_hardware(point); }
+
+/// Its value may come from there.
+constexpr bool is_set_by_firmware(const Point& point) { return is_readable(point) && !has_hardware(point); }
+
+/// Shares its register with others. Bits of the bit tables share nothing.
+constexpr bool is_partial(const Point& point) {
+  return !holds_bits(point.table) && codec::is_partial(point.format);
+}
+
+}  // namespace coupler

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// The value of a point as a C++ type: bool, char, std::intN_t, std::uintN_t, float, double (also of every
+// point with a scale, in its units), std::string as UTF-8, or std::array of one of them. Registers are
+// range(point).count() of them; bit tables give each bit as one register, 0 or 1.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "coupler/codec/number.hpp"
+#include "coupler/codec/text.hpp"
+#include "coupler/map/point.hpp"
+
+namespace coupler {
+
+/// One value of a point with a scale, into its registers. Returns what is wrong and what would be right, in
+/// the point's units, or an empty text; then nothing was written.
+std::string encode_scaled(double value, const Point& point, std::uint16_t* registers);
+
+/// The same for UTF-8 `text` and a STRING.
+std::string encode_string(std::string_view text, const Point& point, std::uint16_t* registers);
+
+/// `decode` gives the value in the registers. `encode` writes it, leaves other bits of a shared register
+/// alone, and returns what is wrong and what would be right, or an empty text.
+template <class T>
+struct TypedValue {
+  static T decode(const std::uint16_t* registers, const Point& point) {
+    return codec::take<T>(point.format, registers);
+  }
+  static std::string encode(const T& value, const Point& point, std::uint16_t* registers) {
+    codec::put(value, point.format, registers);
+    return {};
+  }
+};
+
+template <>
+struct TypedValue<bool> {
+  static bool decode(const std::uint16_t* registers, const Point& point) {
+    if (holds_bits(point.table)) return registers[0] != 0;
+    return codec::take<std::uint8_t>(point.format, registers) != 0;
+  }
+  static std::string encode(bool value, const Point& point, std::uint16_t* registers) {
+    if (holds_bits(point.table))
+      registers[0] = value ? 1 : 0;
+    else
+      codec::put(static_cast<std::uint8_t>(value), point.format, registers);
+    return {};
+  }
+};
+
+template <>
+struct TypedValue<double> {
+  static double decode(const std::uint16_t* registers, const Point& point) {
+    if (point.scale.present()) return codec::published(registers, point.format, point.scale);
+    return codec::take<double>(point.format, registers);
+  }
+  static std::string encode(double value, const Point& point, std::uint16_t* registers) {
+    if (point.scale.present()) return encode_scaled(value, point, registers);
+    codec::put(value, point.format, registers);
+    return {};
+  }
+};
+
+template <>
+struct TypedValue<std::string> {
+  static std::string decode(const std::uint16_t* registers, const Point& point) {
+    std::string text;
+    codec::decode_text(registers, point.format, text);
+    return text;
+  }
+  static std::string encode(std::string_view value, const Point& point, std::uint16_t* registers) {
+    return encode_string(value, point, registers);
+  }
+};
+
+template <class T, std::size_t Count>
+struct TypedValue<std::array<T, Count>> {
+  static std::array<T, Count> decode(const std::uint16_t* registers, const Point& point) {
+    const std::size_t width = codec::registers(point.format);
+    std::array<T, Count> values;
+    for (std::size_t i = 0; i < Count; ++i) values[i] = TypedValue<T>::decode(registers + i * width, point);
+    return values;
+  }
+  static std::string encode(const std::array<T, Count>& values, const Point& point,
+                            std::uint16_t* registers) {
+    const std::size_t width = codec::registers(point.format);
+    for (std::size_t i = 0; i < Count; ++i)
+      if (auto wrong = TypedValue<T>::encode(values[i], point, registers + i * width); !wrong.empty())
+        return wrong;
+    return {};
+  }
+};
+
+}  // namespace coupler

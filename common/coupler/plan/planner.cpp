@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/plan/planner.hpp"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+namespace coupler::plan {
+namespace {
+
+using modbus::Range;
+using Reason = Cut::Reason;
+
+std::uint32_t longest_reply(Table table) {
+  return holds_bits(table) ? modbus::max_read_bits : modbus::max_read_registers;
+}
+
+std::uint32_t limit_of(const Map& map, Table table) {
+  const std::uint32_t limit = holds_bits(table) ? map.limits.read_bits : map.limits.read_registers;
+  return std::min(limit, longest_reply(table));
+}
+
+bool is_continuous(const Map& map, Table table) {
+  return holds_bits(table) ? map.polling.discrete_continuous : map.polling.register_continuous;
+}
+
+std::uint32_t gap_of(const Map& map, Table table) {
+  return holds_bits(table) ? map.polling.discrete_gap : map.polling.register_gap;
+}
+
+Range hull(Range a, Range b) {
+  const std::uint32_t start = std::min(a.start(), b.start());
+  return Range::of(start, std::max(a.end(), b.end()) - start);
+}
+
+bool is_at(Table table, const Unreadable& area, Range range) {
+  return area.table == table && area.range.overlaps(range);
+}
+
+}  // namespace
+
+std::optional<NotRead> why_not_read(const Map& map, const Point& point) {
+  if (!is_readable(point)) return NotRead::write_only;
+  const Range range = read_range(point);
+  if (range.count() > longest_reply(point.table)) return NotRead::too_long;
+  for (const Unreadable& area : map.unreadable)
+    if (is_at(point.table, area, range)) return NotRead::unreadable;
+  return std::nullopt;
+}
+
+Planner::Planner(const Map& map) : map_(map) {
+  std::array<std::vector<Range>, tables.size()> readable;
+  std::array<std::vector<Range>, tables.size()> write_only;
+  std::array<std::vector<Range>, tables.size()> unreadable;
+  for (const Unreadable& area : map.unreadable) unreadable[index(area.table)].push_back(area.range);
+  for (std::uint32_t i = 0; i < map.points.size(); ++i) {
+    const Point& point = map.points[i];
+    const auto reason = why_not_read(map, point);
+    if (!reason) {
+      order_.push_back(i);
+      readable[index(point.table)].push_back(read_range(point));
+    } else if (reason == NotRead::write_only) {
+      write_only[index(point.table)].push_back(range(point));
+    }
+  }
+  for (const Table table : tables) {
+    readable_[index(table)] = Intervals(std::move(readable[index(table)]));
+    write_only_[index(table)] = Intervals(std::move(write_only[index(table)]));
+    unreadable_[index(table)] = Intervals(std::move(unreadable[index(table)]));
+  }
+  const auto place = [&](std::uint32_t i) {
+    return std::tuple(map.points[i].table, read_range(map.points[i]).start(), i);
+  };
+  std::sort(order_.begin(), order_.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+  std::map<double, std::vector<std::uint32_t>, std::greater<>> by_rate;
+  for (const std::uint32_t i : order_) by_rate[rate_of(map, map.points[i])].push_back(i);
+  for (auto& [rate, points] : by_rate) groups_.push_back({rate, std::move(points)});
+}
+
+std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const Unreadable> refused) const {
+  std::vector<ReadSpan> spans;
+  const auto end_last = [&](Cut cut) {
+    if (!spans.empty()) spans.back().end = cut;
+  };
+  for (const std::uint32_t i : points) {
+    const Point& point = map_.points[i];
+    const Range range = read_range(point);
+    if (!spans.empty() && spans.back().table == point.table) {
+      ReadSpan& last = spans.back();
+      const auto apart = why_apart(last, range, refused);
+      if (!apart) {
+        last.range = hull(last.range, range);
+        last.points.push_back(i);
+        continue;
+      }
+      last.end = {*apart, i, range.start() > last.range.end() ? range.start() - last.range.end() : 0};
+    } else if (!spans.empty()) {
+      end_last(last_cut(spans.back(), refused));
+    }
+    spans.push_back({point.table, range, {i}});
+  }
+  if (!spans.empty()) end_last(last_cut(spans.back(), refused));
+  return spans;
+}
+
+bool Planner::refuses(Table table, Range range, Span<const Unreadable> refused) const {
+  return std::any_of(refused.begin(), refused.end(), [&](const Unreadable& area) {
+    return area.table == table && range.contains(area.range);
+  });
+}
+
+std::optional<Reason> Planner::why_apart(const ReadSpan& span, Range next,
+                                         Span<const Unreadable> refused) const {
+  const Range both = hull(span.range, next);
+  if (next.start() > span.range.end()) {
+    const Range hole = Range::of(span.range.end(), next.start() - span.range.end());
+    if (const auto reason = why_not_across(span.table, hole)) return reason;
+  }
+  if (refuses(span.table, both, refused)) return Reason::unreadable;
+  if (both.count() > limit_of(map_, span.table)) return Reason::limit;
+  return std::nullopt;
+}
+
+std::optional<Reason> Planner::why_not_across(Table table, Range hole) const {
+  const std::size_t at = index(table);
+  if (unreadable_[at].overlaps(hole)) return Reason::unreadable;
+  if (!readable_[at].covers(hole)) {
+    if (write_only_[at].overlaps(hole)) return Reason::write_only;
+    if (!is_continuous(map_, table)) return Reason::unmapped;
+  }
+  if (hole.count() >= gap_of(map_, table)) return Reason::gap;
+  return std::nullopt;
+}
+
+/// Nothing more of the table is wanted: is it that the next point would have been joined, but for its rate?
+Cut Planner::last_cut(const ReadSpan& span, Span<const Unreadable> refused) const {
+  const auto next =
+      std::lower_bound(order_.begin(), order_.end(), span, [&](std::uint32_t i, const ReadSpan& s) {
+        const Point& point = map_.points[i];
+        return point.table < s.table || (point.table == s.table && read_range(point).start() < s.range.end());
+      });
+  if (next == order_.end() || map_.points[*next].table != span.table) return {};
+  const Range range = read_range(map_.points[*next]);
+  const bool same_rate = rate_of(map_, map_.points[*next]) == rate_of(map_, map_.points[span.points.front()]);
+  if (same_rate || why_apart(span, range, refused)) return {};
+  return {Reason::other_rate, *next, static_cast<std::uint32_t>(range.start() - span.range.end())};
+}
+
+std::vector<GroupPlan> make_read_plan(const Map& map) {
+  const Planner planner(map);
+  std::vector<GroupPlan> plan;
+  for (const RateGroup& group : planner.groups()) plan.push_back({group.rate, planner.plan(group.points)});
+  return plan;
+}
+
+}  // namespace coupler::plan

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "coupler/map/map.hpp"
+#include "coupler/plan/intervals.hpp"
+#include "coupler/plan/read_span.hpp"
+
+namespace coupler::plan {
+
+/// Points that are read at the same rate.
+struct RateGroup {
+  double rate;                        ///< Hz
+  std::vector<std::uint32_t> points;  ///< indices into Map::points, by table and address
+};
+
+/// How often the host reads a point, Hz: its own rate or the map's.
+constexpr double rate_of(const Map& map, const Point& point) {
+  return point.host.rate > 0 ? point.host.rate : map.polling.rate;
+}
+
+/// Why a point is never read.
+enum class NotRead : std::uint8_t {
+  write_only,
+  unreadable,  ///< the map says so of an address that it occupies
+  too_long     ///< no reply of Modbus has room for it (MAP 6.1 to 6.4)
+};
+std::optional<NotRead> why_not_read(const Map& map, const Point& point);
+
+/// Makes the read requests of a map, for all points or for some, few of them: points are joined while they
+/// touch or overlap, or, where unmapped addresses may be read, while fewer than the table's gap lie between
+/// them, and as long as the device's limit allows. Addresses of points that are read at another rate, or not
+/// asked for at the moment, are no unmapped ones. A point is never split. What Map::unreadable names, and
+/// points that can only be written, are not read even between others.
+class Planner {
+ public:
+  /// What `map` views must outlive the planner.
+  explicit Planner(const Map& map);
+
+  /// Every point that can be read, the fastest rate first.
+  const std::vector<RateGroup>& groups() const { return groups_; }
+
+  /// The requests for `points`, given in the order of a RateGroup; ordered by table and address. Points are
+  /// not joined to a request that contains one of `refused`.
+  std::vector<ReadSpan> plan(Span<const std::uint32_t> points, Span<const Unreadable> refused = {}) const;
+
+  /// Some of the addresses are those of a point that can be read.
+  bool has_points(Table table, modbus::Range range) const { return readable_[index(table)].overlaps(range); }
+
+  const Map& map() const { return map_; }
+
+ private:
+  bool refuses(Table table, modbus::Range range, Span<const Unreadable> refused) const;
+  std::optional<Cut::Reason> why_apart(const ReadSpan& span, modbus::Range next,
+                                       Span<const Unreadable> refused) const;
+  std::optional<Cut::Reason> why_not_across(Table table, modbus::Range hole) const;
+  Cut last_cut(const ReadSpan& span, Span<const Unreadable> refused) const;
+
+  Map map_;
+  std::vector<RateGroup> groups_;
+  std::vector<std::uint32_t> order_;  ///< every point that can be read, by table and address
+  std::array<Intervals, tables.size()> readable_;
+  std::array<Intervals, tables.size()> write_only_;
+  std::array<Intervals, tables.size()> unreadable_;
+};
+
+/// The requests of one rate, all its points wanted.
+struct GroupPlan {
+  double rate;  ///< Hz
+  std::vector<ReadSpan> spans;
+};
+
+/// The whole plan of a map, the fastest rate first.
+std::vector<GroupPlan> make_read_plan(const Map& map);
+
+}  // namespace coupler::plan

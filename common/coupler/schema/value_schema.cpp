@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/schema/value_schema.hpp"
+
+#include <fmt/format.h>
+
+#include "coupler/map/loader/presets.hpp"
+#include "coupler/schema/pattern.hpp"
+
+namespace coupler::schema {
+namespace {
+
+using loader::Key;
+using loader::Owner;
+using loader::ValueKind;
+
+bool has_range(const Key& key) {
+  return key.least != std::numeric_limits<double>::lowest() && key.most != std::numeric_limits<double>::max();
+}
+
+bool is_time(ValueKind kind) { return kind == ValueKind::duration || kind == ValueKind::seconds; }
+
+/// 502 rather than 502.0.
+Json plain(double number) {
+  const auto whole = static_cast<std::int64_t>(number);
+  return static_cast<double>(whole) == number ? Json(whole) : Json(number);
+}
+
+Json number(std::string_view type, const Key& key) {
+  Json schema{{"type", type}};
+  if (key.least != std::numeric_limits<double>::lowest()) schema["minimum"] = plain(key.least);
+  if (key.most != std::numeric_limits<double>::max()) schema["maximum"] = plain(key.most);
+  return schema;
+}
+
+/// `remedy` is what editors say of other text.
+Json text(std::string_view pattern, std::string_view remedy) {
+  return {{"type", "string"}, {"pattern", pattern}, {"patternErrorMessage", remedy}};
+}
+
+Json any_of(std::initializer_list<Json> schemas) {
+  return {{"anyOf", Json::array_t(schemas.begin(), schemas.end())}};
+}
+
+Json boolean() {
+  return any_of({{{"type", "boolean"}}, text(any_case({"yes", "no", "on", "off"}), "write true or false")});
+}
+
+/// The origin takes its words in any case.
+Json choice(const Key& key) {
+  const auto choices = loader::words(key.choices);
+  Json exact{{"enum", choices}};
+  if (key.bits) return any_of({exact, {{"type", "array"}, {"minItems", 2}, {"items", boolean()}}});
+  if (key.owner == Owner::project) return exact;
+  return any_of({exact, text(any_case(choices), fmt::format("write one of {}", fmt::join(choices, ", ")))});
+}
+
+Json preset() {
+  Json names = Json::array();
+  for (const loader::PresetFile& file : loader::preset_files()) names.push_back(file.name);
+  return {{"enum", names}};
+}
+
+Json time(const Key& key) {
+  const Json with_unit = text(duration, "write a number with its unit: us, ms, s or min");
+  if (key.kind == ValueKind::seconds) return any_of({with_unit, number("number", key)});
+  return key.least > 0 ? with_unit : any_of({with_unit, {{"const", 0}}});
+}
+
+}  // namespace
+
+Json value_schema(const Key& key) {
+  switch (key.kind) {
+    case ValueKind::integer: return number("integer", key);
+    case ValueKind::number: return number("number", key);
+    case ValueKind::boolean: return boolean();
+    // A plain scalar that looks like a number is text to the loader.
+    case ValueKind::text: return {{"type", {"string", "number"}}};
+    case ValueKind::ros_name: return text(ros_name, ros_name_rule);
+    case ValueKind::host:  // With a colon it is IPv6, which has two at least.
+      return text(R"(^([\w.-]*|\[?[0-9A-Fa-f]*:[0-9A-Fa-f.]*:[0-9A-Fa-f:.]*(%[\w.-]+)?\]?)$)",
+                  "write a host name or an IP address, without scheme and port");
+    case ValueKind::ip_address: return text(ip_address, "write an IP address of the node");
+    case ValueKind::choice: return choice(key);
+    case ValueKind::preset: return preset();
+    case ValueKind::duration:
+    case ValueKind::seconds: return time(key);
+    case ValueKind::address: return {{"type", "integer"}, {"minimum", 0}, {"maximum", most_modicon_address}};
+    case ValueKind::value:
+      return {{"type", {"string", "number", "boolean", "array"}},
+              {"items", {{"type", {"string", "number", "boolean"}}}}};
+    case ValueKind::list: return {{"type", "array"}, {"minItems", 1}, {"items", {{"type", "string"}}}};
+    case ValueKind::section:
+    case ValueKind::points: break;
+  }
+  return Json::object();
+}
+
+std::string describe(const Key& key) {
+  std::string text(key.summary);
+  if (!key.same_as.empty()) text = fmt::format("another spelling of {}", key.same_as);
+  if (!key.types.empty()) text += fmt::format("; for {}", fmt::join(loader::words(key.types), ", "));
+  if (has_range(key))
+    text += fmt::format("; from {} to {}{}", key.least, key.most, is_time(key.kind) ? " s" : "");
+  if (!key.fallback.empty()) text += fmt::format("; if not given: {}", key.fallback);
+  return text + fmt::format("\n\nExample: {}: {}", key.name, key.example);
+}
+
+Json fallback_value(const Key& key) {
+  switch (key.kind) {
+    case ValueKind::integer:
+    case ValueKind::number:
+    case ValueKind::seconds:
+    case ValueKind::boolean: return Json::parse(key.fallback);
+    default: return key.fallback;
+  }
+}
+
+}  // namespace coupler::schema

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "coupler/device/core/edges.hpp"
+#include "coupler/device/core/image.hpp"
+#include "coupler/device/core/statistics.hpp"
+
+namespace coupler::device {
+
+/// Counters and latched points: what edges of inputs do to the image, and what a master's write may do to
+/// these points.
+class EdgePoints final : public EdgeSink {
+ public:
+  /// One point that an edge of one input concerns.
+  struct Link {
+    std::uint16_t input = 0;
+    Edge edge = Edge::rising;
+    bool latches = false;  ///< otherwise it counts
+    const Point* point = nullptr;
+    std::uint16_t* cells = nullptr;  ///< the point's, in the image
+  };
+  /// How many a map has.
+  static std::size_t links_for(const Map& map);
+
+  /// All of them outlive it; `links` has links_for() elements.
+  EdgePoints(const Map& map, Image& image, Statistics& statistics, Span<Link> links);
+
+  /// Counters of the input go up, in their own width and order, and wrap; its latches are set.
+  void add(std::uint16_t input, const Edges& edges) override;
+
+  /// A write clears a latch with 0; a 1 leaves it as it is. `now` are the cells of the range, `next` what a
+  /// master wants to write there: it becomes what is to be stored.
+  void keep_latches(Table table, modbus::Range written, Span<const std::uint16_t> now,
+                    Span<std::uint16_t> next) const;
+
+ private:
+  const Map& map_;
+  Statistics& statistics_;
+  Span<Link> links_;  ///< ascending inputs
+};
+
+}  // namespace coupler::device

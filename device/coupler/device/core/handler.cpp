@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/core/handler.hpp"
+
+#include <algorithm>
+
+#include "coupler/device/core/each_point.hpp"
+#include "coupler/device/core/identification.hpp"
+#include "coupler/device/core/identity_area.hpp"
+#include "coupler/device/core/map_file.hpp"
+#include "coupler/map/identity.hpp"
+#include "coupler/modbus/reply.hpp"
+
+namespace coupler::device {
+namespace {
+
+using modbus::Exception;
+using modbus::Function;
+
+Table table_of(Function read) {
+  switch (read) {
+    case Function::read_coils: return Table::coils;
+    case Function::read_discrete_inputs: return Table::discrete_inputs;
+    case Function::read_input_registers: return Table::input_registers;
+    default: return Table::holding_registers;
+  }
+}
+
+}  // namespace
+
+Handler::Handler(const Map& map, Image& image, Hardware hardware, Statistics& statistics,
+                 OutputWatchdog& watchdog, Span<EdgePoints::Link> links)
+    : map_(map),
+      image_(image),
+      hardware_(hardware),
+      statistics_(statistics),
+      watchdog_(watchdog),
+      edge_points_(map, image, statistics, links) {
+  write_identity(map, machine_, image);
+  show_outputs();
+}
+
+void Handler::set_machine(const identity::Machine& machine) {
+  machine_ = machine;
+  write_identity(map_, machine_, image_);
+}
+
+std::size_t Handler::handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply) {
+  tick(now);
+  hardware_.take_news(now, edge_points_);
+  ++statistics_.requests;
+  wrote_output_ = false;
+  const Answer done = answer({request, now, reply});
+  if (done) {
+    watchdog_.request(peer, wrote_output_, now);
+    return *done;
+  }
+  ++statistics_.exceptions;
+  ++statistics_.exceptions_of[static_cast<std::size_t>(done.error()) - 1];
+  return modbus::reply_exception(request[0], done.error(), reply);
+}
+
+void Handler::tick(TimePoint now) {
+  if (!watchdog_.is_due(now)) return;
+  if (watchdog_.state() == OutputWatchdog::State::armed) ++statistics_.watchdog_trips;
+  watchdog_.expire(hardware_.drive_safe(), now);
+  show_outputs();
+}
+
+std::optional<std::chrono::milliseconds> Handler::patience(TimePoint now) const {
+  using std::chrono::milliseconds;
+  if (!watchdog_.deadline()) return std::nullopt;
+  return std::max(milliseconds(0), std::chrono::ceil<milliseconds>(*watchdog_.deadline() - now));
+}
+
+void Handler::show_outputs() {
+  for (const Image::Area& area : image_.mapped(Table::coils)) {
+    const auto range = modbus::Range::of(area.start, area.end - area.start);
+    hardware_.driven(Table::coils, range, image_.find(Table::coils, range));
+  }
+}
+
+Handler::Answer Handler::hardware_failed() {
+  ++statistics_.hardware_errors;
+  return tl::unexpected(Exception::server_device_failure);
+}
+
+Handler::Answer Handler::answer(const Call& call) {
+  const auto request = modbus::parse_request(call.request);
+  if (!request) return tl::unexpected(request.error());
+  return std::visit([&](const auto& what) { return carry_out(what, call); }, *request);
+}
+
+Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
+  const Table table = table_of(read.function);
+  const auto cells = image_.find_readable(table, read.range);
+  if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!hardware_.read(table, read.range, cells, call.now)) return hardware_failed();
+  if (table == Table::input_registers && identity::reserved.overlaps(read.range)) {
+    write_statistics(statistics_, call.now, image_);
+    write_watchdog(watchdog_, call.now, image_);
+  }
+  return holds_bits(table) ? modbus::reply_bits(read.function, cells, call.reply)
+                           : modbus::reply_registers(read.function, cells, call.reply);
+}
+
+tl::expected<void, Exception> Handler::store(Table table, modbus::Range range, Span<std::uint16_t> cells,
+                                             TimePoint now) {
+  const auto next = Span<std::uint16_t>(next_).first(cells.size());
+  edge_points_.keep_latches(table, range, cells, next);
+  if (watchdog_.is_locked() && hardware_.driven(table, range, next))
+    return tl::unexpected(Exception::server_device_failure);
+  if (const auto driven = hardware_.drive(table, range, next); !driven) {
+    if (driven.error().hardware_failed) ++statistics_.hardware_errors;
+    return tl::unexpected(driven.error().exception);
+  }
+  std::copy(next.begin(), next.end(), cells.begin());
+  if (hardware_.driven(table, range, cells)) {
+    wrote_output_ = true;
+    watchdog_.arm(now);
+  }
+  return {};
+}
+
+Handler::Answer Handler::carry_out(const modbus::WriteBits& write, const Call& call) {
+  const auto cells = image_.find_writable(Table::coils, write.range);
+  if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  for (std::size_t i = 0; i < cells.size(); ++i) next_[i] = write.packed[i / 8] >> i % 8 & 1;
+  if (const auto stored = store(Table::coils, write.range, cells, call.now); !stored)
+    return tl::unexpected(stored.error());
+  return modbus::reply_written(call.request, call.reply);
+}
+
+Span<std::uint16_t> Handler::writable_registers(modbus::Range range) const {
+  bool whole = true;
+  each_number(map_, Table::holding_registers, range, [&](const Point& point) {
+    if (point.counter.present() || is_analogue(point)) whole &= range.contains(coupler::range(point));
+  });
+  return whole ? image_.find_writable(Table::holding_registers, range) : Span<std::uint16_t>();
+}
+
+void Handler::put_next(const modbus::WriteRegisters& write) {
+  for (std::size_t i = 0; i < write.range.count(); ++i) next_[i] = modbus::get_u16(&write.values[2 * i]);
+}
+
+Handler::Answer Handler::reset_watchdog(const modbus::WriteRegisters& write, const Call& call) {
+  if (modbus::get_u16(write.values.data()) != identity::watchdog_reset_code)
+    return tl::unexpected(Exception::illegal_data_value);
+  watchdog_.reset();
+  return modbus::reply_written(call.request, call.reply);
+}
+
+Handler::Answer Handler::carry_out(const modbus::WriteRegisters& write, const Call& call) {
+  if (map_.service.watchdog.needs_reset() && write.range == identity::watchdog_reset)
+    return reset_watchdog(write, call);
+  const auto cells = writable_registers(write.range);
+  if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  put_next(write);
+  if (const auto stored = store(Table::holding_registers, write.range, cells, call.now); !stored)
+    return tl::unexpected(stored.error());
+  return modbus::reply_written(call.request, call.reply);
+}
+
+Handler::Answer Handler::carry_out(const modbus::MaskWrite& write, const Call& call) {
+  const auto cells = writable_registers(write.range);
+  if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  next_[0] = static_cast<std::uint16_t>((cells[0] & write.and_mask) | (write.or_mask & ~write.and_mask));
+  if (const auto stored = store(Table::holding_registers, write.range, cells, call.now); !stored)
+    return tl::unexpected(stored.error());
+  return modbus::reply_written(call.request, call.reply);
+}
+
+Handler::Answer Handler::carry_out(const modbus::ReadWriteRegisters& both, const Call& call) {
+  const auto read = image_.find_readable(Table::holding_registers, both.read);
+  const auto written = writable_registers(both.write.range);
+  if (read.empty() || written.empty()) return tl::unexpected(Exception::illegal_data_address);
+  put_next(both.write);
+  if (const auto stored = store(Table::holding_registers, both.write.range, written, call.now); !stored)
+    return tl::unexpected(stored.error());
+  return modbus::reply_registers(Function::read_write_multiple_registers, read, call.reply);
+}
+
+Handler::Answer Handler::carry_out(const modbus::FileGroups& groups, const Call& call) {
+  modbus::FileReply reply(call.reply);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const modbus::FileRecord group = groups[i];
+    if (!read_map_file(map_.text, group, reply.add(group.registers)))
+      return tl::unexpected(Exception::illegal_data_address);
+  }
+  return reply.size();
+}
+
+Handler::Answer Handler::carry_out(const modbus::Echo&, const Call& call) {
+  std::copy(call.request.begin(), call.request.end(), call.reply.begin());
+  return call.request.size();
+}
+
+Handler::Answer Handler::carry_out(const modbus::ReadDeviceIdentification& wanted, const Call& call) {
+  return identify(map_, machine_, wanted, call.reply);
+}
+
+}  // namespace coupler::device

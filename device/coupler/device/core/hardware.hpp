@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <tl/expected.hpp>
+
+#include "coupler/device/core/analogue_points.hpp"
+#include "coupler/device/core/hooked_points.hpp"
+#include "coupler/device/core/lines.hpp"
+#include "coupler/modbus/exception.hpp"
+
+namespace coupler::device {
+
+/// Why outputs were not driven.
+struct DriveError {
+  modbus::Exception exception;
+  bool hardware_failed;  ///< false: the firmware's code, or the hardware, does not take the value
+};
+
+/// All that is behind the points of a map: lines behind bits, channels behind registers, a firmware's own
+/// code.
+class Hardware {
+ public:
+  /// All of them outlive it. `analogue` is null if no register has a channel, `hooked` if there is no code.
+  Hardware(Lines& lines, AnaloguePoints* analogue = nullptr, HookedPoints* hooked = nullptr)
+      : lines_(&lines), analogue_(analogue), hooked_(hooked) {}
+
+  /// What came by itself since the last call: edges, values that the firmware has set.
+  void take_news(TimePoint now, EdgeSink& sink) {
+    lines_->take_edges(now, sink);
+    if (hooked_ != nullptr) hooked_->put_new_values();
+  }
+
+  /// Brings the image's cells of the range, which are `cells`, up to date. False if an input cannot be read.
+  [[nodiscard]] bool read(Table table, modbus::Range range, Span<std::uint16_t> cells, TimePoint now) {
+    if (table == Table::discrete_inputs) return lines_->read(range, cells, now);
+    if (table == Table::input_registers && analogue_ != nullptr) return analogue_->read(range, now);
+    return true;
+  }
+
+  /// Whether the range has an output. If so, a coil's level overwrites its element of `cells`; what a
+  /// register is driven to is in the image.
+  bool driven(Table table, modbus::Range range, Span<std::uint16_t> cells) const {
+    const bool hooked = hooked_ != nullptr && hooked_->has_output(table, range);
+    if (table == Table::coils) return lines_->driven(range, cells) || hooked;
+    return hooked || (analogue_ != nullptr && analogue_->has_output(range));
+  }
+
+  /// Drives the outputs of the range, all of them or none. Exceptions: AnaloguePoints::drive() 's; 04 if the
+  /// firmware refuses, which is asked first.
+  [[nodiscard]] tl::expected<void, DriveError> drive(Table table, modbus::Range range,
+                                                     Span<const std::uint16_t> next) {
+    if (hooked_ == nullptr) return drive_outputs(table, range, next);
+    if (!hooked_->write(table, range, next))
+      return tl::unexpected(DriveError{modbus::Exception::server_device_failure, false});
+    const auto driven = drive_outputs(table, range, next);
+    if (!driven) hooked_->take_back(table, range, next);
+    return driven;
+  }
+
+  /// Every output to its safe state. Tries all of them, a firmware's code last, which may take
+  /// its time; false if one cannot be driven.
+  [[nodiscard]] bool drive_safe() {
+    const bool lines_are = lines_->drive_safe();
+    const bool channels_are = analogue_ == nullptr || analogue_->drive_safe();
+    if (hooked_ != nullptr) hooked_->make_safe();
+    return lines_are && channels_are;
+  }
+
+ private:
+  tl::expected<void, DriveError> drive_outputs(Table table, modbus::Range range,
+                                               Span<const std::uint16_t> next) {
+    constexpr auto failure = modbus::Exception::server_device_failure;
+    if (table == Table::holding_registers && analogue_ != nullptr) {
+      const auto driven = analogue_->drive(range, next);
+      if (!driven) return tl::unexpected(DriveError{driven.error(), driven.error() == failure});
+      return {};
+    }
+    if (table != Table::coils || lines_->drive(range, next)) return {};
+    return tl::unexpected(DriveError{failure, true});
+  }
+
+  Lines* lines_;
+  AnaloguePoints* analogue_;
+  HookedPoints* hooked_;
+};
+
+}  // namespace coupler::device

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/core/image.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "coupler/map/identity.hpp"
+
+namespace coupler::device {
+namespace {
+
+using modbus::Range;
+
+enum class Which { mapped, readable, writable };
+
+bool belongs(const Point& point, Table table, Which which) {
+  if (point.table != table) return false;
+  switch (which) {
+    case Which::mapped: return true;
+    case Which::readable: return is_readable(point);
+    case Which::writable: return is_writable(point);
+  }
+  return false;
+}
+
+/// Calls `use` with each maximal range without holes, in order; the map's points are sorted.
+template <class Use>
+void each_range(const Map& map, Table table, Which which, Use use) {
+  std::uint32_t start = 0;
+  std::uint32_t end = 0;
+  for (const Point& point : map.points) {
+    if (!belongs(point, table, which)) continue;
+    const Range next = range(point);
+    if (start != end && next.start() > end) use(Range::of(start, end - start));
+    if (start == end || next.start() > end) start = next.start();
+    end = std::max(end, next.end());
+  }
+  if (start != end) use(Range::of(start, end - start));
+  if (which == Which::writable) return;
+  if (table == Table::input_registers) use(Range::of(identity::reserved.start(), identity::size));
+  if (table == Table::holding_registers && map.service.watchdog.needs_reset()) use(identity::watchdog_reset);
+}
+
+const Image::Area* covering(Span<Image::Area> areas, Range range) {
+  const auto* after =
+      std::upper_bound(areas.begin(), areas.end(), range.start(),
+                       [](std::uint32_t address, const auto& area) { return address < area.start; });
+  if (after == areas.begin()) return nullptr;
+  const Image::Area* area = after - 1;
+  return range.end() <= area->end ? area : nullptr;
+}
+
+/// A point that shares its register leaves the others' bits alone.
+void put_initial(const Point& point, Span<std::uint16_t> cells) {
+  const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
+  for (std::size_t i = 0; i < point.initial.size(); ++i)
+    cells[i] = static_cast<std::uint16_t>((cells[i] & ~mask) | (point.initial[i] & mask));
+}
+
+}  // namespace
+
+Image::Size Image::size_for(const Map& map) {
+  Size size;
+  for (const Table table : tables) {
+    each_range(map, table, Which::mapped, [&](Range range) {
+      ++size.areas;
+      size.cells += range.count();
+    });
+    if (!is_writable(table)) continue;
+    for (const Which which : {Which::readable, Which::writable})
+      each_range(map, table, which, [&](Range) { ++size.areas; });
+  }
+  return size;
+}
+
+Image::Image(const Map& map, Span<Area> areas, Span<std::uint16_t> cells) : cells_(cells) {
+  std::size_t used = 0;
+  std::uint32_t cell = 0;
+  const auto list = [&](Table table, Which which) {
+    const std::size_t first = used;
+    each_range(map, table, which, [&](Range range) {
+      areas[used++] = {range.start(), range.end(), cell};
+      if (which == Which::mapped) cell += range.count();
+    });
+    return areas.sub(first, used - first);
+  };
+  for (const Table table : tables) {
+    const std::size_t i = index(table);
+    mapped_[i] = list(table, Which::mapped);
+    readable_[i] = is_writable(table) ? list(table, Which::readable) : mapped_[i];
+    if (is_writable(table)) writable_[i] = list(table, Which::writable);
+  }
+  std::fill(cells_.begin(), cells_.end(), std::uint16_t{0});
+  for (const Point& point : map.points) put_initial(point, find(point.table, range(point)));
+}
+
+Span<std::uint16_t> Image::find(Table table, Range range) const {
+  const Area* area = covering(mapped_[index(table)], range);
+  if (area == nullptr) return {};
+  return cells_.sub(area->cell + (range.start() - area->start), range.count());
+}
+
+Span<std::uint16_t> Image::find_readable(Table table, Range range) const {
+  return covering(readable_[index(table)], range) == nullptr ? Span<std::uint16_t>() : find(table, range);
+}
+
+Span<std::uint16_t> Image::find_writable(Table table, Range range) const {
+  return covering(writable_[index(table)], range) == nullptr ? Span<std::uint16_t>() : find(table, range);
+}
+
+}  // namespace coupler::device

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "coupler/base/span.hpp"
+#include "coupler/map/map.hpp"
+
+namespace coupler::device {
+
+/// The process image: one cell for each mapped address. A bit is 0 or 1, a register stands as on the wire.
+/// The identity area (coupler/map/identity.hpp) is part of it.
+class Image {
+ public:
+  /// Addresses without a hole between them.
+  struct Area {
+    std::uint32_t start = 0;
+    std::uint32_t end = 0;   ///< one past the last
+    std::uint32_t cell = 0;  ///< of `start`
+  };
+
+  struct Size {
+    std::size_t areas = 0;
+    std::size_t cells = 0;
+  };
+  /// What an image of this map needs.
+  static Size size_for(const Map& map);
+
+  /// Holds initial values. The storage is at least as large as size_for() says and outlives the image.
+  Image(const Map& map, Span<Area> areas, Span<std::uint16_t> cells);
+
+  /// The addresses of a table that are mapped, sorted.
+  Span<const Area> mapped(Table table) const { return mapped_[index(table)]; }
+
+  /// The cells of the range; empty if one of its addresses is not mapped.
+  Span<std::uint16_t> find(Table table, modbus::Range range) const;
+
+  /// The same for a master's read: every address must also belong to a readable point.
+  Span<std::uint16_t> find_readable(Table table, modbus::Range range) const;
+
+  /// The same for a master's write: every address must also belong to a writable point.
+  Span<std::uint16_t> find_writable(Table table, modbus::Range range) const;
+
+ private:
+  std::array<Span<Area>, 4> mapped_;  ///< by table, sorted
+  std::array<Span<Area>, 4> readable_;
+  std::array<Span<Area>, 4> writable_;  ///< the same; empty for the input tables
+  Span<std::uint16_t> cells_;
+};
+
+}  // namespace coupler::device

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What libgpiod 1 and libgpiod 2 do differently. CMake chooses one: coupler/device/gpio/libgpiod1 or
+// libgpiod2.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "coupler/device/gpio/event_source.hpp"
+#include "coupler/device/gpio/line_group.hpp"
+#include "coupler/device/gpio/wanted.hpp"
+
+namespace coupler::device::backend {
+
+/// The chips of this machine.
+Inventory chips();
+
+/// Whether the kernel would take `line` into the same request as these (of which there is at least one).
+/// Inputs and outputs are never mixed.
+bool fits(const std::vector<Wanted>& group, const Wanted& line);
+
+/// One to max_group_size lines that fit together. Outputs begin at their wanted levels, with no other
+/// level in between. The error names chip, line and holder.
+tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<Wanted>& lines);
+
+struct Inputs {
+  std::unique_ptr<InputGroup> group;
+  EventSource* events = nullptr;  ///< the group, if it has a descriptor to be watched
+};
+tl::expected<Inputs, std::string> request_inputs(const std::vector<Wanted>& lines);
+
+}  // namespace coupler::device::backend

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/gpio/inventory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace coupler::device {
+namespace {
+
+/// gpiochip2 before gpiochip10.
+bool shorter_first(const std::string& a, const std::string& b) {
+  return a.size() != b.size() ? a.size() < b.size() : a < b;
+}
+
+std::string names_of_lines(const Chip& chip) {
+  constexpr std::size_t enough = 64;
+  std::size_t count = 0;
+  std::string text;
+  for (const std::string& name : chip.lines) {
+    if (name.empty()) continue;
+    if (++count > enough) return text + ", ...";
+    text += fmt::format("{}'{}'", count == 1 ? "" : ", ", name);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string to_string(const FoundLine& found) {
+  const std::string& name = found.chip->lines[found.offset];
+  return fmt::format("{} line {}{}", found.chip->name, found.offset, name.empty() ? "" : " (" + name + ")");
+}
+
+Inventory::Inventory(ReadChip read) {
+  std::vector<std::string> paths;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev", error))
+    if (entry.path().filename().string().rfind("gpiochip", 0) == 0) paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end(), shorter_first);
+  for (const std::string& path : paths) {
+    if (auto chip = read(path))
+      chips_.push_back(*std::move(chip));
+    else
+      unopened_ += fmt::format("{}{}: {}", unopened_.empty() ? "" : ", ", path, std::strerror(errno));
+  }
+}
+
+std::string Inventory::contents() const {
+  std::string text;
+  for (const Chip& chip : chips_)
+    text += fmt::format("{}{} '{}' ({} lines)", text.empty() ? "; this machine has " : ", ", chip.name,
+                        chip.label, chip.lines.size());
+  if (!unopened_.empty())
+    text += fmt::format("; cannot be opened: {} (join the group that owns it, see ls -l /dev/gpiochip*)",
+                        unopened_);
+  if (text.empty()) text = "; this machine has no GPIO chip (run with --sim to do without)";
+  return text;
+}
+
+tl::expected<FoundLine, std::string> Inventory::find(const Line& line) const {
+  return line.chip.empty() ? find_by_name(line.name) : find_by_offset(std::string(line.chip), line.offset);
+}
+
+tl::expected<FoundLine, std::string> Inventory::find_by_name(std::string_view name) const {
+  std::vector<FoundLine> found;
+  for (const Chip& chip : chips_)
+    for (unsigned offset = 0; offset < chip.lines.size(); ++offset)
+      if (chip.lines[offset] == name) found.push_back({&chip, offset});
+  if (found.size() == 1) return found.front();
+  if (found.size() > 1)
+    return tl::unexpected(fmt::format("the name '{}' belongs to {} and to {}; choose one by chip and offset",
+                                      name, to_string(found[0]), to_string(found[1])));
+  std::string named;
+  for (const Chip& chip : chips_)
+    if (const std::string names = names_of_lines(chip); !names.empty())
+      named += fmt::format("; named on {}: {}", chip.name, names);
+  return tl::unexpected(fmt::format("no GPIO line is named '{}'{}{}", name, contents(), named));
+}
+
+tl::expected<FoundLine, std::string> Inventory::find_by_offset(const std::string& wanted,
+                                                               unsigned offset) const {
+  const auto chip = find_chip(wanted);
+  if (!chip) return tl::unexpected(chip.error());
+  const std::size_t lines = (*chip)->lines.size();
+  if (offset >= lines)
+    return tl::unexpected(
+        fmt::format("{} has no line {}; it has lines 0 to {}", (*chip)->name, offset, lines - 1));
+  return FoundLine{*chip, offset};
+}
+
+tl::expected<const Chip*, std::string> Inventory::find_chip(const std::string& wanted) const {
+  // A path may be a link that udev made: the kernel's name is what it leads to.
+  std::error_code error;
+  const std::string real = wanted.find('/') == std::string::npos
+                               ? wanted
+                               : std::filesystem::canonical(wanted, error).filename().string();
+  for (const Chip& chip : chips_)
+    if (chip.name == real || chip.label == wanted) return &chip;
+  return tl::unexpected(
+      fmt::format("there is no GPIO chip '{}' (by name, path or label){}", wanted, contents()));
+}
+
+}  // namespace coupler::device

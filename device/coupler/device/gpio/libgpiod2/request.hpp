@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gpiod.h>
+
+#include <cerrno>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "coupler/device/gpio/wanted.hpp"
+
+namespace coupler::device::libgpiod2 {
+
+/// A libgpiod object that its own function frees.
+template <class Object, void (*free)(Object*)>
+struct Free {
+  void operator()(Object* object) const { free(object); }
+};
+template <class Object, void (*free)(Object*)>
+using Owned = std::unique_ptr<Object, Free<Object, free>>;
+
+using ChipHandle = Owned<gpiod_chip, gpiod_chip_close>;
+using RequestHandle = Owned<gpiod_line_request, gpiod_line_request_release>;
+
+/// Lines that the kernel gave to this process, and their chip.
+struct Request {
+  ChipHandle chip;
+  RequestHandle lines;
+
+  bool is_plugged() const {
+    const Owned<gpiod_chip_info, gpiod_chip_info_free> info(gpiod_chip_get_info(chip.get()));
+    return info || errno != ENODEV;
+  }
+};
+
+/// One to max_group_size lines of one chip, all outputs or all inputs, requested as the map says; inputs that
+/// are counted are watched for their edges. Outputs begin at their wanted levels, with no other level in
+/// between. The error names chip, line and holder.
+tl::expected<Request, std::string> request(const std::vector<Wanted>& lines);
+
+/// The kernel describes a request's lines with at most 10 attributes, whatever their number. That is enough
+/// for as many different sets of flags and as many different debounce periods as this, and the levels of
+/// outputs.
+constexpr std::size_t max_kinds = 5;
+
+/// Whether two lines differ in what takes an attribute.
+bool same_kind(const Wanted& a, const Wanted& b);
+
+}  // namespace coupler::device::libgpiod2

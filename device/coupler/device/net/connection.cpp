@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/net/connection.hpp"
+
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <utility>
+
+namespace coupler::device {
+namespace {
+
+using Outcome = modbus::Framer::Outcome;
+
+bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
+
+}  // namespace
+
+void Connection::open(Descriptor socket, const IpAddress& origin, TimePoint now) {
+  assert(!is_open());
+  framer_.reset();
+  output_begin_ = output_end_ = 0;
+  ended_ = has_asked_ = false;
+  peer_ = {};
+  origin_ = origin;
+  last_active_ = now;
+  waiting_ = Waiting::for_request;
+  deadline_.reset();
+  if (loop_.watch(socket.get(), Interest::read, *this)) socket_ = std::move(socket);
+}
+
+void Connection::open(OpenConnection from, const IpAddress& origin, TimePoint now) {
+  assert(from.unread.size() <= modbus::max_adu_size && from.unsent.size() <= output_size);
+  open(std::move(from.socket), origin, now);
+  if (!is_open()) return;
+  peer_.has_written = from.has_written;
+  has_asked_ = true;
+  std::copy(from.unread.begin(), from.unread.end(), framer_.room().begin());
+  framer_.filled(from.unread.size());
+  std::copy(from.unsent.begin(), from.unsent.end(), output_.begin());
+  output_end_ = from.unsent.size();
+  // Whole frames may be waiting, of which the socket does not tell any more.
+  if (has_output()) loop_.change(socket_.get(), Interest::write, *this);
+  ready(now);
+}
+
+OpenConnection Connection::release() {
+  OpenConnection open;
+  loop_.forget(socket_.get(), *this);
+  open.socket = std::move(socket_);
+  open.has_written = peer_.has_written;
+  const modbus::Bytes rest = framer_.rest();
+  open.unread.assign(rest.begin(), rest.end());
+  open.unsent.assign(&output_[output_begin_], &output_[output_begin_] + (output_end_ - output_begin_));
+  deadline_.reset();
+  return open;
+}
+
+void Connection::close() {
+  if (!is_open()) return;
+  loop_.forget(socket_.get(), *this);
+  socket_.close();
+  deadline_.reset();
+}
+
+void Connection::ready(TimePoint now) {
+  const bool was_sending = has_output();
+  const TimePoint before = last_active_;
+  if (!take_turn(now)) return close();
+  if (has_output() != was_sending)
+    loop_.change(socket_.get(), has_output() ? Interest::write : Interest::read, *this);
+  set_deadline(now, last_active_ != before);
+}
+
+/// False: the connection is to be closed.
+bool Connection::take_turn(TimePoint now) {
+  // First what an earlier turn left: replies, and requests behind them.
+  if (!send() || !answer(now)) return false;
+  if (has_output()) return true;
+  if (!ended_ && !receive()) return false;
+  return answer(now) && (!ended_ || has_output());
+}
+
+bool Connection::receive() {
+  const auto room = framer_.room();
+  const ssize_t size = ::recv(socket_.get(), room.data(), room.size(), 0);
+  if (size < 0) return would_block();
+  if (size == 0) ended_ = true;
+  framer_.filled(static_cast<std::size_t>(size));
+  return true;
+}
+
+/// Answers whole frames for as long as the client takes the replies.
+bool Connection::answer(TimePoint now) {
+  while (!has_output()) {
+    const Outcome outcome = fill_output(now);
+    if (!send()) return false;
+    if (outcome == Outcome::nothing) return true;
+    if (outcome == Outcome::frame) continue;
+    ++statistics_.bad_frames;
+    return false;
+  }
+  return true;
+}
+
+/// Answers whole frames while there is room for the longest reply; tells what comes next.
+Outcome Connection::fill_output(TimePoint now) {
+  while (output_.size() - output_end_ >= modbus::max_adu_size) {
+    const Outcome outcome = framer_.next();
+    if (outcome != Outcome::frame) return outcome;
+    output_end_ += server_.answer(framer_.frame(), peer_, now, Span<std::uint8_t>(output_).from(output_end_));
+    has_asked_ = true;
+    last_active_ = now;
+  }
+  return Outcome::frame;
+}
+
+bool Connection::send() {
+  while (has_output()) {
+    const ssize_t size = ::send(socket_.get(), &output_[output_begin_], output_end_ - output_begin_,
+                                MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (size < 0) return would_block();
+    output_begin_ += static_cast<std::size_t>(size);
+  }
+  output_begin_ = output_end_ = 0;
+  return true;
+}
+
+void Connection::set_deadline(TimePoint now, bool had_frame) {
+  const Waiting waiting = has_output()           ? Waiting::for_client_to_read
+                          : framer_.is_partial() ? Waiting::for_rest_of_frame
+                                                 : Waiting::for_request;
+  if (waiting == Waiting::for_request)
+    deadline_.reset();
+  else if (waiting != waiting_ || had_frame)
+    deadline_ = now + patience;
+  waiting_ = waiting;
+}
+
+}  // namespace coupler::device

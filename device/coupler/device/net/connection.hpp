@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "coupler/device/core/server.hpp"
+#include "coupler/device/net/loop.hpp"
+#include "coupler/device/net/open_connection.hpp"
+#include "coupler/map/network.hpp"
+#include "coupler/modbus/frame.hpp"
+
+namespace coupler::device {
+
+/// One client. In a turn it receives once, at most as much as the longest frame, and answers what that
+/// completes; so clients that pipeline thousands of requests take turns with the others. While a reply waits
+/// for the client to read, no further request of it is carried out or received: what it is owed is bounded.
+/// Its memory is used again for the next client.
+class Connection : public Watcher {
+ public:
+  /// For the rest of a frame once its beginning is there, and for a client to take a reply; absolute, so that
+  /// single bytes do not extend it.
+  static constexpr std::chrono::seconds patience{5};
+
+  Connection(Loop& loop, Server& server, Statistics& statistics)
+      : loop_(loop), server_(server), statistics_(statistics) {}
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection() { close(); }
+
+  /// Takes over a connected, non-blocking socket of a client from there (origin_of()).
+  void open(Descriptor socket, const IpAddress& origin, TimePoint now);
+  /// Takes over what another one let go.
+  void open(OpenConnection from, const IpAddress& origin, TimePoint now);
+  /// Lets go of the client without closing its connection.
+  OpenConnection release();
+  bool is_open() const { return socket_.is_open(); }
+  void close();
+
+  void ready(TimePoint now) override;
+
+  /// When it is closed unless something happens; nullopt: never.
+  std::optional<TimePoint> deadline() const { return deadline_; }
+
+  /// It has sent at least one whole frame.
+  bool has_asked() const { return has_asked_; }
+  /// It has written an output.
+  bool has_written() const { return peer_.has_written; }
+  const IpAddress& origin() const { return origin_; }
+  /// Of its last whole frame, or of its beginning.
+  TimePoint last_active() const { return last_active_; }
+
+ private:
+  /// Replies are sent together, a few long ones or many short ones.
+  static constexpr std::size_t output_size = 4 * modbus::max_adu_size;
+  enum class Waiting { for_request, for_rest_of_frame, for_client_to_read };
+
+  bool take_turn(TimePoint now);
+  bool receive();
+  bool answer(TimePoint now);
+  modbus::Framer::Outcome fill_output(TimePoint now);
+  bool send();
+  bool has_output() const { return output_begin_ != output_end_; }
+  void set_deadline(TimePoint now, bool had_frame);
+
+  Loop& loop_;
+  Server& server_;
+  Statistics& statistics_;
+  Descriptor socket_;
+  Peer peer_;
+  IpAddress origin_{};
+  modbus::Framer framer_;
+  std::array<std::uint8_t, output_size> output_;
+  std::size_t output_begin_ = 0;
+  std::size_t output_end_ = 0;
+  bool ended_ = false;  ///< the client sends no more, but may wait for replies
+  bool has_asked_ = false;
+  TimePoint last_active_{};
+  Waiting waiting_ = Waiting::for_request;
+  std::optional<TimePoint> deadline_;
+};
+
+}  // namespace coupler::device

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/net/loop.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace coupler::device {
+namespace {
+
+epoll_event event_for(Interest interest, Watcher& watcher) {
+  epoll_event event{};
+  event.events = static_cast<std::uint32_t>(interest);
+  event.data.ptr = &watcher;
+  return event;
+}
+
+}  // namespace
+
+Loop::Loop() : epoll_(::epoll_create1(EPOLL_CLOEXEC)) {}
+
+bool Loop::watch(int fd, Interest interest, Watcher& watcher) {
+  epoll_event event = event_for(interest, watcher);
+  return ::epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd, &event) == 0;
+}
+
+void Loop::change(int fd, Interest interest, Watcher& watcher) {
+  epoll_event event = event_for(interest, watcher);
+  [[maybe_unused]] const int result = ::epoll_ctl(epoll_.get(), EPOLL_CTL_MOD, fd, &event);
+  assert(result == 0);
+}
+
+void Loop::forget(int fd, const Watcher& watcher) {
+  ::epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, fd, nullptr);
+  for (int i = 0; i < waiting_; ++i) {
+    epoll_event& event = events_[static_cast<std::size_t>(i)];
+    if (event.data.ptr == &watcher) event.data.ptr = nullptr;
+  }
+}
+
+TimePoint Loop::run_once(std::optional<std::chrono::milliseconds> timeout) {
+  const int wait = timeout ? static_cast<int>(timeout->count()) : -1;
+  waiting_ = std::max(0, ::epoll_wait(epoll_.get(), events_.data(), static_cast<int>(events_.size()), wait));
+  const TimePoint now = TimePoint::clock::now();
+  for (int i = 0; i < waiting_; ++i)
+    if (void* watcher = events_[static_cast<std::size_t>(i)].data.ptr)
+      static_cast<Watcher*>(watcher)->ready(now);
+  waiting_ = 0;
+  return now;
+}
+
+}  // namespace coupler::device

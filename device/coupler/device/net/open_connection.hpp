@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "coupler/device/net/descriptor.hpp"
+
+namespace coupler::device {
+
+/// A client between two processes, or two maps, that answer it.
+struct OpenConnection {
+  Descriptor socket;
+  bool has_written = false;            ///< Peer's
+  std::vector<std::uint8_t> unread{};  ///< received, not answered; at most an ADU
+  std::vector<std::uint8_t> unsent{};  ///< replies that the client has not taken
+};
+
+}  // namespace coupler::device

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coupler/device/core/log.hpp"
+#include "coupler/device/net/connection.hpp"
+#include "coupler/device/net/listener.hpp"
+
+namespace coupler::device {
+
+/// Accepts clients and ends those that overstay: a fixed number of connections. When all are taken, the
+/// address with the most of them makes room: first who never asked anything, then who never wrote an output,
+/// then the longest idle. Allocates at the start only.
+class TcpServer : public Watcher {
+ public:
+  static constexpr std::size_t max_connections = 256;
+
+  /// `capacity` is lowered to what the limit of open files leaves. All of them outlive it.
+  TcpServer(Loop& loop, const Listener& listener, Server& server, Statistics& statistics, Log& log,
+            std::size_t capacity = max_connections);
+  TcpServer(const TcpServer&) = delete;
+  TcpServer& operator=(const TcpServer&) = delete;
+  ~TcpServer();
+
+  const std::string& name() const { return listener_.name; }
+  std::size_t capacity() const { return connections_.size(); }
+  /// Connections that are open now.
+  std::size_t size() const;
+
+  /// Takes over clients that another server let go, as far as they may connect and there is room.
+  void adopt(std::vector<OpenConnection> clients, TimePoint now);
+  /// Lets go of all clients without closing their connections.
+  std::vector<OpenConnection> release();
+
+  /// Somebody wants to connect.
+  void ready(TimePoint now) override;
+
+  /// How long the loop may wait before it calls tick() again; nullopt: as long as it likes.
+  std::optional<std::chrono::milliseconds> patience() const;
+  /// Closes what is overdue.
+  void tick(TimePoint now);
+
+ private:
+  Connection& place_for(const IpAddress& newcomer);
+  Connection& who_makes_room_for(const IpAddress& newcomer);
+  bool accept_one(TimePoint now);
+  void refuse(Descriptor socket, const sockaddr_storage& peer);
+  void pause(int error);
+
+  Loop& loop_;
+  const Listener& listener_;
+  Statistics& statistics_;
+  Log& log_;
+  std::deque<Connection> connections_;  ///< never grows after the start: addresses are stable
+  std::vector<Connection*> by_origin_;  ///< the same; sorted where it matters
+  bool paused_ = false;                 ///< out of descriptors or memory
+  bool pause_logged_ = false;           ///< and nobody was let in since
+  bool in_use_ = false;                 ///< connections are open, or were at the last sweep
+  TimePoint next_sweep_{};
+};
+
+}  // namespace coupler::device

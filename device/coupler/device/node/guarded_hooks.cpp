@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/node/guarded_hooks.hpp"
+
+#include <fmt/format.h>
+
+#include <exception>
+
+namespace coupler::device {
+namespace {
+
+/// Calls `call`; `thrown(what)` if it throws. False if it did.
+template <class Call, class Thrown>
+bool guard(Call call, Thrown thrown) {
+  try {
+    call();
+    return true;
+  } catch (const std::exception& exception) {
+    thrown(exception.what());
+  } catch (...) {
+    thrown("something that is no std::exception");
+  }
+  return false;
+}
+
+}  // namespace
+
+void GuardedHooks::tell(const std::string& who, const char* what) {
+  log_.fail(fmt::format("{} threw an exception: {}", who, what));
+}
+
+bool GuardedHooks::begin() {
+  hooks_.allow_setting();
+  return guard([&] { hooks_.serving_began(); }, [&](const char* what) { tell("serving_began()", what); });
+}
+
+bool GuardedHooks::end(Image& image) {
+  hooks_.allow_setting();
+  const bool safe = made_safe();
+  hooks_.put_new_values(image);
+  return safe;
+}
+
+bool GuardedHooks::made_safe() {
+  return guard([&] { hooks_.make_safe(); }, [&](const char* what) { tell("make_safe()", what); });
+}
+
+bool GuardedHooks::accept(std::uint32_t point, const std::uint16_t* registers) {
+  bool accepted = false;
+  const auto thrown = [&](const char* what) {
+    // Masters write as often as they like.
+    log_.warn_limited("hook",
+                      fmt::format("the hook of point '{}' threw an exception: {}; the write is refused",
+                                  map_.points[point].name, what));
+  };
+  return guard([&] { accepted = hooks_.accept(point, registers); }, thrown) && accepted;
+}
+
+}  // namespace coupler::device

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "coupler/device/core/hooks.hpp"
+#include "coupler/device/core/log.hpp"
+#include "coupler/map/map.hpp"
+
+namespace coupler::device {
+
+/// A firmware's code, of which an exception ends no process: it is told in the log, and the request that it
+/// was called for is refused.
+class GuardedHooks final : public Hooks {
+ public:
+  /// All of them outlive it; the map is the one whose points `hooks` is behind.
+  GuardedHooks(Hooks& hooks, const Map& map, Log& log) : hooks_(hooks), map_(map), log_(log) {}
+
+  /// This process serves from now on: values can be set in it. False: serving_began() threw.
+  [[nodiscard]] bool begin();
+  /// Nobody serves: make_safe(), and what it sets is put into the image. False: it threw.
+  [[nodiscard]] bool end(Image& image);
+
+  void put_new_values(Image& image) override { hooks_.put_new_values(image); }
+  [[nodiscard]] bool accept(std::uint32_t point, const std::uint16_t* registers) override;
+  void make_safe() override { (void)made_safe(); }
+
+ private:
+  bool made_safe();
+  void tell(const std::string& who, const char* what);
+
+  Hooks& hooks_;
+  const Map& map_;
+  Log& log_;
+};
+
+}  // namespace coupler::device

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/node/map_reading.hpp"
+
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstring>
+#include <memory_resource>
+#include <new>
+#include <utility>
+
+namespace coupler::device {
+namespace {
+
+enum Status { done, told, too_large };
+
+}  // namespace
+
+MapReading::MapReading(Loop& loop, TimePoint now)
+    : loop_(loop), deadline_(now + patience), arena_(std::make_shared<SharedArena>(room)) {}
+
+MapReading::~MapReading() {
+  if (is_watched_) loop_.forget(child_->descriptor(), *this);
+}
+
+tl::expected<std::unique_ptr<MapReading>, std::string> MapReading::start(Loop& loop, const ReadMap& source,
+                                                                         TimePoint now) {
+  const auto failed = [](const char* why) {
+    return tl::unexpected(fmt::format("the map cannot be read: no process can be had for it: {}", why));
+  };
+  try {
+    std::unique_ptr<MapReading> reading(new MapReading(loop, now));
+    const pid_t parent = ::getpid();
+    auto child = Child::start([&] { return reading->read(source, parent); });
+    if (!child) return failed(std::strerror(child.error()));
+    reading->child_ = *std::move(child);
+    // Unwatched, its end is seen a little later.
+    reading->is_watched_ = loop.watch(reading->child_->descriptor(), Interest::read, *reading);
+    return reading;
+  } catch (const std::bad_alloc&) {
+    return failed(std::strerror(ENOMEM));
+  }
+}
+
+/// In the process of its own. Nothing is destroyed in it: the map is the other one's.
+int MapReading::read(const ReadMap& source, pid_t parent) {
+  ::prctl(PR_SET_NAME, "coupler-map");
+  if (!end_with_parent(parent, SIGKILL)) return told;
+  close_descriptors(source.descriptor);
+  std::pmr::set_default_resource(arena_.get());
+  try {
+    const MapPtr map = source.read();
+    made_[0].map = map.get();
+    ::_exit(map == nullptr ? told : done);
+  } catch (const std::bad_alloc&) {
+    return too_large;
+  }
+}
+
+void MapReading::ready(TimePoint) {
+  loop_.forget(child_->descriptor(), *this);
+  is_watched_ = false;
+}
+
+bool MapReading::is_over(TimePoint now) {
+  if (!status_) status_ = child_->wait(std::chrono::milliseconds(0));
+  return status_ || now >= deadline_;
+}
+
+tl::expected<MapPtr, std::string> MapReading::take() {
+  if (!status_)
+    return tl::unexpected(
+        fmt::format("the map could not be read in {} s; is the disk or the network file system that it is on "
+                    "still there?",
+                    patience.count()));
+  if (*status_ == 0) {
+    arena_->give_back_rest();
+    return MapPtr(arena_, made_[0].map);
+  }
+  if (!WIFEXITED(*status_)) return tl::unexpected("the process that read the map " + describe_end(*status_));
+  if (WEXITSTATUS(*status_) == too_large)
+    return tl::unexpected(
+        fmt::format("the map needs more than {} MiB of memory; leave points out", room >> 20));
+  return tl::unexpected(std::string());
+}
+
+tl::expected<MapPtr, std::string> read_first(const ReadMap& source) {
+  Loop loop;
+  auto reading = MapReading::start(loop, source, TimePoint::clock::now());
+  if (!reading) return tl::unexpected(std::move(reading).error());
+  while (!(*reading)->is_over({})) loop.run_once(std::chrono::milliseconds(100));
+  return (*reading)->take();
+}
+
+}  // namespace coupler::device

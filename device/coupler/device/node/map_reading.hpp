@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "coupler/device/keeper/child.hpp"
+#include "coupler/device/keeper/shared_arena.hpp"
+#include "coupler/device/keeper/shared_array.hpp"
+#include "coupler/device/net/loop.hpp"
+#include "coupler/map/owned_map.hpp"
+
+namespace coupler::device {
+
+/// How a node reads a map. It is called in a process of its own, which has none of the node's lines and
+/// sockets, and may take its time.
+struct ReadMap {
+  std::function<MapPtr()> read;  ///< null after telling what is wrong; empty: there is nothing to read
+  int descriptor = -1;           ///< that it needs besides 0 to 2: the log's
+};
+
+/// A map that is being read in a process of its own. It dies with this one.
+class MapReading : public Watcher {
+ public:
+  /// A slow board reads the largest map in a third of it.
+  static constexpr std::chrono::seconds patience{60};
+
+  /// `loop` wakes up when it is done. The error says why it cannot be done.
+  static tl::expected<std::unique_ptr<MapReading>, std::string> start(Loop& loop, const ReadMap& source,
+                                                                      TimePoint now);
+  MapReading(const MapReading&) = delete;
+  MapReading& operator=(const MapReading&) = delete;
+  ~MapReading();
+
+  /// It has ended, or its time is over.
+  bool is_over(TimePoint now);
+  /// Once it is over. The error says what went wrong; it is empty if the process has told.
+  tl::expected<MapPtr, std::string> take();
+
+  void ready(TimePoint) override;
+
+ private:
+  /// More than the largest map file (loader) needs.
+  static constexpr std::size_t room = std::size_t{256} << 20;
+  /// What the process leaves behind.
+  struct Made {
+    const OwnedMap* map = nullptr;
+  };
+
+  MapReading(Loop& loop, TimePoint now);
+  int read(const ReadMap& source, pid_t parent);
+
+  Loop& loop_;
+  TimePoint deadline_;
+  std::shared_ptr<SharedArena> arena_;
+  SharedArray<Made> made_{1};
+  std::optional<Child> child_;
+  std::optional<int> status_;
+  bool is_watched_ = false;
+};
+
+/// The first map of a node, read in the same way, so that this process keeps none of the memory that it took;
+/// but for as long as it takes: nothing is served yet, and a signal ends both.
+tl::expected<MapPtr, std::string> read_first(const ReadMap& source);
+
+}  // namespace coupler::device

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/node/options.hpp"
+
+#include <filesystem>
+
+#include "coupler/base/version.hpp"
+#include "coupler/command_line/command_line.hpp"
+
+namespace coupler::device {
+
+std::string address_for(const Map& map, const Options& options) {
+  if (!options.listen.empty()) return options.listen;
+  if (!map.service.listen.empty()) return std::string(map.service.listen);
+  return options.simulated ? "127.0.0.1" : "";
+}
+
+std::variant<Options, int> parse_options(int argc, char** argv, MapSource source) {
+  const std::string program = std::filesystem::path(argc > 0 ? argv[0] : "coupler-node").filename();
+  const std::string map = source == MapSource::argument ? " device.yaml" : "";
+  Options options;
+  command_line::Program app(
+      "Serves the points of a map as a Modbus/TCP device: GPIO lines, or simulated ones.", program);
+  app.version(program + " " + std::string(version));
+  app.footer("Example, without hardware, for any Modbus master on this machine:\n  " + program + map +
+             " --sim --port 1502" +
+             (source == MapSource::argument
+                  ? "\nSIGHUP makes it read MAP again; one that cannot be served is refused."
+                  : ""));
+  if (source == MapSource::argument) {
+    const auto file = app.add_option("MAP", options.map, "The map file, YAML or JSON; - is standard input");
+    app.add_option(
+           "--reload", options.reload,
+           "Instead: make the coupler-node with this process id read its map again, wait, and tell how it "
+           "ended (exit status 0: taken, 1: refused)")
+        .type_name("PID")
+        .excludes(file);
+    app.callback([&options, file] {
+      if (options.map.empty() && options.reload == 0) file.refuse_missing();
+    });
+  }
+  app.add_option(
+      "--listen", options.listen,
+      "IP address to listen on (default: the map's 'listen', or every interface; with --sim 127.0.0.1)");
+  app.add_option("--port", options.port, "TCP port (default: the map's, usually 502; 0: any free one)");
+  app.add_flag("--sim", options.simulated,
+               "Simulate every coil and discrete input, wired as the map's sim: section says");
+  app.add_flag("--realtime", options.realtime,
+               "Ahead of other programs (SCHED_FIFO), with memory locked; ends with status 3 if the system "
+               "refuses that");
+  if (const auto done = app.parse(argc, argv)) return *done;
+  return options;
+}
+
+}  // namespace coupler::device

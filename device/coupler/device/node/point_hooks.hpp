@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "coupler/device/core/hooks.hpp"
+#include "coupler/device/node/urgent_mutex.hpp"
+#include "coupler/map/map.hpp"
+#include "coupler/map/typed_value.hpp"
+#include "coupler/modbus/limits.hpp"
+
+namespace coupler::device {
+
+/// What the generated hooks of every map have in common: values <-> registers, and values that any thread
+/// sets.
+class PointHooks : public Hooks {
+ public:
+  void put_new_values(Image& image) final;
+  void allow_setting() final;
+  [[nodiscard]] bool accept(std::uint32_t, const std::uint16_t*) override { return true; }
+
+ protected:
+  /// The map outlives it.
+  explicit PointHooks(const Map& map) : map_(map), set_(map.points.size()) {}
+
+  template <class T>
+  T decode(std::uint32_t point, const std::uint16_t* registers) const {
+    return TypedValue<T>::decode(registers, map_.points[point]);
+  }
+
+  /// From any thread of the process that serves: masters read the value from their next request on. The error
+  /// says what is wrong with it, or that this is another process.
+  template <class T>
+  tl::expected<void, std::string> set(std::uint32_t point, const T& value) {
+    std::array<std::uint16_t, modbus::max_read_bits> registers{};
+    std::string wrong = wrong_process();
+    if (!wrong.empty()) return tl::unexpected(std::move(wrong));
+    wrong = TypedValue<T>::encode(value, map_.points[point], registers.data());
+    if (!wrong.empty()) return tl::unexpected(std::move(wrong));
+    keep(point, registers.data());
+    return {};
+  }
+
+ private:
+  void keep(std::uint32_t point, const std::uint16_t* registers);
+  std::string wrong_process() const;
+
+  const Map& map_;
+  pid_t process_ = 0;  ///< the one that serves
+  UrgentMutex mutex_;
+  std::vector<std::vector<std::uint16_t>> set_;  ///< by point; empty: not set since it was put into the image
+  std::vector<std::uint32_t> points_;            ///< those that are not empty
+};
+
+}  // namespace coupler::device

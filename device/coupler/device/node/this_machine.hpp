@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which machine this is, as the node tells it: two boards with one map are told apart by it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "coupler/map/identity.hpp"
+
+namespace coupler::device {
+
+/// What tells this machine from others, the first that is there: the board's serial number (device tree,
+/// DMI), the permanent MAC address of its first network interface, its machine-id. Empty: none is. What a
+/// service may not read is not there for it. `root` is where / is.
+std::string find_serial(const std::string& root = {});
+
+/// What is shown of a serial. A machine-id is a secret (machine-id(5)): the prefix keeps its hash from being
+/// compared with what other programs derive from it. 0: the serial is empty.
+std::uint64_t hashed_serial(std::string_view serial);
+
+/// Its hostname, with ? for what is not printable ASCII, and its hashed serial. It reads a few small files,
+/// and cannot fail.
+identity::Machine this_machine(const std::string& root = {});
+
+}  // namespace coupler::device

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/cli/device_reader.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/host/cli/identity_findings.hpp"
+#include "coupler/host/core/refusal.hpp"
+#include "coupler/plan/split.hpp"
+
+namespace coupler::cli {
+namespace {
+
+using host::Result;
+using modbus::Exception;
+using plan::ReadSpan;
+using State = Reading::State;
+
+/// Devices answer a range that they do not have, or that is too long for them, with either of these.
+constexpr bool is_rejection(Exception code) {
+  return code == Exception::illegal_data_address || code == Exception::illegal_data_value;
+}
+
+/// The answer can be another one for a part of the range: one line that fails is answered for all.
+constexpr bool is_of_the_range(Exception code) {
+  return code != Exception::illegal_function && code != Exception::acknowledge &&
+         code != Exception::server_device_busy;
+}
+
+std::string text_of(plan::NotRead reason) {
+  switch (reason) {
+    case plan::NotRead::write_only: return "write-only";
+    case plan::NotRead::unreadable: return "in what the map calls unreadable";
+    case plan::NotRead::too_long: return "fits into no reply";
+  }
+  return {};
+}
+
+/// Smaller requests for the points, which are some of those that `span` reads.
+plan::Split split_or_narrow(ReadSpan span, const Map& map) {
+  if (span.points.empty()) return {};
+  const auto range_of = [&map](std::uint32_t point) { return read_range(map.points[point]); };
+  const std::uint32_t start = range_of(span.points.front()).start();
+  std::uint32_t end = start;
+  for (const std::uint32_t point : span.points) end = std::max(end, range_of(point).end());
+  const modbus::Range narrow = modbus::Range::of(start, end - start);
+  if (narrow == span.range) return plan::split(span, map);
+  span.range = narrow;
+  return {{std::move(span)}, {}};
+}
+
+}  // namespace
+
+DeviceReader::DeviceReader(const Map& map, const std::vector<bool>& chosen, host::Transport& transport,
+                           host::Clock& clock, host::MapLoader load)
+    : map_(map),
+      load_(std::move(load)),
+      planner_(map),
+      transport_(transport, clock, map.limits, statistics_),
+      chosen_(chosen),
+      place_(map.points.size()) {
+  for (std::uint32_t point = 0; point < map.points.size(); ++point) {
+    if (!chosen[point]) continue;
+    place_[point] = blank_.readings.size();
+    Reading& reading = blank_.readings.emplace_back(Reading{point});
+    if (const auto reason = plan::why_not_read(map, map.points[point])) {
+      reading.state = State::not_asked;
+      reading.why = text_of(*reason);
+    }
+  }
+}
+
+Snapshot DeviceReader::look() {
+  now_ = blank_;
+  const Result<> done = connected_ ? Result<>{} : connect();
+  if (done) now_ = known_;
+  const Result<> read = done ? read_all() : done;
+  if (!read) {
+    now_.trouble = to_string(read.error());
+    for (Reading& reading : now_.readings)
+      if (reading.state == State::failed && reading.why.empty()) reading.why = now_.trouble;
+    transport_.close();
+    connected_ = false;
+  }
+  now_.at = std::chrono::system_clock::now();
+  return now_;
+}
+
+Result<> DeviceReader::connect() {
+  known_ = blank_;
+  if (auto opened = transport_.connect(); !opened) return opened;
+  if (auto identified = identify(); !identified) return identified;
+  plan();
+  connected_ = true;
+  return {};
+}
+
+Result<> DeviceReader::identify() {
+  const std::uint64_t replies = transport_.replies();
+  const auto identity = check_identity(transport_, map_, load_);
+  if (identity) {
+    judge(*identity);
+    return {};
+  }
+  if (transport_.replies() != replies) return tl::make_unexpected(identity.error());
+  // There are couplers that ignore addresses they do not have. A late answer must not be taken for another.
+  known_.notes.push_back(fmt::format(
+      "the question for the device's identity is not answered ({}): it is read as a foreign coupler",
+      to_string(identity.error())));
+  transport_.close();
+  return transport_.connect();
+}
+
+void DeviceReader::judge(const host::Identity& identity) {
+  known_.identity = identity.verdict;
+  IdentityFindings found = findings(map_, identity);
+  known_.notes = std::move(found.notes);
+  for (auto& [point, why] : found.left_out) {
+    if (!chosen_[point]) continue;
+    Reading& reading = known_.readings[place_[point]];
+    if (reading.state == State::failed) reading.why = std::move(why);
+  }
+}
+
+void DeviceReader::plan() {
+  spans_.clear();
+  std::vector<Unreadable> left_out;  // what is there in the device is not known
+  for (const Reading& reading : known_.readings) {
+    const Point& point = map_.points[reading.point];
+    if (reading.state == State::failed && !reading.why.empty())
+      left_out.push_back({point.table, read_range(point)});
+  }
+  for (const plan::RateGroup& group : planner_.groups()) {
+    std::vector<std::uint32_t> points;
+    for (const std::uint32_t point : group.points)
+      if (chosen_[point] && known_.readings[place_[point]].why.empty()) points.push_back(point);
+    auto spans = planner_.plan(points, left_out);
+    spans_.insert(spans_.end(), std::make_move_iterator(spans.begin()), std::make_move_iterator(spans.end()));
+  }
+}
+
+Result<> DeviceReader::read_all() {
+  std::vector<ReadSpan> next;
+  for (const ReadSpan& span : spans_)
+    if (auto answer = ask(span, next); !answer) return answer;
+  spans_ = std::move(next);
+  now_.notes = known_.notes;
+  return {};
+}
+
+/// Appends to `next` the requests to make in its place at the next look.
+Result<> DeviceReader::ask(const ReadSpan& span, std::vector<ReadSpan>& next) {
+  Result<> answer = request(span);
+  if (answer) {
+    keep(span);
+    next.push_back(span);
+    return answer;
+  }
+  const host::ExceptionReply* exception = exception_in(answer.error());
+  if (exception == nullptr || is_unit_away(answer.error())) return answer;
+  if (is_of_the_range(exception->code)) return in_parts(span, exception->code, next);
+  fail(span, exception->code);
+  next.push_back(span);
+  return {};
+}
+
+Result<> DeviceReader::in_parts(const ReadSpan& span, Exception code, std::vector<ReadSpan>& next) {
+  ReadSpan whole{span.table, span.range, {}};  // the points that no smaller request reads
+  ReadSpan rest = whole;
+  for (const std::uint32_t point : span.points)
+    (read_range(map_.points[point]) == span.range ? whole : rest).points.push_back(point);
+  fail(whole, code);
+  plan::Split split = split_or_narrow(rest, map_);
+  std::vector<ReadSpan> parts;
+  for (const ReadSpan& piece : split.pieces)
+    if (auto answer = ask(piece, parts); !answer) return answer;
+  if (!is_rejection(code)) {  // it may pass: the whole is asked for again
+    next.push_back(span);
+    return {};
+  }
+  const bool parts_are_good =
+      parts.size() == split.pieces.size() &&
+      std::all_of(span.points.begin(), span.points.end(),
+                  [this](std::uint32_t point) { return reading(point).state == State::good; });
+  if (parts_are_good) {
+    const bool hole = split.hole && !planner_.has_points(span.table, *split.hole);
+    note(to_string(host::Refusal{span.table, hole ? *split.hole : span.range, hole}));
+  }
+  if (!whole.points.empty()) next.push_back(std::move(whole));
+  next.insert(next.end(), std::make_move_iterator(parts.begin()), std::make_move_iterator(parts.end()));
+  return {};
+}
+
+void DeviceReader::note(std::string text) {
+  std::vector<std::string>& notes = known_.notes;
+  if (std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(std::move(text));
+}
+
+Result<> DeviceReader::request(const ReadSpan& span) {
+  if (!holds_bits(span.table)) return transport_.read_registers(span.table, span.range, registers_.data());
+  Result<> answer = transport_.read_bits(span.table, span.range, bits_.data());
+  if (answer) std::copy_n(bits_.begin(), span.range.count(), registers_.begin());
+  return answer;
+}
+
+void DeviceReader::keep(const ReadSpan& span) {
+  for (const std::uint32_t point : span.points) {
+    const modbus::Range range = read_range(map_.points[point]);
+    const auto* const from = registers_.data() + (range.start() - span.range.start());
+    Reading& good = reading(point);
+    good.state = State::good;
+    good.registers.assign(from, from + range.count());
+  }
+}
+
+void DeviceReader::fail(const ReadSpan& span, Exception code) {
+  for (const std::uint32_t point : span.points) {
+    Reading& failed = reading(point);
+    failed.exception = code;
+    failed.why = host::to_string(host::Error(host::ExceptionReply{code}));
+  }
+}
+
+}  // namespace coupler::cli

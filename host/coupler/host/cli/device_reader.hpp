@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "coupler/host/cli/snapshot.hpp"
+#include "coupler/host/core/paced_transport.hpp"
+#include "coupler/plan/planner.hpp"
+
+namespace coupler::cli {
+
+/// Looks at a device, and only looks: it makes no write request, arms no watchdog and repeats no output.
+///
+/// Requests are those of `coupler plan`, with the pauses that the map asks for. One that the device refuses
+/// is made in parts, so that a bad address costs only its points; what an address refused once is then asked
+/// for apart as long as the connection lasts. Nothing is read from a place that means something else in the
+/// device's own map.
+class DeviceReader {
+ public:
+  /// `chosen` by point. What `map` views, and everything given by reference, must outlive it.
+  DeviceReader(const Map& map, const std::vector<bool>& chosen, host::Transport& transport,
+               host::Clock& clock, host::MapLoader load);
+
+  /// Reads every chosen point once; connects for that if there is no connection. If the device falls silent,
+  /// it says so and has the readings made until then.
+  Snapshot look();
+
+ private:
+  using ReadSpan = plan::ReadSpan;
+
+  host::Result<> connect();
+  host::Result<> identify();
+  void judge(const host::Identity& identity);
+  void plan();
+  host::Result<> read_all();
+  host::Result<> ask(const ReadSpan& span, std::vector<ReadSpan>& next);
+  host::Result<> in_parts(const ReadSpan& span, modbus::Exception code, std::vector<ReadSpan>& next);
+  host::Result<> request(const ReadSpan& span);
+  void note(std::string text);
+  void keep(const ReadSpan& span);
+  void fail(const ReadSpan& span, modbus::Exception code);
+  Reading& reading(std::uint32_t point) { return now_.readings[place_[point]]; }
+
+  Map map_;
+  host::MapLoader load_;
+  plan::Planner planner_;
+  host::DeviceStatistics statistics_;
+  host::PacedTransport transport_;
+  std::vector<bool> chosen_;
+  std::vector<std::size_t> place_;  ///< by point: of its reading
+  Snapshot blank_;                  ///< before anything is read
+  Snapshot now_;
+
+  // For the time of a connection.
+  bool connected_ = false;
+  Snapshot known_;               ///< blank_, with what the identity tells
+  std::vector<ReadSpan> spans_;  ///< the requests of a look
+
+  std::array<std::uint8_t, modbus::max_read_bits> bits_{};
+  std::array<std::uint16_t, modbus::max_read_bits> registers_{};  ///< bits too, as registers
+};
+
+}  // namespace coupler::cli

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/cli/dump.hpp"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "coupler/host/cli/device_reader.hpp"
+#include "coupler/host/cli/dump_json.hpp"
+#include "coupler/host/cli/dump_text.hpp"
+#include "coupler/host/cli/interruption.hpp"
+#include "coupler/host/cli/screen.hpp"
+#include "coupler/host/core/backoff.hpp"
+#include "coupler/host/core/steady_clock.hpp"
+#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/map/loader/print.hpp"
+#include "coupler/map/node_address.hpp"
+#include "coupler/map/printable.hpp"
+
+namespace coupler::cli {
+namespace {
+
+void put(const std::string& line) {
+  std::puts(line.c_str());
+  std::fflush(stdout);
+}
+
+void tell(const std::string& note) { fmt::print(stderr, "coupler dump: note: {}\n", printable_lines(note)); }
+
+/// Rows of the terminal that is standard output.
+std::size_t terminal_rows() {
+  winsize size{};
+  return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 ? size.ws_row : 24;
+}
+
+/// Some that say they are terminals obey no ANSI sequence.
+bool is_screen() {
+  const char* kind = std::getenv("TERM");
+  return ::isatty(STDOUT_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";
+}
+
+void show_frame(const Map& map, const Snapshot* /*before*/, const Snapshot& now) {
+  const std::string text = frame(table_lines(map, now, colour_of(STDOUT_FILENO)), terminal_rows());
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+void show_json(const Map& map, const Snapshot* /*before*/, const Snapshot& now) { put(dump_json(map, now)); }
+
+void show_changes(const Map& map, const Snapshot* before, const Snapshot& now) {
+  if (now.online() && (before == nullptr || before->notes != now.notes))
+    for (const std::string& note : now.notes) tell(note);
+  for (const std::string& line : change_lines(map, before, now)) put(line);
+}
+
+Exit once(const Map& map, const DumpWish& wish) {
+  host::ModbusTransport transport(map.connection);
+  host::SteadyClock clock;
+  DeviceReader reader(map, wish.chosen, transport, clock, load_served_map);
+  const Snapshot now = reader.look();
+  const bool nothing = std::none_of(now.readings.begin(), now.readings.end(), [](const Reading& reading) {
+    return reading.state == Reading::State::good;
+  });
+  if (wish.json) {
+    put(dump_json(map, now));
+  } else if (now.online() || !nothing) {
+    for (const std::string& line : table_lines(map, now, Colour::no)) put(line);
+  }
+  if (!now.online())
+    fmt::print(stderr, "coupler dump: error: {}: {}; see that a device serves there, or give --at\n",
+               printable(node_address_text(map.connection)), printable_lines(now.trouble));
+  return now.online() && now.failed() == 0 ? ok : failed;
+}
+
+Exit again_and_again(const Map& map, const DumpWish& wish) {
+  host::ModbusTransport transport(map.connection);
+  host::SteadyClock clock;
+  std::atomic<bool> stopped{false};
+  const Interruption interruption([&] {
+    stopped = true;
+    transport.interrupt();
+    clock.stop();
+  });
+  DeviceReader reader(map, wish.chosen, transport, clock, load_served_map);
+  host::Backoff backoff;
+  const bool terminal = !wish.json && is_screen();
+  const auto show = wish.json ? show_json : terminal ? show_frame : show_changes;
+  if (terminal) std::fputs(begin_frames, stdout);
+  Snapshot before;
+  Snapshot online;  // the last that was
+  for (bool first = true; !stopped; first = false) {
+    host::Time next = clock.now() + *wish.every;
+    Snapshot now = reader.look();
+    if (stopped) break;
+    if (now.online()) {
+      backoff.reset();
+      if (online.online() && !online.readings.empty()) mark_changes(online, now);
+      online = now;
+    } else {
+      next = std::max(next, clock.now() + backoff.next());
+    }
+    show(map, first ? nullptr : &before, now);
+    before = std::move(now);
+    clock.sleep_until(next);
+  }
+  if (terminal) put(end_frames);
+  return ok;
+}
+
+}  // namespace
+
+Exit dump(const Map& map, const DumpWish& wish) {
+  return wish.every ? again_and_again(map, wish) : once(map, wish);
+}
+
+}  // namespace coupler::cli

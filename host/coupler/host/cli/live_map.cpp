@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/cli/live_map.hpp"
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "coupler/host/core/node_map.hpp"
+#include "coupler/host/modbus/modbus_transport.hpp"
+
+namespace coupler::cli {
+namespace {
+
+constexpr auto give_a_file = "give the file of its map instead";
+
+tl::unexpected<NoLiveMap> none(Exit exit, std::string what, std::string remedy) {
+  return tl::make_unexpected(NoLiveMap{exit, std::move(what), std::move(remedy)});
+}
+
+}  // namespace
+
+tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where) {
+  host::ModbusTransport transport(where);
+  const auto served = host::fetch_served_map(transport);
+  if (!served && host::exception_in(served.error()) != nullptr)
+    return none(failed, "the node does not give its map: " + host::to_string(served.error()), give_a_file);
+  if (!served)
+    return none(failed, "no answer of a node: " + host::to_string(served.error()),
+                fmt::format("see that a node serves port {} there, as unit {}", where.port, where.unit));
+  if (!*served) return none(bad_input, "a foreign coupler, which serves no map", give_a_file);
+  auto map = host::load_node_map((*served)->text, (*served)->head, load_served_map);
+  if (!map) return none(bad_input, "the node's map cannot be used: " + map.error(), give_a_file);
+  return *map;
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/cli/probe_report.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "coupler/host/survey/identification.hpp"
+#include "coupler/map/node_address.hpp"
+#include "coupler/map/printable.hpp"
+
+namespace coupler::cli {
+namespace {
+
+using survey::Findings;
+using survey::TableFindings;
+using Seen = TableFindings::Seen;
+
+constexpr std::size_t most_ranges = 24;
+constexpr std::size_t most_candidates = 6;
+
+/// "10.0.0.7:502/255", to be given to a command.
+std::string place(Connection connection, std::uint8_t unit) {
+  connection.unit = unit;
+  return printable(node_address_text(connection)).substr(std::string_view("tcp://").size());
+}
+
+std::string units_text(const Findings& findings, const Connection& connection) {
+  std::string answer;
+  for (const std::uint8_t unit : findings.units)
+    answer += fmt::format("{}{}", answer.empty() ? "" : ", ", unit);
+  std::string text = fmt::format("units that answer: {}\n", answer);
+  if (findings.units.size() > 1)
+    text += fmt::format("the rest is about unit {}; another one: coupler probe {}\n", *findings.unit,
+                        place(connection, findings.units[1]));
+  return text;
+}
+
+std::string identification_text(const Findings& findings, const Connection& connection) {
+  std::string text;
+  for (const auto& [id, value] : findings.identification)
+    text += fmt::format("  {:<20} {}\n", survey::object_name(id), printable(value));
+  text = text.empty() ? "identification: none (FC 43/14)\n" : "identification:\n" + text;
+  if (findings.node)
+    text += fmt::format("an OpenCoupler node: it serves its map, see `coupler dump tcp://{}`\n",
+                        place(connection, *findings.unit));
+  return text;
+}
+
+std::string ranges_text(const std::vector<modbus::Range>& ranges) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(ranges.size(), most_ranges); ++i) {
+    text += i == 0 ? "" : ", ";
+    text += ranges[i].count() == 1 ? fmt::format("{}", ranges[i].start())
+                                   : fmt::format("{} … {}", ranges[i].start(), ranges[i].last());
+  }
+  if (ranges.size() > most_ranges) text += fmt::format(" and {} ranges more", ranges.size() - most_ranges);
+  return text;
+}
+
+std::string table_text(const TableFindings& table) {
+  const std::uint32_t readable = table.count(Seen::readable);
+  const std::uint32_t untried = table.count(Seen::not_asked);
+  std::string text = fmt::format("{}:\n", to_string(table.table()));
+  if (table.absent) return text + "  none: the device has no function that reads them (exception 01)\n";
+  text += fmt::format("  readable: {}\n", readable == 0 ? "none" : ranges_text(table.readable()));
+  text += fmt::format("  of {} … {}: {} readable, {} refused, {} not tried\n", table.window().start(),
+                      table.window().last(), readable, table.count(Seen::refused), untried);
+  for (const std::uint32_t seam : table.seams())
+    text += fmt::format("  no read may cross {}: read from there, or up to there\n", seam);
+  if (table.gave_up_at)
+    text += fmt::format("  left at {} after {} time-outs; go on with --from {}\n", *table.gave_up_at,
+                        survey::most_timeouts, *table.gave_up_at);
+  return text;
+}
+
+std::string limit_text(const survey::Largest& largest, std::string_view what) {
+  if (!largest.is_limited) return {};
+  return fmt::format("most {0} in one read: {1}; write `limits: {{read_{0}: {1}}}`\n", what, largest.count);
+}
+
+std::string match_text(const survey::Match& match) {
+  std::string text =
+      fmt::format("known value {}{}{} ± {:.6g}:\n", match.known.name, match.known.name.empty() ? "" : " = ",
+                  match.known.value, match.known.tolerance);
+  if (match.candidates.empty()) return text + "  nowhere in the registers that were read\n";
+  for (std::size_t i = 0; i < std::min(match.candidates.size(), most_candidates); ++i) {
+    const survey::Candidate& candidate = match.candidates[i];
+    text += fmt::format("  {:<18} {:<52} {}\n", to_string(candidate.table),
+                        survey::point_text(candidate, true), survey::value_text(candidate));
+  }
+  if (match.candidates.size() > most_candidates)
+    text += fmt::format("  and {} less likely places\n", match.candidates.size() - most_candidates);
+  return text;
+}
+
+std::string orders_text(const std::vector<survey::Match>& matches) {
+  const auto order = survey::common_order(matches);
+  if (!order) return {};
+  return fmt::format(
+      "order of the device: {}; write `byteorder_reverse: {}`, `wordorder_reverse: {}`, or `order` at each "
+      "point\n",
+      to_string(*order, false), codec::bytes_swapped(*order), !codec::words_reversed(*order));
+}
+
+}  // namespace
+
+std::string probe_report(const Findings& findings, const survey::Task& task, const Connection& connection,
+                         const std::vector<survey::Match>& matches) {
+  std::string text = units_text(findings, connection) + identification_text(findings, connection);
+  bool untried = false;
+  for (const TableFindings& table : findings.tables) {
+    text += table_text(table);
+    untried |= !table.absent && table.count(Seen::not_asked) > 0;
+  }
+  text += limit_text(findings.largest.registers, "registers");
+  text += limit_text(findings.largest.bits, "bits");
+  for (const survey::Match& match : matches) text += match_text(match);
+  text += orders_text(matches);
+  text += fmt::format("requests: {}\n", findings.requests);
+  for (const std::string& failure : findings.failures)
+    text += fmt::format("  without an answer: {}\n", printable(failure));
+  if (!findings.is_complete) text += "ended early: there may be more\n";
+  if (untried && task.stride > 1)
+    text += fmt::format("not tried: where blocks are refused, only one address in {}; --stride 1 tries all\n",
+                        task.stride);
+  return text;
+}
+
+}  // namespace coupler::cli

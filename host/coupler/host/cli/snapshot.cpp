@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/cli/snapshot.hpp"
+
+#include <algorithm>
+
+#include <fmt/chrono.h>
+
+namespace coupler::cli {
+
+std::size_t Snapshot::failed() const {
+  return static_cast<std::size_t>(std::count_if(readings.begin(), readings.end(), [](const Reading& reading) {
+    return reading.state == Reading::State::failed;
+  }));
+}
+
+void mark_changes(const Snapshot& before, Snapshot& now) {
+  for (std::size_t i = 0; i < now.readings.size(); ++i) {
+    const Reading& old = before.readings[i];
+    Reading& reading = now.readings[i];
+    reading.changed =
+        reading.state != old.state || reading.registers != old.registers || reading.why != old.why;
+  }
+}
+
+std::string time_text(std::chrono::system_clock::time_point time) {
+  using std::chrono::milliseconds;
+  const auto since = std::chrono::floor<milliseconds>(time.time_since_epoch());
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(since);
+  return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(static_cast<std::time_t>(seconds.count())),
+                     (since - seconds).count());
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "coupler/cli/commands.hpp"
+#include "coupler/cli/complain.hpp"
+#include "coupler/host/cli/modbus_master.hpp"
+#include "coupler/host/cli/status_report.hpp"
+#include "coupler/map/node_address.hpp"
+
+namespace coupler::cli {
+namespace {
+
+struct Arguments {
+  std::string host;
+  double timeout = 1;  ///< s
+  bool json = false;
+};
+
+Exit run(const Arguments& arguments) {
+  const std::string address = node_argument(arguments.host);
+  const auto where = parse_node_address(address);
+  if (!where) return complain("status", bad_call, where.error().what, where.error().remedy);
+  const Connection connection{where->host, where->port, where->unit,
+                              std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000))};
+  host::ModbusTransport transport(connection);
+  const NodeStatus status = read_status(transport, [&](modbus::ReadDeviceIdentification wanted) {
+    return read_identification(transport, wanted);
+  });
+  std::fputs(
+      (arguments.json ? status_json(status, connection) + "\n" : status_text(status, connection)).c_str(),
+      stdout);
+  std::fflush(stdout);
+  const std::string device = node_address_text(connection);
+  if (!status.trouble.empty())
+    return complain("status", failed, device + ": " + status.trouble,
+                    "see that a node serves there, with this unit id");
+  if (!status.report)
+    return complain("status", bad_input, device + " is a foreign coupler: it has no identity area",
+                    "`coupler dump` shows its values if you have its map, `coupler probe` looks into it");
+  return ok;
+}
+
+}  // namespace
+
+void add_status(Program& program, Exit& exit) {
+  auto command = program.add_command(
+      "status", "Show what a node says of itself: machine, map, watchdog, statistics. Never writes to it.");
+  const auto arguments = std::make_shared<Arguments>();
+  command.add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], with tcp:// in front or not")
+      .required()
+      .type_name("");
+  command.add_option("--timeout", arguments->timeout, "Longest wait for an answer, in seconds")
+      .in_range(0.01, 60.0)
+      .show_default()
+      .type_name("S");
+  command.add_flag("--json", arguments->json, "One JSON object on standard output, for scripts");
+  command.footer(
+      "Example:\n  coupler status raspberrypi\n  coupler status 10.0.0.7:1502/1 --json\n"
+      "Exit status 1: a foreign coupler; 3: no answer.");
+  command.callback([arguments, &exit] { exit = run(*arguments); });
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/client/last_values.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace coupler::client {
+
+bool LastValues::keep(Entry& entry, const Point& point, const std::uint16_t* registers, host::Time at) {
+  const bool first = !entry.value;
+  if (first) entry.value.emplace();
+  auto& kept = entry.value->registers;
+  const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
+  const auto equal = [mask](std::uint16_t a, std::uint16_t b) { return ((a ^ b) & mask) == 0; };
+  const bool changed = !std::equal(kept.begin(), kept.end(), registers, equal);
+  kept.assign(registers, registers + range(point).count());
+  entry.value->at = at;
+  return first || changed;
+}
+
+void LastValues::bring(const plan::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at) {
+  std::vector<News> news;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const std::uint32_t index : span.points) {
+      const Point& point = map_.points[index];
+      const std::uint16_t* value = &registers[read_range(point).start() - std::size_t{span.range.start()}];
+      Entry& entry = entries_[index];
+      if (keep(entry, point, value, at) && entry.listener) news.push_back({entry.listener, value});
+    }
+    came_.notify_all();
+  }
+  for (const News& each : news) (*each.listener)(each.registers);
+}
+
+void LastValues::listen(std::uint32_t point, Listener listener) {
+  auto shared = listener ? std::make_shared<const Listener>(std::move(listener)) : nullptr;
+  const std::lock_guard lock(mutex_);
+  entries_[point].listener = std::move(shared);
+}
+
+std::optional<LastValues::Value> LastValues::get(std::uint32_t point) const {
+  const std::lock_guard lock(mutex_);
+  return entries_[point].value;
+}
+
+std::optional<LastValues::Value> LastValues::wait(std::uint32_t point,
+                                                  std::chrono::milliseconds at_most) const {
+  std::unique_lock lock(mutex_);
+  came_.wait_for(lock, at_most, [&] { return entries_[point].value.has_value(); });
+  return entries_[point].value;
+}
+
+}  // namespace coupler::client

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The members of a generated client. T is as TypedValue says.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <type_traits>
+#include <utility>
+
+#include "coupler/codec/value.hpp"
+#include "coupler/host/client/session.hpp"
+#include "coupler/map/typed_value.hpp"
+
+namespace coupler::client {
+
+/// A value that was read.
+template <class T>
+struct Reading {
+  T value;
+  Quality quality;     ///< good, or why the value may not be true any more
+  host::Duration age;  ///< since it was read
+};
+
+/// A point that can be read.
+template <class T>
+class Input : public PointHandle {
+ public:
+  using value_type = T;
+
+  Input(Session& session, std::uint32_t index) : PointHandle(session, index) {}
+
+  /// The last value, without waiting for the network.
+  tl::expected<Reading<T>, NoValue> get() const { return typed(sample()); }
+  /// The same, after waiting for the first value if there is none.
+  tl::expected<Reading<T>, NoValue> wait(std::chrono::milliseconds at_most) const {
+    return typed(first_sample(at_most));
+  }
+  /// Calls `use(value)` with the first value and with each that differs from the one before; set it before
+  /// connect() to miss none. It replaces the one before; an empty one ends that.
+  void on_change(std::function<void(const T&)> use) {
+    if (!use) return listen({});
+    listen([use = std::move(use), point = &point()](const std::uint16_t* registers) {
+      use(TypedValue<T>::decode(registers, *point));
+    });
+  }
+
+ private:
+  tl::expected<Reading<T>, NoValue> typed(tl::expected<Sample, NoValue> sample) const {
+    return std::move(sample).map([this](Sample&& known) {
+      return Reading<T>{TypedValue<T>::decode(known.registers.data(), point()), known.quality, known.age};
+    });
+  }
+};
+
+/// A number of another type than the point's, which may not fit.
+template <class T, class U>
+constexpr bool is_other_number =
+    std::is_arithmetic_v<T>&& std::is_arithmetic_v<U> && !std::is_same_v<T, bool> &&
+    !std::is_same_v<T, char> && !std::is_same_v<U, bool> && !std::is_same_v<U, char> && !std::is_same_v<T, U>;
+
+/// A point that can be written. `Base` says whether it can be read, too.
+template <class T, class Base>
+class Settable : public Base {
+ public:
+  using Base::Base;
+
+  /// Sends the value to the device. One that is none of the point is refused; the text then says what would
+  /// be right.
+  PendingWrite set(const T& value) {
+    return send(
+        [&](std::uint16_t* registers) { return TypedValue<T>::encode(value, this->point(), registers); });
+  }
+  /// A number of another type, checked: 300 is no std::uint8_t, and 1.5 no integer.
+  template <class U, std::enable_if_t<is_other_number<T, U>, int> = 0>
+  PendingWrite set(U value) {
+    if (this->point().scale.present()) return set(static_cast<T>(value));
+    return send([&](std::uint16_t* registers) -> std::string {
+      using Wide = std::conditional_t<std::is_floating_point_v<U>, double,
+                                      std::conditional_t<std::is_signed_v<U>, std::int64_t, std::uint64_t>>;
+      const auto done =
+          codec::encode(codec::Value{static_cast<Wide>(value)}, this->point().format, registers);
+      return done ? std::string() : done.error();
+    });
+  }
+
+ private:
+  template <class Encode>
+  PendingWrite send(Encode encode) {
+    std::array<std::uint16_t, modbus::max_read_bits> registers{};
+    const std::string wrong = encode(registers.data());
+    return wrong.empty() ? this->write(registers.data()) : refused(wrong);
+  }
+};
+
+/// Neither: what a point that can only be written begins with.
+class WriteOnly : public PointHandle {
+ public:
+  WriteOnly(Session& session, std::uint32_t index) : PointHandle(session, index) {}
+};
+
+/// A point that can be read and written.
+template <class T>
+using Output = Settable<T, Input<T>>;
+
+/// A point that can only be written.
+template <class T>
+class Command : public Settable<T, WriteOnly> {
+ public:
+  using value_type = T;
+  using Settable<T, WriteOnly>::Settable;
+};
+
+}  // namespace coupler::client

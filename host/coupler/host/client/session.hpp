@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <shared_mutex>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "coupler/host/client/last_values.hpp"
+#include "coupler/host/client/pending_write.hpp"
+#include "coupler/host/core/device_thread.hpp"
+
+namespace coupler::client {
+
+using host::Level;
+using host::Verify;
+using Quality = host::PointQuality::State;
+
+struct Options {
+  std::string address;                ///< empty: the map's
+  std::optional<std::uint16_t> port;  ///< default: the map's
+  Verify verify = Verify::require;    ///< what to do if the device's map is another one
+  /// What a log should have: who is not reachable and why, how two maps differ. Called in the connection's
+  /// thread, or in one that sets a value; it must neither wait nor use the client.
+  std::function<void(Level, const std::string&)> on_report{};
+};
+
+/// Why there is no value.
+struct NoValue {
+  Quality quality = Quality::never_read;         ///< never_read, offline, rejected, or exception
+  std::optional<modbus::Exception> exception{};  ///< the last that there was
+};
+std::string to_string(const NoValue& why);
+
+/// One coupler as the generated clients see it: a connection that comes back by itself, the last values, the
+/// way for new ones. It runs the engine of the ROS driver in a thread of its own, with the same poll plan,
+/// write queue and identity check.
+///
+/// All is for any thread. Callbacks come in the connection's thread: they may read and set points, but must
+/// wait for nothing, nor disconnect.
+class Session : private host::Sink {
+ public:
+  ~Session() override;
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Begins to look for the device, and goes on until disconnect(). Returns at once.
+  void connect();
+  /// Ends the connection, outputs as the map's `on_shutdown` says. The last values stay, as offline.
+  void disconnect();
+
+  /// The device answers, and has this map.
+  bool online() const;
+  /// Waits for that. False: it does not yet.
+  bool wait_online(std::chrono::milliseconds at_most) const;
+
+ protected:
+  /// What `map` views must outlive it. The destructor of what derives from it must disconnect(): until then
+  /// the connection's thread calls virtual functions and callbacks.
+  Session(const Map& map, Options options);
+
+ private:
+  friend class PointHandle;
+  struct Sample {
+    std::vector<std::uint16_t> registers;
+    Quality quality;
+    host::Duration age;
+  };
+  tl::expected<Sample, NoValue> judge(std::uint32_t point, std::optional<LastValues::Value> value) const;
+  host::PointQuality quality(std::uint32_t point) const;
+  PendingWrite write(host::Write& write);
+
+  void on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits, host::Time at) override;
+  void on_registers(const host::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at) override;
+  void on_online(bool online) override;
+  void on_report(Level level, const std::string& text) override;
+
+  struct Link;
+
+  const Options options_;
+  const Map map_;
+  LastValues values_;
+  std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of the connection's thread
+  mutable std::mutex online_mutex_;
+  mutable std::condition_variable came_online_;
+  bool online_ = false;
+  mutable std::shared_mutex link_mutex_;  ///< link_ is not replaced while it is used
+  std::unique_ptr<Link> link_;            ///< null: disconnected
+};
+
+/// What the points of a client have in common.
+class PointHandle {
+ public:
+  /// As the map describes it: name, units, description, place.
+  const Point& point() const { return session_.map_.points[index_]; }
+
+ protected:
+  using Sample = Session::Sample;
+
+  PointHandle(Session& session, std::uint32_t index) : session_(session), index_(index) {}
+
+  tl::expected<Sample, NoValue> sample() const {
+    return session_.judge(index_, session_.values_.get(index_));
+  }
+  tl::expected<Sample, NoValue> first_sample(std::chrono::milliseconds at_most) const {
+    return session_.judge(index_, session_.values_.wait(index_, at_most));
+  }
+  void listen(LastValues::Listener listener) { session_.values_.listen(index_, std::move(listener)); }
+  /// `registers` as TypedValue encodes them.
+  PendingWrite write(const std::uint16_t* registers);
+
+ private:
+  Session& session_;
+  std::uint32_t index_;
+};
+
+}  // namespace coupler::client

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <optional>
+
+#include "coupler/host/core/clock.hpp"
+#include "coupler/map/map.hpp"
+
+namespace coupler::host {
+
+/// The points whose commands must not fall silent. Each is armed by its first message, and again by the first
+/// one after it has expired.
+class Deadmen {
+ public:
+  /// What `map` views must outlive it.
+  explicit Deadmen(const Map& map);
+
+  /// A message came for a point. From any thread. True if that armed it: its deadline is a new one to wait
+  /// for.
+  bool fed(std::uint32_t point, Time now);
+  /// The earliest deadline; Time::max() if none is armed.
+  Time due() const;
+  /// A point whose deadline has passed: it is disarmed, and its value is to be written.
+  std::optional<std::uint32_t> take_expired(Time now);
+  /// The value could not be written: the point is still expired.
+  void put_back(std::uint32_t point);
+
+ private:
+  static constexpr Time::rep disarmed = Time::max().time_since_epoch().count();
+  struct Entry {
+    std::uint32_t point;
+    Duration timeout;
+    std::atomic<Time::rep> deadline{disarmed};
+  };
+  Entry* find(std::uint32_t point);
+
+  std::deque<Entry> entries_;
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/device.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/host/core/probe.hpp"
+
+namespace coupler::host {
+
+namespace {
+
+std::string loss_text(const Map& map, const Error& error, bool was_online) {
+  const std::string why = to_string(error);
+  if (is_unit_away(error))
+    return fmt::format("the gateway cannot reach unit {}: {}; asking again", map.connection.unit, why);
+  return was_online ? fmt::format("connection lost: {}; connecting again", why)
+                    : fmt::format("not connected: {}; trying again", why);
+}
+
+}  // namespace
+
+Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transport, Clock& clock, Sink& sink)
+    : map_(map),
+      verify_(verify),
+      load_(std::move(load)),
+      clock_(clock),
+      sink_(sink),
+      qualities_(map),
+      transport_(transport, clock, map.limits, statistics_),
+      watchdog_(map, transport_, clock, statistics_, sink),
+      writer_(map, transport_, clock, statistics_, qualities_, sink),
+      reader_(map, transport_, clock, writer_, statistics_, qualities_, sink) {}
+
+Time Device::step() {
+  if (!connected_) {
+    writer_.disconnected(NotConnected{"not connected"});
+    return clock_.now() < retry_at_ ? retry_at_ : connect();
+  }
+  if (const auto done = do_what_is_due(clock_.now()); !done) lost(done.error());
+  return connected_ ? due() : retry_at_;
+}
+
+Result<> Device::do_what_is_due(Time now) {
+  Result<> answer;
+  const Time write_due = std::min(writer_.due(), watchdog_.due());
+  transport_.rank(write_due <= now ? Rank::write : Rank::read);
+  if (writer_.awaits_answer() || writer_.is_safe_asked())
+    answer = write();
+  else if (watchdog_.due() <= now)
+    answer = serve_watchdog();
+  else if (writer_.due() <= now)
+    answer = is_read_first(now) && reader_.has_request(now) ? read_or_write() : write();
+  else if (reader_.due() <= now)
+    answer = read(write_due);
+  else if (probe_due() <= now && transport_.await_turn(write_due) == Transport::Turn::read)
+    answer = probe(map_, transport_);
+  else
+    return {};
+  if (answer && transport_.replies() > replies_at_connect_) {
+    identity_suffices_ = true;
+    came_online();
+  }
+  return answer;
+}
+
+Result<> Device::write() {
+  wrote_last_ = true;
+  return writer_.step();
+}
+
+/// A device by itself reads. One behind a gateway waits for both, and so for no more than one read of the
+/// others.
+Result<> Device::read_or_write() {
+  transport_.rank(Rank::read);
+  switch (transport_.await_turn(Time::max(), true)) {
+    case Transport::Turn::none: return {};
+    case Transport::Turn::read: return read(Time::max());
+    case Transport::Turn::write: break;
+  }
+  transport_.rank(Rank::write);
+  return write();
+}
+
+Result<> Device::read(Time until) {
+  const std::uint64_t replies = transport_.replies();
+  auto answer = reader_.step(until);
+  if (transport_.replies() != replies) wrote_last_ = false;
+  return answer;
+}
+
+Result<> Device::serve_watchdog() {
+  const Result<bool> is_back = watchdog_.step();
+  if (!is_back) return tl::make_unexpected(is_back.error());
+  return *is_back ? writer_.reconnected() : Result<>{};
+}
+
+Time Device::due() const { return std::min({writer_.due(), watchdog_.due(), reader_.due(), probe_due()}); }
+
+void Device::arrived() {
+  if (writer_.awaits_answer()) return;
+  if (!connected_) {  // the unit was away; the gateway goes, too
+    transport_.close();
+    linked_ = false;
+    return;
+  }
+  lost(TransportFailure{"the device closed the connection, or sent what nobody asked for"});
+}
+
+bool Device::stop() {
+  const bool is_safe = writer_.shut_down(connected_);
+  writer_.disconnected(NotConnected{"the driver ends"});
+  watchdog_.disconnected("the driver ends");
+  transport_.close();
+  connected_ = linked_ = false;
+  if (std::exchange(online_, false)) sink_.on_online(false);
+  return is_safe;
+}
+
+Time Device::connect() {
+  transport_.rank(Rank::read);
+  wrote_last_ = false;
+  Result<> result = linked_ ? Result<>{} : transport_.connect();
+  linked_ = result.has_value();
+  if (result && verify_ != Verify::off) result = prove_equal();
+  if (result) result = watchdog_.connected();
+  if (result) result = writer_.reconnected();
+  if (!result) {
+    lost(result.error());
+    return retry_at_;
+  }
+  connected_ = true;
+  reader_.start();
+  replies_at_connect_ = transport_.replies();
+  if (verify_ != Verify::off && identity_suffices_) came_online();
+  return due();
+}
+
+Result<> Device::prove_equal() {
+  const Result<Identity> identity = check_identity(transport_, map_, load_);
+  if (!identity) {
+    explain_silence(identity.error());
+    return tl::make_unexpected(identity.error());
+  }
+  explains_silence_ = false;
+  Result<identity::Machine> machine;
+  if (identity->verdict != Identity::Verdict::foreign) machine = read_machine(transport_);
+  if (!machine) return tl::make_unexpected(machine.error());
+  peer_ = to_string(*machine);
+  statistics_.identified(identity->verdict, *machine);
+  return judge(*identity);
+}
+
+void Device::explain_silence(const Error& error) {
+  const bool silent = std::holds_alternative<Timeout>(error) || is_unit_away(error);
+  if (silent && std::exchange(explains_silence_, false))
+    sink_.on_report(Level::warning, silence_text(map_, error));
+}
+
+Result<> Device::judge(const Identity& identity) {
+  if (identity.verdict != Identity::Verdict::different) {
+    refused_fingerprint_ = 0;
+    if (identity.verdict == Identity::Verdict::superset) sink_.on_report(Level::info, superset_text);
+    return {};
+  }
+  const bool refuse = verify_ == Verify::require;
+  if (std::exchange(refused_fingerprint_, identity.fingerprint) != identity.fingerprint) {
+    std::string text = difference_text(map_, identity);
+    if (refuse)
+      text +=
+          "\nNothing is read or written. Give both sides the same map, or accept it with --verify warn (a "
+          "client: Options::verify)";
+    sink_.on_report(refuse ? Level::error : Level::warning, text);
+  }
+  if (refuse) return fail(NotConnected{"the device's map is another one"});
+  return {};
+}
+
+void Device::came_online() {
+  if (std::exchange(online_, true)) return;
+  backoff_.reset();
+  last_trouble_.clear();
+  statistics_.online();
+  qualities_.online(true);
+  sink_.on_online(true);
+  const std::string connected = peer_.empty() ? "connected" : "connected to " + peer_;
+  if (const std::uint64_t dropped = writer_.take_dropped(); dropped > 0)
+    sink_.on_report(Level::warning, fmt::format("{}; {} writes were dropped meanwhile", connected, dropped));
+  else
+    sink_.on_report(Level::info, connected);
+}
+
+void Device::lost(const Error& error) {
+  linked_ = linked_ && is_unit_away(error);
+  if (!linked_) transport_.close();
+  connected_ = false;
+  retry_at_ = clock_.now() + backoff_.next();
+  writer_.disconnected(error);
+  watchdog_.disconnected(to_string(error));
+  const std::string why = to_string(error);
+  statistics_.offline(why);
+  qualities_.online(false);
+  const bool was_online = std::exchange(online_, false);
+  if (was_online) {
+    identity_suffices_ = transport_.replies() > replies_at_connect_;
+    sink_.on_online(false);
+  }
+  if (!ending_ && (was_online || why != last_trouble_))
+    sink_.on_report(Level::warning, loss_text(map_, error, was_online));
+  last_trouble_ = why;
+}
+
+}  // namespace coupler::host

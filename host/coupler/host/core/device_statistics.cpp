@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/device_statistics.hpp"
+
+namespace coupler::host {
+
+void DeviceStatistics::answered(Duration after, const Result<>& result) {
+  const std::lock_guard lock(mutex_);
+  ++now_.requests;
+  const ExceptionReply* exception = result ? nullptr : exception_in(result.error());
+  if (exception != nullptr) ++now_.exceptions[static_cast<std::size_t>(exception->code)];
+  if (result || exception != nullptr)
+    now_.latency.add(after);
+  else
+    ++(std::holds_alternative<Timeout>(result.error()) ? now_.timeouts : now_.failures);
+}
+
+void DeviceStatistics::wrote(WriteResult::Outcome outcome) {
+  const std::lock_guard lock(mutex_);
+  ++now_.writes[static_cast<std::size_t>(outcome)];
+}
+
+void DeviceStatistics::cycle_ended(Duration after, std::uint64_t overruns) {
+  const std::lock_guard lock(mutex_);
+  now_.cycles.add(after);
+  now_.overruns = overruns;
+}
+
+void DeviceStatistics::rejected() {
+  const std::lock_guard lock(mutex_);
+  ++now_.rejected_ranges;
+}
+
+void DeviceStatistics::watchdog(const WatchdogStatus& status) {
+  const std::lock_guard lock(mutex_);
+  now_.watchdog = status;
+}
+
+void DeviceStatistics::identified(Identity::Verdict verdict, const identity::Machine& machine) {
+  const std::lock_guard lock(mutex_);
+  now_.identity = verdict;
+  now_.machine = machine;
+  ++revision_;
+}
+
+void DeviceStatistics::online() {
+  const std::lock_guard lock(mutex_);
+  now_.online = true;
+  now_.trouble.clear();
+  ++now_.connections;
+  ++revision_;
+}
+
+void DeviceStatistics::offline(const std::string& trouble) {
+  const std::lock_guard lock(mutex_);
+  now_.online = false;
+  now_.trouble = trouble;
+  ++revision_;
+}
+
+DeviceSnapshot DeviceStatistics::snapshot() const {
+  const std::lock_guard lock(mutex_);
+  return now_;
+}
+
+}  // namespace coupler::host

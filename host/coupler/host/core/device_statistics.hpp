@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "coupler/host/core/error.hpp"
+#include "coupler/host/core/histogram.hpp"
+#include "coupler/host/core/identity_check.hpp"
+#include "coupler/host/core/watchdog_status.hpp"
+#include "coupler/host/core/write_result.hpp"
+
+namespace coupler::host {
+
+/// What can be said of a device at one moment. Counts are since the program began.
+struct DeviceSnapshot {
+  bool online = false;
+  std::string trouble;                        ///< why it is not online
+  std::optional<Identity::Verdict> identity;  ///< at the last connect; nullopt: not asked
+  identity::Machine machine{};                ///< of a node, at the last connect, as far as it says
+  std::uint64_t connections = 0;              ///< that were made and proven; all but the first are reconnects
+  std::uint64_t requests = 0;
+  std::uint64_t timeouts = 0;
+  std::uint64_t failures = 0;                   ///< requests that ended the connection in another way
+  std::array<std::uint64_t, 256> exceptions{};  ///< by code
+  std::uint64_t rejected_ranges = 0;
+  std::uint64_t overruns = 0;
+  std::array<std::uint64_t, WriteResult::outcomes> writes{};  ///< by outcome
+  WatchdogStatus watchdog;                                    ///< the coupler's own
+  Histogram latency;                                          ///< from request to answer
+  Histogram cycles;  ///< from the deadline of a polling cycle to its last answer
+
+  std::uint64_t written(WriteResult::Outcome outcome) const {
+    return writes[static_cast<std::size_t>(outcome)];
+  }
+};
+
+/// Counts what a device does; read from any thread. Allocates nothing but the text of a trouble.
+class DeviceStatistics {
+ public:
+  void answered(Duration after, const Result<>& result);
+  void wrote(WriteResult::Outcome outcome);
+  void cycle_ended(Duration after, std::uint64_t overruns);
+  void rejected();
+  void watchdog(const WatchdogStatus& status);
+  void identified(Identity::Verdict verdict, const identity::Machine& machine);
+  void online();
+  void offline(const std::string& trouble);
+
+  DeviceSnapshot snapshot() const;
+  /// Another number, once `online`, `trouble` or `identity` has been set.
+  std::uint64_t revision() const { return revision_; }
+
+ private:
+  mutable std::mutex mutex_;
+  DeviceSnapshot now_;
+  std::atomic<std::uint64_t> revision_{0};
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/device_thread.hpp"
+
+#include <utility>
+
+namespace coupler::host {
+namespace {
+
+/// For safe values at the end: the program is to be gone within a second.
+constexpr auto longest_farewell = std::chrono::milliseconds(700);
+
+}  // namespace
+
+DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink,
+                           Poll poll)
+    : transport_(transport),
+      device_(map, verify, std::move(load), transport, clock_, sink),
+      ends_safely_(map.on_shutdown == OnShutdown::safe) {
+  if (poll == Poll::subscribed)
+    for (std::uint32_t i = 0; i < map.points.size(); ++i) device_.want(i, false);
+  thread_ = std::thread([this] { run(); });
+}
+
+bool DeviceThread::end() {
+  if (!thread_.joinable()) return ended_safely_;
+  stopping_ = true;
+  transport_.wake();
+  if (ends_safely_) stopped_.get_future().wait_for(longest_farewell);
+  clock_.stop();
+  device_.end_comes();
+  transport_.interrupt();
+  thread_.join();
+  return ended_safely_;
+}
+
+void DeviceThread::write(const Write& write) {
+  device_.push(write);
+  if (owner_ == std::this_thread::get_id()) return;  // the step that is being made sees it at its end
+  const std::unique_lock turn(turn_, std::try_to_lock);
+  if (!turn || !device_.send_now()) transport_.wake();
+}
+
+void DeviceThread::want(std::uint32_t point, bool wanted) {
+  wishes_.say(point, wanted);
+  transport_.wake();
+}
+
+std::future<Calls::Answer> DeviceThread::make_safe() {
+  auto answer = device_.make_safe();
+  transport_.wake();
+  return answer;
+}
+
+std::future<Calls::Answer> DeviceThread::reset_watchdog() {
+  auto answer = device_.reset_watchdog();
+  transport_.wake();
+  return answer;
+}
+
+Time DeviceThread::step() {
+  const std::lock_guard turn(turn_);
+  wishes_.take([this](std::uint32_t point, bool wanted) { device_.want(point, wanted); });
+  return device_.step();
+}
+
+void DeviceThread::run() {
+  owner_ = std::this_thread::get_id();
+  while (!stopping_) {
+    if (transport_.wait_until(step()) != Transport::Woken::by_bytes) continue;
+    const std::lock_guard turn(turn_);
+    device_.arrived();
+  }
+  {
+    const std::lock_guard turn(turn_);
+    ended_safely_ = device_.stop();
+  }
+  stopped_.set_value();
+}
+
+}  // namespace coupler::host

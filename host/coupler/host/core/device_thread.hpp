@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "coupler/host/core/device.hpp"
+#include "coupler/host/core/steady_clock.hpp"
+#include "coupler/host/core/wishes.hpp"
+
+namespace coupler::host {
+
+/// Runs a device in its own thread, so that a dead one slows no other. That thread owns the connection, and
+/// it alone receives. While it waits for the next thing to do, another thread may send a write by itself: the
+/// answer wakes the owner. So a write to an idle device costs no thread hand-over.
+class DeviceThread {
+ public:
+  /// With Poll::subscribed no point is wanted at first.
+  DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink,
+               Poll poll = Poll::all);
+  /// Ends the request in progress and waits for the thread: milliseconds, or, where outputs are to go to
+  /// their safe values, most of a second at the worst.
+  ~DeviceThread() { end(); }
+  DeviceThread(const DeviceThread&) = delete;
+  DeviceThread& operator=(const DeviceThread&) = delete;
+  /// What the destructor does, once. False if an output should have its safe value and has not.
+  bool end();
+
+  // From any thread; none of them waits for a request.
+
+  /// Takes a write on its way: sends it at once if the connection is idle, otherwise queues it. The sink may
+  /// call it.
+  void write(const Write& write);
+  /// Counts a value that is none of its point, and tells the listener.
+  void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
+  /// As Writer's. To be called a few times a second.
+  void report_held_back() { device_.report_held_back(); }
+  /// Whether somebody wants the values of a point (index into Map::points).
+  void want(std::uint32_t point, bool wanted);
+  /// Resets the coupler's own watchdog. The answer comes after a few timeouts at most.
+  std::future<Calls::Answer> reset_watchdog();
+  /// Writes what `on_shutdown: safe` would. The answer comes after the request in flight and these writes; at
+  /// once if there is no connection.
+  std::future<Calls::Answer> make_safe();
+  DeviceSnapshot statistics() const { return device_.statistics(); }
+  std::vector<PointQuality> qualities() const { return device_.qualities(); }
+  PointQuality quality(std::uint32_t point) const { return device_.quality(point); }
+  std::uint64_t revision() const { return device_.revision(); }
+
+ private:
+  void run();
+  Time step();
+
+  Transport& transport_;
+  SteadyClock clock_;
+  Device device_;
+  Wishes wishes_;
+  bool ends_safely_;  ///< writes safe values at the end
+  std::mutex turn_;   ///< held by the one who uses the connection; others than the owner only try
+  std::atomic<bool> stopping_{false};
+  std::atomic<std::thread::id> owner_{};  ///< has its turn while it calls the sink
+  std::promise<void> stopped_;
+  bool ended_safely_ = true;  ///< once the thread has ended
+  std::thread thread_;        // begins when the others are there: it uses them
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <variant>
+
+#include <tl/expected.hpp>
+
+#include "coupler/modbus/exception.hpp"
+
+namespace coupler::host {
+
+/// There is no connection, and none could be made.
+struct NotConnected {
+  std::string why;
+};
+/// The connection broke.
+struct TransportFailure {
+  std::string why;
+};
+/// No complete reply within the device's timeout.
+struct Timeout {
+  std::chrono::milliseconds after;
+};
+/// The device is there and says no. Any code may arrive (MAP 7).
+struct ExceptionReply {
+  modbus::Exception code;
+};
+/// A reply that is not an answer to the request.
+struct BadFrame {
+  std::string why;
+};
+
+/// How a request can fail.
+using Error = std::variant<NotConnected, TransportFailure, Timeout, ExceptionReply, BadFrame>;
+
+template <class T = void>
+using Result = tl::expected<T, Error>;
+
+template <class E>
+tl::unexpected<Error> fail(E error) {
+  return tl::unexpected<Error>(Error(std::move(error)));
+}
+
+/// The exception code if the error is one. Every other error ends the connection: its late reply must never
+/// be taken for the answer to the next request.
+const ExceptionReply* exception_in(const Error& error);
+
+/// A gateway is there and says that the unit behind it is not (exceptions 0A and 0B).
+bool is_unit_away(const Error& error);
+
+/// "exception 02 (illegal data address)", "no reply within 3000 ms" …
+std::string to_string(const Error& error);
+
+}  // namespace coupler::host

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is to be said of a device's state, and how loud: the rules behind /diagnostics.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coupler/host/core/device_statistics.hpp"
+#include "coupler/host/core/point_quality.hpp"
+#include "coupler/host/core/sink.hpp"
+#include "coupler/map/map.hpp"
+
+namespace coupler::host {
+
+struct Health {
+  Level level;  ///< info: all is well
+  std::string text;
+};
+
+/// error: offline; warning: online with a map that differs.
+Health connection_health(const DeviceSnapshot& now);
+
+/// error: online, and none of the points that are read is good; warning: some are not, or a cycle has been
+/// left out since `before`.
+Health polling_health(const Map& map, const std::vector<PointQuality>& points, const DeviceSnapshot& before,
+                      const DeviceSnapshot& now);
+
+/// warning: a write since `before` did not do what it should.
+Health writes_health(const DeviceSnapshot& before, const DeviceSnapshot& now);
+
+/// The coupler's own watchdog. error: it has expired, or it is not fed.
+Health watchdog_health(const DeviceSnapshot& now);
+
+/// "foreign", "equal", …; "not asked".
+std::string_view to_string(const std::optional<Identity::Verdict>& verdict);
+
+}  // namespace coupler::host

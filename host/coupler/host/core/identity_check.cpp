@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/identity_check.hpp"
+
+#include <fmt/format.h>
+
+#include "coupler/map/fingerprint.hpp"
+
+namespace coupler::host {
+namespace {
+
+using Verdict = Identity::Verdict;
+
+Identity unreadable(std::uint64_t fingerprint, const std::string& why) {
+  return {Verdict::different, fingerprint, {"the node's map cannot be compared: " + why}, {}};
+}
+
+Identity compare(const Map& known, const Map& device, std::uint64_t fingerprint) {
+  Identity identity{Verdict::superset, fingerprint, {}, diff(known, device)};
+  for (const Difference& difference : identity.points) {
+    if (is_breaking(difference.kind)) identity.verdict = Verdict::different;
+    identity.differences.push_back(to_string(difference));
+  }
+  return identity;
+}
+
+}  // namespace
+
+std::string difference_text(const Map& known, const Identity& identity) {
+  std::string text = fmt::format("the map differs from the device's: fingerprint {} here, {} in the device",
+                                 fingerprint_text(known.fingerprint), fingerprint_text(identity.fingerprint));
+  for (const std::string& line : identity.differences) text += "\n  " + line;
+  return text;
+}
+
+std::string silence_text(const Map& known, const Error& error) {
+  return fmt::format(
+      "{}, but unit {} does not answer the question for its identity: {}; check that the device runs, and "
+      "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, start "
+      "with --verify off (a client: Options::verify)",
+      is_unit_away(error) ? "the gateway answers" : "connected", known.connection.unit, to_string(error));
+}
+
+Result<Identity> check_identity(Transport& transport, const Map& known, const MapLoader& load) {
+  const auto read = read_identity(transport);
+  if (!read) return tl::make_unexpected(read.error());
+  if (!read->has_value()) return Identity{};
+  const identity::Head& head = **read;
+  if (head.fingerprint == known.fingerprint) return Identity{Verdict::equal, head.fingerprint, {}, {}};
+
+  const auto text = fetch_map_text(transport, head.map_size);
+  if (!text) {
+    if (exception_in(text.error()) == nullptr) return tl::make_unexpected(text.error());
+    return unreadable(head.fingerprint, to_string(text.error()));
+  }
+  const auto device = load_node_map(*text, head, load);
+  if (!device) return unreadable(head.fingerprint, device.error());
+  return compare(known, (*device)->map(), head.fingerprint);
+}
+
+}  // namespace coupler::host

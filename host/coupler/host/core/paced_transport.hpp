@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bitset>
+
+#include "coupler/host/core/clock.hpp"
+#include "coupler/host/core/device_statistics.hpp"
+#include "coupler/host/core/transport.hpp"
+#include "coupler/map/map.hpp"
+
+namespace coupler::host {
+
+/// Keeps the pauses that some devices need: `connect_delay` after a connect, `request_gap` between a reply
+/// and the next request; and takes the time of each request.
+class PacedTransport : public Transport {
+ public:
+  PacedTransport(Transport& transport, Clock& clock, const Limits& limits, DeviceStatistics& statistics)
+      : transport_(transport),
+        clock_(clock),
+        statistics_(statistics),
+        gap_(limits.request_gap),
+        delay_(limits.connect_delay) {}
+
+  Result<> connect() override;
+  void close() override { transport_.close(); }
+  void interrupt() override { transport_.interrupt(); }
+  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
+  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
+  Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
+  void rank(Rank rank) override { transport_.rank(rank); }
+  Turn await_turn(Time until, bool write_waits = false) override {
+    pause();  // before the turn, which others wait for
+    return transport_.await_turn(until, write_waits);
+  }
+  bool reserve() override { return transport_.reserve(); }
+  Result<> send(const modbus::WriteRequest& request) override;
+  Result<> receive(const modbus::WriteRequest& request) override;
+  Woken wait_until(Time time) override { return transport_.wait_until(time); }
+  void wake() override { transport_.wake(); }
+
+  /// A request that is made now needs no pause.
+  bool is_ready() const { return clock_.now() >= ready_; }
+  /// When the last request was answered, well or not.
+  Time last_answer() const { return answered_; }
+  /// How many requests have been answered, be it by an exception.
+  std::uint64_t replies() const { return replies_; }
+
+  /// Whether a request has been answered with it since the last forget_exceptions().
+  bool has_seen(modbus::Exception code) const { return seen_[static_cast<std::size_t>(code)]; }
+  void forget_exceptions() { seen_.reset(); }
+
+ private:
+  void pause();
+  Result<> answered(Result<> result);
+  template <class Request>
+  Result<> paced(Request&& request) {
+    pause();
+    return answered(request());
+  }
+
+  Transport& transport_;
+  Clock& clock_;
+  DeviceStatistics& statistics_;
+  Duration gap_;
+  Duration delay_;
+  Time ready_ = Time::min();  ///< no request before
+  Time begun_{};              ///< the request in flight
+  Time answered_{};
+  std::uint64_t replies_ = 0;
+  std::bitset<256> seen_;  ///< exceptions
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/point_quality.hpp"
+
+#include "coupler/host/core/schedule.hpp"
+#include "coupler/plan/planner.hpp"
+
+namespace coupler::host {
+
+using State = PointQuality::State;
+
+std::string_view to_string(State state) {
+  switch (state) {
+    case State::good: return "good";
+    case State::stale: return "stale";
+    case State::never_read: return "never read";
+    case State::exception: return "exception";
+    case State::rejected: return "rejected";
+    case State::offline: return "offline";
+    case State::not_wanted: return "not wanted";
+  }
+  return "?";
+}
+
+PointQualities::PointQualities(const Map& map) : points_(map.points.size()) {
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    points_[i].patience = 2 * period_of(plan::rate_of(map, map.points[i])) + map.connection.timeout;
+}
+
+void PointQualities::good(Span<const std::uint32_t> points, Time at) {
+  const std::lock_guard lock(mutex_);
+  bool news = false;
+  for (const std::uint32_t point : points) {
+    Entry& entry = points_[point];
+    news |= state_of(entry, at) != State::good;
+    entry.last_good = at;
+    entry.failing = false;
+  }
+  if (news) ++revision_;
+}
+
+void PointQualities::exception(Span<const std::uint32_t> points, modbus::Exception code) {
+  const std::lock_guard lock(mutex_);
+  for (const std::uint32_t point : points) {
+    points_[point].last_exception = code;
+    points_[point].failing = true;
+  }
+  ++revision_;
+}
+
+void PointQualities::wrote(std::uint32_t point, const WriteResult& result) {
+  if (result.outcome == WriteResult::Outcome::superseded) return;
+  const std::lock_guard lock(mutex_);
+  points_[point].last_write = result.outcome;
+  points_[point].last_write_text = to_string(result);
+  ++revision_;
+}
+
+void PointQualities::rejected(Span<const std::uint32_t> points, modbus::Exception code) {
+  exception(points, code);
+  const std::lock_guard lock(mutex_);
+  for (const std::uint32_t point : points) points_[point].rejected = true;
+  ++revision_;
+}
+
+void PointQualities::connected() {
+  const std::lock_guard lock(mutex_);
+  for (Entry& entry : points_) entry.failing = entry.rejected = false;
+  ++revision_;
+}
+
+void PointQualities::online(bool online) {
+  const std::lock_guard lock(mutex_);
+  online_ = online;
+  ++revision_;
+}
+
+State PointQualities::state_of(const Entry& entry, Time now) const {
+  if (!online_) return State::offline;
+  if (entry.rejected) return State::rejected;
+  if (entry.failing) return State::exception;
+  if (!entry.last_good) return State::never_read;
+  return now - *entry.last_good > entry.patience ? State::stale : State::good;
+}
+
+PointQuality PointQualities::quality_of(const Entry& entry, Time now) const {
+  const State state = state_of(entry, now);
+  const Time stale_from = state == State::good ? *entry.last_good + entry.patience : Time::max();
+  return {state, stale_from, entry.last_good, entry.last_exception, entry.last_write, entry.last_write_text};
+}
+
+std::vector<PointQuality> PointQualities::snapshot(Time now) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<PointQuality> result;
+  result.reserve(points_.size());
+  for (const Entry& entry : points_) result.push_back(quality_of(entry, now));
+  return result;
+}
+
+PointQuality PointQualities::of(std::uint32_t point, Time now) const {
+  const std::lock_guard lock(mutex_);
+  return quality_of(points_[point], now);
+}
+
+}  // namespace coupler::host

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/poll_cycle.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "coupler/plan/split.hpp"
+
+namespace coupler::host {
+
+PollCycle::PollCycle(const Map& map)
+    : planner_(map), wanted_(map.points.size(), true), given_up_(map.points.size(), false) {
+  for (const plan::RateGroup& points : planner_.groups())
+    groups_.push_back({&points, Schedule(period_of(points.rate))});
+}
+
+void PollCycle::start(Time now) {
+  refused_.clear();
+  given_up_.assign(given_up_.size(), false);
+  found_.clear();
+  others_first_ = false;
+  for (Group& group : groups_) {
+    group.next = 0;
+    group.parted.clear();
+    group.joined_again = false;
+    group.steps.clear();  // with an empty one replan() begins the deadlines
+    replan(group, now);
+  }
+}
+
+void PollCycle::want(std::uint32_t point, bool wanted) {
+  if (wanted_[point] == wanted) return;
+  wanted_[point] = wanted;
+  const double rate = plan::rate_of(planner_.map(), planner_.map().points[point]);
+  for (Group& group : groups_)
+    if (group.points->rate == rate) group.stale = true;
+}
+
+Time PollCycle::Group::due() const {
+  if (steps.empty()) return stale ? Time::min() : Time::max();
+  return schedule.due();
+}
+
+Time PollCycle::due() const {
+  Time earliest = Time::max();
+  for (const Group& group : groups_) earliest = std::min(earliest, group.due());
+  return earliest;
+}
+
+bool PollCycle::is_overdue(Time now) const {
+  return std::any_of(groups_.begin(), groups_.end(), [now](const Group& group) {
+    return !group.steps.empty() && group.schedule.due() + group.schedule.period() <= now;
+  });
+}
+
+const ReadSpan* PollCycle::select(Time now) {
+  std::optional<std::size_t> chosen;
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    Group& group = groups_[i];
+    if (group.stale && group.idle()) replan(group, now);
+    if (group.due() > now) continue;
+    if (!chosen || (others_first_ && group.served < groups_[*chosen].served)) chosen = i;
+  }
+  if (!chosen) return nullptr;
+  current_ = *chosen;
+  return &current();
+}
+
+bool PollCycle::answered(std::optional<modbus::Exception> exception, Time now) {
+  Group& group = groups_[current_];
+  const bool news = std::exchange(group.steps[group.next].last, exception) != exception;
+  ++group.next;
+  done(now);
+  return news;
+}
+
+std::vector<std::uint32_t> PollCycle::rejected(Time now) {
+  Group& group = groups_[current_];
+  const ReadSpan rejected = current();
+  refused_.push_back({rejected.table, rejected.range});
+  std::vector<Step> pieces;
+  std::vector<std::uint32_t> given_up;
+  std::optional<modbus::Range> hole;
+  // Of points that overlap, a part can be as large as the whole: then it need not be asked for.
+  std::vector<ReadSpan> open{rejected};
+  while (!open.empty()) {
+    const ReadSpan span = std::move(open.back());
+    open.pop_back();
+    if (span.range != rejected.range) {
+      pieces.push_back({span, std::nullopt});
+      continue;
+    }
+    plan::Split parts = split(span, planner_.map());
+    if (parts.pieces.empty()) {
+      given_up.push_back(span.points.front());
+      given_up_[span.points.front()] = true;
+    }
+    open.insert(open.end(), parts.pieces.rbegin(), parts.pieces.rend());
+    hole = parts.hole;
+  }
+  if (given_up.empty()) group.parted.push_back({{rejected.table, rejected.range}, hole});
+  remove_current();
+  group.steps.insert(group.steps.begin() + static_cast<std::ptrdiff_t>(group.next), pieces.begin(),
+                     pieces.end());
+  done(now);
+  return given_up;
+}
+
+void PollCycle::give_up(Time now) {
+  for (const std::uint32_t point : current().points) given_up_[point] = true;
+  remove_current();
+  done(now);
+}
+
+std::vector<Refusal> PollCycle::take_refusals() { return std::exchange(found_, {}); }
+
+std::vector<PollCycle::Status> PollCycle::status() const {
+  std::vector<Status> result;
+  for (const Group& group : groups_)
+    result.push_back({group.points->rate, group.steps.size(), group.schedule.overruns()});
+  return result;
+}
+
+std::uint64_t PollCycle::overruns() const {
+  std::uint64_t sum = 0;
+  for (const Group& group : groups_) sum += group.schedule.overruns();
+  return sum;
+}
+
+void PollCycle::replan(Group& group, Time now) {
+  std::vector<std::uint32_t> points;
+  for (const std::uint32_t point : group.points->points)
+    if (wanted_[point] && !given_up_[point]) points.push_back(point);
+  const std::vector<Step> old = std::exchange(group.steps, {});
+  for (ReadSpan& span : planner_.plan(points, refused_)) {
+    const auto same = std::find_if(old.begin(), old.end(), [&](const Step& step) {
+      return step.last && step.span.table == span.table && step.span.range == span.range;
+    });
+    const auto last = same == old.end() ? std::nullopt : same->last;
+    group.steps.push_back({std::move(span), last});
+  }
+  if (old.empty()) group.schedule.start(now);
+  group.stale = false;
+}
+
+void PollCycle::remove_current() {
+  Group& group = groups_[current_];
+  group.steps.erase(group.steps.begin() + static_cast<std::ptrdiff_t>(group.next));
+}
+
+void PollCycle::done(Time now) {
+  Group& group = groups_[current_];
+  group.served = ++requests_;
+  others_first_ = false;
+  if (group.next < group.steps.size()) return;
+  group.next = 0;
+  cycle_time_ = now - group.schedule.due();
+  group.schedule.advance(now);
+  others_first_ = due() <= now;
+  if (!group.parted.empty()) learn(group);
+}
+
+/// The parts of all that was rejected have been asked for. Where no smaller part was rejected, the hole
+/// between the parts is to blame, or, where there is none, the request was too long. Parts that need not be
+/// apart come together again in the next cycle.
+void PollCycle::learn(Group& group) {
+  const std::vector<Unreadable> all = refused_;
+  const auto holds_smaller = [&all](const Unreadable& whole) {
+    return std::any_of(all.begin(), all.end(), [&](const Unreadable& other) {
+      return other.table == whole.table && other.range != whole.range && whole.range.contains(other.range);
+    });
+  };
+  refused_.erase(std::remove_if(refused_.begin(), refused_.end(), holds_smaller), refused_.end());
+  bool found_hole = false;
+  for (const auto& [whole, hole] : std::exchange(group.parted, {})) {
+    if (holds_smaller(whole)) continue;
+    // With points of another rate in it, the hole is an unlikely cause.
+    const bool blame_hole = hole && !planner_.has_points(whole.table, *hole);
+    found_.push_back({whole.table, blame_hole ? *hole : whole.range, blame_hole});
+    if (blame_hole) refused_.push_back({whole.table, *hole});
+    found_hole = found_hole || blame_hole;
+  }
+  if (found_hole && !std::exchange(group.joined_again, true)) group.stale = true;
+}
+
+}  // namespace coupler::host

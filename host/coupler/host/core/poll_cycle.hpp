@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "coupler/host/core/error.hpp"
+#include "coupler/host/core/refusal.hpp"
+#include "coupler/host/core/schedule.hpp"
+#include "coupler/plan/planner.hpp"
+
+namespace coupler::host {
+
+using plan::ReadSpan;
+
+/// Which read request is next: the points of each rate on deadlines of their own. It learns, for the time of
+/// a connection, what the device rejects.
+///
+/// Of the rates that are due the fastest goes first, so that a slow one with many requests delays it by one
+/// request at most; after a whole cycle of one rate the others have one request in any case, so that none
+/// starves when there is too much to do.
+class PollCycle {
+ public:
+  /// What `map` views must outlive the cycle. All its points are wanted.
+  explicit PollCycle(const Map& map);
+
+  /// A new connection: everything is asked for again, all first cycles are due now.
+  void start(Time now);
+
+  /// Whether somebody wants the values of a point (index into Map::points). From the next cycle of its rate
+  /// on the requests are as few as the wanted points need; a rate without wanted points makes none.
+  void want(std::uint32_t point, bool wanted);
+
+  /// When select() has a request; in the past while a cycle runs. Time::max() if nothing is left to read.
+  Time due() const;
+  /// A deadline of one of the rates has passed by a whole period, and its cycle has not ended.
+  bool is_overdue(Time now) const;
+  /// Chooses the request to make now: nullptr if none is due. It is current() until one of the next three
+  /// functions tells how it went.
+  const ReadSpan* select(Time now);
+  const ReadSpan& current() const { return step().span; }
+  /// The last answer to current() was an exception.
+  bool failing() const { return step().last.has_value(); }
+
+  /// current() was answered, with values (nullopt) or with an exception that may pass. True if that is news:
+  /// another answer than that of the cycle before.
+  bool answered(std::optional<modbus::Exception> exception, Time now);
+  /// The device does not take current(): smaller requests take its place, in this cycle. Returns the points
+  /// that cannot be read at all and are given up until the next start().
+  std::vector<std::uint32_t> rejected(Time now);
+  /// The device does not know the function of current(): its points are given up until the next start().
+  void give_up(Time now);
+
+  /// What was found out, since the last call, about requests that were rejected: each is told once.
+  std::vector<Refusal> take_refusals();
+
+  /// From its deadline to its last answer: the cycle that has ended since the last call, if one has.
+  std::optional<Duration> take_cycle_time() { return std::exchange(cycle_time_, std::nullopt); }
+
+  struct Status {
+    double rate;             ///< Hz
+    std::size_t requests;    ///< in a cycle, at the moment
+    std::uint64_t overruns;  ///< deadlines that were left out
+  };
+  /// One for each rate, the fastest first.
+  std::vector<Status> status() const;
+  /// Of all rates.
+  std::uint64_t overruns() const;
+
+ private:
+  struct Step {
+    ReadSpan span;
+    std::optional<modbus::Exception> last;
+  };
+  /// A request that was rejected and parted.
+  struct Parted {
+    Unreadable whole;
+    std::optional<modbus::Range> hole;  ///< between the parts
+  };
+  struct Group {
+    const plan::RateGroup* points;
+    Schedule schedule;
+    std::vector<Step> steps{};
+    std::size_t next = 0;
+    bool stale = false;            ///< to be planned anew when no cycle runs
+    bool joined_again = false;     ///< planned anew after what it learned: once is enough
+    std::vector<Parted> parted{};  ///< in the cycle that runs
+    std::uint64_t served = 0;      ///< the number of its last request
+
+    bool idle() const { return steps.empty() || next == 0; }
+    Time due() const;
+  };
+  const Step& step() const { return groups_[current_].steps[groups_[current_].next]; }
+  void replan(Group& group, Time now);
+  void remove_current();
+  void done(Time now);
+  void learn(Group& group);
+
+  plan::Planner planner_;
+  std::vector<bool> wanted_;    ///< by point
+  std::vector<bool> given_up_;  ///< by point
+  std::vector<Group> groups_;
+  std::size_t current_ = 0;
+  std::uint64_t requests_ = 0;
+  bool others_first_ = false;        ///< a cycle has ended: who waits has a turn
+  std::vector<Unreadable> refused_;  ///< no request of several points contains one
+  std::vector<Refusal> found_;
+  std::optional<Duration> cycle_time_;
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/reader.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace coupler::host {
+
+Reader::Reader(const Map& map, Transport& transport, Clock& clock, Writer& writer,
+               DeviceStatistics& statistics, PointQualities& qualities, Sink& sink)
+    : map_(map),
+      transport_(transport),
+      clock_(clock),
+      writer_(writer),
+      statistics_(statistics),
+      qualities_(qualities),
+      sink_(sink),
+      cycle_(map) {}
+
+void Reader::start() {
+  qualities_.connected();
+  cycle_.start(clock_.now());
+}
+
+Result<> Reader::request(const ReadSpan& span) {
+  return holds_bits(span.table) ? transport_.read_bits(span.table, span.range, bits_.data())
+                                : transport_.read_registers(span.table, span.range, registers_.data());
+}
+
+Result<> Reader::step(Time until) {
+  if (!has_request(clock_.now()) || transport_.await_turn(until) != Transport::Turn::read) return {};
+  const ReadSpan& span = cycle_.current();
+  if (Result<> answer = request(span); !answer) {
+    const ExceptionReply* exception = exception_in(answer.error());
+    if (exception == nullptr) return answer;
+    if (is_unit_away(answer.error())) {
+      qualities_.exception(span.points, exception->code);
+      return answer;
+    }
+    refused(exception->code);
+  } else {
+    publish(span);
+    const std::string name = cycle_.failing() ? describe(span) : std::string();
+    if (cycle_.answered(std::nullopt, clock_.now()))
+      sink_.on_report(Level::info, name + " can be read again");
+  }
+  if (const auto cycle_time = cycle_.take_cycle_time())
+    statistics_.cycle_ended(*cycle_time, cycle_.overruns());
+  report_refusals();
+  return {};
+}
+
+void Reader::publish(const ReadSpan& span) {
+  const Time now = clock_.now();
+  const ReadSpan& fresh = writer_.hides_any() ? without_hidden(span) : span;
+  if (holds_bits(span.table))
+    sink_.on_bits(fresh, {bits_.data(), span.range.count()}, now);
+  else
+    sink_.on_registers(fresh, {registers_.data(), span.range.count()}, now);
+  writer_.shown(fresh.points);
+  qualities_.good(span.points, now);  // last: nobody waits for it
+}
+
+const ReadSpan& Reader::without_hidden(const ReadSpan& span) {
+  rest_.table = span.table;
+  rest_.range = span.range;
+  rest_.points.clear();
+  for (const std::uint32_t point : span.points)
+    if (!writer_.hides(point)) rest_.points.push_back(point);
+  return rest_;
+}
+
+void Reader::refused(modbus::Exception code) {
+  const ReadSpan span = cycle_.current();
+  const std::string why = to_string(Error(ExceptionReply{code}));
+  switch (code) {
+    // Devices answer a range that they do not have, or that is too long for them, with either of these.
+    case modbus::Exception::illegal_data_address:
+    case modbus::Exception::illegal_data_value:
+      statistics_.rejected();
+      for (const std::uint32_t point : cycle_.rejected(clock_.now())) {
+        qualities_.rejected({&point, 1}, code);
+        sink_.on_report(Level::warning,
+                        fmt::format("{} is not in the device: {}; it is not asked for again while "
+                                    "this connection lasts",
+                                    map_.points[point].name, why));
+      }
+      return;
+    case modbus::Exception::illegal_function:
+      statistics_.rejected();
+      qualities_.rejected(span.points, code);
+      cycle_.give_up(clock_.now());
+      sink_.on_report(Level::warning,
+                      fmt::format("{} cannot be read: {}; it is not asked for again while this "
+                                  "connection lasts",
+                                  describe(span), why));
+      return;
+    default:
+      qualities_.exception(span.points, code);
+      if (cycle_.answered(code, clock_.now()))
+        sink_.on_report(Level::warning, fmt::format("{} cannot be read now: {}", describe(span), why));
+  }
+}
+
+void Reader::report_refusals() {
+  for (const Refusal& refusal : cycle_.take_refusals()) sink_.on_report(Level::warning, to_string(refusal));
+}
+
+std::string Reader::describe(const ReadSpan& span) const {
+  if (span.points.size() == 1) return std::string(map_.points[span.points.front()].name);
+  return fmt::format("{} {} to {} ({} to {})", to_string(span.table), span.range.start(), span.range.last(),
+                     map_.points[span.points.front()].name, map_.points[span.points.back()].name);
+}
+
+}  // namespace coupler::host

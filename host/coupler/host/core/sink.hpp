@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "coupler/base/span.hpp"
+#include "coupler/host/core/clock.hpp"
+#include "coupler/plan/read_span.hpp"
+
+namespace coupler::host {
+
+using plan::ReadSpan;
+
+enum class Level { info, warning, error };
+
+/// Where a device's news go. Calls come from the connection's thread, values while the next request waits:
+/// what is done here delays it. Only on_report() may also come from a thread that writes.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  /// `bits[i]` is the coil or discrete input `span.range.start() + i`, as of `at`.
+  virtual void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) = 0;
+  /// `registers[i]` is the register `span.range.start() + i`, as of `at`.
+  virtual void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) = 0;
+  /// The device answers (or no longer does). Only changes are told; it begins offline.
+  virtual void on_online(bool online) = 0;
+  virtual void on_report(Level level, const std::string& text) = 0;
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "coupler/base/span.hpp"
+#include "coupler/host/core/clock.hpp"
+#include "coupler/host/core/error.hpp"
+#include "coupler/map/table.hpp"
+#include "coupler/modbus/range.hpp"
+#include "coupler/modbus/write_request.hpp"
+
+namespace coupler::host {
+
+/// Who goes first where units share a connection: writes before reads, in turn
+/// (coupler/host/modbus/turn_order.hpp).
+enum class Rank {
+  read,
+  write,  ///< also the read before a write, and the one that verifies it
+  safe    ///< before all others, until another rank is set
+};
+
+/// The port to one unit of a Modbus device. One request is in flight at a time; its reply is awaited for the
+/// device's timeout at most. It belongs to one thread; another may call send() while it knows, by a lock of
+/// its own, that the owner does nothing but wait_until(). interrupt() and wake() may come from anywhere.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+
+  virtual Result<> connect() = 0;
+  virtual void close() = 0;
+  /// Ends the call in progress; it and every later one fail at once.
+  virtual void interrupt() = 0;
+
+  /// FC 1 or 2: `range.count()` (at most 2000) elements of 0 or 1.
+  virtual Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) = 0;
+  /// FC 3 or 4: `range.count()` (at most 125) registers.
+  virtual Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) = 0;
+  /// FC 20 with one group: fills `registers` (1 … 121) from a file.
+  virtual Result<> read_file_record(std::uint16_t file, std::uint16_t record,
+                                    Span<std::uint16_t> registers) = 0;
+
+  // For units that share a connection, and take turns.
+
+  /// That of the reads that follow, and of the writes where it is Rank::safe. Else writes are Rank::write.
+  virtual void rank(Rank /*rank*/) {}
+  enum class Turn { none, read, write };
+  /// Waits until a read would be sent at once, or, if one waits too, a write: whichever comes first. It must
+  /// follow, or another call. None if it was woken meanwhile, or at `until`: there may be something to do
+  /// that comes before a read.
+  virtual Turn await_turn(Time /*until*/, bool /*write_waits*/ = false) { return Turn::read; }
+  /// Whether a send() made now would wait for nobody else's request. If true, send() must follow.
+  virtual bool reserve() { return true; }
+
+  /// Sends and does not wait for the answer. receive() must follow before any other request.
+  virtual Result<> send(const modbus::WriteRequest& request) = 0;
+  /// The answer to what was sent, at the latest a timeout after that.
+  virtual Result<> receive(const modbus::WriteRequest& request) = 0;
+
+  enum class Woken { by_time, by_call, by_bytes };
+  /// Returns when bytes have come (or the connection has ended), after wake(), or at `time`.
+  virtual Woken wait_until(Time time) = 0;
+  /// Ends the wait in progress, or the next one.
+  virtual void wake() = 0;
+};
+
+}  // namespace coupler::host

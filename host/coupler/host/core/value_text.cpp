@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/value_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coupler/codec/scale.hpp"
+#include "coupler/codec/value.hpp"
+#include "coupler/map/typed_value.hpp"
+
+namespace coupler::host {
+namespace {
+
+using Outcome = tl::expected<void, std::string>;
+using codec::Type;
+using codec::Value;
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t from = text.find_first_not_of(" \t\n");
+  if (from == std::string_view::npos) return {};
+  return text.substr(from, text.find_last_not_of(" \t\n") - from + 1);
+}
+
+std::optional<bool> parse_bool(std::string_view text) {
+  for (const std::string_view yes : {"true", "True", "on", "1"})
+    if (text == yes) return true;
+  for (const std::string_view no : {"false", "False", "off", "0"})
+    if (text == no) return false;
+  return std::nullopt;
+}
+
+/// The narrowest of int64, uint64 and double that holds it.
+std::optional<Value> parse_number(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const bool hexadecimal = text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
+  char* end = nullptr;
+  errno = 0;
+  const long long whole = std::strtoll(text.c_str(), &end, hexadecimal ? 16 : 10);
+  if (*end == '\0' && errno == 0) return Value{std::int64_t{whole}};
+  errno = 0;
+  const unsigned long long large = std::strtoull(text.c_str(), &end, hexadecimal ? 16 : 10);
+  if (*end == '\0' && errno == 0 && text[0] != '-') return Value{std::uint64_t{large}};
+  const double real = std::strtod(text.c_str(), &end);
+  if (*end == '\0') return Value{real};
+  return std::nullopt;
+}
+
+double as_double(const Value& number) {
+  if (const auto* whole = std::get_if<std::int64_t>(&number)) return static_cast<double>(*whole);
+  if (const auto* large = std::get_if<std::uint64_t>(&number)) return static_cast<double>(*large);
+  return std::get<double>(number);
+}
+
+Outcome parse_element(std::string_view text, const Point& point, std::uint16_t* registers) {
+  const codec::Format& format = point.format;
+  if (format.type == Type::STRING) return codec::encode(std::string(text), format, registers);
+  text = trimmed(text);
+  registers[0] = 0;
+  if (format.type == Type::BOOL) {
+    const auto on = parse_bool(text);
+    if (!on) return tl::make_unexpected(fmt::format("'{}' is neither true nor false", text));
+    if (!holds_bits(point.table)) return codec::encode(*on, format, registers);
+    registers[0] = *on ? 1 : 0;
+    return {};
+  }
+  const auto number = parse_number(std::string(text));
+  if (!number) return tl::make_unexpected(fmt::format("'{}' is not a number", text));
+  if (point.scale.present()) {
+    const std::string wrong = encode_scaled(as_double(*number), point, registers);
+    if (!wrong.empty()) return tl::make_unexpected(wrong);
+    return {};
+  }
+  return codec::encode(*number, format, registers);
+}
+
+std::vector<std::string_view> elements(std::string_view text) {
+  text = trimmed(text);
+  if (text.size() >= 2 && text.front() == '[' && text.back() == ']') text = text.substr(1, text.size() - 2);
+  std::vector<std::string_view> result;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    result.push_back(text.substr(from, comma - from));
+    from = comma + 1;
+  }
+  return result;
+}
+
+/// 217 x 0.1 is 21.7 to a person, not 21.700000000000003: the last digits only where they tell values apart.
+std::string scaled_text(const std::uint16_t* registers, const Point& point) {
+  const double value = codec::published(registers, point.format, point.scale);
+  const std::string text = fmt::format("{:.15g}", value);
+  std::array<std::uint16_t, 4> again{};  // no type with a scale is longer
+  const std::size_t count = codec::registers(point.format);
+  std::copy_n(registers, count, again.begin());
+  const bool same = encode_scaled(std::strtod(text.c_str(), nullptr), point, again.data()).empty() &&
+                    std::equal(registers, registers + count, again.begin());
+  return same ? text : fmt::format("{}", value);
+}
+
+}  // namespace
+
+Outcome parse_value(std::string_view text, const Point& point, std::uint16_t* registers) {
+  if (point.count == 1) return parse_element(text, point, registers);
+  const auto list = elements(text);
+  if (list.size() != point.count)
+    return tl::make_unexpected(
+        fmt::format("{} elements; give {}, as in [1, 2, 3]", list.size(), point.count));
+  for (const std::string_view element : list) {
+    if (auto done = parse_element(element, point, registers); !done) return done;
+    registers += codec::registers(point.format);
+  }
+  return {};
+}
+
+std::string format_value(const std::uint16_t* registers, const Point& point) {
+  const auto one = [&](const std::uint16_t* at) -> std::string {
+    if (holds_bits(point.table)) return at[0] != 0 ? "true" : "false";
+    if (point.scale.present()) return scaled_text(at, point);
+    return codec::to_string(codec::decode(at, point.format));
+  };
+  if (point.count == 1) return one(registers);
+  std::string list;
+  for (std::size_t i = 0; i < point.count; ++i, registers += codec::registers(point.format))
+    list += (i > 0 ? ", " : "") + one(registers);
+  return "[" + list + "]";
+}
+
+}  // namespace coupler::host

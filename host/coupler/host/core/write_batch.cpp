@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/write_batch.hpp"
+
+#include <array>
+#include <cassert>
+
+namespace coupler::host {
+namespace {
+
+using modbus::Range;
+using modbus::WriteRequest;
+using Function = HostOptions::WriteFunction;
+
+bool is_neighbour(Range a, Range b) { return a.end() == b.start() || b.end() == a.start(); }
+
+}  // namespace
+
+bool WriteBatch::merges(const Write& write) const {
+  const Point& which = point(write);
+  return !is_partial(which) && which.host.write_function != Function::single &&
+         which.host.write_queue != HostOptions::WriteQueue::every;
+}
+
+bool WriteBatch::add(const Write& write) {
+  const Range own = range(point(write));
+  if (writes_.empty()) {
+    range_ = own;
+  } else {
+    const Point& first = point(writes_.front());
+    if (point(write).table != first.table || !is_neighbour(own, range_)) return false;
+    if (!merges(writes_.front()) || !merges(write)) return false;
+    const auto both = Range::of(std::min(own.start(), range_.start()), own.count() + range_.count());
+    if (both.count() > (holds_bits(first.table) ? map_.limits.write_bits : map_.limits.write_registers))
+      return false;
+    range_ = both;
+  }
+  writes_.push_back(write);
+  return true;
+}
+
+bool WriteBatch::needs_read() const {
+  return !empty() && is_partial(point(writes_.front())) && !map_.limits.mask_write;
+}
+
+WriteRequest WriteBatch::part_request(std::uint16_t before) const {
+  const Point& which = point(writes_.front());
+  const std::uint16_t mask = codec::mask(which.format);
+  const auto others = static_cast<std::uint16_t>(~mask);
+  const std::uint16_t value = writes_.front().registers[0];
+  if (map_.limits.mask_write) return WriteRequest::mask(which.address, others, value);
+  const auto word = static_cast<std::uint16_t>((before & others) | (value & mask));
+  if (which.host.write_function == Function::multiple)
+    return WriteRequest::registers(which.address, {&word, 1});
+  return WriteRequest::register_value(which.address, word);
+}
+
+WriteRequest WriteBatch::request(std::uint16_t before) const {
+  assert(!empty());
+  const Point& first = point(writes_.front());
+  const Write& only = writes_.front();
+  if (is_partial(first)) return part_request(before);
+  const bool coils = first.table == Table::coils;
+  if (range_.count() == 1 && first.host.write_function != Function::multiple)
+    return coils ? WriteRequest::coil(first.address, only.bit(0))
+                 : WriteRequest::register_value(first.address, only.registers[0]);
+  std::array<std::uint16_t, modbus::max_write_bits> values{};
+  for (const Write& write : writes_) {
+    const Range own = range(point(write));
+    std::uint16_t* const to = &values[own.start() - std::size_t{range_.start()}];
+    for (std::size_t i = 0; i < own.count(); ++i) to[i] = coils ? write.bit(i) : write.registers[i];
+  }
+  const Span<const std::uint16_t> used(values.data(), range_.count());
+  return coils ? WriteRequest::coils(range_.start(), used) : WriteRequest::registers(range_.start(), used);
+}
+
+}  // namespace coupler::host

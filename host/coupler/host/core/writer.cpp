@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/writer.hpp"
+
+#include <fmt/format.h>
+
+#include "coupler/host/core/read_back.hpp"
+
+namespace coupler::host {
+namespace {
+
+using Outcome = WriteResult::Outcome;
+
+/// With these the device has carried out nothing of a request, and the cause may be how it was put together:
+/// a device that takes one value only, or one of several that it does not have.
+bool may_be_of_merging(modbus::Exception code) {
+  return code == modbus::Exception::illegal_function || code == modbus::Exception::illegal_data_address ||
+         code == modbus::Exception::illegal_data_value;
+}
+
+WriteResult with_reason(Outcome outcome, std::string_view why) {
+  WriteResult result;
+  result.outcome = outcome;
+  result.why = why;
+  return result;
+}
+
+}  // namespace
+
+Writer::Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
+               PointQualities& qualities, Sink& sink)
+    : map_(map),
+      transport_(transport),
+      clock_(clock),
+      statistics_(statistics),
+      qualities_(qualities),
+      sink_(sink),
+      queue_(map),
+      deadmen_(map),
+      values_(map.on_reconnect),
+      safe_values_(safe_values(map)),
+      is_safe_point_(map.points.size()),
+      acknowledged_(map.points.size()),
+      batch_(map),
+      done_(map) {
+  for (const Write& write : safe_values_) is_safe_point_[write.point] = true;
+}
+
+void Writer::push(const Write& write) {
+  if (!is_finite(map_.points[write.point], write)) {
+    const WriteResult wrong =
+        with_reason(Outcome::refused, "a number that is not finite (NaN or infinity); send a finite one");
+    tell(write, wrong);
+    report(write, wrong);
+    return;
+  }
+  deadmen_.fed(write.point, clock_.now());
+  const WriteQueue::Pushed pushed = queue_.push(write);
+  if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
+  if (pushed.accepted) return;
+  const WriteResult full = with_reason(Outcome::dropped, "too many writes wait already; write less often");
+  tell(write, full);
+  report(write, full);
+}
+
+void Writer::refuse(const Write& write, std::string_view why) {
+  tell(write, with_reason(Outcome::refused, why));
+}
+
+std::future<Calls::Answer> Writer::ask_safe() {
+  auto answer = safe_calls_.ask();
+  sink_.on_report(Level::info, "safe values are asked for");
+  return answer;
+}
+
+bool Writer::send_now() {
+  if (!batch_.empty() || !transport_.is_ready()) return false;
+  queue_.take(batch_, merges_);
+  if (batch_.empty()) return true;  // the owner was faster
+  if (batch_.needs_read() || !transport_.reserve()) return false;
+  sent_ = batch_.request();
+  if (const auto sent = transport_.send(*sent_); !sent) send_error_ = sent.error();
+  return !send_error_;
+}
+
+void Writer::fire_deadmen() {
+  while (const auto point = deadmen_.take_expired(clock_.now())) {
+    const HostOptions::Deadman& deadman = map_.points[*point].host.deadman;
+    Write write = make_write(map_, *point, deadman.value);
+    write.of_deadman = write.ordered = true;
+    const WriteQueue::Pushed pushed = queue_.push(write);
+    if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
+    if (!pushed.accepted) {  // it goes when there is room: the queue is being emptied
+      deadmen_.put_back(*point);
+      return;
+    }
+    sink_.on_report(Level::warning, fmt::format("no message for {} in {} ms: its deadman value is written",
+                                                name(*point), deadman.timeout.count()));
+  }
+}
+
+Result<> Writer::step() {
+  if (send_error_) return finish(tl::make_unexpected(*std::exchange(send_error_, std::nullopt)));
+  if (sent_) return finish(transport_.receive(*sent_));
+  if (is_safe_asked()) return make_safe();
+  fire_deadmen();
+  if (batch_.empty()) queue_.take(batch_, merges_);
+  if (batch_.empty()) return {};
+  return finish(exchange(batch_, map_, transport_));
+}
+
+Result<> Writer::finish(const Result<>& answer) {
+  sent_.reset();
+  const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
+  if (!answer && exception == nullptr) return answer;  // disconnected() tells them
+  std::swap(batch_, done_);
+  Result<> link;
+  if (exception != nullptr && done_.writes().size() > 1 && may_be_of_merging(exception->code)) {
+    merges_ = false;
+    queue_.put_back(done_.writes());
+    sink_.on_report(Level::info,
+                    fmt::format("writes to {} and its neighbours were rejected in one request: {}; they are "
+                                "written one by one while this connection lasts",
+                                name(done_.writes().front().point), to_string(answer.error())));
+  } else {
+    for (const Write& write : done_.writes())
+      if (const auto finished = finish_one(write, link ? answer : link); !finished) link = finished;
+  }
+  done_.clear();
+  return link;
+}
+
+Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
+  if (answer) {
+    values_.remember(write);
+    acknowledged_[write.point] = true;
+    if (map_.points[write.point].host.verify_write) return verify(write);
+    settle(write, {Outcome::ok});
+    return {};
+  }
+  if (const ExceptionReply* exception = exception_in(answer.error())) {
+    settle(write, {Outcome::exception, exception->code});
+    return {};
+  }
+  values_.remember(write);
+  if (write.of_deadman) deadmen_.put_back(write.point);
+  settle(write, with_reason(Outcome::lost, to_string(answer.error())));
+  return answer;
+}
+
+Result<> Writer::verify(const Write& write) {
+  ReadBack back;
+  const Result<> read = back.read(write, map_, transport_);
+  const ExceptionReply* exception = read ? nullptr : exception_in(read.error());
+  if (!read && exception == nullptr) return finish_one(write, read);
+  WriteResult result;
+  if (exception != nullptr) {
+    result = {Outcome::not_taken, exception->code};
+  } else if (!back.is_equal()) {
+    result.outcome = Outcome::not_taken;
+    result.written = back.written();
+    result.found = back.found();
+  }
+  settle(write, result);
+  return {};
+}
+
+Result<> Writer::make_safe() {
+  queue_.put_back(batch_.writes());
+  batch_.clear();
+  while (const auto write = queue_.take_one_of(is_safe_point_)) settle(*write, {Outcome::superseded});
+  const auto refused = write_safe_values();
+  if (!refused) {
+    safe_calls_.answer(
+        {false, fmt::format("not all outputs have their safe values: {}", to_string(refused.error()))});
+    return tl::make_unexpected(refused.error());
+  }
+  std::string text = fmt::format("{} of {} outputs have their safe values",
+                                 safe_values_.size() - refused->size(), safe_values_.size());
+  for (const auto& [point, code] : *refused)
+    text += fmt::format("; {}: {}", name(point), to_string(Error(ExceptionReply{code})));
+  sink_.on_report(refused->empty() ? Level::info : Level::error, text);
+  safe_calls_.answer({refused->empty(), text});
+  return {};
+}
+
+/// `on_reconnect: restore` brings these back, and not what was written before them.
+Result<std::vector<RefusedValue>> Writer::write_safe_values() {
+  for (const Write& write : safe_values_) values_.remember(write);
+  transport_.rank(Rank::safe);
+  auto refused = write_values(safe_values_, map_, transport_);
+  transport_.rank(Rank::write);
+  return refused;
+}
+
+void Writer::tell(const Write& write, const WriteResult& result) {
+  statistics_.wrote(result.outcome);
+  qualities_.wrote(write.point, result);
+  if (write.listener != nullptr) write.listener->on_result(result);
+}
+
+void Writer::settle(const Write& write, const WriteResult& result) {
+  queue_.settled(write.point);
+  tell(write, result);
+  if (result.outcome != Outcome::ok && result.outcome != Outcome::kept) report(write, result);
+}
+
+void Writer::report(const Write& write, const WriteResult& result) {
+  const auto line = lines_[static_cast<std::size_t>(result.outcome)].say(
+      fmt::format("write to {}: {}", name(write.point), to_string(result)), clock_.now());
+  if (line) sink_.on_report(Level::warning, *line);
+}
+
+void Writer::report_held_back() {
+  for (LineLimit& lines : lines_)
+    if (const auto line = lines.due(clock_.now())) sink_.on_report(Level::warning, *line);
+}
+
+Result<> Writer::reconnected() {
+  merges_ = true;
+  fire_deadmen();
+  std::vector<Write> values;
+  for (const auto& [point, write] : values_.all())
+    if (!queue_.is_pending(point)) values.push_back(write);
+  const auto refused = write_values(values, map_, transport_);
+  if (!refused) return tl::make_unexpected(refused.error());
+  for (const auto& [point, code] : *refused)
+    sink_.on_report(Level::warning, fmt::format("{} was not restored: {}", name(point),
+                                                to_string(Error(ExceptionReply{code}))));
+  if (!values.empty())
+    sink_.on_report(Level::info, fmt::format("{} outputs were restored", values.size() - refused->size()));
+  safe_calls_.open();
+  return {};
+}
+
+void Writer::disconnected(const Error& why) {
+  sent_.reset();
+  send_error_.reset();
+  safe_calls_.close(to_string(why));
+  std::swap(batch_, done_);
+  for (const Write& write : done_.writes()) finish_one(write, tl::make_unexpected(why));
+  done_.clear();
+  while (const auto write = queue_.take()) drop(*write);
+}
+
+void Writer::drop(const Write& write) {
+  values_.remember(write);
+  if (write.of_deadman) deadmen_.put_back(write.point);
+  const auto result = with_reason(
+      values_.are_kept() ? Outcome::kept : Outcome::dropped,
+      "not connected; with 'on_reconnect: restore' in the map it would be written when the device is there");
+  queue_.settled(write.point);
+  tell(write, result);
+  if (values_.are_kept() || dropped_++ > 0) return;
+  sink_.on_report(Level::warning, fmt::format("write to {}: {}, as all until the device is back",
+                                              name(write.point), to_string(result)));
+}
+
+bool Writer::shut_down(bool connected) {
+  if (map_.on_shutdown != OnShutdown::safe || safe_values_.empty()) return true;
+  if (!connected) {
+    sink_.on_report(Level::error, "no output could be set to its safe value: not connected");
+    return false;
+  }
+  if (sent_) finish(transport_.receive(*sent_));
+  const auto refused = write_safe_values();
+  if (!refused) {
+    sink_.on_report(Level::error,
+                    "not all outputs could be set to their safe values: " + to_string(refused.error()));
+    return false;
+  }
+  for (const auto& [point, code] : *refused)
+    sink_.on_report(Level::error, fmt::format("{} could not be set to its safe value: {}", name(point),
+                                              to_string(Error(ExceptionReply{code}))));
+  return refused->empty();
+}
+
+}  // namespace coupler::host

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/modbus/modbus_transport.hpp"
+
+#include <modbus/modbus.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/host/modbus/file_exchange.hpp"
+#include "coupler/host/modbus/open_socket.hpp"
+#include "coupler/host/modbus/raw_exchange.hpp"
+#include "coupler/host/modbus/wait_for.hpp"
+
+namespace coupler::host {
+namespace {
+
+modbus::Function function_that_reads(Table table) {
+  switch (table) {
+    case Table::coils: return modbus::Function::read_coils;
+    case Table::discrete_inputs: return modbus::Function::read_discrete_inputs;
+    case Table::input_registers: return modbus::Function::read_input_registers;
+    case Table::holding_registers: break;
+  }
+  return modbus::Function::read_holding_registers;
+}
+
+Error receive_error(int error, std::chrono::milliseconds timeout) {
+  switch (error) {
+    case ETIMEDOUT: return Timeout{timeout};
+    case EMBBADDATA: return BadFrame{"not Modbus/TCP"};  // longer than an ADU can be
+    default: return TransportFailure{modbus_strerror(error)};
+  }
+}
+
+/// libmodbus looks at the function code to find a reply's end, and at nothing else of its header.
+Result<> check_adu(Span<const std::uint8_t> adu, const modbus::Frame& request) {
+  const bool is_modbus = adu.size() > modbus::mbap_size && modbus::get_u16(&adu[2]) == 0 &&
+                         modbus::get_u16(&adu[4]) == adu.size() - modbus::mbap_size + 1;
+  if (!is_modbus) return fail(BadFrame{"not Modbus/TCP"});
+  modbus::Frame header;
+  header.transaction = modbus::get_u16(&adu[0]);
+  header.unit = adu[6];
+  return check_header(header, request);
+}
+
+Result<> result(const tl::expected<void, modbus::Refused>& taken) {
+  if (taken) return {};
+  if (taken.error().exception) return fail(ExceptionReply{*taken.error().exception});
+  return fail(BadFrame{"not the answer to what was asked"});
+}
+
+}  // namespace
+
+ModbusTransport::ModbusTransport(const Connection& connection)
+    : host_(connection.address),
+      port_(connection.port),
+      unit_(connection.unit),
+      context_(modbus_new_tcp_pi(host_.c_str(), fmt::to_string(port_).c_str()), modbus_free) {
+  modbus_set_byte_timeout(context_.get(), 0, 0);  // none: the response timeout holds for the whole reply
+  modbus_set_error_recovery(context_.get(), MODBUS_ERROR_RECOVERY_NONE);
+  select(connection.unit, connection.timeout);
+}
+
+ModbusTransport::~ModbusTransport() { ModbusTransport::close(); }
+
+Result<> ModbusTransport::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
+  unit_ = unit;
+  if (modbus_set_slave(context_.get(), unit_) != 0)
+    return fail(NotConnected{fmt::format("unit {} is reserved; Modbus has units 0 to 247 and 255", unit_)});
+  if (std::exchange(timeout_, timeout) == timeout) return {};
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout_);
+  const auto rest = std::chrono::microseconds(timeout_ - seconds);
+  modbus_set_response_timeout(context_.get(), static_cast<std::uint32_t>(seconds.count()),
+                              static_cast<std::uint32_t>(rest.count()));
+  return {};
+}
+
+Result<> ModbusTransport::connect() { return open(interrupted_); }
+
+Result<> ModbusTransport::open(const Event& interrupt) {
+  close();
+  if (auto selected = select(unit_, timeout_); !selected) return selected;
+  auto opened = open_socket(host_, port_, timeout_, interrupt);
+  if (!opened) return tl::make_unexpected(opened.error());
+  const std::lock_guard lock(socket_mutex_);
+  if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
+  socket_ = opened->release();
+  modbus_set_socket(context_.get(), socket_);
+  return {};
+}
+
+void ModbusTransport::close() {
+  const std::lock_guard lock(socket_mutex_);
+  if (socket_ < 0) return;
+  modbus_close(context_.get());
+  socket_ = -1;
+}
+
+void ModbusTransport::interrupt() {
+  interrupted_.set();
+  hang_up();
+}
+
+void ModbusTransport::hang_up() {
+  const std::lock_guard lock(socket_mutex_);
+  if (socket_ >= 0) ::shutdown(socket_, SHUT_RDWR);
+}
+
+Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
+  if (socket_ < 0) return fail(NotConnected{"not connected"});
+  if (auto sent = send_request(socket_, next_header(), request.pdu()); !sent)
+    return tl::make_unexpected(sent.error());
+  const int size = modbus_receive_confirmation(context_.get(), reply_.data());
+  if (size < 0) return tl::make_unexpected(receive_error(errno, timeout_));
+  const Span<const std::uint8_t> adu(reply_.data(), static_cast<std::size_t>(size));
+  if (auto ours = check_adu(adu, sent_); !ours) return tl::make_unexpected(ours.error());
+  return modbus::Bytes(adu.data() + modbus::mbap_size, adu.size() - modbus::mbap_size);
+}
+
+Result<> ModbusTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
+  const modbus::ReadRequest request(function_that_reads(table), range);
+  const auto reply = ask(request);
+  if (!reply) return tl::make_unexpected(reply.error());
+  return result(modbus::take_bits(request, *reply, bits));
+}
+
+Result<> ModbusTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
+  const modbus::ReadRequest request(function_that_reads(table), range);
+  const auto reply = ask(request);
+  if (!reply) return tl::make_unexpected(reply.error());
+  return result(modbus::take_registers(request, *reply, registers));
+}
+
+modbus::Frame ModbusTransport::next_header() {
+  ++sent_.transaction;
+  sent_.unit = unit_;
+  return sent_;
+}
+
+Result<> ModbusTransport::read_file_record(std::uint16_t file, std::uint16_t record,
+                                           Span<std::uint16_t> registers) {
+  if (socket_ < 0) return fail(NotConnected{"not connected"});
+  const modbus::FileRecord wanted{file, record, static_cast<std::uint16_t>(registers.size())};
+  return exchange_file_record(socket_, next_header(), timeout_, wanted, registers);
+}
+
+Result<modbus::Bytes> ModbusTransport::exchange(modbus::Bytes pdu) {
+  if (socket_ < 0) return fail(NotConnected{"not connected"});
+  const Deadline deadline(timeout_);
+  if (auto sent = send_request(socket_, next_header(), pdu); !sent) return tl::make_unexpected(sent.error());
+  modbus::Framer framer;
+  const auto reply = receive_reply(socket_, sent_, timeout_, deadline, framer);
+  if (!reply) return tl::make_unexpected(reply.error());
+  std::copy(reply->begin(), reply->end(), reply_.begin());
+  return modbus::Bytes(reply_.data(), reply->size());
+}
+
+Result<> ModbusTransport::send(const modbus::WriteRequest& request) {
+  if (socket_ < 0) return fail(NotConnected{"not connected"});
+  answer_by_ = Deadline(timeout_);
+  return send_request(socket_, next_header(), request.pdu());
+}
+
+Result<> ModbusTransport::receive(const modbus::WriteRequest& request) {
+  modbus::Framer framer;
+  const auto reply = receive_reply(socket_, sent_, timeout_, answer_by_, framer);
+  if (!reply) return tl::make_unexpected(reply.error());
+  return result(modbus::check_reply(request, *reply));
+}
+
+Transport::Woken ModbusTransport::wait_until(Time time) {
+  return wait_for(wakeup_, interrupted_, socket_, time);
+}
+
+}  // namespace coupler::host

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "coupler/host/core/transport.hpp"
+#include "coupler/host/modbus/deadline.hpp"
+#include "coupler/host/modbus/event.hpp"
+#include "coupler/host/modbus/wakeup.hpp"
+#include "coupler/map/map.hpp"
+#include "coupler/modbus/frame.hpp"
+#include "coupler/modbus/read_request.hpp"
+
+struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for its context
+
+namespace coupler::host {
+
+/// One unit of a Modbus/TCP device. libmodbus holds the connection and receives what is read. Requests are
+/// ADUs of ours, since it compares no unit id and keeps exception codes above 0B to itself, and cannot be
+/// asked to send a write and to receive the answer later, in another thread. Connecting is ours too:
+/// libmodbus's connect can be neither interrupted nor made to resolve names in the background.
+class ModbusTransport : public Transport {
+ public:
+  explicit ModbusTransport(const Connection& connection);
+  ~ModbusTransport() override;
+  ModbusTransport(const ModbusTransport&) = delete;
+  ModbusTransport& operator=(const ModbusTransport&) = delete;
+
+  Result<> connect() override;
+  void close() override;
+  void interrupt() override;
+  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
+  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
+  Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
+  Result<> send(const modbus::WriteRequest& request) override;
+  Result<> receive(const modbus::WriteRequest& request) override;
+  Woken wait_until(Time time) override;
+  void wake() override { wakeup_.call(); }
+
+  /// Any request, by PDU, for answers that libmodbus cannot receive; and the PDU that answers, an exception
+  /// or not, valid until the next request.
+  Result<modbus::Bytes> exchange(modbus::Bytes pdu);
+
+  // For a connection that several units share.
+
+  /// Whom the next requests are for, and how long their answers may take.
+  Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout);
+  /// connect() that ends when `interrupt` is set.
+  Result<> open(const Event& interrupt);
+  /// From any thread: ends the request in progress; connect() is possible again.
+  void hang_up();
+
+ private:
+  /// The PDU that answers; valid until the next request.
+  Result<modbus::Bytes> ask(const modbus::ReadRequest& request);
+  modbus::Frame next_header();
+
+  std::string host_;
+  std::uint16_t port_;
+  std::uint8_t unit_;
+  std::chrono::milliseconds timeout_{0};
+  std::unique_ptr<_modbus, void (*)(_modbus*)> context_;
+  Event interrupted_;
+  Wakeup wakeup_;
+  modbus::Frame sent_;  ///< the header of the request whose answer is awaited
+  std::array<std::uint8_t, modbus::max_adu_size> reply_{};
+  Deadline answer_by_{std::chrono::milliseconds(0)};
+  std::mutex socket_mutex_;  ///< between closing the socket and interrupt(); never held during a request
+  int socket_ = -1;
+};
+
+}  // namespace coupler::host

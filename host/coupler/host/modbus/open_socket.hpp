@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "coupler/host/core/error.hpp"
+#include "coupler/host/modbus/event.hpp"
+
+namespace coupler::host {
+
+/// A connected TCP socket without Nagle's delay, the first of the host's addresses that answers within
+/// `timeout` altogether. `interrupt` ends the attempt. Errors: NotConnected, naming host, port and cause.
+Result<Descriptor> open_socket(const std::string& host, std::uint16_t port, std::chrono::milliseconds timeout,
+                               const Event& interrupt);
+
+}  // namespace coupler::host

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/modbus/raw_exchange.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+
+namespace coupler::host {
+namespace {
+
+Result<> receive_frame(int socket, std::chrono::milliseconds timeout, const Deadline& deadline,
+                       modbus::Framer& framer) {
+  for (;;) {
+    const auto outcome = framer.next();
+    if (outcome == modbus::Framer::Outcome::frame) return {};
+    if (outcome == modbus::Framer::Outcome::bad) return fail(BadFrame{"not Modbus/TCP"});
+    pollfd wanted{socket, POLLIN, 0};
+    if (::poll(&wanted, 1, deadline.left()) == 0) return fail(Timeout{timeout});
+    const auto room = framer.room();
+    const auto got = ::recv(socket, room.data(), room.size(), 0);
+    if (got == 0) return fail(TransportFailure{"the device closed the connection"});
+    if (got > 0)
+      framer.filled(static_cast<std::size_t>(got));
+    else if (errno != EAGAIN && errno != EINTR)
+      return fail(TransportFailure{std::strerror(errno)});
+  }
+}
+
+}  // namespace
+
+Result<> check_header(const modbus::Frame& reply, const modbus::Frame& request) {
+  if (reply.transaction != request.transaction) return fail(BadFrame{"the answer to another request"});
+  if (reply.unit != request.unit)
+    return fail(
+        BadFrame{fmt::format("unit {0} answered what unit {1} was asked; if the device is unit {0}, "
+                             "set `unit: {0}`",
+                             reply.unit, request.unit)});
+  return {};
+}
+
+Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu) {
+  std::array<std::uint8_t, modbus::max_adu_size> adu{};
+  modbus::put_header(to, pdu.size(), adu.data());
+  std::copy(pdu.begin(), pdu.end(), adu.begin() + modbus::mbap_size);
+  const std::size_t size = modbus::mbap_size + pdu.size();
+  const auto sent = ::send(socket, adu.data(), size, MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (sent == static_cast<ssize_t>(size)) return {};
+  return fail(TransportFailure{sent < 0 ? std::strerror(errno) : "the request could not be sent whole"});
+}
+
+Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::chrono::milliseconds timeout,
+                                    const Deadline& deadline, modbus::Framer& framer) {
+  if (auto received = receive_frame(socket, timeout, deadline, framer); !received)
+    return tl::make_unexpected(received.error());
+  const modbus::Frame& reply = framer.frame();
+  if (auto answers = check_header(reply, to); !answers) return tl::make_unexpected(answers.error());
+  if (framer.is_partial()) return fail(BadFrame{"more than one answer"});
+  return reply.pdu;
+}
+
+}  // namespace coupler::host

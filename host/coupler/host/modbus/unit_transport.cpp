@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/modbus/unit_transport.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace coupler::host {
+namespace {
+
+tl::unexpected<Error> interrupted_error() { return fail(NotConnected{"interrupted"}); }
+tl::unexpected<Error> lost_error() {
+  return fail(TransportFailure{"the gateway has closed the connection, or cannot be reached"});
+}
+
+}  // namespace
+
+UnitTransport::UnitTransport(std::shared_ptr<SharedConnection> shared, const Connection& unit,
+                             const Limits& limits)
+    : shared_(std::move(shared)),
+      unit_(unit.unit),
+      timeout_(unit.timeout),
+      gap_(limits.request_gap),
+      delay_(limits.connect_delay) {}
+
+Result<> UnitTransport::take(Rank rank) {
+  if (std::exchange(has_turn_, false)) return {};
+  const auto give_up = [this] { return interrupted_.is_set() || is_lost(); };
+  if (shared_->turns.take(this, {rank}, Time::max(), give_up)) return {};
+  return interrupted_.is_set() ? interrupted_error() : lost_error();
+}
+
+void UnitTransport::rank(Rank rank) {
+  const Rank before = std::exchange(rank_, rank);
+  if ((before == Rank::safe) != (rank == Rank::safe)) shared_->turns.claim(this, rank == Rank::safe);
+}
+
+void UnitTransport::release() {
+  if (shared_->users == 0) {
+    shared_->transport.close();
+    shared_->open = false;
+  }
+  shared_->turns.release();
+}
+
+Result<> UnitTransport::open() {
+  shared_->transport.close();
+  const Time begun = std::chrono::steady_clock::now();
+  Result<> opened = shared_->transport.open(interrupted_);
+  shared_->open = opened.has_value();
+  shared_->opened = std::chrono::steady_clock::now();
+  // Each of the others would wait as long for nothing.
+  if (!opened && shared_->opened - begun >= timeout_) ++shared_->ended;
+  return opened;
+}
+
+Result<> UnitTransport::connect() {
+  close();
+  if (auto taken = take(Rank::read); !taken) return taken;
+  Result<> result = shared_->transport.select(unit_, timeout_);
+  if (result && !shared_->open) result = open();
+  if (result) {
+    connected_ = true;
+    ended_ = shared_->ended;
+    ++shared_->users;
+  }
+  release();
+  return result;
+}
+
+void UnitTransport::close() {
+  if (std::exchange(in_flight_, false)) {  // the answer may still come, and would be taken for another
+    shared_->transport.close();
+    shared_->open = false;
+    release();
+  }
+  if (!std::exchange(connected_, false) || --shared_->users > 0) return;
+  // Nobody waits here: a unit that is lost says so at once. If another has the turn, it connects, or closes
+  // what nobody uses.
+  if (shared_->turns.try_take(this)) release();
+}
+
+void UnitTransport::wake() {
+  woken_ = true;
+  wakeup_.call();
+  shared_->turns.look_again();
+}
+
+void UnitTransport::interrupt() {
+  interrupted_.set();
+  shared_->turns.interrupt(this, [this] { shared_->transport.hang_up(); });
+}
+
+Time UnitTransport::ready() const { return std::max(shared_->opened + delay_, shared_->answered + gap_); }
+
+/// What must be so before a request, in its turn.
+Result<> UnitTransport::prepare() {
+  if (!connected_) return fail(NotConnected{"not connected"});
+  if (is_lost()) return lost_error();
+  if (auto selected = shared_->transport.select(unit_, timeout_); !selected) return selected;
+  if (!shared_->open)
+    if (auto opened = open(); !opened) return opened;
+  Wakeup nobody;
+  wait_for(nobody, interrupted_, -1, ready());
+  if (interrupted_.is_set()) return interrupted_error();
+  return {};
+}
+
+/// The request of this turn has ended.
+Result<> UnitTransport::done(Result<> result) {
+  shared_->answered = std::chrono::steady_clock::now();
+  if (!result && exception_in(result.error()) == nullptr) {
+    shared_->transport.close();
+    shared_->open = false;
+    if (std::holds_alternative<TransportFailure>(result.error()) && !interrupted_.is_set()) ++shared_->ended;
+  }
+  release();
+  return result;
+}
+
+template <class Request>
+Result<> UnitTransport::in_turn(Request&& request) {
+  if (auto taken = take(rank_); !taken) return taken;
+  if (auto prepared = prepare(); !prepared) {
+    release();
+    return prepared;
+  }
+  return done(request(shared_->transport));
+}
+
+Result<> UnitTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
+  return in_turn([&](ModbusTransport& transport) { return transport.read_bits(table, range, bits); });
+}
+Result<> UnitTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
+  return in_turn(
+      [&](ModbusTransport& transport) { return transport.read_registers(table, range, registers); });
+}
+Result<> UnitTransport::read_file_record(std::uint16_t file, std::uint16_t record,
+                                         Span<std::uint16_t> registers) {
+  return in_turn(
+      [&](ModbusTransport& transport) { return transport.read_file_record(file, record, registers); });
+}
+
+Transport::Turn UnitTransport::await_turn(Time until, bool write_waits) {
+  if (has_turn_) return Turn::read;
+  const auto give_up = [this] { return woken_.exchange(false) || interrupted_.is_set() || is_lost(); };
+  const auto turn = write_waits ? shared_->turns.take(this, {Rank::read, Rank::write}, until, give_up)
+                                : shared_->turns.take(this, {Rank::read}, until, give_up);
+  has_turn_ = turn.has_value();
+  if (turn) return *turn == Rank::read ? Turn::read : Turn::write;
+  return interrupted_.is_set() || is_lost() ? Turn::read : Turn::none;  // it will fail, and say why
+}
+
+bool UnitTransport::reserve() {
+  if (!shared_->turns.try_take(this)) return false;
+  has_turn_ = connected_ && !is_lost() && shared_->open && std::chrono::steady_clock::now() >= ready();
+  if (!has_turn_) release();
+  return has_turn_;
+}
+
+Result<> UnitTransport::send(const modbus::WriteRequest& request) {
+  const bool reserved = has_turn_;
+  if (auto taken = take(Rank::write); !taken) return taken;
+  if (auto prepared = prepare(); !prepared) {
+    release();
+    return prepared;
+  }
+  if (auto sent = shared_->transport.send(request); !sent) return done(sent);
+  in_flight_ = true;
+  if (reserved) wake();  // nobody watches a shared socket: the owner goes to receive()
+  return {};
+}
+
+Result<> UnitTransport::receive(const modbus::WriteRequest& request) {
+  in_flight_ = false;
+  return done(shared_->transport.receive(request));
+}
+
+}  // namespace coupler::host

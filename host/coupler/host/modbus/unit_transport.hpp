@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/turns.hpp"
+#include "coupler/host/modbus/wait_for.hpp"
+#include "coupler/map/map.hpp"
+
+namespace coupler::host {
+
+/// One connection to a gateway. Who has the turn may use what is not atomic.
+struct SharedConnection {
+  explicit SharedConnection(const Connection& gateway) : transport(gateway) {}
+
+  Turns turns;
+  ModbusTransport transport;
+  bool open = false;
+  std::atomic<int> users{0};            ///< units that are connected
+  std::atomic<std::uint64_t> ended{0};  ///< how often the gateway has ended it, or could not be reached
+  Time opened{};
+  Time answered{};  ///< the last request
+};
+
+/// One of several units behind a gateway that share a connection, request by request in turn:
+/// writes first, also those of a unit whose own read still waits for its turn.
+///
+/// A unit that stays silent closes the connection, since its answer may still come; the others open it again
+/// and notice nothing. Where the gateway has ended it, all units have lost it: what is behind may have
+/// changed.
+class UnitTransport : public Transport {
+ public:
+  UnitTransport(std::shared_ptr<SharedConnection> shared, const Connection& unit, const Limits& limits);
+  ~UnitTransport() override { UnitTransport::close(); }
+  UnitTransport(const UnitTransport&) = delete;
+  UnitTransport& operator=(const UnitTransport&) = delete;
+
+  Result<> connect() override;
+  void close() override;
+  void interrupt() override;
+  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
+  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
+  Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
+  void rank(Rank rank) override;
+  Turn await_turn(Time until, bool write_waits = false) override;
+  bool reserve() override;
+  Result<> send(const modbus::WriteRequest& request) override;
+  Result<> receive(const modbus::WriteRequest& request) override;
+  Woken wait_until(Time time) override { return wait_for(wakeup_, interrupted_, -1, time); }
+  void wake() override;
+
+ private:
+  Result<> take(Rank rank);
+  void release();
+  bool is_lost() const { return connected_ && ended_ != shared_->ended; }
+  template <class Request>
+  Result<> in_turn(Request&& request);
+  Result<> prepare();
+  Result<> open();
+  Time ready() const;
+  Result<> done(Result<> result);
+
+  std::shared_ptr<SharedConnection> shared_;
+  std::uint8_t unit_;
+  std::chrono::milliseconds timeout_;
+  Duration gap_;
+  Duration delay_;
+  Event interrupted_;
+  Wakeup wakeup_;
+  std::atomic<bool> woken_{false};  ///< since await_turn() last returned for it
+  Rank rank_ = Rank::read;
+  bool connected_ = false;
+  std::uint64_t ended_ = 0;  ///< SharedConnection::ended when it connected
+  bool has_turn_ = false;    ///< for the request that follows
+  bool in_flight_ = false;   ///< it has the turn until receive()
+};
+
+}  // namespace coupler::host

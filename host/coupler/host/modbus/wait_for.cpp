@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/modbus/wait_for.hpp"
+
+#include <poll.h>
+
+#include <array>
+
+namespace coupler::host {
+
+Transport::Woken wait_for(Wakeup& wakeup, const Event& interrupted, int socket, Time time) {
+  using Woken = Transport::Woken;
+  const Time now = std::chrono::steady_clock::now();
+  if (time <= now) return Woken::by_time;
+  const Duration left = time - now;
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
+  const timespec wait{seconds.count(), (left - seconds).count()};
+  std::array<pollfd, 3> wanted{
+      {{wakeup.fd(), POLLIN, 0}, {interrupted.fd(), POLLIN, 0}, {socket, POLLIN, 0}}};
+  ::ppoll(wanted.data(), wanted.size(), &wait, nullptr);
+  if (wanted[0].revents != 0) wakeup.clear();
+  if (wanted[2].revents != 0) return Woken::by_bytes;
+  return wanted[0].revents != 0 || wanted[1].revents != 0 ? Woken::by_call : Woken::by_time;
+}
+
+}  // namespace coupler::host

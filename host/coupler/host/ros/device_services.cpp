@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/ros/device_services.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/codec/number.hpp"
+#include "coupler/host/core/health.hpp"
+#include "coupler/host/core/value_text.hpp"
+#include "coupler/plan/planner.hpp"
+
+namespace coupler::host {
+namespace {
+
+using Outcome = WriteResult::Outcome;
+
+bool is_bit(const Point& point) { return point.format.type == codec::Type::BOOL && point.count == 1; }
+
+/// A value that is read at all comes within this.
+Duration patience(const Map& map, const Point& point) {
+  const std::chrono::duration<double> cycles(2 / plan::rate_of(map, point));
+  return std::chrono::duration_cast<Duration>(cycles) + 2 * map.connection.timeout;
+}
+
+}  // namespace
+
+void DeviceServices::offer(Node& node, Driver driver) {
+  driver_ = std::move(driver);
+  calls_ = node.make_service_thread();
+  urgent_calls_ = node.make_service_thread();
+  const auto name = [this](std::string_view service) { return fmt::format("{}/{}", map_.name, service); };
+  calls_->offer_write(name("write"), [this](const std::string& point, const std::string& value) {
+    return answer_write(point, value);
+  });
+  calls_->offer_read(name("read"), [this](const std::string& point) { return answer_read(point); });
+  if (map_.coupler_watchdog.present())
+    calls_->offer_trigger(name("reset_watchdog"), [this] { return answer_call(&Driver::reset); });
+  urgent_calls_->offer_trigger(name("safe"), [this] { return answer_call(&Driver::make_safe); });
+  for (std::uint32_t i = 0; i < map_.points.size(); ++i)
+    if (is_writable(map_.points[i]) && is_bit(map_.points[i]))
+      calls_->offer_set(name(fmt::format("{}/set", map_.points[i].name)),
+                        [this, i](bool on) { return answer_set(i, on); });
+  calls_->start();
+  urgent_calls_->start();
+}
+
+void DeviceServices::withdraw() {
+  for (ServiceThread* thread : {calls_.get(), urgent_calls_.get()})
+    if (thread != nullptr) thread->end();
+  next_value_.end();
+  const std::lock_guard lock(mutex_);
+  driver_.reset();
+}
+
+DeviceServices::~DeviceServices() { withdraw(); }
+
+const Point* DeviceServices::find_point(const std::string& name, std::string& message) const {
+  const Point* point = find(map_, name);
+  if (point == nullptr) message = fmt::format("there is no point '{}' in the map of {}", name, map_.name);
+  return point;
+}
+
+WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::uint16_t> value) {
+  WriteTicket ticket;
+  Write write = make_write(map_, index, value);
+  write.listener = &ticket;
+  write.ordered = true;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!driver_) return {Outcome::dropped, {}, "dropped: the driver ends"};
+    driver_->writes.accept(write);
+  }
+  return ticket.wait();
+}
+
+WriteTicket::Outcome DeviceServices::refuse(const std::string& name, const Point* point,
+                                            const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  if (driver_)
+    driver_->writes.refuse(point != nullptr ? std::optional(index_of(*point)) : std::nullopt,
+                           fmt::format("{} by the service {}/write: {}", name, map_.name, why));
+  return {Outcome::refused, {}, "refused: " + why};
+}
+
+WriteTicket::Outcome DeviceServices::answer_write(const std::string& name, const std::string& text) {
+  std::string why;
+  const Point* point = find_point(name, why);
+  std::vector<std::uint16_t> value;
+  if (point != nullptr && !is_writable(*point)) why = fmt::format("{} cannot be written", point->name);
+  if (why.empty()) {
+    value.resize(range(*point).count());
+    if (const auto parsed = parse_value(text, *point, value.data()); !parsed) why = parsed.error();
+  }
+  if (!why.empty()) return refuse(name, point, why);
+  return write(index_of(*point), value);
+}
+
+Calls::Answer DeviceServices::answer_set(std::uint32_t index, bool on) {
+  const Point& point = map_.points[index];
+  const std::uint16_t value =
+      holds_bits(point.table) ? std::uint16_t{on} : codec::encode_part(on ? 1 : 0, point.format);
+  const auto outcome = write(index, {&value, 1});
+  return {outcome.outcome == Outcome::ok, outcome.text};
+}
+
+Calls::Answer DeviceServices::answer_call(std::function<std::future<Calls::Answer>()> Driver::*call) {
+  std::future<Calls::Answer> asked;
+  {
+    const std::lock_guard lock(mutex_);
+    if (driver_) asked = ((*driver_).*call)();
+  }
+  return asked.valid() ? asked.get() : Calls::Answer{false, "the driver ends"};
+}
+
+ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
+  ServiceThread::ReadAnswer answer;
+  const Point* point = find_point(name, answer.message);
+  if (point == nullptr) return answer;
+  if (plan::why_not_read(map_, *point)) {
+    answer.message = fmt::format("{} is never read", point->name);
+    return answer;
+  }
+  const std::uint32_t index = index_of(*point);
+  const auto deadline = std::chrono::steady_clock::now() + patience(map_, *point);
+  listeners_.came(index);
+  const auto value = next_value_.wait(index, deadline);
+  listeners_.left(index);
+  answer.success = value.has_value();
+  if (value)
+    answer.value = format_value(value->data(), *point);
+  else
+    answer.message = why_no_value(*point);
+  return answer;
+}
+
+std::string DeviceServices::why_no_value(const Point& point) {
+  const std::lock_guard lock(mutex_);
+  const DeviceSnapshot device = driver_ ? driver_->statistics() : DeviceSnapshot{};
+  if (driver_ && !device.online)
+    return fmt::format("no value of {}: the device is {}", point.name, connection_health(device).text);
+  return fmt::format("no value of {} came; {}/status says why", point.name, map_.name);
+}
+
+}  // namespace coupler::host

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/ros/options.hpp"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/base/version.hpp"
+#include "coupler/command_line/command_line.hpp"
+
+namespace coupler::host {
+namespace {
+
+constexpr const char* description =
+    "Drives a Modbus/TCP coupler: every point of its map becomes a ROS topic <name>/<point>, every writable "
+    "one also\n"
+    "listens to <name>/<point>/write.";
+
+std::string option_names(const SettingKey& key) {
+  return key.alias.empty() ? fmt::format("--{}", key.key) : fmt::format("--{},--{}", key.key, key.alias);
+}
+
+}  // namespace
+
+Options parse_options(std::vector<std::string> arguments, const Dialect& dialect) {
+  Options result;
+  command_line::Program app(description, "coupler_driver");
+  app.version(fmt::format("coupler_driver {}", version));
+  app.footer(std::string(dialect.help));
+  std::array<std::string, setting_keys.size()> texts;
+  std::vector<command_line::Option> options;
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    options.push_back(
+        app.add_option(option_names(setting_keys[i]), texts[i], std::string(setting_keys[i].help)));
+  result.exit_code = app.parse(std::move(arguments), result.text);
+  if (result.exit_code) return result;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (!options[i].given()) continue;
+    if (const auto done = set(result.settings, setting_keys[i].key, texts[i]); !done) {
+      result.exit_code = 2;
+      result.text += done.error() + "\n";
+    }
+  }
+  return result;
+}
+
+}  // namespace coupler::host

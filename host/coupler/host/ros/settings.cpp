@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/ros/settings.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "coupler/base/enumeration.hpp"
+#include "coupler/map/host.hpp"
+#include "coupler/map/loader/names.hpp"
+#include "coupler/map/loader/nearest.hpp"
+
+namespace coupler::host {
+namespace {
+
+using Outcome = tl::expected<void, std::string>;
+using Kind = SettingKey::Kind;
+
+tl::unexpected<std::string> wrong(std::string_view key, const std::string& text, std::string_view expected) {
+  return tl::make_unexpected(fmt::format("{}: '{}' is not {}", key, text, expected));
+}
+
+std::optional<double> number(const std::string& text) {
+  char* end = nullptr;
+  errno = 0;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || errno != 0 || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// A number as the key's range has it.
+template <class T>
+Outcome set_number(std::optional<T>& field, const SettingKey& key, const std::string& text) {
+  const auto value = number(text);
+  const bool is_whole = key.kind == SettingKey::Kind::whole;
+  if (!value || *value < key.min || *value > key.max || (is_whole && *value != std::floor(*value)))
+    return wrong(key.key, text,
+                 fmt::format("a {} from {} to {}{}", is_whole ? "whole number" : "number", key.min, key.max,
+                             key.unit));
+  field = static_cast<T>(*value);
+  return {};
+}
+
+Outcome set_timeout(Settings& settings, const SettingKey& key, const std::string& text) {
+  std::optional<double> seconds;
+  if (auto done = set_number(seconds, key, text); !done) return done;
+  settings.timeout = std::chrono::milliseconds(std::lround(*seconds * 1000));
+  return {};
+}
+
+Outcome set_verify(Settings& settings, const std::string& text) {
+  // ROS reads "off" as a boolean where a parameter comes from YAML.
+  settings.verify = parse_word<Verify>(text == "false" ? "off" : text);
+  return settings.verify ? Outcome{} : wrong("verify", text, "require, warn or off");
+}
+
+Outcome set_poll(Settings& settings, const std::string& text) {
+  settings.poll = parse_word<Poll>(text);
+  return settings.poll ? Outcome{} : wrong("poll", text, "all or subscribed");
+}
+
+Outcome set_text(std::optional<std::string>& field, std::string_view key, const std::string& text) {
+  if (text.empty()) return wrong(key, text, "a text; leave it out if there is nothing to say");
+  field = text;
+  return {};
+}
+
+Outcome set_address(Settings& settings, const std::string& text) {
+  const auto host = parse_host(text);
+  if (!host)
+    return tl::make_unexpected(
+        fmt::format("address: '{}' {}; {}", text, host.error().what, host.error().remedy));
+  settings.address = std::string(*host);
+  return {};
+}
+
+Outcome set_name(Settings& settings, const std::string& text) {
+  if (!loader::is_relative_ros_name(text))
+    return wrong("name", text, "a name in ROS: a letter, then letters, digits, '_' and '/'");
+  settings.name = text;
+  return {};
+}
+
+std::string_view without(std::string_view text, std::string_view front, std::string_view back) {
+  const std::size_t from = text.find_first_not_of(front);
+  if (from == std::string_view::npos) return {};
+  return text.substr(from, text.find_last_not_of(back) - from + 1);
+}
+
+/// "a.yaml,b.yaml", also as YAML has it: [a.yaml, "b.yaml"].
+Outcome set_list(std::vector<std::string>& field, std::string_view key, const std::string& text) {
+  std::string_view rest = without(text, " [", " ]");
+  field.clear();
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    const std::string_view item = without(rest.substr(0, comma), " '\"", " '\"");
+    if (!item.empty()) field.emplace_back(item);
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  if (field.empty()) return wrong(key, text, "a list of paths, as in [a.yaml,b.yaml]");
+  return {};
+}
+
+template <class T>
+void prefer(std::optional<T>& field, const std::optional<T>& strong) {
+  if (strong) field = strong;
+}
+
+}  // namespace
+
+const std::array<SettingKey, 10> setting_keys{{
+    {"map", "mapping", Kind::text, 0, 0, "",
+     "the device's map: a YAML or JSON file, or tcp://HOST[:PORT][/UNIT] of a node"},
+    {"maps", "", Kind::list, 0, 0, "",
+     "several devices in one process: their maps, as in --maps a.yaml,b.yaml; with names of their own, as in "
+     "--maps left=io.yaml,right=io.yaml"},
+    {"name", "", Kind::text, 0, 0, "", "namespace of the topics, instead of the map's"},
+    {"address", "", Kind::text, 0, 0, "",
+     "host name or IP address; alone, without a map: a node that serves its own"},
+    {"port", "", Kind::whole, 1, 65535, "", "TCP port, 502 if the map says nothing"},
+    {"unit", "", Kind::whole, 0, 255, "", "unit id"},
+    {"rate", "", Kind::real, 0.001, 10000, " Hz", "polling rate in Hz"},
+    {"timeout", "", Kind::real, 0.001, 3600, " s", "longest wait for a reply, in seconds"},
+    {"verify", "", Kind::text, 0, 0, "",
+     "if the node's map differs: require (default: do not talk to it), warn (go on) or off (do not ask)"},
+    {"poll", "", Kind::text, 0, 0, "",
+     "which points are read: all (default), or subscribed: those that somebody listens to; instead of the "
+     "map's"},
+}};
+
+Outcome set(Settings& settings, std::string_view name, const std::string& text) {
+  const auto* const found = std::find_if(setting_keys.begin(), setting_keys.end(),
+                                         [&](const SettingKey& one) { return one.key == name; });
+  if (found == setting_keys.end())
+    return tl::make_unexpected(fmt::format("{}: {}", name, no_such_setting(name)));
+  const SettingKey& setting = *found;
+  const std::string_view key = setting.key;
+  if (key == "map") return set_text(settings.map, key, text);
+  if (key == "maps") return set_list(settings.maps, key, text);
+  if (key == "name") return set_name(settings, text);
+  if (key == "address") return set_address(settings, text);
+  if (key == "port") return set_number(settings.port, setting, text);
+  if (key == "unit") return set_number(settings.unit, setting, text);
+  if (key == "rate") return set_number(settings.rate, setting, text);
+  if (key == "timeout") return set_timeout(settings, setting, text);
+  if (key == "verify") return set_verify(settings, text);
+  return set_poll(settings, text);
+}
+
+std::optional<std::string> text_of(const Settings& settings, std::string_view key) {
+  const auto number = [](const auto& field) {
+    return field ? std::optional(fmt::to_string(*field)) : std::nullopt;
+  };
+  const auto word = [](const auto& field) {
+    return field ? std::optional(std::string(coupler::to_string(*field))) : std::nullopt;
+  };
+  if (key == "map") return settings.map;
+  if (key == "maps" && !settings.maps.empty()) return fmt::format("{}", fmt::join(settings.maps, ","));
+  if (key == "name") return settings.name;
+  if (key == "address") return settings.address;
+  if (key == "port") return number(settings.port);
+  if (key == "unit") return number(settings.unit);
+  if (key == "rate") return number(settings.rate);
+  if (key == "timeout" && settings.timeout)
+    return fmt::to_string(std::chrono::duration<double>(*settings.timeout).count());
+  if (key == "verify") return word(settings.verify);
+  if (key == "poll") return word(settings.poll);
+  return std::nullopt;
+}
+
+std::vector<std::string_view> setting_names() {
+  std::vector<std::string_view> names;
+  for (const SettingKey& key : setting_keys) {
+    names.push_back(key.key);
+    if (!key.alias.empty()) names.push_back(key.alias);
+  }
+  return names;
+}
+
+bool is_setting(std::string_view name) {
+  const auto names = setting_names();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string no_such_setting(std::string_view name) {
+  return "there is no such setting; " +
+         loader::nearest_or(name, setting_names(), "coupler_driver --help shows them");
+}
+
+Settings overlay(Settings weak, const Settings& strong) {
+  if (strong.map || !strong.maps.empty()) {
+    weak.map = strong.map;
+    weak.maps = strong.maps;
+  }
+  prefer(weak.name, strong.name);
+  prefer(weak.address, strong.address);
+  prefer(weak.port, strong.port);
+  prefer(weak.unit, strong.unit);
+  prefer(weak.rate, strong.rate);
+  prefer(weak.timeout, strong.timeout);
+  prefer(weak.verify, strong.verify);
+  prefer(weak.poll, strong.poll);
+  return weak;
+}
+
+Settings with_map(Settings settings, const Map& map) {
+  settings.name = std::string(map.name);
+  settings.address = std::string(map.connection.address);
+  settings.port = map.connection.port;
+  settings.unit = map.connection.unit;
+  settings.timeout = map.connection.timeout;
+  settings.rate = map.polling.rate;
+  settings.verify = settings.verify.value_or(Verify::require);
+  settings.poll = map.poll;
+  return settings;
+}
+
+void apply(const Settings& settings, Map& map) {
+  if (settings.name) map.name = *settings.name;
+  if (settings.address) map.connection.address = *settings.address;
+  if (settings.port) map.connection.port = *settings.port;
+  if (settings.unit) map.connection.unit = *settings.unit;
+  if (settings.timeout) map.connection.timeout = *settings.timeout;
+  if (settings.rate) map.polling.rate = *settings.rate;
+  if (settings.poll) map.poll = *settings.poll;
+}
+
+}  // namespace coupler::host

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coupler/host/core/device_statistics.hpp"
+#include "coupler/host/core/health.hpp"
+#include "coupler/host/core/point_quality.hpp"
+#include "coupler/map/map.hpp"
+
+namespace coupler::host {
+
+/// The status is published at least as often.
+constexpr auto status_interval = std::chrono::seconds(1);
+
+/// The message of `<name>/status`, coupler_driver/Status of either ROS: what is to be published, and when.
+template <class Message>
+class Status {
+ public:
+  explicit Status(const Map& map) {
+    message_.points.resize(map.points.size());
+    for (std::size_t i = 0; i < map.points.size(); ++i) {
+      message_.points[i].name = std::string(map.points[i].name);
+      message_.points[i].quality = 0xFF;  // news whatever it is
+    }
+  }
+
+  /// True if the message is to be published now: a quality, the identity or `online` is not what it was, or a
+  /// second has passed. Its stamp is left to the caller.
+  bool update(const DeviceSnapshot& device, const std::vector<PointQuality>& points, Time now) {
+    if (!fill(device, points, now) && published_ != Time::min() && now - published_ < status_interval)
+      return false;
+    published_ = now;
+    return true;
+  }
+  Message& message() { return message_; }
+
+ private:
+  using Points = decltype(std::declval<Message>().points);
+  using PointStatus = typename Points::value_type;
+  using State = PointQuality::State;
+  using Outcome = WriteResult::Outcome;
+
+  template <class T, class U>
+  static bool assign(T& field, const U& value) {
+    if (field == value) return false;
+    field = static_cast<T>(value);
+    return true;
+  }
+
+  static std::string in_words(const PointQuality& quality) {
+    std::string text(to_string(quality.state));
+    if (quality.last_exception) text += "; last " + to_string(Error(ExceptionReply{*quality.last_exception}));
+    return text;
+  }
+
+  static std::uint8_t number_of(const std::optional<Outcome>& outcome) {
+    return outcome ? outcome_number(*outcome) : std::uint8_t{PointStatus::NOT_WRITTEN};
+  }
+
+  bool fill(const DeviceSnapshot& device, const std::vector<PointQuality>& points, Time now) {
+    check_numbers();
+    bool news = assign(message_.online, device.online);
+    news |= assign(message_.identity, to_string(device.identity));
+    news |= assign(message_.trouble, device.online ? std::string() : device.trouble);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      PointStatus& status = message_.points[i];
+      const PointQuality& quality = points[i];
+      const auto code = static_cast<std::uint8_t>(quality.last_exception.value_or(modbus::Exception{}));
+      status.age = quality.last_good ? std::chrono::duration<double>(now - *quality.last_good).count() : -1;
+      news |= assign(status.write_outcome, number_of(quality.last_write));
+      news |= assign(status.write_text, quality.last_write_text);
+      const bool other = assign(status.quality, static_cast<std::uint8_t>(quality.state));
+      if (!(assign(status.exception, code) || other)) continue;
+      status.text = in_words(quality);
+      news = true;
+    }
+    return news;
+  }
+
+  static constexpr void check_numbers() {
+    static_assert(static_cast<int>(State::good) == PointStatus::GOOD &&
+                  static_cast<int>(State::stale) == PointStatus::STALE &&
+                  static_cast<int>(State::never_read) == PointStatus::NEVER_READ &&
+                  static_cast<int>(State::exception) == PointStatus::EXCEPTION &&
+                  static_cast<int>(State::rejected) == PointStatus::REJECTED &&
+                  static_cast<int>(State::offline) == PointStatus::OFFLINE &&
+                  static_cast<int>(State::not_wanted) == PointStatus::NOT_WANTED);
+    static_assert(outcome_number(Outcome::ok) == PointStatus::WRITE_OK &&
+                  outcome_number(Outcome::superseded) == PointStatus::WRITE_SUPERSEDED &&
+                  outcome_number(Outcome::exception) == PointStatus::WRITE_EXCEPTION &&
+                  outcome_number(Outcome::not_taken) == PointStatus::WRITE_NOT_TAKEN &&
+                  outcome_number(Outcome::lost) == PointStatus::WRITE_LOST &&
+                  outcome_number(Outcome::dropped) == PointStatus::WRITE_DROPPED &&
+                  outcome_number(Outcome::kept) == PointStatus::WRITE_KEPT &&
+                  outcome_number(Outcome::refused) == PointStatus::WRITE_REFUSED);
+  }
+
+  Message message_;
+  Time published_ = Time::min();
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/ros1/arguments.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coupler/base/starts_with.hpp"
+#include "coupler/host/ros/program.hpp"
+
+namespace coupler::host {
+namespace {
+
+constexpr const char* help =
+    "Each option is also a private parameter (~rate) and, as ROS has it, an argument (_rate:=20).\n"
+    "What is said of one device of several has the name in its map before it: _NAME/rate:=20, ~NAME/rate.\n"
+    "Precedence: map < parameter < argument, what is said of one device over what is said of all.\n\n"
+    "Examples:\n"
+    "  coupler_driver _map:=device.yaml\n"
+    "  coupler_driver --map device.yaml --address 192.168.10.101 --rate 50\n"
+    "  coupler_driver _address:=raspberrypi        (a node that serves its map)\n"
+    "  coupler_driver _maps:=[press.yaml,belt.yaml] _belt/address:=192.168.10.102\n"
+    "  rostopic echo /device/in_A\n"
+    "  rostopic pub -1 /device/out_Z/write std_msgs/Bool true";
+
+/// What was given in ROS's spelling, `_key:=VALUE`.
+struct Assignment {
+  std::string_view device;  ///< of `_device/key:=VALUE`
+  std::string_view key;
+  std::string_view value;
+};
+
+/// What the arguments are.
+struct Sorted {
+  std::vector<std::string> options;  ///< as `--key VALUE` or `--key=VALUE`
+  std::vector<Assignment> of_devices;
+  std::vector<std::string_view> unknown;  ///< `_key:=VALUE` of no setting
+  std::vector<char*> for_ros;
+  bool names_the_node = false;
+};
+
+/// ROS's own are left out.
+Sorted sorted(Span<char* const> arguments) {
+  Sorted result;
+  result.for_ros.push_back(arguments[0]);
+  for (char* const raw : arguments.from(1)) {
+    const std::string_view argument(raw);
+    result.for_ros.push_back(raw);
+    const std::size_t assign = argument.find(":=");
+    if (assign == std::string_view::npos) {
+      result.options.emplace_back(argument);
+    } else if (argument[0] == '_' && !starts_with(argument, "__")) {
+      const std::string_view name = argument.substr(1, assign - 1);
+      const std::string_view value = argument.substr(assign + 2);
+      const std::size_t slash = name.rfind('/');
+      if (slash == std::string_view::npos && !is_setting(name)) {
+        result.unknown.push_back(argument);
+      } else if (slash == std::string_view::npos) {
+        result.options.push_back(fmt::format("--{}={}", name, value));
+      } else {
+        result.of_devices.push_back({name.substr(0, slash), name.substr(slash + 1), value});
+        result.for_ros.pop_back();
+      }
+    } else if (starts_with(argument, "__name:=")) {
+      result.names_the_node = true;
+    }
+  }
+  return result;
+}
+
+tl::expected<void, std::string> set_of_device(Settings& settings, const Assignment& given) {
+  if (given.key == "map" || given.key == "maps")
+    return tl::make_unexpected(
+        fmt::format("_{}/{}: the maps are given as in _maps:=[a.yaml,b.yaml]", given.device, given.key));
+  if (const auto done = set(settings, given.key, std::string(given.value)); !done)
+    return tl::make_unexpected(fmt::format("_{}/{}", given.device, done.error()));
+  return {};
+}
+
+}  // namespace
+
+const Dialect ros1_dialect{
+    help,
+    "as in _NAME/address:=HOST (NAME being the map's name), or as a parameter ~NAME/address",
+    "roslaunch starts programs there (in ROS_HOME): give the whole path, as in map:=$PWD/{path} or $(find "
+    "PACKAGE)/{path}",
+};
+
+Arguments parse_arguments(Span<char* const> arguments) {
+  Sorted given = sorted(arguments);
+  Arguments result{parse_options(std::move(given.options), ros1_dialect), {}, {}, false};
+  result.names_the_node = given.names_the_node;
+  result.for_ros = std::move(given.for_ros);
+  if (result.exit_code == 0) return result;
+  const auto refuse = [&](const std::string& why) {
+    result.exit_code = wrong_call;
+    result.text += why + "\n";
+  };
+  for (const std::string_view one : given.unknown)
+    refuse(fmt::format("{}: {}", one, no_such_setting(one.substr(1, one.find(":=") - 1))));
+  for (const Assignment& one : given.of_devices)
+    if (const auto done = set_of_device(result.of_devices[std::string(one.device)], one); !done)
+      refuse(done.error());
+  return result;
+}
+
+}  // namespace coupler::host

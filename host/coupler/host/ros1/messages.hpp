@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <coupler_driver/BoolArray.h>
+#include <std_msgs/Bool.h>
+#include <std_msgs/Char.h>
+#include <std_msgs/Float32.h>
+#include <std_msgs/Float32MultiArray.h>
+#include <std_msgs/Float64.h>
+#include <std_msgs/Float64MultiArray.h>
+#include <std_msgs/Int16.h>
+#include <std_msgs/Int16MultiArray.h>
+#include <std_msgs/Int32.h>
+#include <std_msgs/Int32MultiArray.h>
+#include <std_msgs/Int64.h>
+#include <std_msgs/Int64MultiArray.h>
+#include <std_msgs/Int8.h>
+#include <std_msgs/String.h>
+#include <std_msgs/UInt16.h>
+#include <std_msgs/UInt16MultiArray.h>
+#include <std_msgs/UInt32.h>
+#include <std_msgs/UInt32MultiArray.h>
+#include <std_msgs/UInt64.h>
+#include <std_msgs/UInt64MultiArray.h>
+#include <std_msgs/UInt8.h>
+
+#include "coupler/host/ros/message.hpp"
+
+namespace coupler::host {
+
+/// The message types of ROS 1, for with_message().
+struct Ros1Messages {
+  using Bool = std_msgs::Bool;
+  using BoolArray = coupler_driver::BoolArray;
+  using Char = std_msgs::Char;
+  using Float32 = std_msgs::Float32;
+  using Float32MultiArray = std_msgs::Float32MultiArray;
+  using Float64 = std_msgs::Float64;
+  using Float64MultiArray = std_msgs::Float64MultiArray;
+  using Int16 = std_msgs::Int16;
+  using Int16MultiArray = std_msgs::Int16MultiArray;
+  using Int32 = std_msgs::Int32;
+  using Int32MultiArray = std_msgs::Int32MultiArray;
+  using Int64 = std_msgs::Int64;
+  using Int64MultiArray = std_msgs::Int64MultiArray;
+  using Int8 = std_msgs::Int8;
+  using String = std_msgs::String;
+  using UInt16 = std_msgs::UInt16;
+  using UInt16MultiArray = std_msgs::UInt16MultiArray;
+  using UInt32 = std_msgs::UInt32;
+  using UInt32MultiArray = std_msgs::UInt32MultiArray;
+  using UInt64 = std_msgs::UInt64;
+  using UInt64MultiArray = std_msgs::UInt64MultiArray;
+  using UInt8 = std_msgs::UInt8;
+};
+
+}  // namespace coupler::host

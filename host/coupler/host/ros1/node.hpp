@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
+
+#include <memory>
+#include <optional>
+
+#include "coupler/host/ros/node.hpp"
+#include "coupler/host/ros1/master_watch.hpp"
+
+namespace coupler::host {
+
+/// The node of this program in ROS 1, once ros::start() has been called.
+class Ros1Node : public Node {
+ public:
+  Ros1Node();
+
+  std::unique_ptr<PointPublisher> advertise(const std::string& topic, const Point& point, std::uint32_t index,
+                                            Listeners& listeners) override;
+  std::shared_ptr<void> subscribe(const std::string& topic, const Map& map, std::uint32_t index,
+                                  const WriteHandler& handler) override;
+  std::function<void(bool)> advertise_online(const std::string& topic) override;
+  PublishStatus advertise_status(const std::string& topic, const Map& map) override;
+  std::unique_ptr<ServiceThread> make_service_thread() override;
+  void add_diagnosis(const std::string& name, std::function<Diagnosis()> tell) override;
+  void publish_diagnostics() override { diagnostics_.force_update(); }
+  void begin() override { master_.emplace(*this); }
+  bool is_running() const override { return ros::ok(); }
+  void shut_down() override;
+
+  void log(Level level, const std::string& text) override;
+  bool shows_debug() const override;
+  void log_debug(const std::string& text) override;
+
+ private:
+  ros::NodeHandle handle_;
+  ros::ServiceServer loggers_;
+  diagnostic_updater::Updater diagnostics_;
+  std::optional<MasterWatch> master_;
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/ros2/arguments.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/base/starts_with.hpp"
+#include "coupler/host/ros/program.hpp"
+
+namespace coupler::host {
+namespace {
+
+constexpr std::string_view help =
+    "Each option is also a parameter of the node (rate), as ROS has it: --ros-args -p rate:=20, "
+    "--params-file "
+    "FILE.\n"
+    "What is said of one device of several is a parameter with the name in its map before it: NAME.rate.\n"
+    "Precedence: map < parameter < option, what is said of one device over what is said of all.\n"
+    "Behind --ros-args: -r (names), --log-level, --enclave and what else ROS 2 takes.\n\n"
+    "Examples:\n"
+    "  coupler_driver --map device.yaml\n"
+    "  coupler_driver --map device.yaml --address 192.168.10.101 --rate 50\n"
+    "  coupler_driver --address raspberrypi        (a node that serves its map)\n"
+    "  ros2 run coupler_driver coupler_driver --ros-args -p map:=$PWD/device.yaml -r __ns:=/cell\n"
+    "  coupler_driver --maps press.yaml,belt.yaml --ros-args -p belt.address:=192.168.10.102\n"
+    "  ros2 topic echo /device/in_A\n"
+    "  ros2 topic pub -1 /device/out_Z/write std_msgs/msg/Bool '{data: true}'";
+
+/// How ROS 2 spells an assignment of ROS 1, `from:=to`.
+std::string in_ros2(std::string_view assignment) {
+  if (starts_with(assignment, "__name:=")) return fmt::format("-r __node:={}", assignment.substr(8));
+  if (starts_with(assignment, "__")) return fmt::format("-r {}", assignment);
+  if (!starts_with(assignment, "_")) return fmt::format("-r {}", assignment);
+  std::string parameter(assignment.substr(1));
+  const std::size_t assign = parameter.find(":=");
+  const std::size_t slash = parameter.rfind('/', assign);
+  if (slash != std::string::npos) parameter[slash] = '.';
+  return "-p " + parameter;
+}
+
+bool is_ROSs_own(std::string_view argument) {
+  return argument == "-p" || argument == "--param" || argument == "-r" || argument == "--remap" ||
+         argument == "--params-file" || argument == "--log-level";
+}
+
+bool is_ROS1s(std::string_view argument) {
+  return argument.find(":=") != std::string_view::npos && !starts_with(argument, "-");
+}
+
+}  // namespace
+
+const Dialect ros2_dialect{
+    help,
+    "as a parameter, as in --ros-args -p NAME.address:=HOST (NAME being the map's name)",
+    "give the whole path, as in map:=$PWD/{path}",
+};
+
+Arguments parse_arguments(Span<char* const> arguments) {
+  Arguments result;
+  std::vector<std::string> options;
+  result.for_ros.emplace_back(arguments[0]);
+  bool is_for_ros = false;
+  std::string wrong;
+  bool follows_misplaced = false;
+  for (const char* const raw : arguments.from(1)) {
+    const std::string_view argument(raw);
+    if (std::exchange(follows_misplaced, false)) continue;
+    if (argument == "--ros-args") {
+      is_for_ros = true;
+      result.for_ros.emplace_back(argument);
+    } else if (is_for_ros) {
+      is_for_ros = argument != "--";
+      result.for_ros.emplace_back(argument);
+      result.names_the_node |= starts_with(argument, "__node:=") || starts_with(argument, "__name:=");
+    } else if (is_ROSs_own(argument)) {
+      wrong += fmt::format("{}: arguments of ROS 2 stand behind --ros-args\n", argument);
+      follows_misplaced = true;
+    } else if (is_ROS1s(argument)) {
+      wrong += fmt::format("{}: that is ROS 1's spelling; in ROS 2 say --ros-args {}\n", argument,
+                           in_ros2(argument));
+    } else {
+      options.emplace_back(argument);
+    }
+  }
+  if (!wrong.empty()) {
+    result.exit_code = wrong_call;
+    result.text = std::move(wrong);
+    return result;
+  }
+  static_cast<Options&>(result) = parse_options(std::move(options), ros2_dialect);
+  return result;
+}
+
+}  // namespace coupler::host

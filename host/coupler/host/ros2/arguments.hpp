@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coupler/base/span.hpp"
+#include "coupler/host/ros/options.hpp"
+
+namespace coupler::host {
+
+extern const Dialect ros2_dialect;
+
+struct Arguments : Options {
+  std::vector<std::string> for_ros;  ///< the program, "--ros-args" and what follows it
+  bool names_the_node = false;       ///< `-r __node:=` is there
+};
+
+/// `--key VALUE`, and what stands between `--ros-args` and `--` or the end. What is spelled as in ROS 1 is a
+/// wrong call, told with ROS 2's spelling. `arguments[0]` is the program.
+Arguments parse_arguments(Span<char* const> arguments);
+
+}  // namespace coupler::host

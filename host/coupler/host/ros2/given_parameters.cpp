@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/ros2/given_parameters.hpp"
+
+#include <rcl_yaml_param_parser/parser.h>
+
+#include <algorithm>
+#include <regex>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "coupler/base/starts_with.hpp"
+#include "coupler/host/ros2/rcl/error.hpp"
+#include "coupler/map/loader/nearest.hpp"
+
+namespace coupler::host {
+namespace {
+
+using Kind = GivenParameter::Kind;
+
+template <class Values>
+std::string list_of(const Values& values) {
+  return fmt::format("{}", fmt::join(values.values, values.values + values.size, ","));
+}
+
+std::string list_of(const rcutils_string_array_t& values) {
+  return fmt::format("{}", fmt::join(values.data, values.data + values.size, ","));
+}
+
+GivenParameter given(std::string name, const rcl_variant_t& value) {
+  if (value.bool_value != nullptr)
+    return {std::move(name), Kind::truth, *value.bool_value ? "true" : "false"};
+  if (value.integer_value != nullptr)
+    return {std::move(name), Kind::whole, fmt::to_string(*value.integer_value)};
+  if (value.double_value != nullptr)
+    return {std::move(name), Kind::real, fmt::to_string(*value.double_value)};
+  if (value.string_value != nullptr) return {std::move(name), Kind::text, value.string_value};
+  GivenParameter list{std::move(name), Kind::list, {}};
+  if (value.string_array_value != nullptr) list.text = list_of(*value.string_array_value);
+  if (value.integer_array_value != nullptr) list.text = list_of(*value.integer_array_value);
+  if (value.double_array_value != nullptr) list.text = list_of(*value.double_array_value);
+  if (value.bool_array_value != nullptr) list.text = list_of(*value.bool_array_value);
+  return list;
+}
+
+bool is_for_all(std::string_view node) { return node.find('*') != std::string_view::npos; }
+
+/// `/*` stands for one name of the path and `/**` for any number of them, as in every ROS 2 node.
+bool fits(const std::string& section, std::string_view node) {
+  if (!is_for_all(section)) return section == node;
+  if (node.empty()) return section == "/**";
+  std::string pattern = std::regex_replace(section, std::regex(R"(/\*\*)"), "(/\\w+)@");
+  pattern = std::regex_replace(pattern, std::regex(R"(/\*)"), "(/\\w+)");
+  std::replace(pattern.begin(), pattern.end(), '@', '*');
+  return std::regex_match(node.begin(), node.end(), std::regex(pattern));
+}
+
+/// Parameters of every node, and of the client libraries.
+bool is_ROSs_own(std::string_view name) {
+  return name == "use_sim_time" || name == "start_type_description_service" ||
+         name == "enable_logger_service" || starts_with(name, "qos_overrides.");
+}
+
+/// The setting that a name means: "rate" of "belt.rate" where belt is a device.
+std::string_view setting_of(std::string_view name, const std::vector<std::string_view>& devices) {
+  for (const std::string_view device : devices)
+    if (starts_with(name, device) && name.substr(device.size(), 1) == ".")
+      return name.substr(device.size() + 1);
+  return name;
+}
+
+bool is_meant_for_a_driver(const GivenParameters::Section& section) {
+  return std::any_of(section.parameters.begin(), section.parameters.end(), [](const GivenParameter& one) {
+    return one.name == "map" || one.name == "maps" || one.name == "address";
+  });
+}
+
+/// What YAML has made of a word that should have stayed one, or an empty text.
+std::string wrong_kind(const SettingKey& key, const GivenParameter& one) {
+  const bool is_text = key.kind == SettingKey::Kind::text && key.key != "verify";
+  if (!is_text || (one.kind != Kind::truth && one.kind != Kind::real)) return {};
+  return fmt::format(
+      "YAML reads the value as {} ({}); if it is a text put it into quotes, as in {}: 'VALUE', or "
+      "-p {}:=\"'VALUE'\"",
+      one.kind == Kind::truth ? "a truth value" : "a number", one.text, one.name, one.name);
+}
+
+}  // namespace
+
+GivenParameters GivenParameters::of(const rcl_arguments_t& arguments) {
+  rcl_params_t* found = nullptr;
+  rcl::check(rcl_arguments_get_param_overrides(&arguments, &found), "cannot read the parameters");
+  std::vector<Section> sections;
+  if (found == nullptr) return GivenParameters({});
+  for (std::size_t n = 0; n < found->num_nodes; ++n) {
+    Section section{found->node_names[n], {}};
+    if (section.node.empty() || section.node[0] != '/') section.node.insert(0, "/");
+    const rcl_node_params_t& all = found->params[n];
+    for (std::size_t i = 0; i < all.num_params; ++i)
+      section.parameters.push_back(given(all.parameter_names[i], all.parameter_values[i]));
+    sections.push_back(std::move(section));
+  }
+  rcl_yaml_node_struct_fini(found);
+  return GivenParameters(std::move(sections));
+}
+
+std::vector<GivenParameter> GivenParameters::for_node(std::string_view full_name) const {
+  std::vector<GivenParameter> all;
+  for (const Section& section : sections_)
+    if (fits(section.node, full_name))
+      all.insert(all.end(), section.parameters.begin(), section.parameters.end());
+  return all;
+}
+
+std::string GivenParameters::driver_section() const {
+  for (const Section& section : sections_)
+    if (!is_for_all(section.node) && is_meant_for_a_driver(section)) return section.node;
+  return {};
+}
+
+std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
+                                                  const std::vector<std::string_view>& devices) const {
+  std::vector<std::string> lines;
+  const auto names = setting_names();
+  for (const Section& section : sections_) {
+    if (!fits(section.node, full_name)) continue;
+    for (const GivenParameter& one : section.parameters) {
+      const std::string_view setting = setting_of(one.name, devices);
+      if (is_setting(setting) || is_ROSs_own(one.name)) continue;
+      const std::string_view behind_slash = setting.substr(setting.rfind('/') + 1);
+      if (behind_slash != setting && is_setting(behind_slash)) {
+        std::string spelt = one.name;
+        spelt[one.name.rfind('/')] = '.';
+        lines.push_back(
+            fmt::format("parameter {} is ROS 1's spelling and does nothing; say {}", one.name, spelt));
+        continue;
+      }
+      const std::string_view behind_dot = setting.substr(setting.rfind('.') + 1);
+      if (!devices.empty() && behind_dot != setting && is_setting(behind_dot)) {
+        lines.push_back(
+            fmt::format("parameter {} is for a device that is not there; the maps have the names {}",
+                        one.name, fmt::join(devices, ", ")));
+        continue;
+      }
+      if (is_for_all(section.node) && loader::nearest(setting, names).empty()) continue;
+      lines.push_back(fmt::format("parameter {} is no setting and does nothing; {}", one.name,
+                                  loader::nearest_or(setting, names, "coupler_driver --help shows them")));
+    }
+  }
+  const bool has_own = std::any_of(sections_.begin(), sections_.end(),
+                                   [&](const Section& section) { return section.node == full_name; });
+  for (const Section& section : sections_)
+    if (!has_own && !fits(section.node, full_name) && is_meant_for_a_driver(section))
+      lines.push_back(fmt::format("the parameters of {} are not those of this node; its name is {}",
+                                  section.node, full_name));
+  return lines;
+}
+
+tl::expected<Settings, std::string> settings_among(const std::vector<GivenParameter>& parameters,
+                                                   std::string_view prefix) {
+  Settings settings;
+  for (const SettingKey& key : setting_keys) {
+    for (const std::string_view name : {key.alias, key.key}) {  // the key wins over its alias
+      const std::string full = fmt::format("{}{}", prefix, name);
+      const auto last = std::find_if(parameters.rbegin(), parameters.rend(),
+                                     [&](const GivenParameter& one) { return one.name == full; });
+      if (name.empty() || last == parameters.rend() || (last->text.empty() && last->kind == Kind::text))
+        continue;
+      if (const std::string wrong = wrong_kind(key, *last); !wrong.empty())
+        return tl::make_unexpected(fmt::format("parameter {}: {}", full, wrong));
+      if (const auto done = set(settings, key.key, last->text); !done)
+        return tl::make_unexpected(fmt::format("parameter {}{}", prefix, done.error()));
+    }
+  }
+  return settings;
+}
+
+}  // namespace coupler::host

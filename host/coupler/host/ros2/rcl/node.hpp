@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <rcl/node.h>
+
+#include <string>
+#include <vector>
+
+#include "coupler/base/line_limit.hpp"
+#include "coupler/host/ros2/rcl/context.hpp"
+#include "coupler/host/ros2/rcl/inbox.hpp"
+
+namespace coupler::rcl {
+
+/// A node, and the inbox of what is made in it. All of that must go before it does.
+class Node {
+ public:
+  /// The name and "/" are overridden by `__node:=` and `__ns:=`. Throws Error.
+  Node(Context& context, const std::string& name);
+  ~Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  rcl_node_t* get() { return &node_; }
+  const rcl_node_t* get() const { return &node_; }
+  Inbox& inbox() { return inbox_; }
+  std::string name() const { return rcl_node_get_name(&node_); }
+  /// "/cell/press_driver"
+  std::string full_name() const { return rcl_node_get_fully_qualified_name(&node_); }
+
+  /// To the terminal and to /rosout. Any thread may call. `severity`: rcutils' RCUTILS_LOG_SEVERITY.
+  void log(int severity, const std::string& text) const;
+  /// Of the last call in this thread that failed; one line a second of all.
+  void log_failure(const std::string& what);
+
+  /// The nodes that publish the topic, with their namespaces; this one, too, for each of its publishers.
+  std::vector<std::string> publishers_of(const std::string& full_topic) const;
+
+ private:
+  rcl_node_t node_;
+  LineLimit failures_;
+  Inbox inbox_;
+};
+
+}  // namespace coupler::rcl

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <rcl/service.h>
+#include <rosidl_typesupport_cpp/service_type_support.hpp>
+
+#include <functional>
+#include <string>
+
+#include "coupler/host/ros2/rcl/node.hpp"
+
+namespace coupler::rcl {
+
+/// A service of whichever type.
+class AnyService : public Inbox::Source {
+ public:
+  using RequestId = rmw_request_id_t;
+
+  /// Throws Error.
+  AnyService(Node& node, const rosidl_service_type_support_t* type, const std::string& name);
+
+ protected:
+  ~AnyService() override;
+  /// From now on take() is called.
+  void listen();
+  void end();
+  bool take_any(RequestId& id, void* request);
+  void answer_any(RequestId& id, void* response);
+
+ private:
+  Node& node_;
+  std::string name_;
+  rcl_service_t service_;
+};
+
+template <class S>
+class Service : public AnyService {
+ public:
+  using Request = typename S::Request;
+  using Response = typename S::Response;
+
+  /// `ask` is called in the inbox's thread; answer() may come later, from any thread.
+  Service(Node& node, const std::string& name, std::function<void(const Request&, RequestId)> ask)
+      : AnyService(node, rosidl_typesupport_cpp::get_service_type_support_handle<S>(), name),
+        ask_(std::move(ask)) {
+    listen();
+  }
+  ~Service() override { end(); }
+
+  void answer(RequestId id, Response& response) { answer_any(id, &response); }
+
+ protected:
+  bool take() override {
+    Request request;
+    RequestId id;
+    if (!take_any(id, &request)) return false;
+    ask_(request, id);
+    return true;
+  }
+
+ private:
+  std::function<void(const Request&, RequestId)> ask_;
+};
+
+/// A service that is answered at once, in the inbox's thread.
+template <class S>
+class PromptService : public Service<S> {
+ public:
+  using Request = typename S::Request;
+  using Response = typename S::Response;
+
+  PromptService(Node& node, const std::string& name, std::function<void(const Request&, Response&)> answer)
+      : Service<S>(node, name,
+                   [this, answer = std::move(answer)](const Request& request, AnyService::RequestId id) {
+                     Response response;
+                     answer(request, response);
+                     this->answer(id, response);
+                   }) {}
+};
+
+}  // namespace coupler::rcl
