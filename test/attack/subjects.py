@@ -36,7 +36,7 @@ def guarded(build, folder):
 
 
 def kept(build, folder):
-    """the same on a kernel's chip gpiochip0 with 16 lines, and so with a keeper: for test/kernel/attack.sh"""
+    """the same on a kernel's chip gpiochip0 with 16 lines, and so with a supervisor: for test/kernel/attack.sh"""
     path, text = _guarded_map(folder)
     return Subject([build / "bin" / "coupler-node", path, "--port", "0"], text, guarded=True, wired=False)
 

@@ -161,7 +161,7 @@ class Engine {
     require(!request.pdu.empty() && request.pdu.size() <= modbus::max_pdu_size, "a PDU has 1 … 253 bytes");
     const std::vector<std::uint16_t> before = memory_.cells;
     std::array<std::uint8_t, modbus::max_adu_size> adu{};
-    const std::size_t size = server_.answer(request, peer_, {}, adu);
+    const std::size_t size = server_.answer(request, session_, {}, adu);
     if (size == 0) {
       require(request.unit >= 2 && request.unit <= 254, "only other units get silence");
     } else {
@@ -175,7 +175,7 @@ class Engine {
   device::OwnedImage memory_;
   PartlyBrokenLines lines_;
   device::Statistics statistics_;
-  device::Peer peer_;
+  device::ClientSession session_;
   device::OutputWatchdog watchdog_;
   std::vector<device::EdgePoints::Link> links_;
   device::Handler handler_;

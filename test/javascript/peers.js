@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masters from npm, modbus-serial and jsmodbus, against a node that serves test/peers/peers.yaml.
+// Clients from npm, modbus-serial and jsmodbus, against a node that serves test/peers/peers.yaml.
 //   node peers.js NODE_COMMAND…
 "use strict";
 const assert = require("node:assert/strict");
@@ -90,7 +90,7 @@ describe("modbus-serial", () => {
     const fingerprint = head.slice(3, 7).map((word) => word.toString(16).padStart(4, "0")).join("");
     assert.equal(data[5], fingerprint);
     const text = Buffer.from((await client.readFileRecords(1, 0)).data).subarray(0, 200).toString();
-    assert.match(text, /^# SPDX-License-Identifier: Apache-2\.0\n# A node that foreign masters can try out/);
+    assert.match(text, /^# SPDX-License-Identifier: Apache-2\.0\n# A node that foreign clients can try out/);
   });
 
   it("gets an exception for what is not there", async () => {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Registers with channels of the kernel behind them: its example of an IIO device, and a PWM chip. What a master reads is
+# Registers with channels of the kernel behind them: its example of an IIO device, and a PWM chip. What a client reads is
 # compared with the kernel's own files.
 #   test/kernel/run test/kernel/analogue.sh BUILD_DIR
 set -euo pipefail
@@ -16,13 +16,13 @@ pwm=/sys/class/pwm/pwmchip0/pwm0
 plug_adc() { mkdir /sys/kernel/config/iio/devices/dummy/adc; }
 unplug_adc() { rmdir /sys/kernel/config/iio/devices/dummy/adc; }
 # mbpoll shows a register above 32767 as "65490 (-46)".
-input_register() { answered master -t 3 -r "$1" -c 1 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*([0-9]+)( \((-[0-9]+)\))?.*/\1 \3/p' | awk '{ print $NF }'; }
-input_float() { answered master -t 3:float -B -r "$1" -c 1 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*([0-9.e+-]+).*/\1/p'; }
-set_registers() { answered master -t 4:hex -r "$1" 127.0.0.1 "${@:2}" >/dev/null; }
-set_real() { answered master -t 4:float -B -r "$1" 127.0.0.1 -- "$2" >/dev/null; }
+input_register() { answered client -t 3 -r "$1" -c 1 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*([0-9]+)( \((-[0-9]+)\))?.*/\1 \3/p' | awk '{ print $NF }'; }
+input_float() { answered client -t 3:float -B -r "$1" -c 1 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*([0-9.e+-]+).*/\1/p'; }
+set_registers() { answered client -t 4:hex -r "$1" 127.0.0.1 "${@:2}" >/dev/null; }
+set_real() { answered client -t 4:float -B -r "$1" 127.0.0.1 -- "$2" >/dev/null; }
 refused_with() {
   local said
-  said=$(answered master -t 4:hex -r "$2" 127.0.0.1 "${@:3}") && return 1
+  said=$(answered client -t 4:hex -r "$2" 127.0.0.1 "${@:3}") && return 1
   grep -qi "$1" <<<"$said"
 }
 # What the kernel says of a channel, in the register's unit.
@@ -31,7 +31,7 @@ shown() { echo "$(cat $pwm/duty_cycle) of $(cat $pwm/period), $(cat $pwm/enable)
 shown_is() { [ "$(shown)" = "$1" ]; }
 dac_is() { [ "$(cat $dac)" = "$1" ]; }
 steps_are() { [ "$(input_register 4)" = "$1" ]; }
-input_is_gone() { ! answered master -t 3 -r 0 -c 1 127.0.0.1 >/dev/null; }
+input_is_gone() { ! answered client -t 3 -r 0 -c 1 127.0.0.1 >/dev/null; }
 
 # Reads two of the PWM's files as fast as it can and tells each change. "armed" comes first.
 watch_pwm() {
@@ -102,16 +102,16 @@ check "100.1 % is refused with exception 03" refused_with 'illegal data value' 0
 check "a voltage that is not a number too" refused_with 'illegal data value' 0 0x7FC0 0
 check "half a voltage with exception 02" refused_with 'illegal data address' 1 0
 expect "and nothing of it is driven" "500 40000 of 40000, 1" "$(cat $dac) $(shown)"
-check "nor stored" [ "$(answered master -t 4:hex -r 0 -c 4 127.0.0.1 | grep -oE '0x[0-9A-F]+' | tr '\n' ' ')" = "0x3F00 0x0000 0x03E8 0x0008 " ]
+check "nor stored" [ "$(answered client -t 4:hex -r 0 -c 4 127.0.0.1 | grep -oE '0x[0-9A-F]+' | tr '\n' ' ')" = "0x3F00 0x0000 0x03E8 0x0008 " ]
 
-echo "# the I/O process dies"
+echo "# the worker process dies"
 start watch watch_pwm
 check "period and enable of the PWM are watched" wait_until says watch armed
 before=$(io_process)
 kill -KILL "$before"
 check "the outputs are in their safe state" wait_until shown_is "12000 of 40000, 1"
 check "all of them" wait_until dac_is 0
-check "another I/O process is started" wait_until new_io_process "$before"
+check "another worker process is started" wait_until new_io_process "$before"
 check "its registers show it" wait_until refused_with 'illegal data value' 2 1001
 expect "in the point's scale" 300 "$(register 2)"
 check "inputs are sampled again" wait_until steps_are 123

@@ -40,7 +40,7 @@ watch_control() {
 rising_seen() { grep -ciE 'rising' "$(log "$1")" || true; }
 saw() { [ "$(rising_seen "$1")" -ge "$2" ]; }
 
-pair() { answered master -t "$1" -r "$2" -c 2 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*([0-9]+).*/\1/p'; }
+pair() { answered client -t "$1" -r "$2" -c 2 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*([0-9]+).*/\1/p'; }
 # Counters stand in the map's order, CDAB; statistics with the most significant register first.
 counter() { local words; mapfile -t words < <(pair "$1" "$2"); echo $((words[1] * 65536 + words[0])); }
 lost() { local words; mapfile -t words < <(pair 3 65305); echo $((words[0] * 65536 + words[1])); }
@@ -98,10 +98,10 @@ echo "# latch and preset"
 expect "the latch is set" 1 "$(coil 0)"
 expect "cleared, it is set again by each single pulse" $((pulses / 20)) "$(count_latched $((pulses / 20)))"
 check "writing 1 is allowed" set_coil 0 1
-check "a counter is preset as a whole" answered master -t 4:int -r 0 127.0.0.1 -- 4000000
+check "a counter is preset as a whole" answered client -t 4:int -r 0 127.0.0.1 -- 4000000
 pulse 5 "$width" "$button"
 expect "and counts on from there" 4000005 "$(counter 4 0)"
-refuse "half of it cannot be written" answered master -t 4 -r 0 127.0.0.1 -- 7
+refuse "half of it cannot be written" answered client -t 4 -r 0 127.0.0.1 -- 7
 
 echo "# debounce"
 for _ in 1 2 3; do
@@ -113,7 +113,7 @@ for _ in 1 2 3; do
 done
 expect "three presses that bounce are three" 3 "$(counter 3 4)"
 
-echo "# the I/O process is killed"
+echo "# the worker process is killed"
 before=$(counter 3 0)
 kill -KILL "$(io_process)"
 pulse 5 "$width" "$button"
@@ -126,7 +126,7 @@ expect "nothing was lost by that" 0 "$(lost)"
 echo "# a reader that is stopped"
 before=$(counter 3 2)
 io=$(io_process)
-kill -STOP "$(pid node)" # the keeper, which would end an I/O process that is silent for so long
+kill -STOP "$(pid node)" # the supervisor, which would end a worker process that is silent for so long
 kill -STOP "$io"
 pulse 700 "$width" "$wave"
 kill -CONT "$io"

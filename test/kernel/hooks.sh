@@ -9,7 +9,7 @@ cd "$(dirname "$0")"
 . ./plant.sh
 plant_chip
 
-set_coils() { answered master -t 0 -r 0 127.0.0.1 -- "$@" >/dev/null; }
+set_coils() { answered client -t 0 -r 0 127.0.0.1 -- "$@" >/dev/null; }
 hooks_called() { grep -E '^(motor|speed|safe) ' "$(log gate)" | cut -d' ' -f1,2 | paste -sd' '; }
 
 start gate "$bin/gate_firmware"
@@ -24,7 +24,7 @@ sim_pull plant 0 down
 refuse "a write that the hook refuses is refused" set_coils 1 1
 expect "and its line not driven" 0 "$(sim_value plant 0)"
 expect "nor is it kept" 0 "$(coil 0)"
-check "the firmware is told a speed" answered master -t 4 -r 0 127.0.0.1 -- 5
+check "the firmware is told a speed" answered client -t 4 -r 0 127.0.0.1 -- 5
 check "then the hook accepts" set_coils 1 1
 expect "the line is driven, against its pull" 1 "$(sim_value plant 0)"
 expect "the hooks were called in that order" "motor 1 speed 5 motor 1" "$(hooks_called)"
@@ -35,7 +35,7 @@ expect "its line is low" 0 "$(sim_value plant 0)"
 before=$(io_process gate)
 kill -KILL "$before"
 check "the firmware is made safe" wait_until says gate '^safe 0 in'
-refuse "not in the keeper, which runs no code of a firmware" says gate "^safe 0 in $(pid gate)$"
+refuse "not in the supervisor, which runs no code of a firmware" says gate "^safe 0 in $(pid gate)$"
 refuse "nor in the process that died" says gate "^safe 0 in $before$"
 check "and drives the brake on, against its pull" wait_until level_is 0 1
 check "another process begins" wait_until says gate '^began 0 in' 2
@@ -43,13 +43,13 @@ check "what its thread sets is read" wait_until input_is 0 1
 expect "the brake has stayed" 1 "$(sim_value plant 0)"
 
 echo "# a line that cannot be driven"
-check "the firmware is told a speed" answered master -t 4 -r 0 127.0.0.1 -- 6
+check "the firmware is told a speed" answered client -t 4 -r 0 127.0.0.1 -- 6
 check "both are written" set_coils 1 1
 sim_unplug plant
 before=$(hooks_called)
 refuse "a write to hook and line is refused" set_coils 0 1
 expect "and the hook gets its value back" "$before motor 0 motor 1" "$(hooks_called)"
-expect "masters read what it was" 1 "$(coil 0)"
+expect "clients read what it was" 1 "$(coil 0)"
 check "the hook alone goes on" set_coil 0 0
 
 echo "# it ends"

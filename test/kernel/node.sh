@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# coupler-node on a chip of the kernel, with mbpoll as the master.
+# coupler-node on a chip of the kernel, with mbpoll as the client.
 #   test/kernel/run test/kernel/node.sh BUILD_DIR
 set -euo pipefail
 bin=$(realpath "${1:?the build folder}")/bin
@@ -55,7 +55,7 @@ refuse "a line that no chip has ends the start" "$bin/coupler-node" "$check_fold
 echo "# unplugged"
 sim_unplug plant
 refuse "reading an input fails" input 0
-said=$(answered master -t 1 -r 0 -c 1 127.0.0.1 2>&1) || true
+said=$(answered client -t 1 -r 0 -c 1 127.0.0.1 2>&1) || true
 check "with exception 04, which mbpoll calls a server failure" grep -qi 'device or server failure' <<<"$said"
 refuse "writing a coil fails" set_coil 0 1
 expect "registers are served as before" 7 "$(register 0)"

@@ -1,6 +1,6 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: Apache-2.0
-# The chip of plant.yaml and a Modbus master, for the tests that run the project's programs. To be sourced:
+# The chip of plant.yaml and a Modbus client, for the tests that run the project's programs. To be sourced:
 #   plant_chip                 makes the chip "plant" with 8 lines; line 2 is BUTTON, line 6 belongs to "hog-a"
 #   plant_node MAP [ARGS…]     starts the node with a map and waits until it serves
 #   io_process [NAME]          prints the id of the process that answers for the node (or NAME, as it was started)
@@ -28,7 +28,7 @@ plant_node() {
 io_process() { pgrep -P "$(pid "${1:-node}")" -x coupler-node-io; }
 new_io_process() { local now; now=$(io_process) && [ "$now" != "$1" ] && [[ "$(cat "/proc/$now/stat")" != *" Z "* ]]; }
 
-master() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 1502 "$@"; }
+client() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 1502 "$@"; }
 
 # mbpoll reports a failed request on stderr and exits with 0 all the same.
 answered() {
@@ -41,11 +41,11 @@ answered() {
   echo "$output"
 }
 
-read_one() { answered master -t "$1" -r "$2" -c 1 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*(-?[0-9]+).*/\1/p'; }
+read_one() { answered client -t "$1" -r "$2" -c 1 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*(-?[0-9]+).*/\1/p'; }
 input() { read_one 1 "$1"; }
 coil() { read_one 0 "$1"; }
 register() { read_one 4 "$1"; }
-set_coil() { answered master -t 0 -r "$1" 127.0.0.1 -- "$2" >/dev/null; }
+set_coil() { answered client -t 0 -r "$1" 127.0.0.1 -- "$2" >/dev/null; }
 input_is() { [ "$(input "$1")" = "$2" ]; }
 level_is() { [ "$(sim_value plant "$1")" = "$2" ]; }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# SIGHUP: the node reads its map again while a master writes and reads, and no line moves that did not change. Kept
+# SIGHUP: the node reads its map again while a client writes and reads, and no line moves that did not change. Kept
 # outputs are pulled away from their levels and watched at their wires all the time.
 #   test/kernel/run test/kernel/reload.sh BUILD_DIR
 set -euo pipefail
@@ -65,7 +65,7 @@ print("rounds", rounds, "lost", lost)
 }
 
 plant_node "$map"
-check "a register is written" answered master -t 4 -r 0 127.0.0.1 -- 1234
+check "a register is written" answered client -t 4 -r 0 127.0.0.1 -- 1234
 for coil in 0 1; do check "coil $coil is written" set_coil "$coil" 1; done
 sim_pull plant 0 down
 sim_pull plant 1 up
@@ -78,7 +78,7 @@ expect "three presses are counted" 3 "$(read_one 3 0)"
 start wires watch_wires 0 1
 check "the kept lines are watched" wait_until says wires armed
 start traffic traffic
-check "a master writes and reads" wait_until says traffic going
+check "a client writes and reads" wait_until says traffic going
 
 echo "# maps that are refused"
 before=$(io_process)
@@ -92,10 +92,10 @@ check "another polarity of an output beside one that stays" reload_with "$refuse
   < <(sed 's/offset: 0}/offset: 0}, active_low: true/' reload.yaml)
 check "with the remedy" says node "point 'kept'.* start the node anew"
 check "a point in the identity area" reload_with "$refused" < <(sed 's/presses: {address: 0/presses: {address: 0xFF00/' reload.yaml)
-expect "the I/O process is the same after all of them" "$before" "$(io_process)"
+expect "the worker process is the same after all of them" "$before" "$(io_process)"
 expect "nothing moved" 0 "$(sim_value plant 3)"
 
-echo "# a map that looks the same to masters: one output has another line"
+echo "# a map that looks the same to clients: one output has another line"
 check "it is taken" reload_with "$taken" < <(sed 's/offset: 3}/offset: 5}, initial: on/' reload.yaml)
 sim_pull plant 5 down
 expect "the new line has its initial level, against its pull" 1 "$(sim_value plant 5)"
@@ -104,19 +104,19 @@ expect "the old line is in its safe state, against its pull" 1 "$(sim_pull plant
 expect "counters go on" 3 "$(read_one 3 0)"
 sim_pull plant 2 up; sleep 0.02; sim_pull plant 2 down; sleep 0.02
 expect "and count" 4 "$(read_one 3 0)"
-refuse "the master did not notice" says traffic lost
+refuse "the client did not notice" says traffic lost
 
 echo "# a map with other points"
 sed 's/leaves: .*/arrives: {address: 7, line: {chip: plant, offset: 7}, active_low: true, initial: on}/; s/line: BUTTON/line: BUTTON, active_low: true/; s/offset: 3}/offset: 5}/' \
   reload.yaml >"$check_folder/other.yaml"
 check "it is taken" reload_with "$taken" <"$check_folder/other.yaml"
-check "masters are told to look again" says node 'masters have to connect again'
+check "clients are told to look again" says node 'clients have to connect again'
 expect "the output that is not in it is in its safe state, against its pull" 1 "$(sim_value plant 4)"
 sim_pull plant 7 up
 check "the new one is driven, against its pull" level_is 7 0
 refuse "what is gone is not served" coil 3
 expect "the input has its new polarity" 1 "$(input 0)"
-check "the master found out" wait_until says traffic lost
+check "the client found out" wait_until says traffic lost
 
 echo "# again and again"
 before=$(times "$taken")
@@ -174,7 +174,7 @@ plant_node "$map"
 exec 8<>/dev/tcp/127.0.0.1/1502
 check "the map is taken" reload_with "$taken" < <(watched lamp 0 0 | sed '/watchdog/d')
 printf '\0\1\0\0\0\6\1\5\0\0\0\0' >&8
-expect "a master that was there is answered" '00 01 00 00 00 06 01 05 00 00 00 00' "$(timeout 5 head -c 12 <&8 | od -An -tx1 | xargs)"
+expect "a client that was there is answered" '00 01 00 00 00 06 01 05 00 00 00 00' "$(timeout 5 head -c 12 <&8 | od -An -tx1 | xargs)"
 check "and drives" level_is 0 0
 exec 8<&-
 
@@ -193,7 +193,7 @@ check "a long one is being read" wait_until pgrep -x coupler-map
 kill -KILL "$before"
 check "the output is safe meanwhile, against its pull" wait_until level_is 0 0
 check "the map is still being read" pgrep -x coupler-map
-check "another I/O process is started" wait_until new_io_process "$before"
+check "another worker process is started" wait_until new_io_process "$before"
 reader=$(pgrep -x coupler-map)
 check "the node ends well at SIGTERM, at once" stop node TERM
 check "and so does the process that reads" wait_until ended "$reader"

@@ -26,7 +26,7 @@ times() { grep -cE -- "$1" "$(log node)" || true; }
 plant_node reload.yaml
 check "an output is written" set_coil 0 1
 check "an active-low one too" set_coil 1 1
-check "a register too" answered master -t 4 -r 0 127.0.0.1 -- 1234
+check "a register too" answered client -t 4 -r 0 127.0.0.1 -- 1234
 press
 expect "a press is counted" 1 "$(read_one 3 0)"
 
@@ -36,8 +36,8 @@ for round in 1 2; do
   before=$(times "$lost")
   sim_unplug plant
   check "the node notices, though nobody asks" wait_until says node "$lost" $((before + requests))
-  check "reading an input is answered with exception 04" exception_04 master -t 1 -r 0 -c 1 127.0.0.1
-  check "writing an output too" exception_04 master -t 0 -r 0 127.0.0.1 -- 0
+  check "reading an input is answered with exception 04" exception_04 client -t 1 -r 0 -c 1 127.0.0.1
+  check "writing an output too" exception_04 client -t 0 -r 0 127.0.0.1 -- 0
   expect "what is not wired is served as ever" 1234 "$(register 0)"
   expect "an output shows what it was driven to" 1 "$(coil 0)"
   expect "each loss is told once" $((before + requests)) "$(times "$lost")"
@@ -71,10 +71,10 @@ sim_hog plant 0 output-low thief
 sim_plug plant
 check "who holds it is told" wait_until says node "held by 'thief'"
 check "inputs work all the same" wait_until input_is 0 0
-check "the output's request is answered with exception 04" exception_04 master -t 0 -r 0 127.0.0.1 -- 1
+check "the output's request is answered with exception 04" exception_04 client -t 0 -r 0 127.0.0.1 -- 1
 sleep 2
 expect "told once, not at each try" $((before + 1)) "$(times 'is busy')"
-refuse "no I/O process died" says node 'the I/O process'
+refuse "no worker process died" says node 'the worker process'
 status=0; stop node TERM || status=$?
 expect "who stops the node is told that the thief's output is not safe" 3 "$status"
 check "in words, too" says node 'ended, and not every output could be driven to its safe state'

@@ -87,7 +87,7 @@ std::uint16_t cells[128];
 EdgePoints::Link links[8];
 std::uint8_t reply[modbus::max_adu_size];
 
-/// The replies to a master's first requests, one after the other.
+/// The replies to a client's first requests, one after the other.
 void answer_all() {
   constexpr std::uint8_t requests[][12] = {
       {0, 1, 0, 0, 0, 6, 1, 2, 0, 0, 0, 3},        // the three inputs
@@ -108,12 +108,12 @@ void answer_all() {
   handler.set_machine(identity::machine_of("board-1", 0x0011223344556677));
   static Server server(map.connection.unit, handler, statistics);
   static modbus::Framer framer;
-  Peer master;
+  ClientSession client;
   for (const auto& request : requests) {
     std::copy(std::begin(request), std::end(request), framer.room().begin());
     framer.filled(sizeof request);
     if (framer.next() != modbus::Framer::Outcome::frame) fail("the framer finds no frame");
-    print_hex({reply, server.answer(framer.frame(), master, TimePoint{}, reply)});
+    print_hex({reply, server.answer(framer.frame(), client, TimePoint{}, reply)});
   }
 }
 

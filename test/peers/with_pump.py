@@ -30,7 +30,7 @@ def floats(registers):  # the map's default: least significant register first
     return [struct.unpack(">f", struct.pack(">HH", registers[i + 1], registers[i]))[0] for i in range(0, len(registers), 2)]
 
 
-def firmware_obeys_a_foreign_master(firmware, checks):
+def firmware_obeys_a_foreign_client(firmware, checks):
     with running_node([firmware]) as port:
         client = pymodbus_client(port)
         checks.equal("connected", client.connect(), True)
@@ -78,10 +78,10 @@ def client_and_a_node_of_another_map(node, map_file, client, checks):
         other.flush()
         with running_node([node, other.name]) as port:
             done = subprocess.run([client, "127.0.0.1", str(port)], capture_output=True, text=True, timeout=PATIENCE)
-            master = pymodbus_client(port)
-            master.connect()
-            checks.equal("nothing was written", master.read_coils(0, 2, 1).bits[:2], [False, False])
-            master.close()
+            client = pymodbus_client(port)
+            client.connect()
+            checks.equal("nothing was written", client.read_coils(0, 2, 1).bits[:2], [False, False])
+            client.close()
     checks.equal("status of the client", done.returncode, 3)
     checks.equal("it says what differs", "  ~ speed: scale 0.1 -> 0.01" in done.stderr.splitlines(), True)
 
@@ -122,7 +122,7 @@ def client_and_a_foreign_server(client, checks):
 def main():
     firmware, client, node, map_file = sys.argv[1:]
     checks = Checks()
-    firmware_obeys_a_foreign_master(firmware, checks)
+    firmware_obeys_a_foreign_client(firmware, checks)
     firmware_and_client(firmware, client, checks)
     client_and_a_node_of_another_map(node, map_file, client, checks)
     client_and_a_foreign_server(client, checks)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""A master dies, a monitor goes on reading: the outputs of a node that serves watchdog.yaml go to their safe state.
+"""A client dies, a monitor goes on reading: the outputs of a node that serves watchdog.yaml go to their safe state.
 
     with_watchdog.py NODE_COMMAND…
 """
@@ -46,7 +46,7 @@ class Silence:
 
 
 def speaking(client, act):
-    """What `act(silence)` returns. A busy machine may silence a master, too, and then the watchdog is right to expire:
+    """What `act(silence)` returns. A busy machine may silence a client, too, and then the watchdog is right to expire:
     such a run says nothing, and there is another one."""
     while True:
         silence = Silence()
@@ -56,19 +56,19 @@ def speaking(client, act):
         client.write_register(RESET, 0xAA55, 1)
 
 
-def a_master_that_speaks_keeps_its_outputs(master, checks):
+def a_client_that_speaks_keeps_its_outputs(client, checks):
     def for_three_timeouts(silence):
-        seen = [silence.ask(lambda: master.write_coils(0, DRIVEN, 1).isError())]
+        seen = [silence.ask(lambda: client.write_coils(0, DRIVEN, 1).isError())]
         end = time.monotonic() + 3 * TIMEOUT
         while time.monotonic() < end:
-            seen.append((silence.ask(lambda: state(master)), silence.ask(lambda: levels(master))))
+            seen.append((silence.ask(lambda: state(client)), silence.ask(lambda: levels(client))))
             time.sleep(TIMEOUT / 10)
         return seen
 
-    checks.equal("nothing happened yet", state(master), IDLE)
-    write_failed, *seen = speaking(master, for_three_timeouts)
+    checks.equal("nothing happened yet", state(client), IDLE)
+    write_failed, *seen = speaking(client, for_three_timeouts)
     checks.equal("the write", write_failed, False)
-    checks.equal("the state and the outputs while the master reads", seen, [(ARMED, DRIVEN)] * len(seen))
+    checks.equal("the state and the outputs while the client reads", seen, [(ARMED, DRIVEN)] * len(seen))
 
 
 def a_monitor_does_not(monitor, checks):
@@ -95,14 +95,14 @@ def outputs_stay_until_the_reset(client, checks):
 def main():
     checks = peer.Checks()
     with peer.running_node(sys.argv[1:]) as port:
-        master = peer.pymodbus_client(port)
+        client = peer.pymodbus_client(port)
         monitor = peer.pymodbus_client(port)
-        a_master_that_speaks_keeps_its_outputs(master, checks)
-        master.close()
+        a_client_that_speaks_keeps_its_outputs(client, checks)
+        client.close()
         a_monitor_does_not(monitor, checks)
         outputs_stay_until_the_reset(monitor, checks)
         monitor.close()
-    checks.done("a dead master's outputs go to their safe state, and stay until the reset")
+    checks.done("a dead client's outputs go to their safe state, and stay until the reset")
 
 
 main()

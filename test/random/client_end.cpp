@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "test/random/client_end.hpp"
 
-#include "coupler/vectors/cases.hpp"
+#include "coupler/test_vectors/cases.hpp"
 
 namespace coupler::random {
 namespace {
@@ -18,7 +18,7 @@ client::PendingWrite RunTimeClient::set(std::uint32_t point, const Values& value
   const Point& written = map_.points[point];
   std::vector<std::uint16_t> registers(range(written).count());
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (!vectors::encode(values[i], written, &registers[i * codec::registers(written.format)]))
+    if (!test_vectors::encode(values[i], written, &registers[i * codec::registers(written.format)]))
       return client::refused("none of the point");
   return Handle(*this, point).write(registers.data());
 }
@@ -29,7 +29,7 @@ std::optional<Values> RunTimeClient::get(std::uint32_t point) {
   const Point& read = map_.points[point];
   Values values;
   for (std::size_t i = 0; i < read.count; ++i)
-    values.push_back(vectors::decode(read, &sample->registers[i * codec::registers(read.format)]));
+    values.push_back(test_vectors::decode(read, &sample->registers[i * codec::registers(read.format)]));
   return values;
 }
 

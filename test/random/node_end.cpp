@@ -54,7 +54,7 @@ class NodeEnd::Bell : public device::Watcher {
 
 namespace {
 
-struct Unheard : device::Pulse {
+struct Unheard : device::Heartbeat {
   void beat() override {}
 };
 
@@ -65,13 +65,13 @@ NodeEnd::NodeEnd(const Map& map, device::Hooks* hooks)
   auto listener = device::listen_on("127.0.0.1", 0);
   auto wiring = device::prepare_wiring(map, simulated_, nullptr, false, log_);
   if (!listener || !wiring) std::abort();
-  duty_.map = &map;
-  duty_.listener = *std::move(listener);
-  duty_.memory = std::make_unique<device::Memory>(map, device::TimePoint::clock::now());
+  context_.map = &map;
+  context_.listener = *std::move(listener);
+  context_.state = std::make_unique<device::SharedState>(map, device::TimePoint::clock::now());
   if (hooks != nullptr) hooks->allow_setting();
   if (hooks != nullptr)
-    duty_.hooked = std::make_unique<device::HookedPoints>(map, duty_.memory->image(), *hooks);
-  duty_.wiring = (*wiring)->take_over();
+    context_.hooked = std::make_unique<device::HookedPoints>(map, context_.state->image(), *hooks);
+  context_.wiring = (*wiring)->take_over();
   bell_ = std::make_unique<Bell>(loop_);
   thread_ = std::thread([this] { run(); });
 }
@@ -83,19 +83,19 @@ NodeEnd::~NodeEnd() {
 }
 
 void NodeEnd::run() {
-  device::IoService service(duty_, loop_, log_);
+  device::IoService service(context_, loop_, log_);
   Unheard pulse;
   service.run([this](device::TimePoint) { return bell_->is_over.load(); }, pulse);
 }
 
 std::uint16_t NodeEnd::port() const {
-  const std::string& name = duty_.listener.name;
+  const std::string& name = context_.listener.name;
   return static_cast<std::uint16_t>(std::stoi(name.substr(name.rfind(':') + 1)));
 }
 
 bool NodeEnd::is_shown(const Point& point) const {
   const auto ends_here = [&](const SimWire& wire) { return wire.to == point.name; };
-  const auto& wires = duty_.map->sim;
+  const auto& wires = context_.map->sim;
   return is_set_by_firmware(point) && !(simulated_ && std::any_of(wires.begin(), wires.end(), ends_here));
 }
 
@@ -109,7 +109,7 @@ void NodeEnd::between_requests(const std::function<void()>& work) {
 std::vector<std::uint16_t> NodeEnd::raw(const Point& point) {
   std::vector<std::uint16_t> raw;
   between_requests([&] {
-    const auto cells = duty_.memory->image().find(point.table, range(point));
+    const auto cells = context_.state->image().find(point.table, range(point));
     raw.assign(cells.begin(), cells.end());
   });
   if (is_partial(point)) raw[0] = static_cast<std::uint16_t>(raw[0] & codec::mask(point.format));
@@ -119,7 +119,7 @@ std::vector<std::uint16_t> NodeEnd::raw(const Point& point) {
 void NodeEnd::put(const Point& point, const std::vector<std::uint16_t>& raw) {
   const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
   between_requests([&] {
-    const auto cells = duty_.memory->image().find(point.table, range(point));
+    const auto cells = context_.state->image().find(point.table, range(point));
     for (std::size_t i = 0; i < raw.size(); ++i)
       cells[i] = static_cast<std::uint16_t>((cells[i] & ~mask) | raw[i]);
   });

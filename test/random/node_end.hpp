@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "coupler/device/net/loop.hpp"
-#include "coupler/device/node/duty.hpp"
+#include "coupler/device/node/serving_context.hpp"
 #include "test/device/core/fake_log.hpp"
 
 namespace coupler::random {
@@ -39,7 +39,7 @@ class NodeEnd {
   const bool simulated_;
   device::FakeLog log_;
   device::Loop loop_;
-  device::Duty duty_;
+  device::ServingContext context_;
   std::unique_ptr<Bell> bell_;
   std::thread thread_;
 };

@@ -4,7 +4,7 @@
 //   random_end client NAME PORT           "set ROUND": sets all outputs; "get ROUND": waits for all that can
 //   be read;
 //                                         "get ROUND outputs": only for those that can be written, too
-//   random_end firmware NAME OPTIONS…     a node; "show ROUND": what masters read of points with hooks
+//   random_end firmware NAME OPTIONS…     a node; "show ROUND": what clients read of points with hooks
 #include <chrono>
 #include <cstdlib>
 #include <functional>
@@ -41,8 +41,8 @@ void obey(Answer answer) {
 std::string set_all(const Map& map, ClientEnd& client, std::size_t round) {
   std::string wrong;
   for (std::uint32_t i = 0; i < map.points.size(); ++i) {
-    const vectors::Cases cases = vectors::cases_of(map.points[i]);
-    const vectors::Case& sent = pick(cases, i, round);
+    const test_vectors::Cases cases = test_vectors::cases_of(map.points[i]);
+    const test_vectors::Case& sent = pick(cases, i, round);
     if (!is_settable(map.points[i]) || sent.only_read) continue;
     if (const auto result = client.set(i, sent.values).get(); !result)
       wrong += std::string(map.points[i].name) + " " + result.text + "; ";
@@ -54,8 +54,8 @@ std::string wait_for_all(const Map& map, ClientEnd& client, const Command& comma
   std::string wrong;
   const auto end = std::chrono::steady_clock::now() + soon;
   for (std::uint32_t i = 0; i < map.points.size(); ++i) {
-    const vectors::Cases cases = vectors::cases_of(map.points[i]);
-    const vectors::Case& wanted = pick(cases, i, command.round);
+    const test_vectors::Cases cases = test_vectors::cases_of(map.points[i]);
+    const test_vectors::Case& wanted = pick(cases, i, command.round);
     const bool asked = command.which != "outputs" || is_settable(map.points[i]);
     if (!is_readable(map.points[i]) || !asked) continue;
     std::optional<Values> got = client.get(i);
@@ -90,8 +90,8 @@ int run_client(const Subject& subject, const char* port) {
   obey([&](const Command& command) {
     std::string wrong;
     for (std::uint32_t i = 0; i < subject.map->points.size(); ++i) {
-      const vectors::Cases cases = vectors::cases_of(subject.map->points[i]);
-      const vectors::Case& shown = pick(cases, i, command.round);
+      const test_vectors::Cases cases = test_vectors::cases_of(subject.map->points[i]);
+      const test_vectors::Case& shown = pick(cases, i, command.round);
       if (is_set_by_firmware(subject.map->points[i]) && !shown.only_read && !firmware.put(i, shown.values))
         wrong += std::string(subject.map->points[i].name) + " is refused; ";
     }

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "coupler/map/loader/load.hpp"
-#include "coupler/vectors/cases.hpp"
+#include "coupler/test_vectors/cases.hpp"
 #include "test/generate/same_map.hpp"
 #include "test/random/node_end.hpp"
 #include "test/random/subject.hpp"
@@ -18,7 +18,7 @@ namespace coupler::random {
 namespace {
 
 using namespace std::chrono_literals;
-using vectors::Case;
+using test_vectors::Case;
 
 constexpr auto soon = 120s;  // tells hanging from working: 8 of them run at a time
 
@@ -64,7 +64,7 @@ class Ends {
         node_(subject, of_node),
         client_(client_of(subject, of_client, node_.end.port())) {
     for (const Point& point : map_.points) {
-      vectors_.push_back(vectors::cases_of(point));
+      vectors_.push_back(test_vectors::cases_of(point));
       rounds_ = std::max(rounds_, vectors_.back().cases.size());
     }
   }
@@ -145,7 +145,7 @@ class Ends {
   const Map& map_;
   Node node_;
   std::unique_ptr<ClientEnd> client_;
-  std::vector<vectors::Cases> vectors_;
+  std::vector<test_vectors::Cases> vectors_;
   std::size_t rounds_ = 0;
 };
 

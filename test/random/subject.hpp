@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "coupler/vectors/cases.hpp"
+#include "coupler/test_vectors/cases.hpp"
 #include "test/random/client_end.hpp"
 #include "test/random/firmware_end.hpp"
 
@@ -22,11 +22,12 @@ struct Subject {
 std::vector<Subject>& subjects();
 
 /// What a point has in a round: each point another case, so that those that share registers differ.
-inline const vectors::Case& pick(const vectors::Cases& cases, std::uint32_t point, std::size_t round) {
+inline const test_vectors::Case& pick(const test_vectors::Cases& cases, std::uint32_t point,
+                                      std::size_t round) {
   return cases.cases[(round + point) % cases.cases.size()];
 }
 
-/// Whether a master's write is read back as it was: a latched point is set by its input only.
+/// Whether a client's write is read back as it was: a latched point is set by its input only.
 inline bool is_settable(const Point& point) { return is_writable(point) && !point.latched.present(); }
 
 /// At static initialization.

@@ -125,7 +125,7 @@ class Vectors(testing.RosTest):
         self.check(path, "coupler_driver", f"_map:={path}")
 
     def test_scales_arrays_and_orders(self):
-        path = process.write_map((TEST / "common/vectors/vectors.yaml").read_text())
+        path = process.write_map((TEST / "common/test_vectors/vectors.yaml").read_text())
         self.check(path, "coupler_driver", f"_map:={path}")
 
     @unittest.skipUnless("RANDOM_MAPS" in os.environ, "test/random/run builds them")

@@ -9,16 +9,16 @@ cd "$(dirname "$0")"
 . ../kernel/plant.sh
 readonly unit=coupler-node.service
 
-master() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 502 "$@"; }
+client() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 502 "$@"; }
 # Prints what a command says only if it fails.
 quietly() { local output; output=$("$@" 2>&1) || { echo "$output"; return 1; }; }
 property() { systemctl show --value -p "$1" "$unit"; }
 is() { [ "$(property "$1")" = "$2" ]; }
 in_journal() { grep -qE -- "$1" <<<"$(journalctl -u "$unit" -o cat --no-pager "${@:2}")"; }
-keeper() { property MainPID; }
-io_process() { pgrep -P "$(keeper)" -x coupler-node-io; }
+supervisor() { property MainPID; }
+io_process() { pgrep -P "$(supervisor)" -x coupler-node-io; }
 of_process() { sed -nE "s/^$2:[[:space:]]*(.*)/\1/p" "/proc/$1/status"; }
-serves() { answered master -t 1 -r 0 -c 1 127.0.0.1 >/dev/null; }
+serves() { answered client -t 1 -r 0 -c 1 127.0.0.1 >/dev/null; }
 is_another() { [ "$(property MainPID)" != "$1" ] && is ActiveState active && serves; }
 mode_of_chip() { stat -c '%U:%G %a' "/dev/$(sim_chip plant)"; }
 mode_is() { [ "$(mode_of_chip)" = "$1" ]; }
@@ -50,7 +50,7 @@ cp node.yaml /etc/coupler/node.yaml
 check "it starts, and systemd is told when it serves" quietly systemctl enable --now "$unit"
 expect "the service is active" "active running" "$(property ActiveState) $(property SubState)"
 check "it says what it serves" [ "$(property StatusText | grep -c 'serving plant .* on .*:502')" -eq 1 ]
-for process in "$(keeper)" "$(io_process)"; do
+for process in "$(supervisor)" "$(io_process)"; do
   name=$(cat "/proc/$process/comm")
   expect "$name is the user coupler" coupler "$(stat -c %U "/proc/$process")"
   check "$name is in group gpio" grep -qw "$(getent group gpio | cut -d: -f3)" <<<"$(of_process "$process" Groups)"
@@ -70,14 +70,14 @@ check "and another" set_coil 1 1
 expect "the chip has them" "0 1" "$(sim_value plant 0) $(sim_value plant 1)"
 fan=/sys/class/pwm/pwmchip0/pwm0/duty_cycle
 dac=/sys/bus/iio/devices/iio:device0/out_voltage0_raw
-check "a PWM channel is written" answered master -t 4 -r 2 127.0.0.1 -- 500
+check "a PWM channel is written" answered client -t 4 -r 2 127.0.0.1 -- 500
 expect "the chip has it, in ns" 20000 "$(cat "$fan")"
-check "a DAC channel is written" answered master -t 4:float -B -r 0 127.0.0.1 -- 1.25
+check "a DAC channel is written" answered client -t 4:float -B -r 0 127.0.0.1 -- 1.25
 expect "the device has it, in mV" 1250 "$(cat "$dac")"
-check "an IIO channel is read" answered master -t 3 -r 1 -c 1 127.0.0.1
+check "an IIO channel is read" answered client -t 3 -r 1 -c 1 127.0.0.1
 
 echo "# reloaded"
-before=$(keeper)
+before=$(supervisor)
 sed 's/^  coils:/&\n    spare: 5/' node.yaml >/etc/coupler/node.yaml
 check "systemd passes it on" systemctl reload "$unit"
 check "a point that is new is served at once" set_coil 5 1
@@ -88,7 +88,7 @@ check "the map is refused" wait_until in_journal '^the new map is refused; the o
 expect "the service is as active as before" "active running" "$(property ActiveState) $(property SubState)"
 check "and serves the map that it had" set_coil 5 0
 expect "outputs are as they were" "0 1" "$(sim_value plant 0) $(sim_value plant 1)"
-expect "by the same keeper" "$before" "$(keeper)"
+expect "by the same supervisor" "$before" "$(supervisor)"
 cp node.yaml /etc/coupler/node.yaml
 
 echo "# the sandbox, from inside"
@@ -109,34 +109,34 @@ check "with realtime.conf it starts" quietly systemctl restart "$unit"
 check "and serves" wait_until serves
 is_locked() { [ "$(of_process "$1" VmLck)" != "0 kB" ]; }
 policy_of() { chrt -p "$1" | sed -n 's/.*policy: //p; s/.*priority: //p' | paste -sd ' '; }
-expect "the keeper has real-time priority" "SCHED_FIFO|SCHED_RESET_ON_FORK 11" "$(policy_of "$(keeper)")"
-expect "so has the I/O process" "SCHED_FIFO|SCHED_RESET_ON_FORK 10" "$(policy_of "$(io_process)")"
-check "the keeper's memory is locked" is_locked "$(keeper)"
-check "so is the I/O process's" is_locked "$(io_process)"
+expect "the supervisor has real-time priority" "SCHED_FIFO|SCHED_RESET_ON_FORK 11" "$(policy_of "$(supervisor)")"
+expect "so has the worker process" "SCHED_FIFO|SCHED_RESET_ON_FORK 10" "$(policy_of "$(io_process)")"
+check "the supervisor's memory is locked" is_locked "$(supervisor)"
+check "so is the worker process's" is_locked "$(io_process)"
 rm -r "$drop_in"
 systemctl daemon-reload
 check "without it, it starts again" quietly systemctl restart "$unit"
 check "and serves" wait_until serves
 
-echo "# the I/O process dies"
-before=$(keeper)
+echo "# the worker process dies"
+before=$(supervisor)
 kill -KILL "$(io_process)"
-check "the keeper starts another" wait_until serves
-expect "systemd has nothing to do" "$before 0" "$(keeper) $(property NRestarts)"
+check "the supervisor starts another" wait_until serves
+expect "systemd has nothing to do" "$before 0" "$(supervisor) $(property NRestarts)"
 expect "outputs are safe" "1 0" "$(sim_value plant 0) $(sim_value plant 1)"
 
-echo "# the keeper dies"
+echo "# the supervisor dies"
 check "an output is written" set_coil 0 0
 kill -KILL "$before"
 check "systemd starts both again" wait_until is_another "$before"
 expect "once" 1 "$(property NRestarts)"
 
-echo "# the keeper is stopped: nobody watches the I/O process any more"
-before=$(keeper)
+echo "# the supervisor is stopped: nobody watches the worker process any more"
+before=$(supervisor)
 kill -STOP "$before"
-check "the I/O process serves meanwhile" serves
-check "the I/O process notices, and systemd starts both again" within 120 is_another "$before"
-check "the journal tells why" in_journal '^the keeper, process [0-9]+, was silent for 5 s and is killed'
+check "the worker process serves meanwhile" serves
+check "the worker process notices, and systemd starts both again" within 120 is_another "$before"
+check "the journal tells why" in_journal '^the supervisor, process [0-9]+, was silent for 5 s and is killed'
 
 echo "# stopped"
 check "an output is written" set_coil 0 0

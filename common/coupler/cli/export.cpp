@@ -45,7 +45,7 @@ Exit run(const Arguments& arguments) {
   print(argument.loaded.diagnostics);
   if (!argument.loaded.map) return argument.exit;
   const formats::Export exported = exporter->write(argument.map());
-  print(exported.losses.diagnostics(arguments.map));
+  print(exported.warnings.diagnostics(arguments.map));
   if (arguments.out.empty()) {
     std::fputs(exported.text.c_str(), stdout);
     return ok;

@@ -17,7 +17,7 @@
 #include "coupler/cli/report.hpp"
 #include "coupler/generate/identifier.hpp"
 #include "coupler/generate/output.hpp"
-#include "coupler/vectors/json.hpp"
+#include "coupler/test_vectors/json.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -73,14 +73,14 @@ Exit run(const Arguments& arguments) {
                            loaded.point_lines));
   if (arguments.vectors)
     return write(arguments,
-                 {{as_file_name(name) + "_vectors.json", vectors::json(map, source, COUPLER_VERSION)}});
-  const generate::Stamp stamp{name, source, COUPLER_VERSION};
-  if (generate::is_identifier(stamp.name)) return write(arguments, generate::generate(map, stamp));
+                 {{as_file_name(name) + "_vectors.json", test_vectors::json(map, source, COUPLER_VERSION)}});
+  const generate::Provenance provenance{name, source, COUPLER_VERSION};
+  if (generate::is_identifier(provenance.name)) return write(arguments, generate::generate(map, provenance));
   const auto remedy = "give one with --name: letters, digits and underscores, a letter first, no word of C++";
   if (!arguments.name.empty())
-    return complain("generate", bad_call, fmt::format("'{}' cannot name C++ code", stamp.name), remedy);
-  return complain("generate", bad_input, fmt::format("the map's name '{}' cannot name C++ code", stamp.name),
-                  remedy);
+    return complain("generate", bad_call, fmt::format("'{}' cannot name C++ code", provenance.name), remedy);
+  return complain("generate", bad_input,
+                  fmt::format("the map's name '{}' cannot name C++ code", provenance.name), remedy);
 }
 
 }  // namespace

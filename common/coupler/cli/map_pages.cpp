@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "coupler/docs/escape.hpp"
+#include "coupler/docs/html.hpp"
+#include "coupler/docs/markdown.hpp"
 #include "coupler/map/node_address.hpp"
-#include "coupler/pages/escape.hpp"
-#include "coupler/pages/html.hpp"
-#include "coupler/pages/markdown.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -17,18 +17,18 @@ std::string url_of_map(const PagesRequest& request) {
   if (request.map == "-" || names_a_node(request.map)) return {};
   const fs::path map = fs::absolute(request.map).lexically_normal();
   if (request.source_url.empty())
-    return pages::url_path(map.lexically_relative(fs::absolute(request.out).lexically_normal()).string());
+    return docs::url_path(map.lexically_relative(fs::absolute(request.out).lexically_normal()).string());
   const bool ended = request.source_url.back() == '/';
-  return request.source_url + (ended ? "" : "/") + pages::url_path(map.filename().string());
+  return request.source_url + (ended ? "" : "/") + docs::url_path(map.filename().string());
 }
 
 }  // namespace
 
 std::vector<generate::File> map_pages(const PagesRequest& request, const Map& map, Span<const int> lines) {
   const auto document =
-      pages::make_document(map, lines, {request.source, url_of_map(request), COUPLER_VERSION});
+      docs::make_document(map, lines, {request.source, url_of_map(request), COUPLER_VERSION});
   const std::string name = as_file_name(request.name);
-  return {{name + ".html", pages::html_page(document)}, {name + ".md", pages::markdown_page(document)}};
+  return {{name + ".html", docs::html_page(document)}, {name + ".md", docs::markdown_page(document)}};
 }
 
 std::string as_file_name(std::string name) {

@@ -14,11 +14,11 @@ constexpr std::string_view board_points = R"(mapping:
   input_registers:
     presses: {address: 0, type: UDINT, counter: {of: button, edge: rising}}   # counts while nobody looks
   holding_registers:
-    setpoint: {address: 0, type: REAL, units: bar}   # plain memory: keeps what a master wrote
+    setpoint: {address: 0, type: REAL, units: bar}   # plain memory: keeps what a client wrote
 )";
 
 constexpr std::string_view board_head = R"(
-# Lines go to their safe state when the master that wrote them falls silent.
+# Lines go to their safe state when the client that wrote them falls silent.
 watchdog: {timeout: 1s}
 
 )";

@@ -129,15 +129,15 @@ bool tells_on_shutdown(const Map& map, const EntriesByName& entries) {
   });
 }
 
-void add_losses(const Entry& root, bool with_on_shutdown, Losses& losses) {
+void add_losses(const Entry& root, bool with_on_shutdown, ConversionWarnings& warnings) {
   std::set<std::string_view> worked_in{"mapping", "defaults", "addressing", "byteorder_reverse",
                                        "wordorder_reverse"};
   if (with_on_shutdown) worked_in.insert("on_shutdown");
   for (const Entry& entry : root.children)
     if (worked_in.count(entry.key) == 0)
-      losses.add("the table has points only, the device's keys are left out",
-                 "write them into the map that is made from it; `coupler import` takes --name and --unit",
-                 entry.key);
+      warnings.add("the table has points only, the device's keys are left out",
+                   "write them into the map that is made from it; `coupler import` takes --name and --unit",
+                   entry.key);
 }
 
 }  // namespace
@@ -154,7 +154,7 @@ Export write_csv(const Map& map) {
     if (const auto entry = entries.find(point.name); entry != entries.end())
       add_file_keys(*entry->second, rows.back());
   }
-  if (root) add_losses(*root, tells_on_shutdown(map, entries), out.losses);
+  if (root) add_losses(*root, tells_on_shutdown(map, entries), out.warnings);
   const std::vector<std::string> columns = columns_of(rows);
   out.text = fmt::format("{}\r\n", fmt::join(columns, ","));
   for (const Cells& cells : rows) {

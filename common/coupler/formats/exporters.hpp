@@ -6,14 +6,14 @@
 #include <string_view>
 
 #include "coupler/base/span.hpp"
-#include "coupler/formats/losses.hpp"
+#include "coupler/formats/conversion_warnings.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::formats {
 
 struct Export {
   std::string text;
-  Losses losses;  ///< what the format cannot say
+  ConversionWarnings warnings;  ///< what the format cannot say
 };
 
 struct Exporter {

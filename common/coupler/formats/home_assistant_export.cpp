@@ -103,12 +103,12 @@ struct Entities {
 
 class EntityWriter {
  public:
-  EntityWriter(const Map& map, Losses& losses) : map_(map), losses_(losses) {}
+  EntityWriter(const Map& map, ConversionWarnings& warnings) : map_(map), warnings_(warnings) {}
 
   Entities write() {
     for (const Point& point : map_.points) {
       if (point.count > 1)
-        losses_.add("arrays are entities that end in 0, 1 …", "nothing is to be done", point.name);
+        warnings_.add("arrays are entities that end in 0, 1 …", "nothing is to be done", point.name);
       for (std::uint16_t element = 0; element < point.count; ++element) add(point, element);
       tell_losses(point);
     }
@@ -130,8 +130,8 @@ class EntityWriter {
     if (point.table == Table::coils && is_writable(point))
       add_switch(point, element);
     else if (!is_readable(point))
-      losses_.add("registers that are only written are left out",
-                  "write them with the action modbus.write_register", point.name);
+      warnings_.add("registers that are only written are left out",
+                    "write them with the action modbus.write_register", point.name);
     else if (holds_bits(point.table))
       entities_.binary_sensors +=
           head(point, element, read_range(point)) +
@@ -154,8 +154,8 @@ class EntityWriter {
                                         point.table == Table::input_registers ? "input" : "holding");
     if (point.format.type == Type::BOOL) {
       if (codec::mask(point.format) != 1)
-        losses_.add("of a register's bits only the lowest can be a binary sensor, the others are left out",
-                    "make template binary sensors of the whole register", point.name);
+        warnings_.add("of a register's bits only the lowest can be a binary sensor, the others are left out",
+                      "make template binary sensors of the whole register", point.name);
       else
         entities_.binary_sensors += head(point, element, read_range(point)) + input_type;
       return;
@@ -170,26 +170,26 @@ class EntityWriter {
   void tell_losses(const Point& point) {
     if (is_readable(point) &&
         (point.host.rate > 0 ? point.host.rate : map_.polling.rate) > 1.0 / shortest_interval)
-      losses_.add("entities are read every 5 s, faster makes Home Assistant unstable",
-                  "nothing is to be done", point.name);
+      warnings_.add("entities are read every 5 s, faster makes Home Assistant unstable",
+                    "nothing is to be done", point.name);
     if (!point.description.empty())
-      losses_.add("descriptions are left out", "rename the entities", point.name);
+      warnings_.add("descriptions are left out", "rename the entities", point.name);
     if (holds_bits(point.table)) {
       if (!point.units.empty())
-        losses_.add("switches and binary sensors have no units", "nothing is to be done", point.name);
+        warnings_.add("switches and binary sensors have no units", "nothing is to be done", point.name);
       return;
     }
     if (is_writable(point) && is_readable(point))
-      losses_.add("holding registers are sensors, writing them is left out",
-                  "use the action modbus.write_register", point.name);
+      warnings_.add("holding registers are sensors, writing them is left out",
+                    "use the action modbus.write_register", point.name);
     if (point.format.type == Type::REAL || point.format.type == Type::LREAL)
-      losses_.add("floats are rounded to 6 decimals", "change 'precision' if that is too few", point.name);
+      warnings_.add("floats are rounded to 6 decimals", "change 'precision' if that is too few", point.name);
     if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
-      losses_.add("texts are taken for UTF-8", "nothing can be done but to keep to ASCII", point.name);
+      warnings_.add("texts are taken for UTF-8", "nothing can be done but to keep to ASCII", point.name);
   }
 
   const Map& map_;
-  Losses& losses_;
+  ConversionWarnings& warnings_;
   Entities entities_;
 };
 
@@ -213,10 +213,10 @@ std::string hub_of(const Map& map) {
 Export write_home_assistant(const Map& map) {
   Export out;
   if (map.connection.address.empty())
-    out.losses.add("the map does not say where the device is: localhost is written",
-                   "write its address behind 'host:'");
-  const Entities entities = EntityWriter(map, out.losses).write();
-  add_sides(map, out.losses);
+    out.warnings.add("the map does not say where the device is: localhost is written",
+                     "write its address behind 'host:'");
+  const Entities entities = EntityWriter(map, out.warnings).write();
+  add_sides(map, out.warnings);
   out.text = "# Made by `coupler export --to home-assistant`.\n" + hub_of(map);
   if (!entities.binary_sensors.empty()) out.text += "    binary_sensors:\n" + entities.binary_sensors;
   if (!entities.switches.empty()) out.text += "    switches:\n" + entities.switches;

@@ -41,7 +41,7 @@ std::vector<ForeignUnit> read_csv(std::string_view text, loader::Problems& probl
 /// entity is ever looked at.
 std::vector<ForeignUnit> read_modbuspal(std::string_view text, loader::Problems& problems);
 
-/// The origin's files (bitmeal/ros-modbus-device-driver), and maps of this project: they are written again in
+/// The files of ros-modbus-device-driver (bitmeal), and maps of this project: they are written again in
 /// one style. Comments are told, and go.
 std::vector<ForeignUnit> read_origin(std::string_view text, loader::Problems& problems);
 

@@ -56,7 +56,7 @@ std::string in_quotes(std::string_view text) {
 
 std::string key_text(std::string_view key) { return is_plain(key) ? std::string(key) : in_quotes(key); }
 
-/// Choices in the documentation's spelling: the origin takes any case.
+/// Choices in the documentation's spelling: ros-modbus-device-driver takes any case.
 std::string value_text(const Entry& entry, const Key* key) {
   if (key != nullptr && entry.kind == Entry::Kind::scalar)
     for (const std::string_view word : loader::words(key->choices))

@@ -106,30 +106,30 @@ std::string comment_of(const Point& point) {
 /// Telegraf counts the address behind a field, too.
 bool is_at_the_end(const Point& point) { return read_range(point).end() > 0xFFFF; }
 
-void tell_losses(const Point& point, Losses& losses) {
+void tell_losses(const Point& point, ConversionWarnings& warnings) {
   if (point.scale.offset != 0)
-    losses.add("the offset of a scale is left out", "add it with [[processors.scale]]", point.name);
+    warnings.add("the offset of a scale is left out", "add it with [[processors.scale]]", point.name);
   if (!point.units.empty() || !point.description.empty())
-    losses.add("units and descriptions are comments", "nothing is to be done", point.name);
+    warnings.add("units and descriptions are comments", "nothing is to be done", point.name);
   if (point.host.rate > 0)
-    losses.add("points are read as often as the map says, not at rates of their own",
-               "put them into a second [[inputs.modbus]] with its own interval", point.name);
+    warnings.add("points are read as often as the map says, not at rates of their own",
+                 "put them into a second [[inputs.modbus]] with its own interval", point.name);
   if (is_writable(point))
-    losses.add("Telegraf only reads, writing is left out", "nothing is to be done", point.name);
+    warnings.add("Telegraf only reads, writing is left out", "nothing is to be done", point.name);
   if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
-    losses.add("texts are taken for UTF-8", "convert the field where it is shown", point.name);
+    warnings.add("texts are taken for UTF-8", "convert the field where it is shown", point.name);
   if (point.count > 1)
-    losses.add("arrays are fields that end in _0, _1 …", "nothing is to be done", point.name);
+    warnings.add("arrays are fields that end in _0, _1 …", "nothing is to be done", point.name);
 }
 
 /// Whether the point can be a field; if not, it is told.
-bool is_field(const Point& point, Losses& losses) {
+bool is_field(const Point& point, ConversionWarnings& warnings) {
   if (!is_readable(point))
-    losses.add("points that are only written are left out", "nothing is to be done: Telegraf only reads",
-               point.name);
+    warnings.add("points that are only written are left out", "nothing is to be done: Telegraf only reads",
+                 point.name);
   else if (is_at_the_end(point))
-    losses.add("Telegraf refuses fields that end at address 65535, they are left out", "move the point",
-               point.name);
+    warnings.add("Telegraf refuses fields that end at address 65535, they are left out", "move the point",
+                 point.name);
   else
     return true;
   return false;
@@ -173,26 +173,26 @@ std::string connection_of(const Map& map) {
   return text;
 }
 
-void tell_losses(const Map& map, Losses& losses) {
+void tell_losses(const Map& map, ConversionWarnings& warnings) {
   if (map.connection.address.empty())
-    losses.add("the map does not say where the device is: localhost is written",
-               "write its address behind tcp://");
+    warnings.add("the map does not say where the device is: localhost is written",
+                 "write its address behind tcp://");
   const Limits usual;
   if (map.limits.read_registers < usual.read_registers || map.limits.read_bits < usual.read_bits)
-    losses.add("Telegraf has no limit to what one read asks for but Modbus' own",
-               "see its workaround one_request_per_field if the device refuses");
-  add_sides(map, losses);
+    warnings.add("Telegraf has no limit to what one read asks for but Modbus' own",
+                 "see its workaround one_request_per_field if the device refuses");
+  add_sides(map, warnings);
 }
 
 }  // namespace
 
 Export write_telegraf(const Map& map) {
   Export out;
-  tell_losses(map, out.losses);
+  tell_losses(map, out.warnings);
   Requests requests;
   for (const Point& point : map.points) {
-    if (!is_field(point, out.losses)) continue;
-    tell_losses(point, out.losses);
+    if (!is_field(point, out.warnings)) continue;
+    tell_losses(point, out.warnings);
     std::string& fields = requests[{point.table, byte_order_of(point)}];
     for (std::uint16_t element = 0; element < point.count; ++element)
       fields +=

@@ -78,7 +78,7 @@ Export write_wireshark(const Map& map) {
   for (const Point& point : map.points) out.text += row_of(point);
   out.text += "  },\n}\n\n";
   out.text += wireshark_body();
-  add_sides(map, out.losses);
+  add_sides(map, out.warnings);
   return out;
 }
 

@@ -69,7 +69,7 @@ std::string_view kind(Access access) {
 
 }  // namespace
 
-std::string client_header(const Map& map, const Stamp& stamp) {
+std::string client_header(const Map& map, const Provenance& provenance) {
   const std::vector<std::string> names = members(map);
   std::string declarations;
   std::string visits;
@@ -79,19 +79,20 @@ std::string client_header(const Map& map, const Stamp& stamp) {
                                 kind(point.access), cpp_type(point), names[i]);
     visits += fmt::format("    use({}, this->{});\n", literal(point.name), names[i]);
   }
-  return fmt::format(header_form, fmt::arg("name", stamp.name), fmt::arg("source", comment(stamp.source)),
-                     fmt::arg("version", stamp.version), fmt::arg("fingerprint", map.fingerprint),
-                     fmt::arg("members", declarations), fmt::arg("visits", visits));
+  return fmt::format(header_form, fmt::arg("name", provenance.name),
+                     fmt::arg("source", comment(provenance.source)), fmt::arg("version", provenance.version),
+                     fmt::arg("fingerprint", map.fingerprint), fmt::arg("members", declarations),
+                     fmt::arg("visits", visits));
 }
 
-std::string client_source(const Map& map, const Stamp& stamp) {
+std::string client_source(const Map& map, const Provenance& provenance) {
   const std::vector<std::string> names = members(map);
   std::string initialisers;
   for (std::size_t i = 0; i < names.size(); ++i)
     initialisers += fmt::format(",\n      {}(*this, {})", names[i], i);
-  return fmt::format(source_form, fmt::arg("name", stamp.name), fmt::arg("source", comment(stamp.source)),
-                     fmt::arg("version", stamp.version), fmt::arg("fingerprint", map.fingerprint),
-                     fmt::arg("initialisers", initialisers));
+  return fmt::format(source_form, fmt::arg("name", provenance.name),
+                     fmt::arg("source", comment(provenance.source)), fmt::arg("version", provenance.version),
+                     fmt::arg("fingerprint", map.fingerprint), fmt::arg("initialisers", initialisers));
 }
 
 }  // namespace coupler::generate

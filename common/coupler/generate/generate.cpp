@@ -8,14 +8,14 @@
 
 namespace coupler::generate {
 
-std::vector<File> generate(const Map& map, const Stamp& stamp) {
-  return {{stamp.name + "_client.cpp", client_source(map, stamp)},
-          {stamp.name + "_client.hpp", client_header(map, stamp)},
-          {stamp.name + "_driver.cpp", driver_program(stamp)},
-          {stamp.name + "_hooks.hpp", node_hooks(map, stamp)},
-          {stamp.name + "_map.cpp", table_source(map, stamp)},
-          {stamp.name + "_map.hpp", table_header(map, stamp)},
-          {stamp.name + "_node.cpp", node_program(stamp)}};
+std::vector<File> generate(const Map& map, const Provenance& provenance) {
+  return {{provenance.name + "_client.cpp", client_source(map, provenance)},
+          {provenance.name + "_client.hpp", client_header(map, provenance)},
+          {provenance.name + "_driver.cpp", driver_program(provenance)},
+          {provenance.name + "_hooks.hpp", node_hooks(map, provenance)},
+          {provenance.name + "_map.cpp", table_source(map, provenance)},
+          {provenance.name + "_map.hpp", table_header(map, provenance)},
+          {provenance.name + "_node.cpp", node_program(provenance)}};
 }
 
 }  // namespace coupler::generate

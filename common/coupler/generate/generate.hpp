@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "coupler/generate/stamp.hpp"
+#include "coupler/generate/provenance.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::generate {
@@ -15,6 +15,6 @@ struct File {
 };
 
 /// All that is made of a map, sorted by name.
-std::vector<File> generate(const Map& map, const Stamp& stamp);
+std::vector<File> generate(const Map& map, const Provenance& provenance);
 
 }  // namespace coupler::generate

@@ -27,10 +27,10 @@ static_assert(fingerprint == 0x{fingerprint:016x}, "{name}_hooks and {name}_map 
 
 /// Derive from it, override what your firmware does, call run() in main.
 ///
-/// on_POINT(value): a master writes; called in the thread that answers masters. `false` refuses: the master gets
+/// on_POINT(value): a client writes; called in the thread that answers clients. `false` refuses: the client gets
 /// exception 04, and nothing of its request is done. When a later point of the same request is refused, on_POINT
 /// is called once more with the value before.
-/// set_POINT(value): from any thread; masters read it from then on. The error says what is wrong with the value.
+/// set_POINT(value): from any thread; clients read it from then on. The error says what is wrong with the value.
 class NodeHooks : public ::coupler::device::PointHooks {{
  public:
   NodeHooks() : PointHooks(::coupler::maps::{name}::map) {{}}
@@ -62,7 +62,7 @@ std::string parameter(const Point& point) {
 
 }  // namespace
 
-std::string node_hooks(const Map& map, const Stamp& stamp) {
+std::string node_hooks(const Map& map, const Provenance& provenance) {
   const std::vector<std::string> names = members(map);
   std::string methods;
   std::string cases;
@@ -80,8 +80,8 @@ std::string node_hooks(const Map& map, const Stamp& stamp) {
                              parameter(point), cpp_type(point), i);
   }
   return fmt::format(
-      form, fmt::arg("name", stamp.name), fmt::arg("source", comment(stamp.source)),
-      fmt::arg("version", stamp.version), fmt::arg("fingerprint", map.fingerprint),
+      form, fmt::arg("name", provenance.name), fmt::arg("source", comment(provenance.source)),
+      fmt::arg("version", provenance.version), fmt::arg("fingerprint", map.fingerprint),
       fmt::arg("methods", methods),
       fmt::arg("dispatch", cases.empty() ? "" : fmt::format(dispatch_form, fmt::arg("cases", cases))));
 }

@@ -131,17 +131,17 @@ std::string sequences(const WatchdogSequences& watchdog) {
 
 }  // namespace
 
-std::string table_header(const Map& map, const Stamp& stamp) {
-  return fmt::format(header_form, fmt::arg("name", stamp.name), fmt::arg("source", comment(stamp.source)),
-                     fmt::arg("version", stamp.version), fmt::arg("model", model_version),
-                     fmt::arg("fingerprint", map.fingerprint));
+std::string table_header(const Map& map, const Provenance& provenance) {
+  return fmt::format(header_form, fmt::arg("name", provenance.name),
+                     fmt::arg("source", comment(provenance.source)), fmt::arg("version", provenance.version),
+                     fmt::arg("model", model_version), fmt::arg("fingerprint", map.fingerprint));
 }
 
-std::string table_source(const Map& map, const Stamp& stamp) {
+std::string table_source(const Map& map, const Provenance& provenance) {
   using fmt::arg;
   return fmt::format(
-      source_form, arg("name", stamp.name), arg("source", comment(stamp.source)),
-      arg("version", stamp.version),
+      source_form, arg("name", provenance.name), arg("source", comment(provenance.source)),
+      arg("version", provenance.version),
       arg("points",
           array("Point points",
                 "Name, table, address, format, access; initial registers, safe, line; description, units, "

@@ -25,8 +25,8 @@ void quote(Diagnostics& diagnostics, std::string_view text) {
     begin = end + 1;
   }
   const auto at = [&lines](int line, int column) {
-    if (line < 1 || static_cast<std::size_t>(line) > lines.size()) return Excerpt{};
-    return excerpt(lines[static_cast<std::size_t>(line) - 1], column);
+    if (line < 1 || static_cast<std::size_t>(line) > lines.size()) return SourceSnippet{};
+    return snippet(lines[static_cast<std::size_t>(line) - 1], column);
   };
   for (Diagnostic& diagnostic : diagnostics) {
     diagnostic.source = at(diagnostic.line, diagnostic.column);

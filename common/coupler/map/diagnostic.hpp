@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "coupler/map/excerpt.hpp"
+#include "coupler/map/source_snippet.hpp"
 
 namespace coupler {
 
@@ -17,7 +17,7 @@ struct Diagnostic {
     int line = 0;    ///< from 1
     int column = 0;  ///< from 1, in bytes
     std::string what;
-    Excerpt source{};
+    SourceSnippet source{};
   };
 
   Severity severity = Severity::error;
@@ -27,7 +27,7 @@ struct Diagnostic {
   std::string what;
   std::string remedy;
   std::vector<Note> notes{};
-  Excerpt source{};
+  SourceSnippet source{};
 };
 
 using Diagnostics = std::vector<Diagnostic>;

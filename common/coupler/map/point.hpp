@@ -18,7 +18,7 @@
 
 namespace coupler {
 
-/// What the master may do with a point.
+/// What the client may do with a point.
 enum class Access : std::uint8_t { read, write, read_write };
 constexpr Enumeration<Access, 3> enumeration(Access) {
   return {"Access", {{Access::read, "read"}, {Access::write, "write"}, {Access::read_write, "read_write"}}};
@@ -74,7 +74,7 @@ constexpr bool has_hardware(const Point& point) {
   return point.line.present() || is_analogue(point) || point.counter.present() || point.latched.present();
 }
 
-/// What a master writes goes to the code of the firmware, where there is some; otherwise it is memory.
+/// What a client writes goes to the code of the firmware, where there is some; otherwise it is memory.
 constexpr bool is_hooked_output(const Point& point) { return is_writable(point) && !has_hardware(point); }
 
 /// Its value may come from there.

@@ -14,7 +14,7 @@ struct Style {
 constexpr Style plain{};
 constexpr Style ansi{"\033[1m", "\033[1;31m", "\033[1;35m", "\033[1;36m", "\033[1;32m", "\033[0m"};
 
-std::string source_lines(int line, const Excerpt& source, const Style& style) {
+std::string source_lines(int line, const SourceSnippet& source, const Style& style) {
   if (source.text.empty()) return {};
   return fmt::format("{:>5} | {}\n      | {}{}{}\n", line, source.text, style.green, underline(source),
                      style.end);

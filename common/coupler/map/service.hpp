@@ -10,7 +10,7 @@
 
 namespace coupler {
 
-/// Outputs go to their safe state when a master that has written falls silent.
+/// Outputs go to their safe state when a client that has written falls silent.
 struct Watchdog {
   enum class FedBy : std::uint8_t {
     any,   ///< every request that is carried out, of a connection that has written an output

@@ -14,7 +14,7 @@
 
 namespace coupler::modbus {
 
-// What a master can ask for. Bytes are views of the request's PDU.
+// What a client can ask for. Bytes are views of the request's PDU.
 
 /// FC 1 … 4.
 struct Read {

@@ -45,7 +45,7 @@ Json boolean() {
   return any_of({{{"type", "boolean"}}, text(any_case({"yes", "no", "on", "off"}), "write true or false")});
 }
 
-/// The origin takes its words in any case.
+/// ros-modbus-device-driver takes its words in any case.
 Json choice(const Key& key) {
   const auto choices = loader::words(key.choices);
   Json exact{{"enum", choices}};

@@ -4,7 +4,7 @@
 
 class Pump : public coupler::maps::pump::NodeHooks {
  public:
-  // Masters' writes. What is refused here, the master is told, and nothing of its request is done.
+  // Clients' writes. What is refused here, the client is told, and nothing of its request is done.
   bool on_valve(bool open) override {
     if (running_ && !open) return false;  // never against a closed valve
     open_ = open;
@@ -26,7 +26,7 @@ class Pump : public coupler::maps::pump::NodeHooks {
     return true;
   }
 
-  // Nobody is in command any more. Masters read back what became of their outputs.
+  // Nobody is in command any more. Clients read back what became of their outputs.
   void make_safe() override {
     running_ = false;
     set_run(false);

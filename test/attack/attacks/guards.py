@@ -32,7 +32,7 @@ def outputs_become_safe(monitor, written, meanwhile):
     assert state(monitor) == ARMED or time.monotonic() > written + TIMEOUT, "the write did not arm the watchdog"
     end = time.monotonic() + TIMEOUT + LATE
     while state(monitor) == ARMED:
-        assert time.monotonic() < end, f"outputs are still on {TIMEOUT + LATE:g} s after the master's last request"
+        assert time.monotonic() < end, f"outputs are still on {TIMEOUT + LATE:g} s after the client's last request"
         meanwhile()
     assert state(monitor) == EXPIRED
     monitor.expect_answer(modbus.values(1, b"\x00"), modbus.read(1, 0, OUTPUTS))
@@ -42,23 +42,23 @@ def outputs_become_safe(monitor, written, meanwhile):
 def monitors(node):
     with contextlib.ExitStack() as stack:
         crowd = [stack.enter_context(node.connect()) for _ in range(MONITORS)]
-        with node.connect() as master:
-            written = write_outputs(master)
+        with node.connect() as client:
+            written = write_outputs(client)
         outputs_become_safe(crowd[0], written, lambda: [is_answered(client) for client in crowd])
 
 
-@attack("a master that has connected anew and only reads is a monitor", guarded=True, alone=True)
-def reborn_master(node):
-    with node.connect() as master:
-        written = write_outputs(master)
-    with node.connect() as master, node.connect() as monitor:
-        outputs_become_safe(monitor, written, lambda: is_answered(master))
+@attack("a client that has connected anew and only reads is a monitor", guarded=True, alone=True)
+def reborn_client(node):
+    with node.connect() as client:
+        written = write_outputs(client)
+    with node.connect() as client, node.connect() as monitor:
+        outputs_become_safe(monitor, written, lambda: is_answered(client))
 
 
 @attack("writes that are refused do not feed the watchdog", guarded=True, alone=True)
 def refused_writes(node):
-    with node.connect() as master:
-        written = write_outputs(master)
+    with node.connect() as client:
+        written = write_outputs(client)
     wrong = [modbus.pdu(5, OUTPUTS, 0xFF00), modbus.pdu(5, 0, 1), modbus.pdu(6, 123, 1),
              modbus.write_coils(0, OUTPUTS, b"\xff", count=2), modbus.write_coils(0, OUTPUTS + 1, b"\xff\xff")]
     with node.connect() as client, node.connect() as monitor:
@@ -71,13 +71,13 @@ def refused_writes(node):
 @attack("requests for another unit and half a frame do not feed the watchdog, though their sender has written",
         guarded=True, alone=True)
 def no_requests(node):
-    with node.connect() as master, node.connect() as other, node.connect() as monitor:
-        write_outputs(master)
+    with node.connect() as client, node.connect() as other, node.connect() as monitor:
+        write_outputs(client)
         written = write_outputs(other)
         unsent = list(modbus.adu(modbus.write_coils(0, OUTPUTS, b"\xff")))[:-1]
 
         def send_what_is_no_request():
-            master.send(modbus.adu(READ, unit=7))
+            client.send(modbus.adu(READ, unit=7))
             if unsent:
                 other.send(bytes([unsent.pop(0)]))
             time.sleep(0.05)
@@ -87,8 +87,8 @@ def no_requests(node):
 @attack("a storm of connections does not hold the watchdog up", guarded=True, alone=True)
 def storm_while_the_watchdog_waits(node):
     with node.connect() as monitor:
-        with node.connect() as master:
-            written = write_outputs(master)
+        with node.connect() as client:
+            written = write_outputs(client)
 
         def storm():
             for _ in range(50):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a wire to a master and back: the node, the floor server and bare ioctls in turn, on lines of one chip
+// From a wire to a client and back: the node, the floor server and bare ioctls in turn, on lines of one chip
 // of their own, the median of several runs of each.
 #include <fmt/format.h>
 #include <linux/gpio.h>
@@ -123,10 +123,10 @@ void compare(const char* chip, const std::string& wires, std::size_t rounds) {
   for (int i = 0; i < 2; ++i)
     fmt::print("{:>9}{:>8}{:>7}{:>8}{:>7}", "node", "floor", "ioctl", "/floor", "/ioctl");
   fmt::print("\n");
-  print({"wire changes -> master has read it",
+  print({"wire changes -> client has read it",
          {reading(to_node, in_node), reading(to_floor, in_floor), bare_reading}},
         rounds);
-  print({"master writes -> wire has changed",
+  print({"client writes -> wire has changed",
          {writing(to_node, out_node), writing(to_floor, out_floor), bare_writing}},
         rounds);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The least that a program can do between a Modbus master and two lines: a blocking socket and one ioctl for
+// The least that a program can do between a Modbus client and two lines: a blocking socket and one ioctl for
 // each request. FC 2 and FC 5 of one bit, no other; nothing is checked, one connection at a time.
 #include <arpa/inet.h>
 #include <linux/gpio.h>

@@ -11,7 +11,7 @@
 
 namespace coupler::bench {
 
-/// A Modbus master with one request in flight. What must not happen in a benchmark (no connection, a wrong
+/// A Modbus client with one request in flight. What must not happen in a benchmark (no connection, a wrong
 /// reply) ends the program with status 1 and a line on stderr.
 class LockStepClient {
  public:

@@ -79,7 +79,7 @@ TEST(CsvExport, What_the_driver_leaves_behind_goes_through_a_table_and_back) {
       "m");
   ASSERT_NE(loaded.map, nullptr) << lines_of(loaded.diagnostics);
   const formats::Export out = formats::write_csv(loaded.map->map());
-  EXPECT_THAT(lines_of(out.losses.diagnostics("m")), testing::Not(testing::HasSubstr("on_shutdown")));
+  EXPECT_THAT(lines_of(out.warnings.diagnostics("m")), testing::Not(testing::HasSubstr("on_shutdown")));
   const Imported back("csv", out.text, {"m", {}});
   ASSERT_EQ(back.result.maps.size(), 1U) << back.said << out.text;
   EXPECT_EQ(back.said,
@@ -102,7 +102,7 @@ TEST(CsvExport, Where_the_wiring_alone_has_safe_states_the_drivers_manners_are_t
       "{name: m, on_shutdown: safe, mapping: {coils: {a: {address: 0, line: GPIO4, safe: on}}}}", "m");
   ASSERT_NE(loaded.map, nullptr);
   const formats::Export out = formats::write_csv(loaded.map->map());
-  EXPECT_THAT(lines_of(out.losses.diagnostics("m")), testing::HasSubstr("left out: name, on_shutdown;"));
+  EXPECT_THAT(lines_of(out.warnings.diagnostics("m")), testing::HasSubstr("left out: name, on_shutdown;"));
   const Imported back("csv", out.text, {"m", {}});
   EXPECT_EQ(back.said, "");
   ASSERT_EQ(back.result.maps.size(), 1U);
@@ -112,7 +112,7 @@ TEST(CsvExport, Where_the_wiring_alone_has_safe_states_the_drivers_manners_are_t
 TEST(CsvExport, The_devices_own_keys_are_told) {
   const LoadResult loaded = load_map("{name: m, port: 503, mapping: {coils: {a: 0}}}", "m");
   ASSERT_NE(loaded.map, nullptr);
-  EXPECT_THAT(lines_of(formats::write_csv(loaded.map->map()).losses.diagnostics("m.yaml")),
+  EXPECT_THAT(lines_of(formats::write_csv(loaded.map->map()).warnings.diagnostics("m.yaml")),
               testing::HasSubstr(
                   "m.yaml: warning: the table has points only, the device's keys are left out: name, port;"));
 }

@@ -23,7 +23,7 @@ formats::Export exported(std::string_view format, const std::string& points, con
 }
 
 std::string told(std::string_view format, const std::string& points, const std::string& top = "") {
-  return lines_of(exported(format, points, top).losses.diagnostics("m"));
+  return lines_of(exported(format, points, top).warnings.diagnostics("m"));
 }
 
 TEST(Export, Every_format_has_a_name_of_its_own_and_is_found_by_it) {
@@ -44,9 +44,9 @@ TEST(Export, The_same_map_gives_the_same_text) {
 }
 
 TEST(Export, A_loss_of_many_points_is_told_once_with_how_many_they_are) {
-  formats::Losses losses;
-  for (int i = 0; i < 20; ++i) losses.add("units are lost", "write them down", "p" + std::to_string(i));
-  EXPECT_EQ(lines_of(losses.diagnostics("m.yaml")),
+  formats::ConversionWarnings warnings;
+  for (int i = 0; i < 20; ++i) warnings.add("units are lost", "write them down", "p" + std::to_string(i));
+  EXPECT_EQ(lines_of(warnings.diagnostics("m.yaml")),
             "m.yaml: warning: units are lost: p0, p1, p2, p3, p4, p5, p6, p7 and 12 more; write them down\n");
 }
 

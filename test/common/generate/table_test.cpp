@@ -13,9 +13,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const Stamp stamp{"cell", "cell.yaml", "1.2.3"};
+const Provenance provenance{"cell", "cell.yaml", "1.2.3"};
 
-std::string source() { return table_source(testing::sample()->map(), stamp); }
+std::string source() { return table_source(testing::sample()->map(), provenance); }
 
 TEST(Table, A_coil_is_written_with_its_line_and_initial_state) {
   EXPECT_THAT(source(), HasSubstr(R"(
@@ -79,14 +79,14 @@ TEST(Table, The_text_is_one_literal_a_line) {
 TEST(Table, A_map_without_points_has_no_empty_arrays) {
   OwnedMap empty;
   empty.finish({}, {}, {});
-  EXPECT_THAT(table_source(empty.map(), stamp),
+  EXPECT_THAT(table_source(empty.map(), provenance),
               AllOf(Not(HasSubstr("points[]")), Not(HasSubstr("sim[]")), Not(HasSubstr("allow[]")),
                     HasSubstr("    {},\n    {},\n    fingerprint,\n")));
 }
 
 TEST(Table, The_header_carries_fingerprint_and_model_version) {
   const auto map = testing::sample();
-  const std::string header = table_header(map->map(), stamp);
+  const std::string header = table_header(map->map(), provenance);
   EXPECT_THAT(header, AllOf(HasSubstr(fmt::format("fingerprint = 0x{:016x};", map->map().fingerprint)),
                             HasSubstr(fmt::format("model_version == {}", model_version)),
                             HasSubstr("namespace coupler::maps::cell {"),
@@ -94,7 +94,7 @@ TEST(Table, The_header_carries_fingerprint_and_model_version) {
 }
 
 TEST(Table, A_file_name_cannot_leave_its_comment) {
-  const Stamp odd{"cell", "a\n#error b", "1.2.3"};
+  const Provenance odd{"cell", "a\n#error b", "1.2.3"};
   EXPECT_THAT(table_source(testing::sample()->map(), odd), Not(HasSubstr("\n#error")));
 }
 

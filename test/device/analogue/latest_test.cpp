@@ -34,8 +34,8 @@ TEST_F(LatestSample, That_failed_is_an_error_until_one_succeeds) {
 
 TEST_F(LatestSample, Is_an_error_when_no_other_came_for_too_long) {
   latest.put(1.5, now);
-  EXPECT_EQ(Sample(1.5), latest.get(now + Latest::patience));
-  const TimePoint late = now + Latest::patience + std::chrono::milliseconds(1);
+  EXPECT_EQ(Sample(1.5), latest.get(now + Latest::timeout));
+  const TimePoint late = now + Latest::timeout + std::chrono::milliseconds(1);
   EXPECT_EQ(Sample(tl::unexpected(ETIMEDOUT)), latest.get(late));
   latest.begin(late);
   EXPECT_EQ(Sample(tl::unexpected(EAGAIN)), latest.get(late));

@@ -226,7 +226,7 @@ TEST(AnaloguePoints, A_write_to_an_output_arms_the_watchdog_which_drives_lines_a
   map.watchdog({std::chrono::milliseconds(500), Watchdog::FedBy::any, Watchdog::Recovery::manual});
   NodeUnderTest node(map.build());
   node.ask(pdu(6, {0, 7}));
-  EXPECT_EQ(std::nullopt, node.handler.patience(node.now));
+  EXPECT_EQ(std::nullopt, node.handler.time_until_due(node.now));
   node.ask(pdu(6, {1, 505}));
   node.now += std::chrono::milliseconds(500);
   node.handler.tick(node.now);

@@ -33,7 +33,7 @@ struct FakeHooks : Hooks {
 struct HookedNode : ::testing::Test {
   Pdu ask(const Pdu& request) {
     std::array<std::uint8_t, modbus::max_pdu_size> reply{};
-    const std::size_t size = handler.handle(request, peer, now, reply);
+    const std::size_t size = handler.handle(request, session, now, reply);
     return Pdu(reply.data(), reply.data() + size);
   }
   Pdu write(int address, std::initializer_list<int> values) {
@@ -58,7 +58,7 @@ struct HookedNode : ::testing::Test {
   FakeLines lines;
   FakeHooks hooks;
   HookedPoints hooked{map, memory.image, hooks};
-  Peer peer;
+  ClientSession session;
   Statistics statistics;
   TimePoint now{};
   OutputWatchdog watchdog{map.service.watchdog};

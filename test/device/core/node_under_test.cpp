@@ -22,7 +22,7 @@ OwnedImage::OwnedImage(const Map& map)
 NodeUnderTest::NodeUnderTest(MapPtr of) : owner(std::move(of)) {}
 NodeUnderTest::~NodeUnderTest() = default;
 
-Pdu NodeUnderTest::ask(Peer& who, const Pdu& request) {
+Pdu NodeUnderTest::ask(ClientSession& who, const Pdu& request) {
   std::array<std::uint8_t, modbus::max_pdu_size> reply{};
   const std::size_t size = handler.handle(request, who, now, reply);
   return Pdu(reply.data(), reply.data() + size);

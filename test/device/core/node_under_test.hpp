@@ -29,8 +29,8 @@ struct NodeUnderTest {
   explicit NodeUnderTest(MapPtr of);
   ~NodeUnderTest();
 
-  Pdu ask(const Pdu& request) { return ask(peer, request); }
-  Pdu ask(Peer& who, const Pdu& request);
+  Pdu ask(const Pdu& request) { return ask(session, request); }
+  Pdu ask(ClientSession& who, const Pdu& request);
 
   MapPtr owner;
   const Map& map = owner->map();
@@ -39,7 +39,7 @@ struct NodeUnderTest {
   FakeLines lines;
   FakeChannels channels;
   AnaloguePoints analogue{map, image, channels};
-  Peer peer;
+  ClientSession session;
   Statistics statistics;
   TimePoint now{};
   OutputWatchdog watchdog{map.service.watchdog};

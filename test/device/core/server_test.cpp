@@ -16,7 +16,8 @@ class Serving : public testing::Test {
   Pdu ask(std::uint8_t unit) {
     const Pdu request = pdu(1, {0, 3});
     std::array<std::uint8_t, modbus::max_adu_size> adu{};
-    return Pdu(adu.data(), adu.data() + server_.answer({0xBEEF, unit, request}, node_.peer, node_.now, adu));
+    return Pdu(adu.data(),
+               adu.data() + server_.answer({0xBEEF, unit, request}, node_.session, node_.now, adu));
   }
   NodeUnderTest node_{fakes::MapBuilder().many(Table::coils, 0, 3).build()};
   Server server_{7, node_.handler, node_.statistics};

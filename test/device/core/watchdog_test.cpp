@@ -37,9 +37,9 @@ class GuardedOutputs : public testing::Test {
     node_.now += time;
     node_.handler.tick(node_.now);
   }
-  /// State and time left, as a master reads them.
+  /// State and time left, as a client reads them.
   std::pair<int, int> shown() {
-    Peer monitor;
+    ClientSession monitor;
     const Pdu reply = node_.ask(monitor, pdu(4, {0xFF00 + identity::at_watchdog_state, 2}));
     return {modbus::get_u16(&reply[2]), modbus::get_u16(&reply[4])};
   }
@@ -47,8 +47,8 @@ class GuardedOutputs : public testing::Test {
 
   const Pdu all_on_ = pdu(15, {0, 5}, {1, 0x1D});  ///< coils 0, 2, 3, 4 on, 1 off
   NodeUnderTest node_;
-  Peer& master_ = node_.peer;
-  Peer monitor_;
+  ClientSession& client_ = node_.session;
+  ClientSession monitor_;
 };
 
 TEST_F(GuardedOutputs, Silence_drives_all_of_them_safe_in_one_step_and_the_image_shows_it) {
@@ -78,7 +78,7 @@ TEST_F(GuardedOutputs, Nothing_expires_before_an_output_was_written) {
   node_.lines.broken = false;
   pass(10 * timeout);
   EXPECT_EQ(node_.lines.safe_calls, 0);
-  EXPECT_EQ(node_.handler.patience(node_.now), std::nullopt);
+  EXPECT_EQ(node_.handler.time_until_due(node_.now), std::nullopt);
   EXPECT_EQ(shown(), std::make_pair(1, 0));
 }
 
@@ -139,7 +139,7 @@ TEST_F(GuardedOutputs, Its_state_and_the_time_left_are_registers) {
   node_.ask(all_on_);
   pass(milliseconds(123));
   EXPECT_EQ(shown(), std::make_pair(2, 377));
-  EXPECT_EQ(node_.handler.patience(node_.now), milliseconds(377));
+  EXPECT_EQ(node_.handler.time_until_due(node_.now), milliseconds(377));
   pass(timeout);
   EXPECT_EQ(shown(), std::make_pair(3, 0));
 }
@@ -248,7 +248,7 @@ TEST_F(LockedOutputs, A_reset_while_armed_changes_nothing) {
   node_.ask(all_on_);
   pass(milliseconds(100));
   node_.ask(monitor_, pdu(3, {0, 1}));
-  Peer operator_panel;
+  ClientSession operator_panel;
   node_.ask(operator_panel, reset);
   EXPECT_EQ(shown().first, 2);
 }
@@ -257,7 +257,7 @@ TEST(WithoutWatchdog, Nothing_ever_happens_and_the_state_is_0) {
   NodeUnderTest node(MapBuilder().many(Table::coils, 0, 1).build());
   node.lines.outputs = {{0, {}}};
   node.ask(pdu(5, {0, 0xFF00}));
-  EXPECT_EQ(node.handler.patience(node.now), std::nullopt);
+  EXPECT_EQ(node.handler.time_until_due(node.now), std::nullopt);
   node.now += std::chrono::hours(10000);
   node.handler.tick(node.now);
   EXPECT_EQ(node.lines.safe_calls, 0);

@@ -44,7 +44,8 @@ TEST(Allocations, From_the_socket_to_the_reply_there_is_none) {
     const std::uint32_t requests = node.node.statistics.requests;
     client.send(bytes);
     const long before = allocations();
-    while (node.node.statistics.requests == requests) node.tcp.tick(node.loop.run_once(node.tcp.patience()));
+    while (node.node.statistics.requests == requests)
+      node.tcp.tick(node.loop.run_once(node.tcp.time_until_due()));
     EXPECT_EQ(allocations(), before) << "function " << int{request[0]};
     client.received();
   }

@@ -119,7 +119,7 @@ TEST_F(Connecting, A_silent_client_is_welcome_but_a_frame_must_end_in_time_howev
   }
   node_.tcp.tick(start + std::chrono::seconds(4));
   EXPECT_EQ(node_.tcp.size(), 2U);
-  node_.tcp.tick(TimePoint::clock::now() + Connection::patience);
+  node_.tcp.tick(TimePoint::clock::now() + Connection::timeout);
   EXPECT_TRUE(slow.is_closed());
   EXPECT_FALSE(silent.is_closed());
   EXPECT_EQ(node_.node.statistics.timeouts, 1U);
@@ -164,7 +164,7 @@ TEST_F(Connecting, A_client_that_never_reads_is_owed_little_and_dropped_and_the_
   node_.settle();
   EXPECT_THAT(polite.received(), ElementsAreArray(answer_to(9)));
 
-  node_.tcp.tick(TimePoint::clock::now() + Connection::patience);
+  node_.tcp.tick(TimePoint::clock::now() + Connection::timeout);
   EXPECT_EQ(node_.tcp.size(), 1U);
   EXPECT_FALSE(polite.is_closed());
 }

@@ -15,7 +15,7 @@ struct HandedOver : testing::Test {
   void hand_over() {
     std::vector<OpenConnection> clients = one.tcp.release();
     EXPECT_EQ(one.tcp.size(), 0U);
-    other.tcp.adopt(std::move(clients), TimePoint::clock::now());
+    other.tcp.take_over(std::move(clients), TimePoint::clock::now());
     other.settle();
   }
   TcpUnderTest one;
@@ -72,9 +72,9 @@ TEST_F(HandedOver, Whole_requests_that_wait_behind_replies_are_answered_in_order
 
 TEST(HandingOver, Who_may_not_connect_any_more_is_not_taken_over) {
   TcpUnderTest one;
-  TcpUnderTest other(8, GuestList({*parse_network("192.0.2.0/24")}));
+  TcpUnderTest other(8, AllowList({*parse_network("192.0.2.0/24")}));
   const Client client = one.connect();
-  other.tcp.adopt(one.tcp.release(), TimePoint::clock::now());
+  other.tcp.take_over(one.tcp.release(), TimePoint::clock::now());
   EXPECT_EQ(other.tcp.size(), 0U);
   EXPECT_EQ(other.node.statistics.refusals, 1U);
 }

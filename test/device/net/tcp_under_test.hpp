@@ -31,7 +31,7 @@ inline Pdu adu(std::uint16_t transaction, const Pdu& pdu) {
 inline Pdu question(std::uint16_t transaction) { return adu(transaction, pdu(3, {0, 2})); }
 inline Pdu answer_to(std::uint16_t transaction) { return adu(transaction, {3, 4, 0, 0, 0, 0}); }
 
-/// A master as rude as the test wants.
+/// A client as rude as the test wants.
 class Client {
  public:
   /// `host`: it comes from 127.0.0.`host`.
@@ -73,10 +73,10 @@ class Client {
 
 /// A server on a free loopback port, run by the test step by step.
 struct TcpUnderTest {
-  explicit TcpUnderTest(std::size_t capacity = 8, GuestList guests = {})
+  explicit TcpUnderTest(std::size_t capacity = 8, AllowList guests = {})
       : listener(listen(std::move(guests))), tcp(loop, listener, server, node.statistics, log, capacity) {}
 
-  static Listener listen(GuestList guests) {
+  static Listener listen(AllowList guests) {
     auto listener = listen_on("127.0.0.1", 0);
     EXPECT_TRUE(listener.has_value());
     listener->guests = std::move(guests);

@@ -81,7 +81,7 @@ TEST(PointHooks, A_value_is_set_in_the_process_that_serves_and_nowhere_else) {
   Settable hooks(map->map());
   const auto before = hooks.set_speed(5);
   ASSERT_FALSE(before.has_value());
-  EXPECT_THAT(before.error(), testing::HasSubstr("this process does not answer masters"));
+  EXPECT_THAT(before.error(), testing::HasSubstr("this process does not answer clients"));
   hooks.allow_setting();
   EXPECT_TRUE(hooks.set_speed(5).has_value());
 }

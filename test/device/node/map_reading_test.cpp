@@ -76,8 +76,8 @@ TEST_F(Reading, One_that_takes_too_long_is_killed) {
                                    }},
                                    {});
   ASSERT_TRUE(reading.has_value());
-  EXPECT_FALSE((*reading)->is_over(TimePoint() + MapReading::patience - std::chrono::seconds(1)));
-  EXPECT_TRUE((*reading)->is_over(TimePoint() + MapReading::patience));
+  EXPECT_FALSE((*reading)->is_over(TimePoint() + MapReading::timeout - std::chrono::seconds(1)));
+  EXPECT_TRUE((*reading)->is_over(TimePoint() + MapReading::timeout));
   const auto none = (*reading)->take();
   ASSERT_FALSE(none.has_value());
   EXPECT_THAT(none.error(), HasSubstr("could not be read in 60 s"));

@@ -7,9 +7,9 @@
 #include <csignal>
 #include <string>
 
-#include "coupler/device/keeper/child.hpp"
 #include "coupler/device/net/signals.hpp"
 #include "coupler/device/node/reload.hpp"
+#include "coupler/device/supervisor/child.hpp"
 
 namespace coupler::device {
 namespace {

@@ -36,11 +36,11 @@ TEST(Servable, What_is_no_address_in_allow_is_named) {
   constexpr std::string_view allow[] = {"10.0.0.7", "gripper"};
   Map map;
   map.service.allow = allow;
-  const auto guests = guests_of(map);
+  const auto guests = allow_list_of(map);
   ASSERT_FALSE(guests.has_value());
   EXPECT_THAT(guests.error(), HasSubstr("'allow': 'gripper' is no IP address"));
   map.service.allow = Span<const std::string_view>(allow).first(1);
-  EXPECT_TRUE(guests_of(map).has_value());
+  EXPECT_TRUE(allow_list_of(map).has_value());
 }
 
 }  // namespace

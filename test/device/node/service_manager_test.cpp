@@ -54,7 +54,7 @@ TEST_F(Managed, Its_watchdog_is_fed_twice_in_its_time) {
   manager.beat();
   news();
   int fed = 0;
-  for (auto time = Pulse::period; time < std::chrono::seconds(10); time += Pulse::period) {
+  for (auto time = Heartbeat::period; time < std::chrono::seconds(10); time += Heartbeat::period) {
     manager.beat();
     for (std::string text = news(); !text.empty(); text = news()) {
       EXPECT_EQ(text, "WATCHDOG=1");

@@ -13,7 +13,7 @@ using host::ExceptionReply;
 using host::Timeout;
 using host::test::FakeDevice;
 using modbus::Exception;
-using survey::IdentificationPage;
+using scan::IdentificationPage;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;

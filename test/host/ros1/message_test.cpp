@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "coupler/pages/ros_message.hpp"
+#include "coupler/docs/ros_message.hpp"
 
 namespace coupler::host {
 namespace {
@@ -51,7 +51,7 @@ TEST(Message, The_pages_of_a_map_name_the_type_of_every_message) {
         const std::string carried = with_message<Ros1Messages>(point, [](auto kind) {
           return std::string(ros::message_traits::DataType<typename decltype(kind)::Message>::value());
         });
-        EXPECT_EQ(pages::ros_message(point), carried) << codec::to_string(type) << " × " << count;
+        EXPECT_EQ(docs::ros_message(point), carried) << codec::to_string(type) << " × " << count;
       }
 }
 

@@ -3,8 +3,8 @@
 
 #include <rosidl_runtime_cpp/traits.hpp>
 
+#include "coupler/docs/ros_message.hpp"
 #include "coupler/host/ros2/messages.hpp"
-#include "coupler/pages/ros_message.hpp"
 
 namespace coupler::host {
 namespace {
@@ -32,7 +32,7 @@ TEST(Message, The_types_are_those_of_ROS_1) {
       const std::string carried = with_message<Ros2Messages>(point, [](auto kind) {
         return std::string(rosidl_generator_traits::name<typename decltype(kind)::Message>());
       });
-      EXPECT_EQ(pages::ros_message(point), ros1_name(carried)) << codec::to_string(type) << " x " << count;
+      EXPECT_EQ(docs::ros_message(point), ros1_name(carried)) << codec::to_string(type) << " x " << count;
     }
 }
 

@@ -23,7 +23,7 @@ constexpr double most_seconds = 3600;
 constexpr double most_double = std::numeric_limits<double>::max();
 
 constexpr Key keys[] = {
-    // The map: the origin's keys.
+    // The map: the keys of ros-modbus-device-driver.
     origin("name", S::map, K::ros_name, "press", "namespace of the topics").needed(),
     origin("address", S::map, K::host, "192.168.0.10", "host name or IP address of the coupler"),
     origin("port", S::map, K::integer, "502", "TCP port").otherwise("502").within(1, 65535),
@@ -69,7 +69,7 @@ constexpr Key keys[] = {
         .lists(S::area),
     project("listen", S::map, K::ip_address, "127.0.0.1", "interface of the node"),
     project("allow", S::map, K::list, "[192.168.0.0/24, 10.0.0.7]", "who may connect to the node"),
-    project("watchdog", S::map, K::section, "{timeout: 500ms}", "safe state when the master is silent")
+    project("watchdog", S::map, K::section, "{timeout: 500ms}", "safe state when the client is silent")
         .holds(S::watchdog),
     project("readback", S::map, K::boolean, "true", "compare a line's level after driving it")
         .otherwise("false"),
@@ -112,7 +112,7 @@ constexpr Key keys[] = {
     project("description", point, K::text, "the left door", "for people"),
     project("units", point, K::text, "mm", "for people"),
     project("initial", point, K::value, "0", "value when the node starts"),
-    project("access", point, K::choice, "read", "what the master may do with it").one_of<Access>(),
+    project("access", point, K::choice, "read", "what the client may do with it").one_of<Access>(),
     project("counter", registers, K::section, "{of: pulse, edge: rising}",
             "counts the edges of a discrete input")
         .holds(S::edge),
@@ -238,7 +238,7 @@ constexpr Key keys[] = {
     project("of", S::edge, K::text, "pulse", "the discrete input").needed(),
     project("edge", S::edge, K::choice, "rising", "which of its edges").otherwise("rising").one_of<Edge>(),
     // `watchdog:`
-    project("timeout", S::watchdog, K::duration, "500ms", "the longest silence of a master")
+    project("timeout", S::watchdog, K::duration, "500ms", "the longest silence of a client")
         .needed()
         .within(0.01, most_seconds),
     project("fed_by", S::watchdog, K::choice, "any", "which requests count")

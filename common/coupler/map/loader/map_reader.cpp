@@ -139,7 +139,7 @@ void read_map(const Entry& file, std::string_view text, Placement& placement, Co
   const Areas reserved = read_areas(top, "reserve", defaults.addressing, context);
   OpenPoints points = read_places(find_points(top, root, context), defaults, context);
   DraftPoints& drafts = points.drafts;
-  place_points(drafts, ground_of(drafts, reserved, unreadable, preset), placement, context);
+  place_points(drafts, free_space_of(drafts, reserved, unreadable, preset), placement, context);
   for (std::size_t i = 0; i < drafts.size(); ++i) read_rest(points.options[i], defaults, drafts[i], context);
   if (preset) apply(*preset, drafts, context);
   check_points(drafts, head.limits, top.has("addressing"), context);

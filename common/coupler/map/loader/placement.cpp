@@ -170,27 +170,28 @@ void renew(const lock::Lock& lock, Placement& placement) {
 
 }  // namespace
 
-lock::Ground ground_of(const DraftPoints& points, const Areas& reserved, const Areas& unreadable,
-                       const std::optional<Preset>& preset) {
-  lock::Ground ground;
-  ground.closed.push_back({Table::input_registers, identity::reserved});
-  ground.closed.push_back({Table::holding_registers, identity::reserved});
+lock::FreeSpace free_space_of(const DraftPoints& points, const Areas& reserved, const Areas& unreadable,
+                              const std::optional<Preset>& preset) {
+  lock::FreeSpace free_space;
+  free_space.closed.push_back({Table::input_registers, identity::reserved});
+  free_space.closed.push_back({Table::holding_registers, identity::reserved});
   for (const Areas* areas : {&reserved, &unreadable})
-    for (const Area& area : *areas) ground.closed.push_back({area.table, area.range});
+    for (const Area& area : *areas) free_space.closed.push_back({area.table, area.range});
   for (const DraftPoint& draft : points) {
     const Point& point = draft.point;
-    if (draft.placed) ground.closed.push_back({point.table, range(point), mask_of(draft, point.format)});
-    if (point.read_address) ground.closed.push_back({point.table, read_range(point)});
+    if (draft.placed) free_space.closed.push_back({point.table, range(point), mask_of(draft, point.format)});
+    if (point.read_address) free_space.closed.push_back({point.table, read_range(point)});
   }
-  if (!preset) return ground;
-  for (const Preset::Area& area : preset->areas) ground.open.push_back({area.table, area.range});
+  if (!preset) return free_space;
+  for (const Preset::Area& area : preset->areas) free_space.open.push_back({area.table, area.range});
   for (const Preset::ReadBack& back : preset->read_back)
-    ground.closed.push_back(
+    free_space.closed.push_back(
         {back.from.table, modbus::Range::of(back.from.range.start() + back.offset, back.from.range.count())});
-  return ground;
+  return free_space;
 }
 
-void place_points(DraftPoints& points, const lock::Ground& ground, Placement& placement, Context& context) {
+void place_points(DraftPoints& points, const lock::FreeSpace& free_space, Placement& placement,
+                  Context& context) {
   std::vector<DraftPoint*> drafts;
   std::vector<lock::Request> requests;
   for (DraftPoint& draft : points) {
@@ -201,7 +202,7 @@ void place_points(DraftPoints& points, const lock::Ground& ground, Placement& pl
   if (requests.empty() && placement.known.empty()) return;
   const bool may_grow = placement.file.use == LockUse::renew && !placement.file.path.empty();
   const lock::Allocation allocation = lock::allocate(
-      requests, ground, placement.known, may_grow ? lock::Unknown::allocated : lock::Unknown::refused);
+      requests, free_space, placement.known, may_grow ? lock::Unknown::allocated : lock::Unknown::refused);
   std::vector<const DraftPoint*> unknown;
   for (std::size_t i = 0; i < drafts.size(); ++i) {
     DraftPoint& draft = *drafts[i];

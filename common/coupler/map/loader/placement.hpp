@@ -24,10 +24,11 @@ struct Placement {
 
 /// What is closed to points without an address: the node's own registers, what the map keeps free or the
 /// device refuses, what the preset has no modules for, and where the points with an address are.
-lock::Ground ground_of(const DraftPoints& points, const Areas& reserved, const Areas& unreadable,
-                       const std::optional<Preset>& preset);
+lock::FreeSpace free_space_of(const DraftPoints& points, const Areas& reserved, const Areas& unreadable,
+                              const std::optional<Preset>& preset);
 
 /// Gives points without an address theirs: they are `placed` then.
-void place_points(DraftPoints& points, const lock::Ground& ground, Placement& placement, Context& context);
+void place_points(DraftPoints& points, const lock::FreeSpace& free_space, Placement& placement,
+                  Context& context);
 
 }  // namespace coupler::loader

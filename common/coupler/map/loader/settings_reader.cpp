@@ -19,7 +19,7 @@ Watchdog read_watchdog(const Reader& top, Context& context) {
   if (!reader) return watchdog;
   if (!reader->has("timeout"))
     context.problems.error(top.find("watchdog")->key_at, "'watchdog' has no 'timeout'",
-                           "add 'timeout: 500ms', the longest silence of a master");
+                           "add 'timeout: 500ms', the longest silence of a client");
   reader->fields(watchdog);
   return watchdog;
 }

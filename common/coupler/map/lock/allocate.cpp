@@ -26,8 +26,8 @@ std::optional<Place> within(const Place& room, const Request& request) {
 
 class FirstFit {
  public:
-  FirstFit(const Ground& ground, const Lock& lock) : open_(ground.open) {
-    for (const Place& place : ground.closed) taken_.take(place);
+  FirstFit(const FreeSpace& free_space, const Lock& lock) : open_(free_space.open) {
+    for (const Place& place : free_space.closed) taken_.take(place);
     for (const Entry& entry : lock) taken_.take(entry.place);
   }
 
@@ -85,10 +85,10 @@ Answer answer(const Request& request, const Entry* known, Unknown unknown, First
 
 }  // namespace
 
-Allocation allocate(const std::vector<Request>& requests, const Ground& ground, const Lock& lock,
+Allocation allocate(const std::vector<Request>& requests, const FreeSpace& free_space, const Lock& lock,
                     Unknown unknown) {
   const Names names(lock);
-  FirstFit free(ground, lock);
+  FirstFit free(free_space, lock);
   Allocation result;
   result.answers.reserve(requests.size());
   std::unordered_set<const Entry*> asked_for;

@@ -17,7 +17,7 @@ struct Request {
 };
 
 /// What is fixed.
-struct Ground {
+struct FreeSpace {
   std::vector<Place> closed;  ///< nothing is put there
   std::vector<Place> open;    ///< if a table has any, every point stands within one of them
 };
@@ -46,7 +46,7 @@ struct Allocation {
 /// Gives each request the place that `lock` has for it. The others, in their order and if they may be
 /// `allocated`, get the first that is neither closed nor anybody's in the lock. Every entry of the old lock
 /// is in the new one: retired when nobody asked for it, and in use again when somebody did.
-Allocation allocate(const std::vector<Request>& requests, const Ground& ground, const Lock& lock,
+Allocation allocate(const std::vector<Request>& requests, const FreeSpace& free_space, const Lock& lock,
                     Unknown unknown);
 
 }  // namespace coupler::lock

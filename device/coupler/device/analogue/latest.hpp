@@ -14,7 +14,7 @@ namespace coupler::device {
 class Latest {
  public:
   /// An input that is not heard of for so long counts as broken: its chip, or its bus, hangs.
-  static constexpr std::chrono::seconds patience{10};
+  static constexpr std::chrono::seconds timeout{10};
 
   /// Sampling begins.
   void begin(TimePoint now) {
@@ -31,7 +31,7 @@ class Latest {
   /// The error is an errno. EAGAIN: there is none yet; ETIMEDOUT: it is too old.
   tl::expected<double, int> get(TimePoint now) const {
     const int error = error_;
-    if (now - taken_.load() > patience) return tl::unexpected(ETIMEDOUT);
+    if (now - taken_.load() > timeout) return tl::unexpected(ETIMEDOUT);
     if (error != 0) return tl::unexpected(error);
     return value_.load();
   }

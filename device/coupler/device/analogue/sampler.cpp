@@ -13,7 +13,7 @@ std::chrono::nanoseconds Sampler::period_for(double rate) {
       std::clamp<std::chrono::duration<double>>(wanted, shortest, longest));
 }
 
-Sampler::Sampler(SysfsChannels& channels, std::chrono::nanoseconds period, std::chrono::milliseconds patience)
+Sampler::Sampler(SysfsChannels& channels, std::chrono::nanoseconds period, std::chrono::milliseconds timeout)
     : period_(period) {
   std::map<std::string, Inputs> devices;
   for (SysfsChannels::Sampled& input : channels.inputs()) {
@@ -22,7 +22,7 @@ Sampler::Sampler(SysfsChannels& channels, std::chrono::nanoseconds period, std::
   }
   for (const auto& [name, inputs] : devices) threads_.emplace_back([this, list = inputs] { run(list); });
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, patience, [&] { return sampled_ == threads_.size(); });
+  changed_.wait_for(lock, timeout, [&] { return sampled_ == threads_.size(); });
 }
 
 Sampler::~Sampler() {

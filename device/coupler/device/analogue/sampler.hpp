@@ -12,7 +12,7 @@
 namespace coupler::device {
 
 /// Reads inputs over and over, with one thread for each device, so that a conversion keeps nobody waiting who
-/// asks for its value. Belongs into the process that answers masters: threads are not inherited.
+/// asks for its value. Belongs into the process that answers clients: threads are not inherited.
 class Sampler {
  public:
   /// How often a device is read at most, and at least, whatever the map's rate.
@@ -26,7 +26,7 @@ class Sampler {
 
   /// `channels` outlive it.
   Sampler(SysfsChannels& channels, std::chrono::nanoseconds period,
-          std::chrono::milliseconds patience = first);
+          std::chrono::milliseconds timeout = first);
   Sampler(const Sampler&) = delete;
   Sampler& operator=(const Sampler&) = delete;
   /// Waits for the conversions that are under way.

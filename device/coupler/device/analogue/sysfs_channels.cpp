@@ -71,7 +71,7 @@ Channels::Outcome SysfsChannels::drive(const Point& output, double value) {
   return error == ENODEV ? Outcome::absent : Outcome::failed;
 }
 
-void SysfsChannels::give_way(const SysfsChannels* successor) {
+void SysfsChannels::hand_over(const SysfsChannels* successor) {
   const auto goes_on = [&](const WiredOutput& output) {
     return successor != nullptr &&
            std::any_of(successor->outputs_.begin(), successor->outputs_.end(),

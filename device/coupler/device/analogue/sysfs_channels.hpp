@@ -13,7 +13,7 @@
 #include "coupler/device/core/channels.hpp"
 #include "coupler/device/core/log.hpp"
 #include "coupler/device/gpio/fault.hpp"
-#include "coupler/device/keeper/shared_array.hpp"
+#include "coupler/device/supervisor/shared_array.hpp"
 
 namespace coupler::device {
 
@@ -49,7 +49,7 @@ class SysfsChannels : public Channels {
   Outcome drive(const Point& output, double value) override;
 
   /// Drives outputs that its successor (may be null) does not have to their safe state.
-  void give_way(const SysfsChannels* successor);
+  void hand_over(const SysfsChannels* successor);
 
   /// Finds channels again whose device was unplugged and is back; tells which. Processes that were forked
   /// before do not know of it.

@@ -57,7 +57,7 @@ std::size_t EdgePoints::links_for(const Map& map) {
 
 EdgePoints::EdgePoints(const Map& map, Image& image, Statistics& statistics, Span<Link> links)
     : map_(map), statistics_(statistics) {
-  if (links.empty()) return;  // to look at all points of a large map takes its time, and masters wait
+  if (links.empty()) return;  // to look at all points of a large map takes its time, and clients wait
   std::size_t used = 0;
   each_wish(map, [&](const Point& point, const EdgeOf& wish, bool latches) {
     const Point* input = find(map, wish.input);

@@ -7,7 +7,7 @@
 
 namespace coupler::device {
 
-/// Counters and latched points: what edges of inputs do to the image, and what a master's write may do to
+/// Counters and latched points: what edges of inputs do to the image, and what a client's write may do to
 /// these points.
 class EdgePoints final : public EdgeSink {
  public:
@@ -29,7 +29,7 @@ class EdgePoints final : public EdgeSink {
   void add(std::uint16_t input, const Edges& edges) override;
 
   /// A write clears a latch with 0; a 1 leaves it as it is. `now` are the cells of the range, `next` what a
-  /// master wants to write there: it becomes what is to be stored.
+  /// client wants to write there: it becomes what is to be stored.
   void keep_latches(Table table, modbus::Range written, Span<const std::uint16_t> now,
                     Span<std::uint16_t> next) const;
 

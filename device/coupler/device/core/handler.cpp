@@ -44,14 +44,15 @@ void Handler::set_machine(const identity::Machine& machine) {
   write_identity(map_, machine_, image_);
 }
 
-std::size_t Handler::handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply) {
+std::size_t Handler::handle(modbus::Bytes request, ClientSession& session, TimePoint now,
+                            Span<std::uint8_t> reply) {
   tick(now);
   hardware_.take_news(now, edge_points_);
   ++statistics_.requests;
   wrote_output_ = false;
   const Answer done = answer({request, now, reply});
   if (done) {
-    watchdog_.request(peer, wrote_output_, now);
+    watchdog_.request(session, wrote_output_, now);
     return *done;
   }
   ++statistics_.exceptions;
@@ -66,7 +67,7 @@ void Handler::tick(TimePoint now) {
   show_outputs();
 }
 
-std::optional<std::chrono::milliseconds> Handler::patience(TimePoint now) const {
+std::optional<std::chrono::milliseconds> Handler::time_until_due(TimePoint now) const {
   using std::chrono::milliseconds;
   if (!watchdog_.deadline()) return std::nullopt;
   return std::max(milliseconds(0), std::chrono::ceil<milliseconds>(*watchdog_.deadline() - now));

@@ -7,10 +7,10 @@
 #include <optional>
 #include <tl/expected.hpp>
 
+#include "coupler/device/core/client_session.hpp"
 #include "coupler/device/core/edge_points.hpp"
 #include "coupler/device/core/hardware.hpp"
 #include "coupler/device/core/image.hpp"
-#include "coupler/device/core/peer.hpp"
 #include "coupler/device/core/statistics.hpp"
 #include "coupler/device/core/watchdog.hpp"
 #include "coupler/map/identity.hpp"
@@ -32,16 +32,16 @@ class Handler {
   void set_machine(const identity::Machine& machine);
 
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
-  /// returns its size; `peer` sent it. Exceptions: those of parse_request(); 02 an address that is not
+  /// returns its size; `session` sent it. Exceptions: those of parse_request(); 02 an address that is not
   /// mapped, not readable or not writable; 03 a value that does not reset the watchdog, or that an output
   /// cannot take; 04 hardware that cannot be read or driven, or an output that the watchdog keeps in its safe
   /// state.
-  std::size_t handle(modbus::Bytes request, Peer& peer, TimePoint now, Span<std::uint8_t> reply);
+  std::size_t handle(modbus::Bytes request, ClientSession& session, TimePoint now, Span<std::uint8_t> reply);
 
   /// Drives the outputs to their safe state if the watchdog is due. handle() does so too.
   void tick(TimePoint now);
   /// How long tick() need not be called; nullopt: not before the next request.
-  std::optional<std::chrono::milliseconds> patience(TimePoint now) const;
+  std::optional<std::chrono::milliseconds> time_until_due(TimePoint now) const;
 
  private:
   using Answer = tl::expected<std::size_t, modbus::Exception>;

@@ -12,7 +12,7 @@ namespace coupler::device {
 /// changes.
 void write_identity(const Map& map, const identity::Machine& machine, Image& image);
 
-/// The same for counters and watchdog, which are brought up to date whenever a master reads there.
+/// The same for counters and watchdog, which are brought up to date whenever a client reads there.
 void write_statistics(const Statistics& statistics, TimePoint now, Image& image);
 void write_watchdog(const OutputWatchdog& watchdog, TimePoint now, Image& image);
 

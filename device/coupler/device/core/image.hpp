@@ -37,10 +37,10 @@ class Image {
   /// The cells of the range; empty if one of its addresses is not mapped.
   Span<std::uint16_t> find(Table table, modbus::Range range) const;
 
-  /// The same for a master's read: every address must also belong to a readable point.
+  /// The same for a client's read: every address must also belong to a readable point.
   Span<std::uint16_t> find_readable(Table table, modbus::Range range) const;
 
-  /// The same for a master's write: every address must also belong to a writable point.
+  /// The same for a client's write: every address must also belong to a writable point.
   Span<std::uint16_t> find_writable(Table table, modbus::Range range) const;
 
  private:

@@ -11,9 +11,9 @@ void OutputWatchdog::arm(TimePoint now) {
   deadline_ = now + settings_.timeout;
 }
 
-void OutputWatchdog::request(Peer& peer, bool wrote_output, TimePoint now) {
-  peer.has_written |= wrote_output;
-  const bool feeds = wrote_output || (peer.has_written && settings_.fed_by == Watchdog::FedBy::any);
+void OutputWatchdog::request(ClientSession& session, bool wrote_output, TimePoint now) {
+  session.has_written |= wrote_output;
+  const bool feeds = wrote_output || (session.has_written && settings_.fed_by == Watchdog::FedBy::any);
   if (feeds && state_ == State::armed) deadline_ = now + settings_.timeout;
 }
 
@@ -35,7 +35,7 @@ void OutputWatchdog::disarm() {
   deadline_.reset();
 }
 
-void OutputWatchdog::go_on_from(const OutputWatchdog& before, TimePoint now) {
+void OutputWatchdog::take_over(const OutputWatchdog& before, TimePoint now) {
   if (!is_present() || !before.is_present()) return;
   state_ = before.state_;
   if (before.deadline_) deadline_ = now + settings_.timeout;

@@ -5,15 +5,15 @@
 #include <cstdint>
 #include <optional>
 
-#include "coupler/device/core/peer.hpp"
+#include "coupler/device/core/client_session.hpp"
 #include "coupler/device/core/time.hpp"
 #include "coupler/map/service.hpp"
 
 namespace coupler::device {
 
-/// Tells when the master has been silent for too long. A write to an output arms it; requests of connections
+/// Tells when the client has been silent for too long. A write to an output arms it; requests of connections
 /// that have written one feed it, so neither a monitor nor an HMI that writes something else can keep a dead
-/// master's outputs on.
+/// client's outputs on.
 class OutputWatchdog {
  public:
   /// What the identity area shows at at_watchdog_state.
@@ -29,10 +29,10 @@ class OutputWatchdog {
     return state_ == State::expired && settings_.recovery == Watchdog::Recovery::manual;
   }
 
-  /// A master has written to an output.
+  /// A client has written to an output.
   void arm(TimePoint now);
   /// A request of this client was carried out; `wrote_output`: it was a write to an output.
-  void request(Peer& peer, bool wrote_output, TimePoint now);
+  void request(ClientSession& session, bool wrote_output, TimePoint now);
   /// The operator has seen that it expired.
   void reset();
 
@@ -43,7 +43,7 @@ class OutputWatchdog {
   /// They went there for another reason: there is nothing to wait for. What expired stays so.
   void disarm();
   /// Goes on where that of another map was; a wait begins anew.
-  void go_on_from(const OutputWatchdog& before, TimePoint now);
+  void take_over(const OutputWatchdog& before, TimePoint now);
   /// When it is due; nullopt: never, unless somebody writes.
   std::optional<TimePoint> deadline() const { return deadline_; }
   /// Until the outputs go to their safe state, rounded up; 0 unless armed.

@@ -11,7 +11,7 @@
 
 #include "coupler/device/gpio/event_source.hpp"
 #include "coupler/device/gpio/line_group.hpp"
-#include "coupler/device/gpio/wanted.hpp"
+#include "coupler/device/gpio/line_spec.hpp"
 
 namespace coupler::device::backend {
 
@@ -20,16 +20,16 @@ Inventory chips();
 
 /// Whether the kernel would take `line` into the same request as these (of which there is at least one).
 /// Inputs and outputs are never mixed.
-bool fits(const std::vector<Wanted>& group, const Wanted& line);
+bool fits(const std::vector<LineSpec>& group, const LineSpec& line);
 
 /// One to max_group_size lines that fit together. Outputs begin at their wanted levels, with no other
 /// level in between. The error names chip, line and holder.
-tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<Wanted>& lines);
+tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<LineSpec>& lines);
 
 struct Inputs {
   std::unique_ptr<InputGroup> group;
   EventSource* events = nullptr;  ///< the group, if it has a descriptor to be watched
 };
-tl::expected<Inputs, std::string> request_inputs(const std::vector<Wanted>& lines);
+tl::expected<Inputs, std::string> request_inputs(const std::vector<LineSpec>& lines);
 
 }  // namespace coupler::device::backend

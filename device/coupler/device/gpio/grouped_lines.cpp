@@ -206,7 +206,7 @@ void GroupedLines::abandon(Output& old, const Output* successor) {
   if (any && old.fault.note(old.wired.group->drive(old.next))) copy(old.next, old.levels());
 }
 
-void GroupedLines::succeed(GroupedLines& before) {
+void GroupedLines::take_over(GroupedLines& before) {
   for (Output& old : before.outputs_) {
     const auto heir = std::find_if(outputs_.begin(), outputs_.end(),
                                    [&](const Output& o) { return o.wired.group == old.wired.group; });

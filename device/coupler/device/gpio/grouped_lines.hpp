@@ -11,7 +11,7 @@
 #include "coupler/device/gpio/fault.hpp"
 #include "coupler/device/gpio/line_group.hpp"
 #include "coupler/device/gpio/lost_edges.hpp"
-#include "coupler/device/keeper/shared_array.hpp"
+#include "coupler/device/supervisor/shared_array.hpp"
 #include "coupler/map/line.hpp"
 
 namespace coupler::device {
@@ -72,7 +72,7 @@ class GroupedLines : public Lines {
 
   /// Takes the place of `before`: lines that only that one drives go to their safe state, and groups of both
   /// are driven here as they are there.
-  void succeed(GroupedLines& before);
+  void take_over(GroupedLines& before);
 
  private:
   /// What processes share: a level for each line, and the group's last error.

@@ -4,7 +4,7 @@
 #include <string>
 #include <tuple>
 
-#include "coupler/device/gpio/wanted.hpp"
+#include "coupler/device/gpio/line_spec.hpp"
 
 namespace coupler::device {
 
@@ -20,7 +20,7 @@ struct HeldLine {
   std::optional<Edge> counted{};
 };
 
-inline HeldLine held_as(const Wanted& wanted) {
+inline HeldLine held_as(const LineSpec& wanted) {
   const Line& line = wanted.point->line;
   return {wanted.line.chip->name, wanted.line.offset, is_output(wanted),
           line.active_low,        line.bias,          line.drive,

@@ -134,7 +134,7 @@ void SimulatedChip::set(Output& output, bool level) {
     if (input.from == &output) ++(level != input.wire->invert ? input.edges.rising : input.edges.falling);
 }
 
-void SimulatedChip::succeed(const SimulatedChip& before) {
+void SimulatedChip::take_over(const SimulatedChip& before) {
   start_ = before.start_;
   state_[0].told = before.state_[0].told;
   auto outputs = by_name(before.outputs_.all());

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "coupler/device/core/lines.hpp"
-#include "coupler/device/keeper/shared_array.hpp"
+#include "coupler/device/supervisor/shared_array.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::device {
@@ -28,7 +28,7 @@ class SimulatedChip : public Lines {
   bool drive_safe() override;
 
   /// Goes on where that of another map was: levels of outputs and unwired inputs of the same name, and time.
-  void succeed(const SimulatedChip& before);
+  void take_over(const SimulatedChip& before);
 
   /// What a test does from outside. Names are those of points of the map.
   void pull(std::string_view input, bool level);  ///< an unwired input

@@ -9,7 +9,7 @@
 #include "coupler/device/gpio/grouped_lines.hpp"
 #include "coupler/device/gpio/simulated_chip.hpp"
 #ifdef COUPLER_WITH_GPIOD
-#include "coupler/device/gpio/wire.hpp"
+#include "coupler/device/gpio/prepare_lines.hpp"
 #endif
 
 namespace coupler::device {
@@ -36,7 +36,7 @@ class NextSimulated : public NextWiring {
       : before_(dynamic_cast<Simulated*>(before)),
         next_(std::make_unique<Simulated>(map, TimePoint::clock::now())) {}
   std::unique_ptr<Wiring> take_over() override {
-    if (before_ != nullptr) next_->hardware().succeed(before_->hardware());
+    if (before_ != nullptr) next_->hardware().take_over(before_->hardware());
     return std::move(next_);
   }
 
@@ -65,7 +65,7 @@ tl::expected<std::unique_ptr<NextWiring>, std::string> prepare_wiring(const Map&
                                                                       [[maybe_unused]] bool safe, Log& log) {
   if (simulated) return std::make_unique<NextSimulated>(map, before);
 #ifdef COUPLER_WITH_GPIOD
-  return wire(map, dynamic_cast<HeldWiring*>(before), safe, log);
+  return prepare_lines(map, dynamic_cast<LineRequests*>(before), safe, log);
 #else
   const auto* wired =
       std::find_if(map.points.begin(), map.points.end(), [](const auto& p) { return p.line.present(); });

@@ -22,7 +22,7 @@ void Connection::open(Descriptor socket, const IpAddress& origin, TimePoint now)
   framer_.reset();
   output_begin_ = output_end_ = 0;
   ended_ = has_asked_ = false;
-  peer_ = {};
+  session_ = {};
   origin_ = origin;
   last_active_ = now;
   waiting_ = Waiting::for_request;
@@ -34,7 +34,7 @@ void Connection::open(OpenConnection from, const IpAddress& origin, TimePoint no
   assert(from.unread.size() <= modbus::max_adu_size && from.unsent.size() <= output_size);
   open(std::move(from.socket), origin, now);
   if (!is_open()) return;
-  peer_.has_written = from.has_written;
+  session_.has_written = from.has_written;
   has_asked_ = true;
   std::copy(from.unread.begin(), from.unread.end(), framer_.room().begin());
   framer_.filled(from.unread.size());
@@ -49,7 +49,7 @@ OpenConnection Connection::release() {
   OpenConnection open;
   loop_.forget(socket_.get(), *this);
   open.socket = std::move(socket_);
-  open.has_written = peer_.has_written;
+  open.has_written = session_.has_written;
   const modbus::Bytes rest = framer_.rest();
   open.unread.assign(rest.begin(), rest.end());
   open.unsent.assign(&output_[output_begin_], &output_[output_begin_] + (output_end_ - output_begin_));
@@ -109,7 +109,8 @@ Outcome Connection::fill_output(TimePoint now) {
   while (output_.size() - output_end_ >= modbus::max_adu_size) {
     const Outcome outcome = framer_.next();
     if (outcome != Outcome::frame) return outcome;
-    output_end_ += server_.answer(framer_.frame(), peer_, now, Span<std::uint8_t>(output_).from(output_end_));
+    output_end_ +=
+        server_.answer(framer_.frame(), session_, now, Span<std::uint8_t>(output_).from(output_end_));
     has_asked_ = true;
     last_active_ = now;
   }
@@ -134,7 +135,7 @@ void Connection::set_deadline(TimePoint now, bool had_frame) {
   if (waiting == Waiting::for_request)
     deadline_.reset();
   else if (waiting != waiting_ || had_frame)
-    deadline_ = now + patience;
+    deadline_ = now + timeout;
   waiting_ = waiting;
 }
 

@@ -20,7 +20,7 @@ class Connection : public Watcher {
  public:
   /// For the rest of a frame once its beginning is there, and for a client to take a reply; absolute, so that
   /// single bytes do not extend it.
-  static constexpr std::chrono::seconds patience{5};
+  static constexpr std::chrono::seconds timeout{5};
 
   Connection(Loop& loop, Server& server, Statistics& statistics)
       : loop_(loop), server_(server), statistics_(statistics) {}
@@ -45,7 +45,7 @@ class Connection : public Watcher {
   /// It has sent at least one whole frame.
   bool has_asked() const { return has_asked_; }
   /// It has written an output.
-  bool has_written() const { return peer_.has_written; }
+  bool has_written() const { return session_.has_written; }
   const IpAddress& origin() const { return origin_; }
   /// Of its last whole frame, or of its beginning.
   TimePoint last_active() const { return last_active_; }
@@ -67,7 +67,7 @@ class Connection : public Watcher {
   Server& server_;
   Statistics& statistics_;
   Descriptor socket_;
-  Peer peer_;
+  ClientSession session_;
   IpAddress origin_{};
   modbus::Framer framer_;
   std::array<std::uint8_t, output_size> output_;

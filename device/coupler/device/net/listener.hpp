@@ -5,8 +5,8 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "coupler/device/net/allow_list.hpp"
 #include "coupler/device/net/descriptor.hpp"
-#include "coupler/device/net/guest_list.hpp"
 
 namespace coupler::device {
 
@@ -14,7 +14,7 @@ namespace coupler::device {
 struct Listener {
   Descriptor socket;
   std::string name;  ///< "127.0.0.1:1502", "[::]:502"
-  GuestList guests{};
+  AllowList guests{};
 
   /// Another descriptor of the same socket, open to everyone. The error says why there is none.
   tl::expected<Listener, std::string> share() const;

@@ -11,7 +11,7 @@ namespace coupler::device {
 /// A client between two processes, or two maps, that answer it.
 struct OpenConnection {
   Descriptor socket;
-  bool has_written = false;            ///< Peer's
+  bool has_written = false;            ///< ClientSession's
   std::vector<std::uint8_t> unread{};  ///< received, not answered; at most an ADU
   std::vector<std::uint8_t> unsent{};  ///< replies that the client has not taken
 };

@@ -79,7 +79,7 @@ void TcpServer::ready(TimePoint now) {
     if (!accept_one(now)) return;
 }
 
-void TcpServer::adopt(std::vector<OpenConnection> clients, TimePoint now) {
+void TcpServer::take_over(std::vector<OpenConnection> clients, TimePoint now) {
   for (OpenConnection& client : clients) {
     sockaddr_storage peer{};
     socklen_t size = sizeof peer;
@@ -182,7 +182,7 @@ Connection& TcpServer::who_makes_room_for(const IpAddress& newcomer) {
   return *chosen;
 }
 
-std::optional<std::chrono::milliseconds> TcpServer::patience() const {
+std::optional<std::chrono::milliseconds> TcpServer::time_until_due() const {
   return in_use_ || paused_ ? std::optional(sweep_period) : std::nullopt;
 }
 

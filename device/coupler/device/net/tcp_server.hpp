@@ -33,7 +33,7 @@ class TcpServer : public Watcher {
   std::size_t size() const;
 
   /// Takes over clients that another server let go, as far as they may connect and there is room.
-  void adopt(std::vector<OpenConnection> clients, TimePoint now);
+  void take_over(std::vector<OpenConnection> clients, TimePoint now);
   /// Lets go of all clients without closing their connections.
   std::vector<OpenConnection> release();
 
@@ -41,7 +41,7 @@ class TcpServer : public Watcher {
   void ready(TimePoint now) override;
 
   /// How long the loop may wait before it calls tick() again; nullopt: as long as it likes.
-  std::optional<std::chrono::milliseconds> patience() const;
+  std::optional<std::chrono::milliseconds> time_until_due() const;
   /// Closes what is overdue.
   void tick(TimePoint now);
 

@@ -47,7 +47,7 @@ bool GuardedHooks::made_safe() {
 bool GuardedHooks::accept(std::uint32_t point, const std::uint16_t* registers) {
   bool accepted = false;
   const auto thrown = [&](const char* what) {
-    // Masters write as often as they like.
+    // Clients write as often as they like.
     log_.warn_limited("hook",
                       fmt::format("the hook of point '{}' threw an exception: {}; the write is refused",
                                   map_.points[point].name, what));

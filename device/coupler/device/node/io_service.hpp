@@ -6,24 +6,24 @@
 #include <vector>
 
 #include "coupler/device/core/log.hpp"
-#include "coupler/device/keeper/pulse.hpp"
 #include "coupler/device/net/tcp_server.hpp"
-#include "coupler/device/node/duty.hpp"
 #include "coupler/device/node/edge_watcher.hpp"
 #include "coupler/device/node/node.hpp"
+#include "coupler/device/node/serving_context.hpp"
+#include "coupler/device/supervisor/heartbeat.hpp"
 
 namespace coupler::device {
 
-/// Answers masters with the hardware of a map.
+/// Answers clients with the hardware of a map.
 class IoService {
  public:
-  /// All of them outlive it. The duty is in force.
-  IoService(const Duty& duty, Loop& loop, Log& log);
+  /// All of them outlive it. The context is in force.
+  IoService(const ServingContext& context, Loop& loop, Log& log);
 
   /// Goes on with clients that another one let go.
-  void adopt(std::vector<OpenConnection> clients);
-  /// Serves until `is_over`, asked at each turn, says so. `pulse` is told that the loop turns.
-  void run(const std::function<bool(TimePoint)>& is_over, Pulse& pulse);
+  void take_over(std::vector<OpenConnection> clients);
+  /// Serves until `is_over`, asked at each turn, says so. `heartbeat` is told that the loop turns.
+  void run(const std::function<bool(TimePoint)>& is_over, Heartbeat& heartbeat);
   /// Lets go of its clients, outputs as they are.
   std::vector<OpenConnection> release();
   /// The end after a signal: drives the outputs to their safe state and says what there was.

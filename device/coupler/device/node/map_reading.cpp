@@ -19,7 +19,7 @@ enum Status { done, told, too_large };
 }  // namespace
 
 MapReading::MapReading(Loop& loop, TimePoint now)
-    : loop_(loop), deadline_(now + patience), arena_(std::make_shared<SharedArena>(room)) {}
+    : loop_(loop), deadline_(now + timeout), arena_(std::make_shared<SharedArena>(room)) {}
 
 MapReading::~MapReading() {
   if (is_watched_) loop_.forget(child_->descriptor(), *this);
@@ -74,7 +74,7 @@ tl::expected<MapPtr, std::string> MapReading::take() {
     return tl::unexpected(
         fmt::format("the map could not be read in {} s; is the disk or the network file system that it is on "
                     "still there?",
-                    patience.count()));
+                    timeout.count()));
   if (*status_ == 0) {
     arena_->give_back_rest();
     return MapPtr(arena_, made_[0].map);

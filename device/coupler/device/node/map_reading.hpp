@@ -6,10 +6,10 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "coupler/device/keeper/child.hpp"
-#include "coupler/device/keeper/shared_arena.hpp"
-#include "coupler/device/keeper/shared_array.hpp"
 #include "coupler/device/net/loop.hpp"
+#include "coupler/device/supervisor/child.hpp"
+#include "coupler/device/supervisor/shared_arena.hpp"
+#include "coupler/device/supervisor/shared_array.hpp"
 #include "coupler/map/owned_map.hpp"
 
 namespace coupler::device {
@@ -25,7 +25,7 @@ struct ReadMap {
 class MapReading : public Watcher {
  public:
   /// A slow board reads the largest map in a third of it.
-  static constexpr std::chrono::seconds patience{60};
+  static constexpr std::chrono::seconds timeout{60};
 
   /// `loop` wakes up when it is done. The error says why it cannot be done.
   static tl::expected<std::unique_ptr<MapReading>, std::string> start(Loop& loop, const ReadMap& source,

@@ -2,18 +2,18 @@
 #pragma once
 
 #include "coupler/device/core/server.hpp"
-#include "coupler/device/node/memory.hpp"
+#include "coupler/device/node/shared_state.hpp"
 
 namespace coupler::device {
 
-/// The core of a node on the memory that it is given.
+/// The core of a node on the state that it is given.
 class Node {
  public:
-  /// All of them outlive the node; the memory is of this map.
-  Node(const Map& map, Hardware hardware, Memory& memory)
-      : handler_(map, memory.image(), hardware, memory.statistics(), memory.watchdog(), memory.links()),
-        server_(map.connection.unit, handler_, memory.statistics()) {
-    handler_.set_machine(memory.machine());
+  /// All of them outlive the node; the state is of this map.
+  Node(const Map& map, Hardware hardware, SharedState& state)
+      : handler_(map, state.image(), hardware, state.statistics(), state.watchdog(), state.links()),
+        server_(map.connection.unit, handler_, state.statistics()) {
+    handler_.set_machine(state.machine());
   }
 
   Handler& handler() { return handler_; }

@@ -21,7 +21,7 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
   command_line::Program app(
       "Serves the points of a map as a Modbus/TCP device: GPIO lines, or simulated ones.", program);
   app.version(program + " " + std::string(version));
-  app.footer("Example, without hardware, for any Modbus master on this machine:\n  " + program + map +
+  app.footer("Example, without hardware, for any Modbus client on this machine:\n  " + program + map +
              " --sim --port 1502" +
              (source == MapSource::argument
                   ? "\nSIGHUP makes it read MAP again; one that cannot be served is refused."

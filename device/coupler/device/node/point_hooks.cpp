@@ -11,7 +11,7 @@ void PointHooks::allow_setting() { process_ = ::getpid(); }
 
 std::string PointHooks::wrong_process() const {
   if (process_ == ::getpid()) return {};
-  return "this process does not answer masters; values are set in serving_began(), in threads that it "
+  return "this process does not answer clients; values are set in serving_began(), in threads that it "
          "starts, or later";
 }
 

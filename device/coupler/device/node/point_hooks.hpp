@@ -33,7 +33,7 @@ class PointHooks : public Hooks {
     return TypedValue<T>::decode(registers, map_.points[point]);
   }
 
-  /// From any thread of the process that serves: masters read the value from their next request on. The error
+  /// From any thread of the process that serves: clients read the value from their next request on. The error
   /// says what is wrong with it, or that this is another process.
   template <class T>
   tl::expected<void, std::string> set(std::uint32_t point, const T& value) {

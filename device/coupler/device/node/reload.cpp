@@ -26,7 +26,7 @@ namespace {
 
 enum Status { taken = 0, refused = 1, failed = 3 };
 
-constexpr std::chrono::seconds longest_wait = MapReading::patience + std::chrono::seconds(15);
+constexpr std::chrono::seconds longest_wait = MapReading::timeout + std::chrono::seconds(15);
 
 struct Name {
   sockaddr_un address{};

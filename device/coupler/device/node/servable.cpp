@@ -7,7 +7,7 @@
 
 namespace coupler::device {
 
-tl::expected<GuestList, std::string> guests_of(const Map& map) {
+tl::expected<AllowList, std::string> allow_list_of(const Map& map) {
   std::vector<Network> networks;
   for (const std::string_view text : map.service.allow) {
     const auto network = parse_network(text);
@@ -16,7 +16,7 @@ tl::expected<GuestList, std::string> guests_of(const Map& map) {
           fmt::format("'allow': '{}' {}; {}", text, network.error().what, network.error().remedy));
     networks.push_back(*network);
   }
-  return GuestList(std::move(networks));
+  return AllowList(std::move(networks));
 }
 
 tl::expected<void, std::string> check_servable(const Map& map) {

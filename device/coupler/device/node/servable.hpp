@@ -4,13 +4,13 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "coupler/device/net/guest_list.hpp"
+#include "coupler/device/net/allow_list.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::device {
 
 /// Who may connect, as the map says. The error names what is no address.
-tl::expected<GuestList, std::string> guests_of(const Map& map);
+tl::expected<AllowList, std::string> allow_list_of(const Map& map);
 
 /// Whether a node can serve this map, which is stricter than a map of somebody else's coupler. The error says
 /// which points are in the way, one a line, and what to do.

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "coupler/device/keeper/keeper.hpp"
 #include "coupler/device/node/realtime.hpp"
+#include "coupler/device/supervisor/supervisor.hpp"
 
 namespace coupler::device {
 
@@ -23,9 +23,9 @@ int serve(const Map& map, const Options& options, StderrLog& log, const ReadMap&
   Signals signals(loop);
   log.never_wait();
   ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"));
-  Station station(loop, options, again, manager, log, hooks);
-  if (const auto started = station.start(map); !started) return failed(started.error());
-  const bool safe = Keeper(loop, signals, station, log, &station).run();
+  NodeRuntime runtime(loop, options, again, manager, log, hooks);
+  if (const auto started = runtime.start(map); !started) return failed(started.error());
+  const bool safe = Supervisor(loop, signals, runtime, log, &runtime).run();
   manager.stopping();
   if (safe) return 0;
   return failed({Refusal::device_failed, "ended, and not every output could be driven to its safe state"});

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "coupler/device/node/node_runtime.hpp"
 #include "coupler/device/node/options.hpp"
-#include "coupler/device/node/station.hpp"
 #include "coupler/device/node/stderr_log.hpp"
 #include "coupler/map/map.hpp"
 

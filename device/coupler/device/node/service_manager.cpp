@@ -32,7 +32,7 @@ unsigned interval_for(const char* watchdog) {
   using std::chrono::microseconds;
   const microseconds wait(watchdog == nullptr ? 0 : std::strtoll(watchdog, nullptr, 10));
   if (wait.count() <= 0) return 0;
-  return static_cast<unsigned>(std::max<std::int64_t>(1, wait / 2 / Pulse::period));
+  return static_cast<unsigned>(std::max<std::int64_t>(1, wait / 2 / Heartbeat::period));
 }
 
 }  // namespace

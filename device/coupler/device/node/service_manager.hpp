@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "coupler/device/core/time.hpp"
-#include "coupler/device/keeper/pulse.hpp"
 #include "coupler/device/net/descriptor.hpp"
+#include "coupler/device/supervisor/heartbeat.hpp"
 
 namespace coupler::device {
 
 /// Tells systemd how the node is, in the protocol of sd_notify(3): a datagram for each piece of news. Why it
 /// does without libsystemd: docs/decisions/0006-sd-notify-without-libsystemd.md.
-class ServiceManager : public Pulse {
+class ServiceManager : public Heartbeat {
  public:
   /// The values of NOTIFY_SOCKET and WATCHDOG_USEC; null: nobody wants to know.
   ServiceManager(const char* socket, const char* watchdog);

@@ -8,8 +8,8 @@
 
 #include "coupler/base/line_limit.hpp"
 #include "coupler/device/core/log.hpp"
-#include "coupler/device/keeper/shared_array.hpp"
 #include "coupler/device/node/log_stream.hpp"
+#include "coupler/device/supervisor/shared_array.hpp"
 #include "coupler/map/diagnostic.hpp"
 
 namespace coupler::device {

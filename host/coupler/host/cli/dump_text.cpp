@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "coupler/docs/row.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
-#include "coupler/pages/row.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -42,7 +42,7 @@ std::string good_value(const Point& point, const Reading& reading) {
 Cells cells_of(const Map& map, const Reading& reading) {
   Point point = map.points[reading.point];
   point.address = read_range(point).start();
-  const pages::Row row = pages::row_of(point, 0);
+  const docs::Row row = docs::row_of(point, 0);
   return {row.name,
           reading.state == State::good ? good_value(point, reading) : "-",
           row.count.empty() ? row.type : fmt::format("{}[{}]", row.type, row.count),

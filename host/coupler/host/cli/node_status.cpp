@@ -2,7 +2,7 @@
 #include "coupler/host/cli/node_status.hpp"
 
 #include "coupler/host/core/node_map.hpp"
-#include "coupler/host/survey/identification.hpp"
+#include "coupler/host/scan/identification.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -35,14 +35,14 @@ Result<> read_all(host::Transport& transport, const Identify& identify, NodeStat
   const auto answered = read_area(transport, status);
   if (!answered) return tl::make_unexpected(answered.error());
   std::optional<Error> failure;
-  const auto ask = [&](modbus::ReadDeviceIdentification wanted) -> std::optional<survey::IdentificationPage> {
+  const auto ask = [&](modbus::ReadDeviceIdentification wanted) -> std::optional<scan::IdentificationPage> {
     auto page = identify(wanted);
     if (page || is_answer(page.error())) status.trouble.clear();  // it is there, and foreign
     if (page) return *std::move(page);
     if (!is_answer(page.error())) failure = page.error();
     return std::nullopt;
   };
-  status.identification = survey::read_identification(ask);
+  status.identification = scan::read_identification(ask);
   // A foreign coupler may ignore this question as well.
   if (failure && (status.report || is_unit_away(*failure))) return tl::make_unexpected(*failure);
   return {};

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "coupler/host/core/transport.hpp"
-#include "coupler/host/survey/master.hpp"
+#include "coupler/host/scan/client.hpp"
 #include "coupler/map/identity.hpp"
 
 namespace coupler::cli {
@@ -25,7 +25,7 @@ struct NodeStatus {
 
 /// FC 43/14 over the same connection.
 using Identify =
-    std::function<host::Result<survey::IdentificationPage>(modbus::ReadDeviceIdentification wanted)>;
+    std::function<host::Result<scan::IdentificationPage>(modbus::ReadDeviceIdentification wanted)>;
 
 /// Asks for all of it, over a connection of its own, which is closed then. A device that ignores the question
 /// for the identity area, as some foreign couplers do, is asked for the rest over another one.

@@ -13,10 +13,10 @@
 #include "coupler/cli/report.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/host/cli/interruption.hpp"
-#include "coupler/host/cli/modbus_master.hpp"
+#include "coupler/host/cli/modbus_client.hpp"
 #include "coupler/host/cli/probe_call.hpp"
 #include "coupler/host/cli/probe_report.hpp"
-#include "coupler/host/cli/survey_progress.hpp"
+#include "coupler/host/cli/progress_bar.hpp"
 #include "coupler/host/core/steady_clock.hpp"
 
 namespace coupler::cli {
@@ -24,19 +24,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-survey::Findings look(const ProbeCall& call) {
-  ModbusMaster master(call.connection);
+scan::Findings look(const ProbeCall& call) {
+  ModbusClient client(call.connection);
   host::SteadyClock clock;
-  SurveyProgress progress;
+  ProgressBar progress;
   const Interruption interruption([&] {
     progress.end();
     clock.stop();
-    master.interrupt();
+    client.interrupt();
   });
-  return survey::survey(call.task, master, clock, progress);
+  return scan::scan(call.task, client, clock, progress);
 }
 
-/// Before anything is asked: a draft that cannot be written would cost a survey.
+/// Before anything is asked: a draft that cannot be written would cost a scan.
 tl::expected<void, WrongCall> can_write(const ProbeArguments& arguments) {
   if (arguments.out.empty()) return {};
   const fs::path path(arguments.out);
@@ -70,24 +70,24 @@ Exit run(const ProbeArguments& arguments) {
   if (const auto can = can_write(arguments); !can)
     return complain("probe", bad_call, can.error().what, can.error().remedy);
 
-  const survey::Findings findings = look(call);
+  const scan::Findings findings = look(call);
   if (findings.broke_off)
     complain("probe", failed, host::to_string(*findings.broke_off),
-             "see that the device is on, the port right, and no other master has its last connection");
+             "see that the device is on, the port right, and no other client has its last connection");
   if (!findings.unit && findings.is_complete)
     return complain("probe", failed,
                     fmt::format("a server is there, but none of {} units answers", call.task.units.size()),
                     "give its unit id, as HOST/17, or try all with --units 0-247,255");
   if (!findings.unit) return failed;
 
-  std::vector<survey::Match> matches;
-  for (const survey::KnownValue& known : call.known)
-    matches.push_back({known, survey::find_candidates(known, findings.tables)});
+  std::vector<scan::Match> matches;
+  for (const scan::KnownValue& known : call.known)
+    matches.push_back({known, scan::find_candidates(known, findings.tables)});
   call.connection.unit = *findings.unit;
   std::fputs(probe_report(findings, call.task, call.connection, matches).c_str(), stdout);
   Exit exit = findings.broke_off ? failed : ok;
   if (!arguments.out.empty()) {
-    const Exit written = write(arguments.out, survey::draft_map(findings, call.connection, matches));
+    const Exit written = write(arguments.out, scan::draft_map(findings, call.connection, matches));
     if (written != ok) exit = written;
   }
   return exit;

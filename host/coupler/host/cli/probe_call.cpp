@@ -41,13 +41,13 @@ tl::expected<std::vector<std::uint8_t>, WrongCall> units_of(const ProbeArguments
   return units;
 }
 
-tl::expected<std::vector<survey::KnownValue>, WrongCall> known_values(const std::vector<std::string>& texts) {
-  std::vector<survey::KnownValue> known;
+tl::expected<std::vector<scan::KnownValue>, WrongCall> known_values(const std::vector<std::string>& texts) {
+  std::vector<scan::KnownValue> known;
   for (const std::string& text : texts) {
-    auto value = survey::parse_known_value(text);
+    auto value = scan::parse_known_value(text);
     if (!value)
       return tl::make_unexpected(WrongCall{"--known: " + value.error(), "see `coupler probe --help`"});
-    for (const survey::KnownValue& other : known)
+    for (const scan::KnownValue& other : known)
       if (!other.name.empty() && other.name == value->name)
         return tl::make_unexpected(WrongCall{fmt::format("two values are named '{}'", other.name),
                                              "give each --known its own name"});

@@ -8,8 +8,8 @@
 
 #include <tl/expected.hpp>
 
-#include "coupler/host/survey/known_value.hpp"
-#include "coupler/host/survey/survey.hpp"
+#include "coupler/host/scan/known_value.hpp"
+#include "coupler/host/scan/scan.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::cli {
@@ -17,10 +17,10 @@ namespace coupler::cli {
 struct ProbeArguments {
   std::string host;
   std::vector<std::string> units;
-  std::uint32_t from = survey::Task{}.window.start();
-  std::uint32_t to = survey::Task{}.window.last();
-  std::uint32_t stride = survey::Task{}.stride;
-  double rate = survey::Task{}.rate;
+  std::uint32_t from = scan::Task{}.window.start();
+  std::uint32_t to = scan::Task{}.window.last();
+  std::uint32_t stride = scan::Task{}.stride;
+  double rate = scan::Task{}.rate;
   double timeout = 1;  ///< s
   std::vector<std::string> known;
   std::string out;
@@ -31,8 +31,8 @@ struct ProbeArguments {
 struct ProbeCall {
   std::string address;
   Connection connection;
-  survey::Task task;
-  std::vector<survey::KnownValue> known;
+  scan::Task task;
+  std::vector<scan::KnownValue> known;
 };
 
 /// Why a call is none, and what to do.

@@ -5,15 +5,15 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/survey/identification.hpp"
+#include "coupler/host/scan/identification.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::cli {
 namespace {
 
-using survey::Findings;
-using survey::TableFindings;
+using scan::Findings;
+using scan::TableFindings;
 using Seen = TableFindings::Seen;
 
 constexpr std::size_t most_ranges = 24;
@@ -39,7 +39,7 @@ std::string units_text(const Findings& findings, const Connection& connection) {
 std::string identification_text(const Findings& findings, const Connection& connection) {
   std::string text;
   for (const auto& [id, value] : findings.identification)
-    text += fmt::format("  {:<20} {}\n", survey::object_name(id), printable(value));
+    text += fmt::format("  {:<20} {}\n", scan::object_name(id), printable(value));
   text = text.empty() ? "identification: none (FC 43/14)\n" : "identification:\n" + text;
   if (findings.node)
     text += fmt::format("an OpenCoupler node: it serves its map, see `coupler dump tcp://{}`\n",
@@ -70,32 +70,32 @@ std::string table_text(const TableFindings& table) {
     text += fmt::format("  no read may cross {}: read from there, or up to there\n", seam);
   if (table.gave_up_at)
     text += fmt::format("  left at {} after {} time-outs; go on with --from {}\n", *table.gave_up_at,
-                        survey::most_timeouts, *table.gave_up_at);
+                        scan::most_timeouts, *table.gave_up_at);
   return text;
 }
 
-std::string limit_text(const survey::Largest& largest, std::string_view what) {
+std::string limit_text(const scan::Largest& largest, std::string_view what) {
   if (!largest.is_limited) return {};
   return fmt::format("most {0} in one read: {1}; write `limits: {{read_{0}: {1}}}`\n", what, largest.count);
 }
 
-std::string match_text(const survey::Match& match) {
+std::string match_text(const scan::Match& match) {
   std::string text =
       fmt::format("known value {}{}{} ± {:.6g}:\n", match.known.name, match.known.name.empty() ? "" : " = ",
                   match.known.value, match.known.tolerance);
   if (match.candidates.empty()) return text + "  nowhere in the registers that were read\n";
   for (std::size_t i = 0; i < std::min(match.candidates.size(), most_candidates); ++i) {
-    const survey::Candidate& candidate = match.candidates[i];
-    text += fmt::format("  {:<18} {:<52} {}\n", to_string(candidate.table),
-                        survey::point_text(candidate, true), survey::value_text(candidate));
+    const scan::Candidate& candidate = match.candidates[i];
+    text += fmt::format("  {:<18} {:<52} {}\n", to_string(candidate.table), scan::point_text(candidate, true),
+                        scan::value_text(candidate));
   }
   if (match.candidates.size() > most_candidates)
     text += fmt::format("  and {} less likely places\n", match.candidates.size() - most_candidates);
   return text;
 }
 
-std::string orders_text(const std::vector<survey::Match>& matches) {
-  const auto order = survey::common_order(matches);
+std::string orders_text(const std::vector<scan::Match>& matches) {
+  const auto order = scan::common_order(matches);
   if (!order) return {};
   return fmt::format(
       "order of the device: {}; write `byteorder_reverse: {}`, `wordorder_reverse: {}`, or `order` at each "
@@ -105,8 +105,8 @@ std::string orders_text(const std::vector<survey::Match>& matches) {
 
 }  // namespace
 
-std::string probe_report(const Findings& findings, const survey::Task& task, const Connection& connection,
-                         const std::vector<survey::Match>& matches) {
+std::string probe_report(const Findings& findings, const scan::Task& task, const Connection& connection,
+                         const std::vector<scan::Match>& matches) {
   std::string text = units_text(findings, connection) + identification_text(findings, connection);
   bool untried = false;
   for (const TableFindings& table : findings.tables) {
@@ -115,7 +115,7 @@ std::string probe_report(const Findings& findings, const survey::Task& task, con
   }
   text += limit_text(findings.largest.registers, "registers");
   text += limit_text(findings.largest.bits, "bits");
-  for (const survey::Match& match : matches) text += match_text(match);
+  for (const scan::Match& match : matches) text += match_text(match);
   text += orders_text(matches);
   text += fmt::format("requests: {}\n", findings.requests);
   for (const std::string& failure : findings.failures)

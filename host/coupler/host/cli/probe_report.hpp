@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "coupler/host/survey/draft.hpp"
+#include "coupler/host/scan/draft.hpp"
 
 namespace coupler::cli {
 
-/// What a survey found, for people. `task` says what it looked for.
-std::string probe_report(const survey::Findings& findings, const survey::Task& task,
-                         const Connection& connection, const std::vector<survey::Match>& matches);
+/// What a scan found, for people. `task` says what it looked for.
+std::string probe_report(const scan::Findings& findings, const scan::Task& task, const Connection& connection,
+                         const std::vector<scan::Match>& matches);
 
 }  // namespace coupler::cli

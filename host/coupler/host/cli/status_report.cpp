@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "coupler/host/cli/snapshot.hpp"
-#include "coupler/host/survey/identification.hpp"
+#include "coupler/host/scan/identification.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
@@ -72,7 +72,7 @@ ordered_json statistics_json(const Report& report) {
 
 ordered_json identification_json(const NodeStatus& status) {
   ordered_json json = ordered_json::object();
-  for (const auto& [id, value] : status.identification) json[survey::object_name(id)] = value;
+  for (const auto& [id, value] : status.identification) json[scan::object_name(id)] = value;
   return json;
 }
 
@@ -83,7 +83,7 @@ std::string status_text(const NodeStatus& status, const Connection& where) {
   if (!status.report) {
     std::string text;
     for (const auto& [id, value] : status.identification)
-      text += row(survey::object_name(id), printable(value));
+      text += row(scan::object_name(id), printable(value));
     return text.empty() ? text : fmt::format("identification of {} (FC 43/14):\n{}", device, text);
   }
   const Report& report = *status.report;

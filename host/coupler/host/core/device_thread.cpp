@@ -41,7 +41,7 @@ void DeviceThread::write(const Write& write) {
 }
 
 void DeviceThread::want(std::uint32_t point, bool wanted) {
-  wishes_.say(point, wanted);
+  demand_.say(point, wanted);
   transport_.wake();
 }
 
@@ -59,7 +59,7 @@ std::future<Calls::Answer> DeviceThread::reset_watchdog() {
 
 Time DeviceThread::step() {
   const std::lock_guard turn(turn_);
-  wishes_.take([this](std::uint32_t point, bool wanted) { device_.want(point, wanted); });
+  demand_.take([this](std::uint32_t point, bool wanted) { device_.want(point, wanted); });
   return device_.step();
 }
 

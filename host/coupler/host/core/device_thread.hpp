@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "coupler/host/core/device.hpp"
+#include "coupler/host/core/read_demand.hpp"
 #include "coupler/host/core/steady_clock.hpp"
-#include "coupler/host/core/wishes.hpp"
 
 namespace coupler::host {
 
@@ -56,7 +56,7 @@ class DeviceThread {
   Transport& transport_;
   SteadyClock clock_;
   Device device_;
-  Wishes wishes_;
+  ReadDemand demand_;
   bool ends_safely_;  ///< writes safe values at the end
   std::mutex turn_;   ///< held by the one who uses the connection; others than the owner only try
   std::atomic<bool> stopping_{false};

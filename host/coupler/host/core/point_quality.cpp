@@ -23,7 +23,7 @@ std::string_view to_string(State state) {
 
 PointQualities::PointQualities(const Map& map) : points_(map.points.size()) {
   for (std::size_t i = 0; i < points_.size(); ++i)
-    points_[i].patience = 2 * period_of(plan::rate_of(map, map.points[i])) + map.connection.timeout;
+    points_[i].stale_after = 2 * period_of(plan::rate_of(map, map.points[i])) + map.connection.timeout;
 }
 
 void PointQualities::good(Span<const std::uint32_t> points, Time at) {
@@ -79,12 +79,12 @@ State PointQualities::state_of(const Entry& entry, Time now) const {
   if (entry.rejected) return State::rejected;
   if (entry.failing) return State::exception;
   if (!entry.last_good) return State::never_read;
-  return now - *entry.last_good > entry.patience ? State::stale : State::good;
+  return now - *entry.last_good > entry.stale_after ? State::stale : State::good;
 }
 
 PointQuality PointQualities::quality_of(const Entry& entry, Time now) const {
   const State state = state_of(entry, now);
-  const Time stale_from = state == State::good ? *entry.last_good + entry.patience : Time::max();
+  const Time stale_from = state == State::good ? *entry.last_good + entry.stale_after : Time::max();
   return {state, stale_from, entry.last_good, entry.last_exception, entry.last_write, entry.last_write_text};
 }
 

@@ -61,7 +61,7 @@ class PointQualities {
 
  private:
   struct Entry {
-    Duration patience{};  ///< what is older is stale
+    Duration stale_after{};  ///< what is older is stale
     std::optional<Time> last_good{};
     std::optional<modbus::Exception> last_exception{};
     std::optional<WriteResult::Outcome> last_write{};

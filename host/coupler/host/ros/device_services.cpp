@@ -18,7 +18,7 @@ using Outcome = WriteResult::Outcome;
 bool is_bit(const Point& point) { return point.format.type == codec::Type::BOOL && point.count == 1; }
 
 /// A value that is read at all comes within this.
-Duration patience(const Map& map, const Point& point) {
+Duration answer_timeout(const Map& map, const Point& point) {
   const std::chrono::duration<double> cycles(2 / plan::rate_of(map, point));
   return std::chrono::duration_cast<Duration>(cycles) + 2 * map.connection.timeout;
 }
@@ -48,7 +48,7 @@ void DeviceServices::offer(Node& node, Driver driver) {
 void DeviceServices::withdraw() {
   for (ServiceThread* thread : {calls_.get(), urgent_calls_.get()})
     if (thread != nullptr) thread->end();
-  next_value_.end();
+  value_waiter_.end();
   const std::lock_guard lock(mutex_);
   driver_.reset();
 }
@@ -122,9 +122,9 @@ ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
     return answer;
   }
   const std::uint32_t index = index_of(*point);
-  const auto deadline = std::chrono::steady_clock::now() + patience(map_, *point);
+  const auto deadline = std::chrono::steady_clock::now() + answer_timeout(map_, *point);
   listeners_.came(index);
-  const auto value = next_value_.wait(index, deadline);
+  const auto value = value_waiter_.wait(index, deadline);
   listeners_.left(index);
   answer.success = value.has_value();
   if (value)

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "coupler/host/ros/next_value.hpp"
 #include "coupler/host/ros/node.hpp"
+#include "coupler/host/ros/value_waiter.hpp"
 
 namespace coupler::host {
 
@@ -39,7 +39,7 @@ class DeviceServices {
   void withdraw();
 
   /// Who waits for a value that is read. It must be told when the device is online.
-  NextValue& next_value() { return next_value_; }
+  ValueWaiter& value_waiter() { return value_waiter_; }
 
  private:
   WriteTicket::Outcome write(std::uint32_t index, Span<const std::uint16_t> value);
@@ -58,7 +58,7 @@ class DeviceServices {
   Listeners& listeners_;
   std::mutex mutex_;
   std::optional<Driver> driver_;  ///< none after withdraw()
-  NextValue next_value_;
+  ValueWaiter value_waiter_;
   std::unique_ptr<ServiceThread> calls_;  // last: they use the others
   std::unique_ptr<ServiceThread> urgent_calls_;
 };

@@ -88,8 +88,8 @@ void DeviceTopics::on_registers(const ReadSpan& span, Span<const std::uint16_t> 
     const modbus::Range place = read_range(map_.points[index]);
     const std::uint16_t* value = &registers[place.start() - std::size_t{span.range.start()}];
     publishers_[index]->publish(value, at);
-    if (services_.next_value().is_wanted(index))
-      services_.next_value().bring(value, place.count(), transport_->asked());
+    if (services_.value_waiter().is_wanted(index))
+      services_.value_waiter().bring(value, place.count(), transport_->asked());
   }
 }
 
@@ -97,7 +97,7 @@ void DeviceTopics::on_online(bool online) {
   if (online)  // what was published before is history
     for (const auto& publisher : publishers_)
       if (publisher) publisher->renew();
-  services_.next_value().online(online);
+  services_.value_waiter().online(online);
   online_(online);
 }
 

@@ -32,7 +32,7 @@ struct SettingKey {
   enum class Kind { text, list, whole, real };
 
   std::string_view key;
-  std::string_view alias;  ///< the origin's name for it, or empty
+  std::string_view alias;  ///< its name in ros-modbus-device-driver, or empty
   Kind kind;
   double min;  ///< of a number
   double max;

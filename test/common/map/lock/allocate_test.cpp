@@ -36,8 +36,9 @@ std::string entries(const Lock& lock) {
   return text;
 }
 
-std::string placed(const std::vector<Request>& requests, const Ground& ground = {}, const Lock& lock = {}) {
-  return places(allocate(requests, ground, lock, Unknown::allocated));
+std::string placed(const std::vector<Request>& requests, const FreeSpace& free_space = {},
+                   const Lock& lock = {}) {
+  return places(allocate(requests, free_space, lock, Unknown::allocated));
 }
 
 TEST(Allocation, The_first_place_is_taken_that_is_large_enough) {

@@ -44,7 +44,7 @@ class ValueInputs : public InputGroup {
 };
 
 /// libgpiod 1 has no debounce: it is made of both edges and their times.
-std::optional<Edge> edges_of(const Wanted& wanted) {
+std::optional<Edge> edges_of(const LineSpec& wanted) {
   if (is_output(wanted)) return std::nullopt;
   return wanted.point->line.debounce.count() > 0 ? Edge::both : wanted.counted;
 }
@@ -76,19 +76,19 @@ std::optional<Chip> read_chip(const std::string& path) {
 
 Inventory chips() { return Inventory(read_chip); }
 
-bool fits(const std::vector<Wanted>& group, const Wanted& line) {
-  const Wanted& first = group.front();
+bool fits(const std::vector<LineSpec>& group, const LineSpec& line) {
+  const LineSpec& first = group.front();
   return first.line.chip == line.line.chip && is_output(first) == is_output(line) && !edges_of(first) &&
          !edges_of(line) && libgpiod1::flags_of(first.point->line) == libgpiod1::flags_of(line.point->line);
 }
 
-tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<Wanted>& lines) {
+tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<LineSpec>& lines) {
   auto request = Request::make(lines, GPIOD_LINE_REQUEST_DIRECTION_OUTPUT);
   if (!request) return tl::unexpected(std::move(request).error());
   return std::make_unique<ValueOutputs>(*std::move(request));
 }
 
-tl::expected<Inputs, std::string> request_inputs(const std::vector<Wanted>& lines) {
+tl::expected<Inputs, std::string> request_inputs(const std::vector<LineSpec>& lines) {
   const auto edges = edges_of(lines.front());
   auto request = Request::make(lines, edges ? request_type(*edges) : GPIOD_LINE_REQUEST_DIRECTION_INPUT);
   if (!request) return tl::unexpected(std::move(request).error());

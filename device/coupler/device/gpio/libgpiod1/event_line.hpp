@@ -10,7 +10,7 @@
 #include "coupler/device/gpio/event_source.hpp"
 #include "coupler/device/gpio/libgpiod1/request.hpp"
 #include "coupler/device/gpio/line_group.hpp"
-#include "coupler/device/keeper/shared_array.hpp"
+#include "coupler/device/supervisor/shared_array.hpp"
 
 namespace coupler::device::libgpiod1 {
 

@@ -37,10 +37,10 @@ int flags_of(const Line& line) {
   return flags;
 }
 
-Request::Request(ChipHandle chip, const std::vector<Wanted>& lines)
+Request::Request(ChipHandle chip, const std::vector<LineSpec>& lines)
     : chip_(std::move(chip)), name_(names_of(lines)) {
   gpiod_line_bulk_init(&bulk_);
-  for (const Wanted& wanted : lines)
+  for (const LineSpec& wanted : lines)
     if (gpiod_line* line = gpiod_chip_get_line(chip_.get(), wanted.line.offset))
       gpiod_line_bulk_add(&bulk_, line);
 }
@@ -50,7 +50,7 @@ Request::~Request() {
     gpiod_line_release_bulk(&bulk_);
 }
 
-tl::expected<std::unique_ptr<Request>, std::string> Request::make(const std::vector<Wanted>& lines,
+tl::expected<std::unique_ptr<Request>, std::string> Request::make(const std::vector<LineSpec>& lines,
                                                                   int type) {
   const auto refused = [&](gpiod_chip* chip) {
     return tl::unexpected(refusal(lines, errno, [chip](unsigned offset) { return holder_of(chip, offset); }));

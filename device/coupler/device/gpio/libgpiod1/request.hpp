@@ -9,7 +9,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "coupler/device/gpio/wanted.hpp"
+#include "coupler/device/gpio/line_spec.hpp"
 
 namespace coupler::device::libgpiod1 {
 
@@ -22,7 +22,8 @@ class Request {
   /// One to max_group_size lines of one chip with the same flags; outputs begin at their wanted levels,
   /// with no other level in between. `type`: GPIOD_LINE_REQUEST_…. The error names chip, line and
   /// holder.
-  static tl::expected<std::unique_ptr<Request>, std::string> make(const std::vector<Wanted>& lines, int type);
+  static tl::expected<std::unique_ptr<Request>, std::string> make(const std::vector<LineSpec>& lines,
+                                                                  int type);
 
   ~Request();
   Request(const Request&) = delete;
@@ -34,7 +35,7 @@ class Request {
   bool is_plugged() { return gpiod_line_update(first()) == 0 || errno != ENODEV; }
 
  private:
-  Request(ChipHandle chip, const std::vector<Wanted>& lines);
+  Request(ChipHandle chip, const std::vector<LineSpec>& lines);
 
   ChipHandle chip_;
   gpiod_line_bulk bulk_;

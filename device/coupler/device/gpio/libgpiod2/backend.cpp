@@ -37,10 +37,10 @@ class Outputs : public OutputGroup {
   std::string name_;
 };
 
-std::size_t kinds(const std::vector<Wanted>& lines) {
+std::size_t kinds(const std::vector<LineSpec>& lines) {
   std::size_t count = 0;
   for (auto line = lines.begin(); line != lines.end(); ++line)
-    if (std::none_of(lines.begin(), line, [&](const Wanted& other) { return same_kind(other, *line); }))
+    if (std::none_of(lines.begin(), line, [&](const LineSpec& other) { return same_kind(other, *line); }))
       ++count;
   return count;
 }
@@ -65,25 +65,25 @@ std::optional<Chip> read_chip(const std::string& path) {
 
 Inventory chips() { return Inventory(read_chip); }
 
-bool fits(const std::vector<Wanted>& group, const Wanted& line) {
+bool fits(const std::vector<LineSpec>& group, const LineSpec& line) {
   if (group.front().line.chip != line.line.chip || is_output(group.front()) != is_output(line)) return false;
   const bool known =
-      std::any_of(group.begin(), group.end(), [&](const Wanted& other) { return same_kind(other, line); });
+      std::any_of(group.begin(), group.end(), [&](const LineSpec& other) { return same_kind(other, line); });
   return known || kinds(group) < max_kinds;
 }
 
-tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<Wanted>& lines) {
+tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<LineSpec>& lines) {
   auto made = request(lines);
   if (!made) return tl::unexpected(std::move(made).error());
   return std::make_unique<Outputs>(*std::move(made), names_of(lines));
 }
 
-tl::expected<backend::Inputs, std::string> request_inputs(const std::vector<Wanted>& lines) {
+tl::expected<backend::Inputs, std::string> request_inputs(const std::vector<LineSpec>& lines) {
   auto made = request(lines);
   if (!made) return tl::unexpected(std::move(made).error());
   auto group = std::make_unique<libgpiod2::Inputs>(*std::move(made), lines);
   const bool counted =
-      std::any_of(lines.begin(), lines.end(), [](const Wanted& line) { return line.counted.has_value(); });
+      std::any_of(lines.begin(), lines.end(), [](const LineSpec& line) { return line.counted.has_value(); });
   EventSource* events = counted ? group.get() : nullptr;
   return backend::Inputs{std::move(group), events};
 }

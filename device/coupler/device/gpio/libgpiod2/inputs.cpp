@@ -15,7 +15,7 @@ constexpr std::size_t events_at_once = 64;
 
 }  // namespace
 
-Inputs::Inputs(Request request, const std::vector<Wanted>& lines)
+Inputs::Inputs(Request request, const std::vector<LineSpec>& lines)
     : request_(std::move(request)),
       events_(gpiod_edge_event_buffer_new(events_at_once)),
       lines_(lines.size(), {0, EdgeTally(Edge::both, false)}),

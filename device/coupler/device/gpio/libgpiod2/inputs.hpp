@@ -10,7 +10,7 @@
 #include "coupler/device/gpio/event_source.hpp"
 #include "coupler/device/gpio/libgpiod2/request.hpp"
 #include "coupler/device/gpio/line_group.hpp"
-#include "coupler/device/keeper/shared_array.hpp"
+#include "coupler/device/supervisor/shared_array.hpp"
 
 namespace coupler::device::libgpiod2 {
 
@@ -19,7 +19,7 @@ namespace coupler::device::libgpiod2 {
 class Inputs : public InputGroup, public EventSource {
  public:
   /// `request` holds `lines`, in this order.
-  Inputs(Request request, const std::vector<Wanted>& lines);
+  Inputs(Request request, const std::vector<LineSpec>& lines);
 
   const std::string& name() const override { return name_; }
   bool is_plugged() override { return request_.is_plugged(); }

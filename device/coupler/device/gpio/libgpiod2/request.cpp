@@ -54,14 +54,14 @@ gpiod_line_edge edge_of(const std::optional<Edge>& counted) {
   return GPIOD_LINE_EDGE_BOTH;
 }
 
-void set_output(gpiod_line_settings* settings, const Wanted& wanted) {
+void set_output(gpiod_line_settings* settings, const LineSpec& wanted) {
   gpiod_line_settings_set_direction(settings, GPIOD_LINE_DIRECTION_OUTPUT);
   gpiod_line_settings_set_drive(settings, drive_of(wanted.point->line.drive));
   gpiod_line_settings_set_output_value(
       settings, wanted.level != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE);
 }
 
-void set_input(gpiod_line_settings* settings, const Wanted& wanted) {
+void set_input(gpiod_line_settings* settings, const LineSpec& wanted) {
   gpiod_line_settings_set_direction(settings, GPIOD_LINE_DIRECTION_INPUT);
   gpiod_line_settings_set_edge_detection(settings, edge_of(wanted.counted));
   gpiod_line_settings_set_debounce_period_us(settings,
@@ -69,7 +69,7 @@ void set_input(gpiod_line_settings* settings, const Wanted& wanted) {
 }
 
 /// False with errno set if there is no memory or the settings contradict each other.
-bool add(gpiod_line_config* config, const Wanted& wanted) {
+bool add(gpiod_line_config* config, const LineSpec& wanted) {
   const Settings settings(gpiod_line_settings_new());
   if (!settings) return false;
   gpiod_line_settings_set_active_low(settings.get(), wanted.point->line.active_low);
@@ -83,14 +83,14 @@ bool add(gpiod_line_config* config, const Wanted& wanted) {
 
 }  // namespace
 
-bool same_kind(const Wanted& a, const Wanted& b) {
+bool same_kind(const LineSpec& a, const LineSpec& b) {
   const Line& x = a.point->line;
   const Line& y = b.point->line;
   return x.active_low == y.active_low && x.bias == y.bias && x.drive == y.drive && x.debounce == y.debounce &&
          a.counted == b.counted;
 }
 
-tl::expected<Request, std::string> request(const std::vector<Wanted>& lines) {
+tl::expected<Request, std::string> request(const std::vector<LineSpec>& lines) {
   ChipHandle chip(gpiod_chip_open(lines.front().line.chip->path.c_str()));
   const auto refused = [&] {
     return tl::unexpected(
@@ -101,7 +101,7 @@ tl::expected<Request, std::string> request(const std::vector<Wanted>& lines) {
   if (!chip || !config || !options) return refused();
   gpiod_request_config_set_consumer(options.get(), consumer);
   gpiod_request_config_set_event_buffer_size(options.get(), kernel_queue);
-  for (const Wanted& wanted : lines)
+  for (const LineSpec& wanted : lines)
     if (!add(config.get(), wanted)) return refused();
   RequestHandle made(gpiod_chip_request_lines(chip.get(), options.get(), config.get()));
   if (!made) return refused();

@@ -9,7 +9,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "coupler/device/gpio/wanted.hpp"
+#include "coupler/device/gpio/line_spec.hpp"
 
 namespace coupler::device::libgpiod2 {
 
@@ -38,7 +38,7 @@ struct Request {
 /// One to max_group_size lines of one chip, all outputs or all inputs, requested as the map says; inputs that
 /// are counted are watched for their edges. Outputs begin at their wanted levels, with no other level in
 /// between. The error names chip, line and holder.
-tl::expected<Request, std::string> request(const std::vector<Wanted>& lines);
+tl::expected<Request, std::string> request(const std::vector<LineSpec>& lines);
 
 /// The kernel describes a request's lines with at most 10 attributes, whatever their number. That is enough
 /// for as many different sets of flags and as many different debounce periods as this, and the levels of
@@ -46,6 +46,6 @@ tl::expected<Request, std::string> request(const std::vector<Wanted>& lines);
 constexpr std::size_t max_kinds = 5;
 
 /// Whether two lines differ in what takes an attribute.
-bool same_kind(const Wanted& a, const Wanted& b);
+bool same_kind(const LineSpec& a, const LineSpec& b);
 
 }  // namespace coupler::device::libgpiod2

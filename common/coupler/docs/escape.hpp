@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map's texts are anybody's: whatever stands in them is shown, never obeyed.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace coupler::docs {
+
+/// For text and quoted attributes of HTML.
+std::string html(std::string_view text);
+
+/// For the inline text of GitHub-flavoured Markdown, also within a cell of a table: a backslash before all
+/// punctuation that means something inside of a line, HTML's entities for what HTML would see.
+std::string markdown(std::string_view text);
+
+/// Without line breaks and other control characters, which would end what the text stands in.
+std::string one_line(std::string_view text);
+
+/// A path as part of a URL: what is not unreserved becomes %XX (RFC 3986, 2.3), slashes stay.
+std::string url_path(std::string_view path);
+
+}  // namespace coupler::docs

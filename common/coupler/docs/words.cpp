@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/docs/words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coupler/codec/number.hpp"
+#include "coupler/codec/value.hpp"
+
+namespace coupler::docs {
+namespace {
+
+using codec::Type;
+
+void add(std::string& list, std::string_view text) {
+  if (text.empty()) return;
+  if (!list.empty()) list += ", ";
+  list += text;
+}
+
+/// Without the last digits of a product: 12.1, not 12.100000000000001.
+std::string number(double value) { return fmt::format("{:.12g}", value); }
+
+std::string one_value(const Point& point, const std::uint16_t* registers) {
+  if (point.format.type == Type::BOOL) {
+    const bool on =
+        holds_bits(point.table) ? registers[0] != 0 : codec::decode_part(registers[0], point.format) != 0;
+    return on ? "on" : "off";
+  }
+  if (point.scale.present()) return number(codec::published(registers, point.format, point.scale));
+  return codec::to_string(codec::decode(registers, point.format));
+}
+
+}  // namespace
+
+std::string words(Table table) {
+  std::string text(to_string(table));
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string_view words(Access access) {
+  switch (access) {
+    case Access::read: return "read";
+    case Access::write: return "write";
+    case Access::read_write: return "read, write";
+  }
+  return {};
+}
+
+std::string words(std::chrono::nanoseconds duration) {
+  constexpr std::array<std::pair<std::int64_t, std::string_view>, 3> units{
+      {{1'000'000'000, "s"}, {1'000'000, "ms"}, {1'000, "µs"}}};
+  for (const auto& [size, unit] : units)
+    if (duration.count() % size == 0) return fmt::format("{} {}", duration.count() / size, unit);
+  return fmt::format("{} ns", duration.count());
+}
+
+std::string words(const codec::Scale& scale) {
+  if (!scale.present()) return {};
+  std::string text = scale.gain == 1 ? "raw" : "raw × " + number(scale.gain);
+  if (scale.offset > 0) text += " + " + number(scale.offset);
+  if (scale.offset < 0) text += " - " + number(-scale.offset);
+  return text;
+}
+
+std::string words(const Line& line) {
+  if (!line.name.empty()) return std::string(line.name);
+  return fmt::format("{} line {}", line.chip, line.offset);
+}
+
+std::string details(const Line& line) {
+  std::string text;
+  if (line.active_low) add(text, "active low");
+  if (line.bias == Bias::none) add(text, "no bias");
+  if (line.bias == Bias::pull_up) add(text, "pull-up");
+  if (line.bias == Bias::pull_down) add(text, "pull-down");
+  if (line.drive == Drive::open_drain) add(text, "open drain");
+  if (line.drive == Drive::open_source) add(text, "open source");
+  if (line.debounce.count() > 0) add(text, "debounce " + words(line.debounce));
+  return text;
+}
+
+std::string words(const EdgeOf& edge) {
+  switch (edge.edge) {
+    case Edge::rising: return fmt::format("rising edges of {}", edge.input);
+    case Edge::falling: return fmt::format("falling edges of {}", edge.input);
+    case Edge::both: return fmt::format("both edges of {}", edge.input);
+  }
+  return {};
+}
+
+std::string range_words(const Point& point) {
+  const Type type = point.format.type;
+  if (!codec::is_scalable(type)) return {};
+  const auto [least, most] = codec::published_range(type, point.scale);
+  // The channel takes no more, whatever the register could hold.
+  if (point.pwm.present()) return number(std::max(0.0, least)) + " … " + number(std::min(100.0, most));
+  if (type == Type::REAL || type == Type::LREAL) return {};
+  if (point.scale.present()) return number(least) + " … " + number(most);
+  return codec::with_number(type, [](auto zero) {
+    using Limits = std::numeric_limits<decltype(zero)>;
+    return fmt::format("{} … {}", Limits::lowest(), Limits::max());
+  });
+}
+
+std::string value_words(const Point& point, Span<const std::uint16_t> registers) {
+  if (registers.empty()) return {};
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < registers.size(); i += codec::registers(point.format))
+    values.push_back(one_value(point, registers.data() + i));
+  const bool alike =
+      std::all_of(values.begin(), values.end(), [&](const std::string& v) { return v == values.front(); });
+  if (alike) return values.front() + (values.size() > 1 ? " each" : "");
+  std::string list;
+  for (const std::string& value : values) add(list, value);
+  return list;
+}
+
+}  // namespace coupler::docs

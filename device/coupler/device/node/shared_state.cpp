@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/node/shared_state.hpp"
+
+#include <tuple>
+#include <utility>
+
+#include "coupler/map/lookup_by_name.hpp"
+
+namespace coupler::device {
+namespace {
+
+Statistics started_at(TimePoint now) {
+  Statistics statistics;
+  statistics.started = now;
+  return statistics;
+}
+
+/// Whether a value of one means the same in the other.
+bool same_value(const Point& a, const Point& b) {
+  const auto layout = [](const Point& p) {
+    const codec::Format& f = p.format;
+    return std::tuple(p.table, p.count, f.type, f.order, f.bit, f.half, f.length, f.encoding, p.scale.gain,
+                      p.scale.offset);
+  };
+  return layout(a) == layout(b);
+}
+
+/// Others have the value that their map says.
+bool may_change(const Point& point) {
+  return is_writable(point) || point.counter.present() || point.latched.present();
+}
+
+}  // namespace
+
+SharedState::SharedState(const Map& map, TimePoint now, const identity::Machine& machine)
+    : SharedState(map, now, Image::size_for(map), machine) {}
+
+SharedState::SharedState(const Map& map, TimePoint now, Image::Size size, const identity::Machine& machine)
+    : map_(map),
+      areas_(size.areas),
+      cells_(size.cells),
+      image_(map, areas_, cells_.all()),
+      lasting_(1, {started_at(now), OutputWatchdog(map.service.watchdog)}),
+      links_(EdgePoints::links_for(map)),
+      machine_(machine) {}
+
+void SharedState::prepare_take_over(const SharedState& before) {
+  LookupByName known(before.map_.points, [](const Point& point) { return point.name; });
+  for (const Point& point : map_.points) {
+    if (!may_change(point)) continue;
+    const Point* old = known.find(point.name);
+    if (old == nullptr || !same_value(*old, point)) continue;
+    // A point that shares its register leaves the others' bits alone.
+    const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
+    carried_.push_back(
+        {before.image_.find(point.table, range(*old)), image_.find(point.table, range(point)), mask});
+  }
+}
+
+void SharedState::take_over(const SharedState& before, TimePoint now) {
+  statistics() = before.lasting_[0].statistics;
+  watchdog().take_over(before.lasting_[0].watchdog, now);
+  for (const Carried& carried : std::exchange(carried_, {}))
+    for (std::size_t i = 0; i < carried.to.size(); ++i)
+      carried.to[i] =
+          static_cast<std::uint16_t>((carried.to[i] & ~carried.mask) | (carried.from[i] & carried.mask));
+}
+
+}  // namespace coupler::device

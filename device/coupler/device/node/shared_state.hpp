@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "coupler/device/core/edge_points.hpp"
+#include "coupler/device/core/image.hpp"
+#include "coupler/device/core/statistics.hpp"
+#include "coupler/device/core/watchdog.hpp"
+#include "coupler/device/supervisor/shared_array.hpp"
+#include "coupler/map/identity.hpp"
+
+namespace coupler::device {
+
+/// What a node knows, for as long as its map stays the same: values, statistics, watchdog. It is shared with
+/// forked processes, so a worker process that is started anew goes on where the one before ended.
+class SharedState {
+ public:
+  /// Initial values. The map outlives it.
+  SharedState(const Map& map, TimePoint now, const identity::Machine& machine = {});
+
+  /// Finds out what take_over() from this other state, of another map, is to copy: that takes its time if
+  /// there are many points.
+  void prepare_take_over(const SharedState& before);
+  /// Takes over from the other state what both have: statistics, the watchdog's state, and the value of
+  /// every point that has the same name, table, type and layout in both.
+  void take_over(const SharedState& before, TimePoint now);
+
+  Image& image() { return image_; }
+  Statistics& statistics() { return lasting_[0].statistics; }
+  OutputWatchdog& watchdog() { return lasting_[0].watchdog; }
+  Span<EdgePoints::Link> links() { return links_; }
+  const identity::Machine& machine() const { return machine_; }
+
+ private:
+  struct Lasting {
+    Statistics statistics;
+    OutputWatchdog watchdog;
+  };
+  /// Cells of a point in the other image and in this one.
+  struct Carried {
+    Span<const std::uint16_t> from;
+    Span<std::uint16_t> to;
+    std::uint16_t mask;
+  };
+  SharedState(const Map& map, TimePoint now, Image::Size size, const identity::Machine& machine);
+
+  const Map& map_;
+  std::vector<Image::Area> areas_;
+  SharedArray<std::uint16_t> cells_;
+  Image image_;
+  SharedArray<Lasting> lasting_;
+  std::vector<EdgePoints::Link> links_;
+  std::vector<Carried> carried_;
+  identity::Machine machine_;
+};
+
+}  // namespace coupler::device

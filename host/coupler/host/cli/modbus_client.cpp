@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/cli/modbus_client.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "coupler/modbus/identification_reply.hpp"
+
+namespace coupler::cli {
+
+host::Result<> ModbusClient::read(Table table, modbus::Range range, std::uint16_t* values) {
+  if (!holds_bits(table)) return transport_.read_registers(table, range, values);
+  std::array<std::uint8_t, modbus::max_read_bits> bits{};
+  auto result = transport_.read_bits(table, range, bits.data());
+  if (result) std::copy_n(bits.begin(), range.count(), values);
+  return result;
+}
+
+host::Result<scan::IdentificationPage> read_identification(host::ModbusTransport& transport,
+                                                           modbus::ReadDeviceIdentification wanted) {
+  const auto pdu = modbus::build_device_identification(wanted);
+  const auto reply = transport.exchange(pdu);
+  if (!reply) return tl::make_unexpected(reply.error());
+  std::array<modbus::IdentificationObject, modbus::max_identification_objects> objects{};
+  const auto taken = modbus::take_device_identification(*reply, objects);
+  if (!taken && taken.error().exception) return host::fail(host::ExceptionReply{*taken.error().exception});
+  if (!taken) return host::fail(host::BadFrame{"no device identification"});
+  scan::IdentificationPage page;
+  for (std::size_t i = 0; i < taken->count; ++i)
+    page.objects.emplace(objects[i].id, std::string(objects[i].value));
+  if (taken->more) page.next = taken->next;
+  return page;
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/scan/client.hpp"
+
+namespace coupler::cli {
+
+/// FC 43/14.
+host::Result<scan::IdentificationPage> read_identification(host::ModbusTransport& transport,
+                                                           modbus::ReadDeviceIdentification wanted);
+
+/// A scan's client over Modbus/TCP.
+class ModbusClient : public scan::Client {
+ public:
+  explicit ModbusClient(const Connection& where) : transport_(where), timeout_(where.timeout) {}
+
+  host::Result<> connect() override { return transport_.connect(); }
+  void close() override { transport_.close(); }
+  void select(std::uint8_t unit) override { transport_.select(unit, timeout_); }
+  host::Result<> read(Table table, modbus::Range range, std::uint16_t* values) override;
+  host::Result<scan::IdentificationPage> identify(modbus::ReadDeviceIdentification wanted) override {
+    return read_identification(transport_, wanted);
+  }
+
+  /// From any thread: the request in progress and all later ones fail.
+  void interrupt() { transport_.interrupt(); }
+
+ private:
+  host::ModbusTransport transport_;
+  std::chrono::milliseconds timeout_;
+};
+
+}  // namespace coupler::cli

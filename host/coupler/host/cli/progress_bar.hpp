@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <string>
+
+#include "coupler/host/scan/scan_progress.hpp"
+
+namespace coupler::cli {
+
+/// Shows on standard error how far a scan is: a bar on a terminal, otherwise a line for each step.
+class ProgressBar : public scan::ScanProgress {
+ public:
+  ProgressBar();
+  ~ProgressBar() override;
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void begins(std::string_view step) override;
+  void moved(std::uint32_t done, std::uint32_t total, std::uint64_t requests) override;
+  bool wants_end() const override { return ended_; }
+
+  /// From any thread.
+  void end() { ended_ = true; }
+
+ private:
+  bool is_terminal_;
+  std::string step_;
+  std::chrono::steady_clock::time_point drawn_{};
+  std::atomic<bool> ended_{false};
+};
+
+}  // namespace coupler::cli

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a foreign device answers to.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coupler/host/scan/table_scan.hpp"
+#include "coupler/host/scan/units.hpp"
+#include "coupler/map/identity.hpp"
+
+namespace coupler::scan {
+
+/// What to look for.
+struct Task {
+  std::vector<std::uint8_t> units{1, 255, 0};          ///< in this order; the first that answers is surveyed
+  modbus::Range window = modbus::Range::of(0, 10000);  ///< of each table
+  std::uint32_t stride = 16;  ///< where blocks are refused, one address in so many is tried; 1: all
+  double rate = 20;           ///< requests a second
+};
+
+struct Findings {
+  std::vector<std::uint8_t> units;                     ///< that are there
+  std::optional<std::uint8_t> unit;                    ///< the rest is about it
+  std::map<std::uint8_t, std::string> identification;  ///< FC 43/14
+  std::optional<identity::Head> node;                  ///< a node of this project
+  std::vector<TableFindings> tables;                   ///< those that were looked at
+  LargestReads largest;
+  std::uint64_t requests = 0;
+  std::vector<std::string> failures;     ///< requests without an answer, by kind
+  std::optional<host::Error> broke_off;  ///< the device cannot be reached, or not any more
+  bool is_complete = false;              ///< false: it was ended early
+};
+
+/// Connects, and asks until all is known or `progress` wants the end. It reads and does nothing else.
+Findings scan(const Task& task, Client& client, host::Clock& clock, ScanProgress& progress);
+
+}  // namespace coupler::scan

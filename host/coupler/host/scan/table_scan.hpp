@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "coupler/host/scan/prober.hpp"
+#include "coupler/host/scan/table_findings.hpp"
+#include "coupler/modbus/limits.hpp"
+
+namespace coupler::scan {
+
+/// What one read may ask for, of bits or of registers.
+struct Largest {
+  std::uint32_t count;      ///< no more is asked for
+  bool is_limited = false;  ///< the device refuses more; the protocol would allow it
+};
+struct LargestReads {
+  Largest bits{modbus::max_read_bits};
+  Largest registers{modbus::max_read_registers};
+
+  Largest& of(Table table) { return holds_bits(table) ? bits : registers; }
+};
+
+/// Where whole blocks are refused, this many addresses from the first one on are all tried.
+constexpr std::uint32_t first_addresses = 100;
+/// This far around a readable address all are tried.
+constexpr std::uint32_t neighbourhood = 16;
+/// After so many time-outs the rest of a table is left alone: each costs a timeout.
+constexpr int most_timeouts = 50;
+
+/// Finds out which addresses of a table can be read, with few requests:
+/// 1. Blocks, as large as a request may be. One that is given needs nothing more.
+/// 2. In a block that is refused: the first addresses of the window, then one address in `stride`, and each
+///    multiple of 100 and the address after it, where manuals let things begin.
+/// 3. Around each address that can be read: all, in the largest pieces that are given, until `neighbourhood`
+///    addresses in a row are refused.
+/// A read that is refused though its addresses can be read one by one shows either the largest count that the
+/// device takes (the same count is given one address further) or a seam that no read may cross.
+class TableScan {
+ public:
+  /// `stride` 1: every address is tried.
+  TableScan(Prober& prober, ScanProgress& progress, LargestReads& largest, std::uint32_t stride,
+            TableFindings& findings);
+
+  /// False if the scan has to end: what was found so far is in the findings.
+  bool run();
+
+ private:
+  using Seen = TableFindings::Seen;
+
+  bool reads(modbus::Range range);
+  bool reads(std::uint32_t start, std::uint32_t count) { return reads(modbus::Range::of(start, count)); }
+  bool is_readable(std::uint32_t address);
+  void look_at(modbus::Range block);
+  bool try_some(modbus::Range block);
+  bool is_tried(std::uint32_t address) const;
+  void look_around();
+  std::vector<modbus::Range> surroundings() const;
+  void walk(modbus::Range range);
+  std::uint32_t extend(std::uint32_t start, std::uint32_t end);
+  void explain(std::uint32_t start, std::uint32_t count, std::uint32_t end);
+  bool ended() const { return over_ || findings_.absent || findings_.gave_up_at; }
+
+  Prober& prober_;
+  ScanProgress& progress_;
+  Largest& largest_;
+  std::uint32_t stride_;
+  TableFindings& findings_;
+  std::array<std::uint16_t, modbus::max_read_bits> values_{};
+  int timeouts_ = 0;
+  bool over_ = false;
+};
+
+}  // namespace coupler::scan

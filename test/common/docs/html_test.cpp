@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/docs/html.hpp"
+
+#include <gmock/gmock.h>
+
+#include "test/common/docs/hostile.hpp"
+
+namespace coupler::docs {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::size_t count_of(const std::string& text, std::string_view what) {
+  std::size_t count = 0;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+Document of(fakes::MapBuilder builder, std::string url = "cell.yaml") {
+  const auto map = builder.build();
+  const std::vector<int> lines(map->map().points.size(), 12);
+  return make_document(map->map(), lines, {"cell.yaml", std::move(url), "1.2.3"});
+}
+
+TEST(Html, No_text_of_a_map_becomes_more_than_a_text) {
+  const std::string page = html_page(test::hostile_document());
+  EXPECT_EQ(count_of(page, "<script"), 2U) << "the page's own";
+  EXPECT_EQ(count_of(page, "</script"), 2U);
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(1)&lt;/script&gt; | `x` --&gt; &quot;q&quot; next"));
+}
+
+TEST(Html, A_page_needs_nothing_from_elsewhere) {
+  const std::string page = html_page(of(fakes::MapBuilder().many(Table::coils, 0, 3)));
+  EXPECT_THAT(page, Not(HasSubstr(" src=")));
+  EXPECT_THAT(page, Not(HasSubstr("@import")));
+  EXPECT_THAT(page, Not(HasSubstr("url(http")));
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+}
+
+TEST(Html, Every_point_is_a_row_that_the_picture_links_to) {
+  const std::string page = html_page(of(fakes::MapBuilder().many(Table::input_registers, 0, 3)));
+  for (const auto* name : {"input_registers_0", "input_registers_1", "input_registers_2"}) {
+    EXPECT_EQ(count_of(page, std::string("<tr id=\"point-") + name + "\""), 1U);
+    EXPECT_EQ(count_of(page, std::string("href=\"#point-") + name + "\""), 2U)
+        << "in its row and in the picture";
+  }
+  EXPECT_THAT(page, HasSubstr(">no points<")) << "the other spaces are in the picture too";
+}
+
+TEST(Html, A_row_links_to_its_line_of_the_map) {
+  const auto points = fakes::MapBuilder().many(Table::coils, 0, 1);
+  EXPECT_THAT(html_page(of(points)), HasSubstr("<a href=\"cell.yaml#L12\">L12</a>"));
+  EXPECT_THAT(html_page(of(points, "https://forge/x?a=1&b=2")),
+              HasSubstr("<a href=\"https://forge/x?a=1&amp;b=2#L12\""));
+  EXPECT_THAT(html_page(of(points, "")), Not(HasSubstr("#L12")));
+}
+
+TEST(Html, Columns_that_no_point_fills_are_left_out) {
+  EXPECT_THAT(html_page(of(fakes::MapBuilder().many(Table::coils, 0, 1))), Not(HasSubstr(">Units</th>")));
+  auto builder = fakes::MapBuilder();
+  builder.add(Table::coils, "a", 0, codec::Type::BOOL, [](Point& point) { point.units = "bar"; });
+  EXPECT_THAT(html_page(of(builder)), HasSubstr(">Units</th>"));
+}
+
+TEST(Html, A_map_without_points_has_a_page) {
+  EXPECT_THAT(html_page(of(fakes::MapBuilder())), HasSubstr("<table id=\"points\">"));
+}
+
+}  // namespace
+}  // namespace coupler::docs

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/docs/markdown.hpp"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "test/common/docs/hostile.hpp"
+
+namespace coupler::docs {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Bars that part cells.
+std::size_t bars(const std::string& line) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '\\')
+      ++i;
+    else if (line[i] == '|')
+      ++count;
+  }
+  return count;
+}
+
+/// Every line of a table has as many bars as the table's first. Returns how many such lines there are.
+std::size_t check_tables(const std::string& page) {
+  std::istringstream lines(page);
+  std::size_t expected = 0;  // 0: outside of a table
+  std::size_t rows = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const bool inside = line.rfind('|', 0) == 0;
+    if (inside && expected == 0) expected = bars(line);
+    if (!inside) expected = 0;
+    EXPECT_EQ(inside ? bars(line) : 0, expected) << line;
+    rows += inside ? 1U : 0U;
+  }
+  return rows;
+}
+
+TEST(Markdown, No_text_of_a_map_becomes_more_than_a_text) {
+  const std::string page = markdown_page(test::hostile_document());
+  const std::string before_code = page.substr(0, page.find("```"));
+  EXPECT_THAT(before_code, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, Not(HasSubstr("\nnext"))) << "a text began a line";
+  EXPECT_GT(check_tables(before_code), 20U);
+}
+
+TEST(Markdown, A_text_cannot_end_the_block_of_commands) {
+  const std::string page = markdown_page(test::hostile_document());
+  std::istringstream lines(page);
+  std::size_t fences = 0;
+  for (std::string line; std::getline(lines, line);) fences += line.rfind("```", 0) == 0 ? 1U : 0U;
+  EXPECT_EQ(fences, 4U) << "two blocks";
+}
+
+TEST(Markdown, Each_address_space_has_a_table_of_its_points) {
+  auto builder = fakes::MapBuilder("cell").many(Table::coils, 0, 2);
+  builder.add(Table::holding_registers, "level", 6, codec::Type::REAL, [](Point& p) { p.units = "m|s"; });
+  const auto map = builder.build();
+  const std::vector<int> lines{3, 4, 6};
+  const std::string page =
+      markdown_page(make_document(map->map(), lines, {"cell.yaml", "cell.yaml", "1.2.3"}));
+  EXPECT_THAT(page, HasSubstr("\n## Coils (2)\n"));
+  EXPECT_THAT(page, HasSubstr("\n## Discrete inputs (0)\n"));
+  EXPECT_THAT(page, HasSubstr("| [`level`](<cell.yaml#L6>) | 6 – 7 | 40007 – 40008 | REAL | ABCD | m\\|s | "
+                              "read, write | `std_msgs/Float32` |\n"));
+}
+
+}  // namespace
+}  // namespace coupler::docs
