@@ -9,8 +9,9 @@
 #                libmodbus is
 #   NAME_hooks   library: for a node with code of its own, coupler::maps::NAME::NodeHooks in "NAME_hooks.hpp"
 # The map's lock, map.yaml.lock, must be up to date if the map leaves addresses out (`coupler check map.yaml`).
-# Both programs link the same NAME_map, so they cannot disagree. Works in this tree and in a project that adds this
-# tree by add_subdirectory(). A cross build cannot run the `coupler` that it makes; it is given one that runs here.
+# Both programs link the same NAME_map, so they cannot disagree. Works after find_package(OpenCoupler), in this tree, and in a
+# project that has this tree as a part (add_subdirectory(), FetchContent). What nothing links is not built there unless it is
+# asked for. A cross build cannot run the `coupler` that it makes; it is given one that runs here.
 set(COUPLER_HOST_COUPLER "" CACHE FILEPATH "The program coupler of this machine, for cross builds")
 if(CMAKE_CROSSCOMPILING AND NOT COUPLER_HOST_COUPLER)
   message(FATAL_ERROR "A cross build needs the generator of a native one: build the target coupler without the "
@@ -26,9 +27,12 @@ function(coupler_add_map name map)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/${name}_generated)
   set(stamp ${out}/${name}.stamp)
   set(flags $<TARGET_NAME_IF_EXISTS:coupler_flags>)  # warnings, where this tree is built
-  set(generator coupler)
   if(COUPLER_HOST_COUPLER)
     set(generator ${COUPLER_HOST_COUPLER})
+  elseif(TARGET coupler)
+    set(generator coupler)
+  else()
+    set(generator $<TARGET_FILE:OpenCoupler::coupler>)
   endif()
   set(files ${out}/${name}_client.cpp ${out}/${name}_client.hpp ${out}/${name}_driver.cpp ${out}/${name}_hooks.hpp
             ${out}/${name}_map.cpp ${out}/${name}_map.hpp ${out}/${name}_node.cpp)
@@ -47,22 +51,22 @@ function(coupler_add_map name map)
   add_custom_target(${name}_generate DEPENDS ${stamp})
   set_source_files_properties(${files} PROPERTIES GENERATED TRUE)
 
-  add_library(${name}_map STATIC ${out}/${name}_map.cpp)
+  add_library(${name}_map STATIC EXCLUDE_FROM_ALL ${out}/${name}_map.cpp)
   target_include_directories(${name}_map PUBLIC ${out})
   target_compile_features(${name}_map PUBLIC cxx_std_17)
-  target_link_libraries(${name}_map PUBLIC coupler_map PRIVATE ${flags})
+  target_link_libraries(${name}_map PUBLIC OpenCoupler::map PRIVATE ${flags})
   add_dependencies(${name}_map ${name}_generate)
 
   add_executable(${name}_node ${out}/${name}_node.cpp)
-  target_link_libraries(${name}_node PRIVATE ${name}_map coupler_device_node ${flags})
+  target_link_libraries(${name}_node PRIVATE ${name}_map OpenCoupler::node ${flags})
   add_dependencies(${name}_node ${name}_generate)
 
   add_library(${name}_hooks INTERFACE)
-  target_link_libraries(${name}_hooks INTERFACE ${name}_map coupler_device_node)
+  target_link_libraries(${name}_hooks INTERFACE ${name}_map OpenCoupler::node)
 
-  if(TARGET coupler_host_client)
-    add_library(${name}_client STATIC ${out}/${name}_client.cpp)
-    target_link_libraries(${name}_client PUBLIC ${name}_map coupler_host_client PRIVATE ${flags})
+  if(TARGET OpenCoupler::client)
+    add_library(${name}_client STATIC EXCLUDE_FROM_ALL ${out}/${name}_client.cpp)
+    target_link_libraries(${name}_client PUBLIC ${name}_map OpenCoupler::client PRIVATE ${flags})
     add_dependencies(${name}_client ${name}_generate)
   endif()
 

@@ -41,6 +41,6 @@ if(NOT pugixml_FOUND)
   message(STATUS "Left out: coupler import modbuspal (no pugixml; apt install libpugixml-dev)")
 endif()
 
-if(BUILD_TESTING)
+if(COUPLER_TESTING)
   find_package(GTest REQUIRED)
 endif()

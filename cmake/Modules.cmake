@@ -4,6 +4,7 @@
 # A cold build reads the same headers hundreds of times, so they are translated once (precompiled headers), and the files
 # of a test program three at a time. Neither may hide a missing include: scripts/lint compiles each file by itself.
 # -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON and -DCOUPLER_TEST_UNITY=1 build each file by itself, too.
+include(GNUInstallDirs)
 include(GoogleTest)
 
 # Their macros must be those of the files that use them: one for libraries, one for test programs.
@@ -13,7 +14,7 @@ target_link_libraries(coupler_headers PRIVATE coupler_flags tl::expected fmt::fm
 target_precompile_headers(coupler_headers PRIVATE
   <algorithm> <array> <chrono> <cstdint> <functional> <map> <memory> <optional> <string> <string_view> <utility> <variant>
   <vector> <fmt/format.h> <tl/expected.hpp>)
-if(BUILD_TESTING)
+if(COUPLER_TESTING)
   add_executable(coupler_test_headers ${PROJECT_BINARY_DIR}/nothing.cpp)
   target_link_libraries(coupler_test_headers PRIVATE coupler_flags GTest::gmock)
   target_precompile_headers(coupler_test_headers PRIVATE
@@ -21,28 +22,49 @@ if(BUILD_TESTING)
     <utility> <variant> <vector> <gmock/gmock.h>)
 endif()
 
-# coupler_install(…): install(…). `colcon build --symlink-install` puts one that knows no COMPONENT in its place.
+# coupler_install(…): install(…), unless this is a part of another project. `colcon build --symlink-install` puts one that knows
+# no COMPONENT in its place.
 macro(coupler_install)
-  if(COMMAND _install)
-    _install(${ARGN})
-  else()
-    install(${ARGN})
+  if(COUPLER_INSTALL)
+    if(COMMAND _install)
+      _install(${ARGN})
+    else()
+      install(${ARGN})
+    endif()
   endif()
 endmacro()
 
-# coupler_module(NAME SOURCES a.cpp … LINKS lib … [HEADERS <h> …]): the library of one module. LINKS are public. HEADERS are
-# precompiled for it alone, in place of those that most modules share: where they cost more, or where fmt is not linked.
-# COUPLER_INCLUDE is the folder in which #include finds its headers. Who links it gets no flags of ours but C++17.
+add_custom_target(coupler_dev)  # what the package coupler-dev has
+# coupler_export(TARGET NAME): others link it as OpenCoupler::NAME, from here or from what is installed, with its headers.
+function(coupler_export target name)
+  add_library(OpenCoupler::${name} ALIAS ${target})
+  add_dependencies(coupler_dev ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(${target} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  coupler_install(TARGETS ${target} EXPORT OpenCouplerTargets DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
+  file(RELATIVE_PATH folder ${COUPLER_INCLUDE} ${CMAKE_CURRENT_SOURCE_DIR})
+  file(GLOB headers CONFIGURE_DEPENDS *.hpp)
+  coupler_install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT dev)
+endfunction()
+
+# coupler_module(NAME SOURCES a.cpp … LINKS lib … [EXPORT name] [HEADERS <h> …]): the library of one module. LINKS are public.
+# EXPORT: as coupler_export(). HEADERS are precompiled for it alone, in place of those that most modules share: where they cost
+# more, or where fmt is not linked. COUPLER_INCLUDE is the folder in which #include finds its headers. Who links it gets no
+# flags of ours but C++17.
 function(coupler_module name)
-  cmake_parse_arguments(module "" "" "SOURCES;LINKS;HEADERS" ${ARGN})
+  cmake_parse_arguments(module "" "EXPORT" "SOURCES;LINKS;HEADERS" ${ARGN})
   add_library(${name} STATIC ${module_SOURCES})
   target_compile_features(${name} PUBLIC cxx_std_17)
+  target_compile_options(${name} PRIVATE $<TARGET_PROPERTY:coupler_flags,INTERFACE_COMPILE_OPTIONS>)
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${COUPLER_INCLUDE}>)
-  target_link_libraries(${name} PUBLIC ${module_LINKS} PRIVATE $<BUILD_INTERFACE:coupler_flags>)
+  target_link_libraries(${name} PUBLIC ${module_LINKS})
   if(module_HEADERS)
     target_precompile_headers(${name} PRIVATE ${module_HEADERS})
   else()
     target_precompile_headers(${name} REUSE_FROM coupler_headers)
+  endif()
+  if(module_EXPORT)
+    coupler_export(${name} ${module_EXPORT})
   endif()
 endfunction()
 

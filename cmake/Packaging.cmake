@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages: `cpack` in a build of the preset release makes coupler-node (the program and its service; neither ROS
-# nor a compiler needed) and coupler-tools (the program coupler). scripts/build-packages does it for a board too.
-# What goes into which one is said by install() in the modules, COMPONENT node or tools.
-include(GNUInstallDirs)
+# nor a compiler needed), coupler-tools (the program coupler) and coupler-dev (find_package(OpenCoupler)).
+# scripts/build-packages does it for a board too. What goes into which one is said by install() in the modules, COMPONENT
+# node, tools or dev.
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "OpenCoupler maintainers <maintainers@opencoupler.org>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_COMPONENTS_ALL node tools)
+set(CPACK_COMPONENTS_ALL node tools dev)
 set(CPACK_STRIP_FILES ON)
 # What is installed has the permissions that policy wants, whatever the umask here.
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
@@ -37,8 +37,25 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION net)
 set(CPACK_DEBIAN_TOOLS_DESCRIPTION "Checks maps of Modbus/TCP couplers and generates C++ from them
  The program coupler of OpenCoupler.")
 
-coupler_install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-node COMPONENT node)
-coupler_install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-tools COMPONENT tools)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME coupler-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_DESCRIPTION "C++ nodes and typed clients from maps of Modbus/TCP couplers
+ Headers, static libraries and CMake files of OpenCoupler: find_package(OpenCoupler), coupler_add_map().")
+set(libraries libexpected-dev libfmt-dev libmd-dev libyaml-cpp-dev)
+if(COUPLER_WITH_GPIOD)
+  list(APPEND libraries libgpiod-dev)
+endif()
+if(libmodbus_FOUND)
+  list(APPEND libraries libmodbus-dev)
+endif()
+list(JOIN libraries ", " libraries)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "coupler-tools (= ${PROJECT_VERSION}), pkg-config, ${libraries}")
+
+foreach(component node tools dev)
+  coupler_install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-${component} COMPONENT ${component})
+endforeach()
+coupler_install(DIRECTORY config/examples/tank DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-dev/examples COMPONENT dev)
 coupler_install(FILES docs/node.md docs/identity.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-node COMPONENT node)
+coupler_install(FILES docs/generated.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-dev COMPONENT dev)
 coupler_install(FILES docs/import-export.md docs/map.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-tools COMPONENT tools)
 include(CPack)

@@ -16,8 +16,8 @@ struct Context {
   std::string_view name{};         ///< of a map that says none; empty: it has to
   std::vector<int> point_lines{};  ///< LoadResult::point_lines
   Position filled_in{};            ///< where the first point stands whose address the text leaves out
-  bool origin = false;             ///< may_be_of_the_origin: what ros-modbus-device-driver would ignore is a warning
-  bool served = false;             ///< by a node, which may be newer than this program: it knows more keys
+  bool origin = false;  ///< may_be_of_the_origin: what ros-modbus-device-driver would ignore is a warning
+  bool served = false;  ///< by a node, which may be newer than this program: it knows more keys
 
   void ignored(Position at, std::string what, std::string remedy) {
     if (origin || served)

@@ -16,7 +16,8 @@ std::string_view canonical(const Key& key) { return key.same_as.empty() ? key.na
 
 bool is_bare(const Entry& value) { return value.kind == Entry::Kind::scalar && !value.quoted; }
 
-/// "UTF_8" and "utf-8" are the same word in the files of ros-modbus-device-driver, not in this project's keys.
+/// "UTF_8" and "utf-8" are the same word in the files of ros-modbus-device-driver, not in this project's
+/// keys.
 std::string folded(std::string_view word, Owner owner) {
   std::string result(word);
   if (owner == Owner::project) return result;

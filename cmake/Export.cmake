@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+# find_package(OpenCoupler): the modules with EXPORT, the program coupler and coupler_add_map(), from where they are installed or,
+# with -DOpenCoupler_DIR=<build folder>, from this build.
+if(NOT COUPLER_INSTALL)
+  return()
+endif()
+include(CMakePackageConfigHelpers)
+set(libraries)
+if(libmodbus_FOUND)
+  list(APPEND libraries libmodbus)
+endif()
+if(COUPLER_WITH_GPIOD)
+  list(APPEND libraries libgpiod)
+endif()
+set(folder ${CMAKE_INSTALL_LIBDIR}/cmake/OpenCoupler)
+configure_package_config_file(cmake/OpenCouplerConfig.cmake.in ${PROJECT_BINARY_DIR}/OpenCouplerConfig.cmake
+                              INSTALL_DESTINATION ${folder} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/OpenCouplerConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+configure_file(cmake/CouplerMap.cmake ${PROJECT_BINARY_DIR}/CouplerMap.cmake COPYONLY)
+export(EXPORT OpenCouplerTargets NAMESPACE OpenCoupler:: FILE ${PROJECT_BINARY_DIR}/OpenCouplerTargets.cmake)
+
+coupler_install(EXPORT OpenCouplerTargets NAMESPACE OpenCoupler:: DESTINATION ${folder} COMPONENT dev)
+coupler_install(FILES ${PROJECT_BINARY_DIR}/OpenCouplerConfig.cmake ${PROJECT_BINARY_DIR}/OpenCouplerConfigVersion.cmake
+                      cmake/CouplerMap.cmake
+                DESTINATION ${folder} COMPONENT dev)
