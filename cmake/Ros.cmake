@@ -13,9 +13,8 @@ if(NOT COUPLER_WITH_ROS)
   message(STATUS "Left out: coupler_driver, the ROS driver (${left_out})")
 endif()
 
-# Programs are in build/<preset>/bin. In a catkin workspace (another devel folder) catkin's own choice stands,
-# so that rosrun finds them.
-if(NOT COUPLER_WITH_ROS EQUAL 1 OR CATKIN_DEVEL_PREFIX STREQUAL "${PROJECT_BINARY_DIR}/devel")
+# Programs are in build/<preset>/bin. In a catkin workspace catkin's own choice stands, so that rosrun finds them.
+if(NOT COUPLER_WITH_ROS EQUAL 1 OR plain)
   set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
   set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)

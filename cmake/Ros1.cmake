@@ -4,6 +4,15 @@
 if(NOT PYTHON_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(PYTHON_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Python that has catkin_pkg")
 endif()
+# Neither in a workspace nor for one. catkin's devel folder then names the source tree, with every build in it, as the package;
+# so it stands aside, and devel has the package as ROS's tools are to see it.
+set(plain OFF)
+if(CMAKE_SOURCE_DIR STREQUAL PROJECT_SOURCE_DIR AND
+   (NOT DEFINED CATKIN_DEVEL_PREFIX OR CATKIN_DEVEL_PREFIX STREQUAL "${PROJECT_BINARY_DIR}/catkin"))
+  set(plain ON)
+  set(CATKIN_DEVEL_PREFIX ${PROJECT_BINARY_DIR}/catkin)
+  set(CATKIN_BUILD_BINARY_PACKAGE ON)  # no setup.bash of a workspace is installed, nor to another prefix than was asked for
+endif()
 find_package(catkin QUIET COMPONENTS roscpp std_msgs std_srvs diagnostic_updater message_generation)
 if(NOT catkin_FOUND)
   if(NOT COUPLER_ROS STREQUAL AUTO)
@@ -19,11 +28,40 @@ add_service_files(DIRECTORY host/srv FILES ${services})
 generate_messages(DEPENDENCIES std_msgs)
 catkin_package(CATKIN_DEPENDS roscpp std_msgs std_srvs diagnostic_updater message_runtime)
 # Where rosmsg and rossrv look for them; our folders are not at the top.
-foreach(file ${messages} ${services})
-  get_filename_component(kind ${file} EXT)
-  string(SUBSTRING ${kind} 1 -1 kind)
-  configure_file(host/${kind}/${file} ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME}/${kind}/${file} COPYONLY)
+foreach(kind msg srv)
+  file(COPY host/${kind} DESTINATION ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME})
+  install(DIRECTORY host/${kind} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} COMPONENT ros)
 endforeach()
+if(plain)
+  set(devel ${PROJECT_BINARY_DIR}/devel)
+  set(package ${devel}/share/${PROJECT_NAME})
+  # link(FILE NAME): once; another program may be looking.
+  macro(link file name)
+    if(NOT IS_SYMLINK ${name})
+      get_filename_component(folder ${name} DIRECTORY)
+      file(MAKE_DIRECTORY ${folder})
+      file(CREATE_LINK ${file} ${name} SYMBOLIC)
+    endif()
+  endmacro()
+  link(${PROJECT_SOURCE_DIR}/package.xml ${package}/package.xml)
+  link(${PROJECT_SOURCE_DIR}/config/launch ${package}/launch)
+  link(${PROJECT_SOURCE_DIR}/config/example-node.yaml ${package}/config/example-node.yaml)
+  link(${PROJECT_SOURCE_DIR}/host/msg ${package}/msg)
+  link(${PROJECT_SOURCE_DIR}/host/srv ${package}/srv)
+  foreach(program coupler_driver coupler-node)
+    link(${PROJECT_BINARY_DIR}/bin/${program} ${devel}/lib/${PROJECT_NAME}/${program})
+  endforeach()
+  file(GENERATE OUTPUT ${devel}/.catkin CONTENT "")
+  file(GENERATE OUTPUT ${devel}/setup.bash CONTENT
+"# Sourced by bash: ROS 1 with this build's programs, launch files and messages.
+source \"${CATKIN_DEVEL_PREFIX}/setup.bash\"
+without() { [ -n \"$1\" ] || return 0; local list=:$1: one=:$2:; list=\${list//\"$one\"/:}; printf %s \"\${list%:}\"; }
+export CMAKE_PREFIX_PATH=\"${devel}$(without \"$CMAKE_PREFIX_PATH\" \"${devel}\")\"
+ROS_PACKAGE_PATH=$(without \"$ROS_PACKAGE_PATH\" \"${PROJECT_SOURCE_DIR}\")
+export ROS_PACKAGE_PATH=\"${devel}/share$(without \"\${ROS_PACKAGE_PATH#:}\" \"${devel}/share\")\"
+unset -f without
+")
+endif()
 # catkin wants shared libraries and devel/lib; the modules are small static libraries.
 set(BUILD_SHARED_LIBS OFF)
 
