@@ -7,6 +7,19 @@
 include(GNUInstallDirs)
 include(GoogleTest)
 
+# Programs are in build/<preset>/bin. In a catkin workspace catkin's own choice stands, so that rosrun finds them.
+if(NOT COUPLER_WITH_ROS EQUAL 1 OR plain)
+  set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+  set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+endif()
+
+add_library(coupler_flags INTERFACE)
+target_compile_options(coupler_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+  -ffp-contract=off  # no fused multiply-add: a scaled value has the same last bit on every machine
+  $<$<BOOL:${COUPLER_WERROR}>:-Werror>)
+
 # Their macros must be those of the files that use them: one for libraries, one for test programs.
 file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/nothing.cpp CONTENT "int main() {}\n")
 add_library(coupler_headers STATIC ${PROJECT_BINARY_DIR}/nothing.cpp)

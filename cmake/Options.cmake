@@ -60,12 +60,6 @@ if(COUPLER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
 
-add_library(coupler_flags INTERFACE)
-target_compile_options(coupler_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wshadow
-  -ffp-contract=off  # no fused multiply-add: a scaled value has the same last bit on every machine
-  $<$<BOOL:${COUPLER_WERROR}>:-Werror>)
-
 # Of every program here, also of those that are made from a map.
 if(COUPLER_SANITIZE)
   add_compile_options(-fsanitize=${COUPLER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1 -g1

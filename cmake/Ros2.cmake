@@ -3,6 +3,7 @@
 set(remedy "source /opt/ros/DISTRO/setup.bash first; where there is no ROS 2, on Debian 12: \
 source \"$(scripts/ros2-environment)/setup.bash\"")
 
+#catkin_lint: ignore immutable_var
 set(ENV{ROS_VERSION} 2)  # package.xml has conditions
 # ament looks for packages in AMENT_PREFIX_PATH of the environment. Kept, so that a build configures itself again from any
 # shell; and what was found in another ROS 2 than now is looked for again.
