@@ -102,7 +102,7 @@ class Settings(testing.RosTest):
     def test_a_misspelt_parameter_is_told_with_the_nearest_name(self):
         rospy.set_param("/settings_driver/raet", 20)
         with process.Driver(f"_map:={self.map()}") as driver:
-            driver.wait_for("parameter /settings_driver/raet is no setting and does nothing; did you mean 'rate'?")
+            driver.wait_for("parameter /settings_driver/raet is not a setting and does nothing; did you mean 'rate'?")
             driver.wait_for("connected")
             self.assertEqual(driver.output.count("is no setting"), 1)
 

@@ -56,7 +56,7 @@ Exit write(const Arguments& arguments, const std::vector<generate::File>& files)
 
 Exit run(const Arguments& arguments) {
   if (!is_url_part(arguments.source_url))
-    return complain("generate", bad_call, fmt::format("'{}' is no part of a URL", arguments.source_url),
+    return complain("generate", bad_call, fmt::format("'{}' is not part of a URL", arguments.source_url),
                     "write what a URL cannot hold as %XX");
   const MapArgument argument = get_map(arguments.map, arguments.locked ? LockUse::exact : LockUse::renew);
   const LoadResult& loaded = argument.loaded;

@@ -126,7 +126,7 @@ class RowReader {
     const auto table = table_cell != nullptr ? parse_table(table_cell->text) : std::nullopt;
     if (!table) {
       problems_.error(table_cell != nullptr ? table_cell->at : row.front().at,
-                      fmt::format("{} is no table", shown(table_cell != nullptr ? table_cell->text : "")),
+                      fmt::format("{} is not a table", shown(table_cell != nullptr ? table_cell->text : "")),
                       "write coils, discrete_inputs, input_registers or holding_registers");
       return;
     }
@@ -182,7 +182,7 @@ class RowReader {
       if (number && *number <= 255)
         wanted = static_cast<unsigned>(*number);
       else
-        problems_.error(given->at, fmt::format("{} is no unit id", shown(given->text)),
+        problems_.error(given->at, fmt::format("{} is not a unit id", shown(given->text)),
                         "write a number from 0 to 255");
     }
     for (ForeignUnit& unit : units)

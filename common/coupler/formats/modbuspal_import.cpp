@@ -79,7 +79,7 @@ class ProjectReader {
     if (value && *value <= 255)
       unit.unit = static_cast<unsigned>(*value);
     else
-      problems_.error(at(slave), fmt::format("{} is no unit id", shown(id)),
+      problems_.error(at(slave), fmt::format("{} is not a unit id", shown(id)),
                       "give the slave a number from 0 to 255");
   }
 
@@ -118,7 +118,8 @@ class ProjectReader {
     for (const pugi::xml_node& node : part.children(element)) {
       const auto address = loader::parse_unsigned(node.attribute("address").value());
       if (!address || *address > 65535) {
-        problems_.error(at(node), fmt::format("{} is no address", shown(node.attribute("address").value())),
+        problems_.error(at(node),
+                        fmt::format("{} is not an address", shown(node.attribute("address").value())),
                         "write a number from 0 to 65535");
       } else if (!seen.insert(static_cast<unsigned>(*address)).second) {
         problems_.warning(at(node),
@@ -170,7 +171,7 @@ std::vector<ForeignUnit> read_modbuspal(std::string_view text, Problems& problem
   const auto outcome = document.load_buffer(text.data(), text.size(),
                                             pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
   if (!outcome) {
-    problems.error(lines.at(outcome.offset), fmt::format("this is no XML: {}", outcome.description()),
+    problems.error(lines.at(outcome.offset), fmt::format("this is not XML: {}", outcome.description()),
                    "give a project that ModbusPal saved");
     return {};
   }

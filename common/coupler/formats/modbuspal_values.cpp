@@ -47,7 +47,7 @@ void add_initial(const ModbusPalValue& value, Table table, std::string_view type
   const auto number = loader::parse_integer(value.value);
   const bool fits = number && *number >= -32768 && *number <= 65535;
   if (!fits)
-    problems.error(value.at, fmt::format("the value {} is no register's", shown(value.value)),
+    problems.error(value.at, fmt::format("the value {} is not a register value", shown(value.value)),
                    "write a number from -32768 to 65535");
   else if (*number != 0 && table == Table::coils)
     point.children.push_back(scalar("initial", "on", value.at));

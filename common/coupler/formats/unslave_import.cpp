@@ -28,7 +28,7 @@ constexpr Kind kinds[] = {{"HR", Table::holding_registers},
                           {"DI", Table::discrete_inputs},
                           {"C", Table::coils}};
 
-/// "HR10" or "hr10"; nullptr if it is no register's key.
+/// "HR10" or "hr10"; nullptr if it is not a register value key.
 const Kind* kind_of(std::string_view key) {
   for (const Kind& kind : kinds) {
     const std::string_view number = key.substr(std::min(kind.letters.size(), key.size()));
@@ -47,7 +47,7 @@ class RegisterReader {
   void read(const Entry& given) {
     const Kind* kind = kind_of(given.key);
     if (kind == nullptr) {
-      problems_.warning(given.key_at, fmt::format("{} is no register, it is left out", shown(given.key)),
+      problems_.warning(given.key_at, fmt::format("{} is not a register, it is left out", shown(given.key)),
                         "write HR, IR, C or DI and the address");
       return;
     }
@@ -105,7 +105,7 @@ class RegisterReader {
 std::optional<ForeignUnit> read_slave(const Entry& slave, Problems& problems) {
   const auto number = loader::parse_unsigned(slave.key);
   if (!number || *number > 255) {
-    problems.error(slave.key_at, fmt::format("{} is no unit id", shown(slave.key)),
+    problems.error(slave.key_at, fmt::format("{} is not a unit id", shown(slave.key)),
                    "write a number from 0 to 255");
     return std::nullopt;
   }

@@ -34,12 +34,12 @@ tl::expected<std::string_view, HostError> parse_host(std::string_view text) {
     const std::string_view port = text.substr(colon + 1);
     if (!port.empty() && is_made_of(port, digits) && parse_host(text.substr(0, colon)))
       return wrong("has a port", fmt::format("say 'port: {}' beside it", port));
-    return wrong("is no IPv6 address", example);
+    return wrong("is not an IPv6 address", example);
   }
   if (is_made_of(text, "0123456789."))
-    return wrong("is no IP address", "write four numbers from 0 to 255, as in 192.168.0.10");
+    return wrong("is not an IP address", "write four numbers from 0 to 255, as in 192.168.0.10");
   if (!is_made_of(text, of_a_name) || text.front() == '.' || text.front() == '-')
-    return wrong("is no host name", example);
+    return wrong("is not a host name", example);
   return text;
 }
 

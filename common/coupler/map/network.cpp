@@ -73,8 +73,8 @@ tl::expected<Network, NetworkError> parse_network(std::string_view text) {
   const bool ipv4 = is_ipv4(text);
   const auto address = parse_address(text.substr(0, slash));
   if (!address)
-    return tl::unexpected(
-        NetworkError{"is no IP address", "write one as 10.0.0.7 or fd00::7, or a range as 192.168.0.0/24"});
+    return tl::unexpected(NetworkError{"is not an IP address",
+                                       "write one as 10.0.0.7 or fd00::7, or a range as 192.168.0.0/24"});
   if (slash == std::string_view::npos) return Network{*address, 128};
 
   const unsigned most = ipv4 ? 32 : 128;

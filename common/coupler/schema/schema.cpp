@@ -83,7 +83,7 @@ Json object_of(Section section) {
   return object;
 }
 
-/// The same for all addresses of a map. "minimum" and "maximum" say nothing of a point that is no number.
+/// The same for all addresses of a map. "minimum" and "maximum" say nothing of a point that is not a number.
 /// Editors suggest these keys from their real place.
 Json every_address(Json range) {
   range["doNotSuggest"] = true;

@@ -71,7 +71,7 @@ TEST(CsvImport, What_is_wrong_is_told_at_its_cell) {
                      "input_registers,f,9,INT,extra\n");
   EXPECT_TRUE(csv.result.maps.empty());
   for (const auto* place :
-       {"given:3:8: error:", "given:4:23: error:", "given:5:1: error: 'holding' is no table",
+       {"given:3:8: error:", "given:4:23: error:", "given:5:1: error: 'holding' is not a table",
         "given:6:19: error:", "given:7:25: error: the row has 5 cells"})
     EXPECT_THAT(csv.said, HasSubstr(place));
 }

@@ -77,10 +77,10 @@ TEST(ModbusPalImport, Doubles_and_wrong_numbers_are_told) {
   EXPECT_THAT(Imported("modbuspal", registers("<register address=\"5\"/><register address=\"5\"/>")).said,
               HasSubstr("register 5 is there twice"));
   EXPECT_THAT(Imported("modbuspal", registers("<register address=\"65536\"/>")).said,
-              HasSubstr("given:10:2: error: '65536' is no address"));
+              HasSubstr("given:10:2: error: '65536' is not an address"));
   EXPECT_THAT(Imported("modbuspal", registers("<register address=\"1\" value=\"70000\"/>")).said,
-              HasSubstr("error: the value '70000' is no register's"));
-  EXPECT_THAT(Imported("modbuspal", slave("", "seven")).said, HasSubstr("error: 'seven' is no unit id"));
+              HasSubstr("error: the value '70000' is not a register value"));
+  EXPECT_THAT(Imported("modbuspal", slave("", "seven")).said, HasSubstr("error: 'seven' is not a unit id"));
   EXPECT_THAT(Imported("modbuspal", project("")).said,
               HasSubstr("error: there are no slaves in the project"));
 }
@@ -111,13 +111,13 @@ TEST(ModbusPalImport, Entities_are_never_read) {
 
 TEST(ModbusPalImport, What_is_no_project_is_refused_where_it_breaks) {
   EXPECT_THAT(Imported("modbuspal", slave("<coils>").substr(0, 200)).said,
-              HasSubstr("error: this is no XML: "));
+              HasSubstr("error: this is not XML: "));
   EXPECT_THAT(Imported("modbuspal", "<html></html>").said,
               HasSubstr("error: there is no <modbuspal_project> in the file"));
-  EXPECT_THAT(Imported("modbuspal", "").said, HasSubstr("error: this is no XML"));
+  EXPECT_THAT(Imported("modbuspal", "").said, HasSubstr("error: this is not XML"));
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
-  EXPECT_THAT(Imported("modbuspal", deep).said, HasSubstr("error: this is no XML"));
+  EXPECT_THAT(Imported("modbuspal", deep).said, HasSubstr("error: this is not XML"));
 }
 
 }  // namespace

@@ -61,8 +61,8 @@ TEST(UnslaveImport, What_is_no_register_and_what_is_there_twice_is_told) {
   const Imported imported("unslave", R"({"mode": "TCP", "slaves": {"1": {"isOnline": true, "registers": {
     "HR1": 1, "hr01": 2, "XR5": 3, "HR": 1, "HR2": -5}}}})");
   EXPECT_THAT(imported.said, HasSubstr("given:2:15: warning: 'hr01' is given twice"));
-  EXPECT_THAT(imported.said, HasSubstr("'XR5' is no register"));
-  EXPECT_THAT(imported.said, HasSubstr("'HR' is no register"));
+  EXPECT_THAT(imported.said, HasSubstr("'XR5' is not a register"));
+  EXPECT_THAT(imported.said, HasSubstr("'HR' is not a register"));
   EXPECT_THAT(imported.text(), HasSubstr("hr_2: {address: 2, type: UINT, initial: 65531}"));
 }
 
@@ -72,7 +72,7 @@ TEST(UnslaveImport, Wrong_files_are_refused_where_they_are_wrong) {
   EXPECT_THAT(Imported("unslave", "{\"name\": \"a\", \"mapping\": {}}").said,
               HasSubstr("error: there are no 'slaves' in the file"));
   EXPECT_THAT(Imported("unslave", "{\"slaves\": {\"300\": {}}}").said,
-              HasSubstr("given:1:13: error: '300' is no unit id"));
+              HasSubstr("given:1:13: error: '300' is not a unit id"));
   EXPECT_THAT(Imported("unslave", R"({"slaves": {"1": {"registers": {"HR70000": 1}}}})").said,
               HasSubstr("error: "));
   EXPECT_THAT(Imported("unslave", R"({"slaves": {"1": {"registers": {"HR7": 65536}}}})").said,

@@ -24,7 +24,8 @@ TEST(Host, What_is_none_is_told_with_a_remedy) {
   EXPECT_EQ(told("plc:502"), "has a port; say 'port: 502' beside it");
   EXPECT_EQ(told("[::1]:502"), "has a port; say 'port: 502' beside it");
   for (const char* text : {"192.168.1.300", "10.0.0", "1.2.3.4.5", "7"})
-    EXPECT_EQ(told(text), "is no IP address; write four numbers from 0 to 255, as in 192.168.0.10") << text;
+    EXPECT_EQ(told(text), "is not an IP address; write four numbers from 0 to 255, as in 192.168.0.10")
+        << text;
   for (const char* text : {"", "fd00::g", "the press", "-plc", "[plc]", "[10.0.0.7]", "plc/1", "a:b"})
     EXPECT_FALSE(parse_host(text)) << text;
 }

@@ -71,12 +71,12 @@ TEST(NodeAddress, What_is_wrong_is_said_with_a_remedy) {
 
 TEST(NodeAddress, Its_host_is_one_that_a_map_may_have) {
   const std::pair<const char*, const char*> cases[] = {
-      {"tcp://192.168.1.300", "the host '192.168.1.300' is no IP address"},
-      {"tcp://192.168.1.300:502/1", "the host '192.168.1.300' is no IP address"},
-      {"tcp://cell/1/2", "the host 'cell/1' is no host name"},
-      {"tcp://ce ll", "the host 'ce ll' is no host name"},
-      {"tcp://[cell]", "the host '[cell]' is no host name"},
-      {"tcp://[fe80:::1]", "the host '[fe80:::1]' is no IPv6 address"},
+      {"tcp://192.168.1.300", "the host '192.168.1.300' is not an IP address"},
+      {"tcp://192.168.1.300:502/1", "the host '192.168.1.300' is not an IP address"},
+      {"tcp://cell/1/2", "the host 'cell/1' is not a host name"},
+      {"tcp://ce ll", "the host 'ce ll' is not a host name"},
+      {"tcp://[cell]", "the host '[cell]' is not a host name"},
+      {"tcp://[fe80:::1]", "the host '[fe80:::1]' is not an IPv6 address"},
   };
   for (const auto& [argument, what] : cases) {
     const auto node = parse_node_address(argument);

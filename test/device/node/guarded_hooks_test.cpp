@@ -55,7 +55,7 @@ TEST_F(Guarded, A_hook_that_throws_refuses_and_is_told) {
 TEST_F(Guarded, A_process_whose_firmware_cannot_begin_does_not_serve) {
   EXPECT_FALSE(guarded_.begin());
   EXPECT_THAT(log_.lines,
-              ElementsAre("serving_began() threw an exception: something that is no std::exception"));
+              ElementsAre("serving_began() threw an exception: something that is not a std::exception"));
 }
 
 TEST_F(Guarded, At_the_end_what_make_safe_sets_is_in_the_image) {

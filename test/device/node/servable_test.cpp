@@ -38,7 +38,7 @@ TEST(Servable, What_is_no_address_in_allow_is_named) {
   map.service.allow = allow;
   const auto guests = allow_list_of(map);
   ASSERT_FALSE(guests.has_value());
-  EXPECT_THAT(guests.error(), HasSubstr("'allow': 'gripper' is no IP address"));
+  EXPECT_THAT(guests.error(), HasSubstr("'allow': 'gripper' is not an IP address"));
   map.service.allow = Span<const std::string_view>(allow).first(1);
   EXPECT_TRUE(allow_list_of(map).has_value());
 }

@@ -74,7 +74,7 @@ TEST(GivenParameters, Those_of_one_device_stand_below_its_name) {
 TEST(GivenParameters, A_misspelt_one_of_the_node_is_told_with_the_nearest) {
   const GivenParameters given({{"/press_driver", {text("addres", "one"), text("speed", "2")}}});
   EXPECT_THAT(given.unknown("/press_driver", {}),
-              ElementsAre(HasSubstr("addres is no setting and does nothing; did you mean 'address'?"),
+              ElementsAre(HasSubstr("addres is not a setting and does nothing; did you mean 'address'?"),
                           HasSubstr("speed is no setting")));
 }
 

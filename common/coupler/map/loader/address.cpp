@@ -45,8 +45,9 @@ tl::expected<std::uint16_t, AddressError> parse_modicon(std::string_view text, T
                  fmt::format("write it as in '1' or '{}00001'", prefix_of(table)));
   const bool prefixed = text.size() >= 5;
   if (prefixed && text[0] != prefix_of(table))
-    return wrong(fmt::format("{} is no Modicon address of {}: {}", text, to_string(table), owner_of(text[0])),
-                 fmt::format("write it in six digits, '{}' and the number from 00001", prefix_of(table)));
+    return wrong(
+        fmt::format("{} is not a Modicon address of {}: {}", text, to_string(table), owner_of(text[0])),
+        fmt::format("write it in six digits, '{}' and the number from 00001", prefix_of(table)));
   const auto number = parse_unsigned(text.substr(prefixed ? 1 : 0));
   if (*number >= 1 && *number <= addresses) return static_cast<std::uint16_t>(*number - 1);
   return wrong(fmt::format("Modicon's numbers go from 1 to 65536, not {}", *number),

@@ -69,8 +69,8 @@ class Resolver {
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(unit).count();
     if (wanted_.timeout % unit != unit.zero())
       error("timeout",
-            fmt::format("the watchdog of a {} counts in steps of {} ms, which {} ms is none of", preset_.name,
-                        ms, wanted_.timeout.count()),
+            fmt::format("the watchdog of a {} counts in steps of {} ms, and {} ms is not a multiple of that",
+                        preset_.name, ms, wanted_.timeout.count()),
             fmt::format("write 'timeout: {}ms'", (count + 1) * ms));
     else if (count > 0xFFFF)
       error("timeout", fmt::format("the watchdog of a {} counts up to {} ms", preset_.name, 0xFFFF * ms),

@@ -45,7 +45,7 @@ void check_area(const Preset& preset, const DraftPoint& draft, Context& context)
 }
 
 std::string no_element(const PresetFile& file, Position at, std::string_view of) {
-  return fmt::format("{}: line {} is no element of '{}'", file.name, at.line, of);
+  return fmt::format("{}: line {} is not an element of '{}'", file.name, at.line, of);
 }
 
 }  // namespace

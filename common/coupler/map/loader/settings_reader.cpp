@@ -49,7 +49,7 @@ Span<const std::string_view> read_allow(const Reader& top, Context& context) {
     return {};
   }
   if (entry->children.empty())
-    context.problems.error(entry->at, "'allow' lists nobody",
+    context.problems.error(entry->at, "'allow' is empty",
                            "write who may connect, or remove it to let everyone in");
   std::vector<std::string_view> networks;
   std::vector<std::pair<Network, const Entry*>> allowed;

@@ -132,12 +132,12 @@ class Parser {
       return error(line_, words[0].column, "a line of a lock is TABLE PLACE NAME", example);
     const auto table = table_of(words[0].text);
     if (!table)
-      return error(line_, words[0].column, fmt::format("{} is no table", shown(words[0].text)),
+      return error(line_, words[0].column, fmt::format("{} is not a table", shown(words[0].text)),
                    "write coils, discrete_inputs, input_registers or holding_registers");
     const auto place = place_of(*table, words[1].text);
     if (!place)
       return error(line_, words[1].column,
-                   fmt::format("{} is no place in {}", shown(words[1].text), to_string(*table)),
+                   fmt::format("{} is not a place in {}", shown(words[1].text), to_string(*table)),
                    holds_bits(*table) ? "write 5, or 5-8 for an array"
                                       : "write 5, 5-8, 5.high, 5.low, or 5.3 for bit 3");
     const bool retired = words.size() == 4 && words[3].text == "retired";

@@ -20,7 +20,7 @@ class Attribute {
   /// The error is an errno.
   static tl::expected<Attribute, int> open(const std::string& path, For purpose);
 
-  /// The error is an errno; EBADMSG: there is no number in it.
+  /// The error is an errno; EBADMSG: there is not a number in it.
   tl::expected<double, int> read() const;
   /// Returns 0 or an errno.
   [[nodiscard]] int write(std::int64_t value) const;

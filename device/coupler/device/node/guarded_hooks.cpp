@@ -17,7 +17,7 @@ bool guard(Call call, Thrown thrown) {
   } catch (const std::exception& exception) {
     thrown(exception.what());
   } catch (...) {
-    thrown("something that is no std::exception");
+    thrown("something that is not a std::exception");
   }
   return false;
 }

@@ -114,7 +114,7 @@ int ask_to_reload(pid_t node, StderrLog& log) {
   };
   if (is_another_program(node))
     return fail(
-        fmt::format("process {} is no coupler-node; systemctl show -P MainPID coupler-node tells the one "
+        fmt::format("process {} is not a coupler-node; systemctl show -P MainPID coupler-node tells the one "
                     "of the service",
                     node));
   const Descriptor socket = open_socket();

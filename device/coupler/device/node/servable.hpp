@@ -9,7 +9,7 @@
 
 namespace coupler::device {
 
-/// Who may connect, as the map says. The error names what is no address.
+/// Who may connect, as the map says. The error names what is not an address.
 tl::expected<AllowList, std::string> allow_list_of(const Map& map);
 
 /// Whether a node can serve this map, which is stricter than a map of somebody else's coupler. The error says

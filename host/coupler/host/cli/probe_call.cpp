@@ -32,7 +32,7 @@ tl::expected<std::vector<std::uint8_t>, WrongCall> units_of(const ProbeArguments
   for (const std::string& text : arguments.units)
     if (!add_units(text, units))
       return tl::make_unexpected(
-          WrongCall{fmt::format("'{}' is no unit id", text), "give 0 to 247 or 255, as --units 1-10,255"});
+          WrongCall{fmt::format("'{}' is not a unit id", text), "give 0 to 247 or 255, as --units 1-10,255"});
   if (!units.empty()) return units;
   if (has_unit && !is_unit(where.unit))
     return tl::make_unexpected(

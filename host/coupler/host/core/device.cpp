@@ -106,7 +106,7 @@ void Device::arrived() {
     linked_ = false;
     return;
   }
-  lost(TransportFailure{"the device closed the connection, or sent what nobody asked for"});
+  lost(TransportFailure{"the device closed the connection, or sent an unexpected reply"});
 }
 
 bool Device::stop() {

@@ -11,7 +11,7 @@ namespace {
 
 using Publish = HostOptions::Publish;
 
-/// NaN where it is no number. The types of numbers cost no allocation.
+/// NaN where it is not a number. The types of numbers cost no allocation.
 double number(const std::uint16_t* registers, const codec::Format& format) {
   return std::visit(
       [](const auto& value) -> double {

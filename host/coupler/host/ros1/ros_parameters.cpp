@@ -49,7 +49,7 @@ void add_unknown(XmlRpc::XmlRpcValue& tree, const std::string& place,
       add_unknown(value, fmt::format("{}/{}", place, name), {}, lines);
     else if (!is_setting(name))
       lines.push_back(
-          fmt::format("parameter {}/{} is no setting and does nothing; {}", place, name,
+          fmt::format("parameter {}/{} is not a setting and does nothing; {}", place, name,
                       loader::nearest_or(name, setting_names(), "coupler_driver --help shows them")));
   }
 }

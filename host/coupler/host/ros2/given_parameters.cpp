@@ -144,7 +144,7 @@ std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
         continue;
       }
       if (is_for_all(section.node) && loader::nearest(setting, names).empty()) continue;
-      lines.push_back(fmt::format("parameter {} is no setting and does nothing; {}", one.name,
+      lines.push_back(fmt::format("parameter {} is not a setting and does nothing; {}", one.name,
                                   loader::nearest_or(setting, names, "coupler_driver --help shows them")));
     }
   }

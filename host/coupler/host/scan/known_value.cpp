@@ -44,12 +44,13 @@ tl::expected<KnownValue, std::string> parse_known_value(std::string_view text) {
       tolerance = loader::parse_number(number.substr(at + sign.size()));
       number = number.substr(0, at);
       if (!tolerance || *tolerance < 0)
-        return tl::make_unexpected(fmt::format("the tolerance in '{}' is no number; write 230.4±0.5", text));
+        return tl::make_unexpected(
+            fmt::format("the tolerance in '{}' is not a number; write 230.4±0.5", text));
     }
   const auto value = loader::parse_number(number);
   if (!value)
     return tl::make_unexpected(
-        fmt::format("'{}' is no value; write a number, as 230.4, 230.4±0.5 or voltage=230.4", text));
+        fmt::format("'{}' is not a value; write a number, as 230.4, 230.4±0.5 or voltage=230.4", text));
   known.value = *value;
   known.tolerance = tolerance ? *tolerance : exactness(number);
   if (std::abs(known.value) <= known.tolerance)

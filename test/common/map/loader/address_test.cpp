@@ -52,7 +52,7 @@ TEST(Address, The_digit_of_another_table_is_an_error_that_names_it) {
   const auto address = parse_address("30001", Table::holding_registers, Addressing::modicon);
   ASSERT_FALSE(address);
   EXPECT_EQ(address.error().what,
-            "30001 is no Modicon address of holding_registers: '3' stands for input_registers");
+            "30001 is not a Modicon address of holding_registers: '3' stands for input_registers");
   EXPECT_EQ(modicon("10000", Table::coils), -1) << "a number alone never has five digits";
 }
 

@@ -111,7 +111,8 @@ TEST(PresetWatchdog, What_makes_no_sense_is_refused_with_its_line) {
         "feed: {holding_register: 1, values: []}", "feed: {holding_register: 1, values: [x]}",
         "feed: {values: [1]}", "expired: {exception: 256}", "expired: {exception: 0}",
         "expired: {coil: heartbeat, value: 1}", "expired: {coil: 1}", "fed: {}"})
-    EXPECT_EQ(problem_of(std::string("watchdog:\n  ") + part), "other: line 2 is no element of 'watchdog'")
+    EXPECT_EQ(problem_of(std::string("watchdog:\n  ") + part),
+              "other: line 2 is not an element of 'watchdog'")
         << part;
 }
 

@@ -24,7 +24,7 @@ TEST(Preset, What_is_no_area_is_refused_with_its_line) {
   const auto preset =
       loader::parse_preset({"other", "watchdog: {}\nareas:\n  - {table: coils, from: 3, to: 2}\n"});
   ASSERT_FALSE(preset);
-  EXPECT_EQ(preset.error(), "other: line 3 is no element of 'areas'");
+  EXPECT_EQ(preset.error(), "other: line 3 is not an element of 'areas'");
 }
 
 TEST(Preset, Its_limits_hold_where_the_map_has_none_of_its_own) {
