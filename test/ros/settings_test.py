@@ -104,7 +104,7 @@ class Settings(testing.RosTest):
         with process.Driver(f"_map:={self.map()}") as driver:
             driver.wait_for("parameter /settings_driver/raet is not a setting and does nothing; did you mean 'rate'?")
             driver.wait_for("connected")
-            self.assertEqual(driver.output.count("is no setting"), 1)
+            self.assertEqual(driver.output.count("is not a setting"), 1)
 
     def test_a_second_driver_of_the_same_name_is_noticed_by_both(self):
         with process.Driver(f"_map:={self.map()}") as one:

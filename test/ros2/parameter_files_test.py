@@ -106,8 +106,8 @@ class Names(FilesTest):
     def test_an_unknown_name_is_told_in_the_nodes_own_section(self):
         lines = self.told({"filed_driver": "raet: 20\ncolour: red"})
         self.assertEqual(len(lines), 2, lines)
-        self.assertRegex(lines[0] + lines[1], r"raet.* is no setting.*did you mean 'rate'\?")
-        self.assertRegex(lines[0] + lines[1], r"colour.* is no setting")
+        self.assertRegex(lines[0] + lines[1], r"raet.* is not a setting.*did you mean 'rate'\?")
+        self.assertRegex(lines[0] + lines[1], r"colour.* is not a setting")
 
     def test_for_all_nodes_only_what_is_nearly_a_setting_is_told(self):
         lines = self.told({"/**": "rte: 20\ncolour: red\nmax_velocity: 2.0\nuse_sim_time: false"})

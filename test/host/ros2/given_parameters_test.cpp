@@ -75,7 +75,7 @@ TEST(GivenParameters, A_misspelt_one_of_the_node_is_told_with_the_nearest) {
   const GivenParameters given({{"/press_driver", {text("addres", "one"), text("speed", "2")}}});
   EXPECT_THAT(given.unknown("/press_driver", {}),
               ElementsAre(HasSubstr("addres is not a setting and does nothing; did you mean 'address'?"),
-                          HasSubstr("speed is no setting")));
+                          HasSubstr("speed is not a setting")));
 }
 
 TEST(GivenParameters, Of_those_for_all_nodes_only_near_misses_are_told) {

@@ -11,8 +11,8 @@ namespace coupler::host {
 /// parameter.
 tl::expected<Settings, std::string> read_parameters(const ros::NodeHandle& handle);
 
-/// A line for each parameter of this node that is no setting: misspelt ones do nothing. `devices`: the names
-/// of several, whose settings stand below them.
+/// A line for each parameter of this node that is not a setting: misspelt ones do nothing. `devices`: the
+/// names of several, whose settings stand below them.
 std::vector<std::string> unknown_parameters(const std::vector<std::string_view>& devices);
 
 }  // namespace coupler::host

@@ -39,8 +39,8 @@ class GivenParameters {
   /// A node, not a pattern, whose parameters are those of a driver; empty: there is none.
   std::string driver_section() const;
 
-  /// A line for each parameter of the node that is no setting: misspelt ones do nothing. What is said of all
-  /// nodes may be meant for others, so of that only what is nearly a setting. `devices`: the names of
+  /// A line for each parameter of the node that is not a setting: misspelt ones do nothing. What is said of
+  /// all nodes may be meant for others, so of that only what is nearly a setting. `devices`: the names of
   /// several, whose settings stand below them.
   std::vector<std::string> unknown(std::string_view full_name,
                                    const std::vector<std::string_view>& devices) const;
