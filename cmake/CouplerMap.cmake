@@ -70,9 +70,9 @@ function(coupler_add_map name map)
     add_dependencies(${name}_client ${name}_generate)
   endif()
 
-  if(TARGET coupler_driver_program)
+  if(TARGET OpenCoupler::driver)
     add_executable(${name}_driver ${out}/${name}_driver.cpp)
-    target_link_libraries(${name}_driver PRIVATE ${name}_map coupler_driver_program ${flags})
+    target_link_libraries(${name}_driver PRIVATE ${name}_map OpenCoupler::driver ${flags})
     add_dependencies(${name}_driver ${name}_generate)
   endif()
 

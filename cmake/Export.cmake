@@ -23,3 +23,12 @@ coupler_install(EXPORT OpenCouplerTargets NAMESPACE OpenCoupler:: DESTINATION ${
 coupler_install(FILES ${PROJECT_BINARY_DIR}/OpenCouplerConfig.cmake ${PROJECT_BINARY_DIR}/OpenCouplerConfigVersion.cmake
                       cmake/CouplerMap.cmake
                 DESTINATION ${folder} COMPONENT dev)
+
+# find_package(coupler_driver), which catkin and ament make, has the driver's libraries beside the messages:
+# coupler_driver-extras.cmake.in.
+if(COUPLER_WITH_ROS)
+  coupler_install(EXPORT coupler_driverTargets NAMESPACE OpenCoupler:: DESTINATION share/${PROJECT_NAME}/cmake COMPONENT dev)
+endif()
+if(COUPLER_WITH_ROS EQUAL 1)
+  export(EXPORT coupler_driverTargets NAMESPACE OpenCoupler:: FILE ${PROJECT_BINARY_DIR}/coupler_driverTargets.cmake)
+endif()

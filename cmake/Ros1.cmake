@@ -26,7 +26,8 @@ set(COUPLER_WITH_ROS 1)
 add_message_files(DIRECTORY host/msg FILES ${messages})
 add_service_files(DIRECTORY host/srv FILES ${services})
 generate_messages(DEPENDENCIES std_msgs)
-catkin_package(CATKIN_DEPENDS roscpp std_msgs std_srvs diagnostic_updater message_runtime)
+catkin_package(CATKIN_DEPENDS roscpp std_msgs std_srvs diagnostic_updater message_runtime
+               CFG_EXTRAS ${PROJECT_NAME}-extras.cmake)
 # Where rosmsg and rossrv look for them; our folders are not at the top.
 foreach(kind msg srv)
   file(COPY host/${kind} DESTINATION ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME})
@@ -68,11 +69,12 @@ set(BUILD_SHARED_LIBS OFF)
 # It also gives its definitions and include folders to every target of the project. Here those that need ROS link
 # coupler_ros. The other modules compile alike with and without ROS, so that the compiler's cache serves both.
 get_directory_property(definitions COMPILE_DEFINITIONS)
+list(FILTER definitions EXCLUDE REGEX ^ROS_PACKAGE_NAME)  # other packages link coupler_ros and have a name of their own
 set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "" INCLUDE_DIRECTORIES "")
 add_library(coupler_ros INTERFACE)
 target_compile_definitions(coupler_ros INTERFACE ${definitions})
 # ROS's headers are not written for our warnings.
 #catkin_lint: ignore_once missing_directory
 target_include_directories(coupler_ros SYSTEM INTERFACE
-  ${catkin_INCLUDE_DIRS} ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION})
+  ${catkin_INCLUDE_DIRS} $<BUILD_INTERFACE:${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION}>)
 target_link_libraries(coupler_ros INTERFACE ${catkin_LIBRARIES})

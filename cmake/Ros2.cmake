@@ -80,11 +80,18 @@ endif()
 set(ours ${PROJECT_NAME}__rosidl_generator_cpp ${PROJECT_NAME}__rosidl_typesupport_cpp)
 target_link_libraries(coupler_ros INTERFACE ${ours})
 foreach(target IN LISTS ours)
-  target_include_directories(coupler_ros SYSTEM INTERFACE $<TARGET_PROPERTY:${target},INTERFACE_INCLUDE_DIRECTORIES>)
+  #catkin_lint: ignore_once missing_directory
+  target_include_directories(coupler_ros SYSTEM INTERFACE $<BUILD_INTERFACE:$<TARGET_PROPERTY:${target},INTERFACE_INCLUDE_DIRECTORIES>>)
 endforeach()
 get_used_typesupports(loaded rosidl_typesupport_cpp)
 list(TRANSFORM loaded PREPEND ${PROJECT_NAME}__)
 add_dependencies(coupler_ros ${loaded})
+
+# For coupler_driver-extras.cmake.in.
+set(coupler_driver_packages rcl rcl_yaml_param_parser rcutils rmw rosidl_typesupport_cpp ${interfaces})
+if(type_description_interfaces_FOUND)
+  list(APPEND coupler_driver_packages type_description_interfaces)
+endif()
 
 # The folder in which rcl is has the setup.bash of its ROS 2.
 get_filename_component(prefix ${rcl_DIR}/../../.. ABSOLUTE)
