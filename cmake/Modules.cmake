@@ -19,6 +19,17 @@ target_compile_options(coupler_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow
   -ffp-contract=off  # no fused multiply-add: a scaled value has the same last bit on every machine
   $<$<BOOL:${COUPLER_WERROR}>:-Werror>)
+# Not of all targets of the project: ROS 2's messages are loaded by Python, which has no sanitizer.
+if(COUPLER_SANITIZE)
+  target_compile_options(coupler_flags INTERFACE
+    -fsanitize=${COUPLER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1 -g1
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # among the checks GCC sees paths that are none: its manual warns
+  target_link_options(coupler_flags INTERFACE -fsanitize=${COUPLER_SANITIZE})
+endif()
+if(COUPLER_COVERAGE)
+  target_compile_options(coupler_flags INTERFACE --coverage -O0)
+  target_link_options(coupler_flags INTERFACE --coverage)
+endif()
 
 # Their macros must be those of the files that use them: one for libraries, one for test programs.
 file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/nothing.cpp CONTENT "int main() {}\n")

@@ -59,14 +59,3 @@ if(COUPLER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
       ${COUPLER_CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
-
-# Of every program here, also of those that are made from a map.
-if(COUPLER_SANITIZE)
-  add_compile_options(-fsanitize=${COUPLER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1 -g1
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # among the checks GCC sees paths that are none: its manual warns
-  add_link_options(-fsanitize=${COUPLER_SANITIZE})
-endif()
-if(COUPLER_COVERAGE)
-  add_compile_options(--coverage -O0)
-  add_link_options(--coverage)
-endif()
