@@ -73,7 +73,8 @@ class FaultExceptions(Answers):
             with self.subTest(code=code):
                 self.refuse(code)
                 self.truth.is_offline()
-                self.assertIn(f"{code:02X}", self.truth.status.known["trouble"])
+                # It is online for a moment when it asks again: the identity is refused as a foreign coupler refuses it.
+                self.truth.status.wait_for(lambda known, text=f"exception {code:02X}": text in known["trouble"])
                 self.truth.driver.wait_for(f"plant: the gateway cannot reach unit 1: exception {code:02X}")
                 self.all_is_well()
         self.assertEqual(self.device.accepted, 1)

@@ -99,8 +99,17 @@ class Process:
 
 
 class Driver(Process):
+    _started = []
+
     def __init__(self, *arguments):
+        running = Driver._started = [driver for driver in Driver._started if driver.running]
+        self.await_graph(len(running))
         super().__init__("coupler_driver", *driver_arguments(arguments))
+        running.append(self)
+
+    @staticmethod
+    def await_graph(running):
+        """ROS 2 waits here until its graph has no driver but those that run."""
 
 
 def driver_arguments(arguments):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from support import case, ros
-from support.process import Process
+from support.patience import wait_until
+from support.process import Driver, Process
 from support.topics import Topic
 
 
@@ -15,6 +16,15 @@ class RosTest(case.Case):
         driver = Process("coupler_driver", *arguments)
         self.assertEqual(driver.wait(), code, driver.output)
         self.assertIn(text, driver.output)
+
+
+def _await_graph(running):
+    """A driver that has ended is in the graph for a moment more: a message for the next one would have it as its only
+    subscriber, and be lost."""
+    wait_until(lambda: ros.polled.get_node_names().count("coupler_driver") <= running, "the graph to forget drivers that ended")
+
+
+Driver.await_graph = staticmethod(_await_graph)
 
 
 def main():
