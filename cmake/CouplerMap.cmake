@@ -8,6 +8,7 @@
 #   NAME_client  library: a typed C++ client without ROS, coupler::maps::NAME::Client in "NAME_client.hpp", where
 #                libmodbus is
 #   NAME_hooks   library: for a node with code of its own, coupler::maps::NAME::NodeHooks in "NAME_hooks.hpp"
+#   NAME_core    library: for a node without an operating system, coupler::maps::NAME::NodeCore in "NAME_core.hpp"
 # The map's lock, map.yaml.lock, must be up to date if the map leaves addresses out (`coupler check map.yaml`).
 # Both programs link the same NAME_map, so they cannot disagree. Works after find_package(OpenCoupler), in this tree, and in a
 # project that has this tree as a part (add_subdirectory(), FetchContent). What nothing links is not built there unless it is
@@ -34,8 +35,8 @@ function(coupler_add_map name map)
   else()
     set(generator $<TARGET_FILE:OpenCoupler::coupler>)
   endif()
-  set(files ${out}/${name}_client.cpp ${out}/${name}_client.hpp ${out}/${name}_driver.cpp ${out}/${name}_hooks.hpp
-            ${out}/${name}_map.cpp ${out}/${name}_map.hpp ${out}/${name}_node.cpp)
+  set(files ${out}/${name}_client.cpp ${out}/${name}_client.hpp ${out}/${name}_core.hpp ${out}/${name}_driver.cpp
+            ${out}/${name}_hooks.hpp ${out}/${name}_map.cpp ${out}/${name}_map.hpp ${out}/${name}_node.cpp)
 
   # A build does not write into the sources: a lock that is missing or not up to date stops it. Whether there is one is
   # in a file, for a lock that is gone makes nothing newer.
@@ -57,12 +58,17 @@ function(coupler_add_map name map)
   target_link_libraries(${name}_map PUBLIC OpenCoupler::map PRIVATE ${flags})
   add_dependencies(${name}_map ${name}_generate)
 
-  add_executable(${name}_node ${out}/${name}_node.cpp)
-  target_link_libraries(${name}_node PRIVATE ${name}_map OpenCoupler::node ${flags})
-  add_dependencies(${name}_node ${name}_generate)
+  add_library(${name}_core INTERFACE)
+  target_link_libraries(${name}_core INTERFACE ${name}_map OpenCoupler::node_core)
 
-  add_library(${name}_hooks INTERFACE)
-  target_link_libraries(${name}_hooks INTERFACE ${name}_map OpenCoupler::node)
+  if(TARGET OpenCoupler::node)
+    add_executable(${name}_node ${out}/${name}_node.cpp)
+    target_link_libraries(${name}_node PRIVATE ${name}_map OpenCoupler::node ${flags})
+    add_dependencies(${name}_node ${name}_generate)
+
+    add_library(${name}_hooks INTERFACE)
+    target_link_libraries(${name}_hooks INTERFACE ${name}_map OpenCoupler::node)
+  endif()
 
   if(TARGET OpenCoupler::client)
     add_library(${name}_client STATIC EXCLUDE_FROM_ALL ${out}/${name}_client.cpp)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupler/device/core/server.hpp"
+#include "coupler/map/image_layout.hpp"
 #include "test/device/core/node_under_test.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/fuzz/require.hpp"
@@ -130,7 +131,7 @@ class Engine {
   explicit Engine(const Map& map)
       : memory_(map),
         watchdog_(map.service.watchdog),
-        links_(device::EdgePoints::links_for(map)),
+        links_(node_memory(map).links),
         handler_(map, memory_.image, lines_, statistics_, watchdog_, links_),
         server_(map.connection.unit, handler_, statistics_) {}
 

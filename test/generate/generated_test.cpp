@@ -5,10 +5,12 @@
 #include "beckhoff_map.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "example_map.hpp"
+#include "hard_core.hpp"
 #include "hard_hooks.hpp"
 #include "hard_map.hpp"
 #include "manners_map.hpp"
 #include "moxa_map.hpp"
+#include "test/device/core/fake_lines.hpp"
 #include "test/generate/same_map.hpp"
 #include "test/support/paths.hpp"
 #include "unaddressed_map.hpp"
@@ -82,6 +84,37 @@ TEST(Generated, Hooks_of_everything_that_is_hard_to_write_in_cpp_compile) {
   const std::vector<std::uint16_t> zero(2000);
   for (std::uint32_t i = 0; i < maps::hard::map.points.size(); ++i)
     EXPECT_TRUE(port.accept(i, zero.data())) << maps::hard::map.points[i].name;
+}
+
+/// As on a microcontroller.
+class HardCore : public maps::hard::NodeCore {
+ public:
+  using NodeCore::NodeCore;
+  std::string text;
+
+ private:
+  bool on_text(std::string_view value) override {
+    text = value;
+    return true;
+  }
+};
+
+TEST(Generated, A_node_in_static_memory_of_everything_that_is_hard_to_write_in_cpp_compiles_and_serves) {
+  device::FakeLines lines;
+  HardCore node(lines);
+  device::Hooks& port = node;
+  const std::vector<std::uint16_t> zero(2000);
+  for (std::uint32_t i = 0; i < maps::hard::map.points.size(); ++i)
+    EXPECT_TRUE(port.accept(i, zero.data())) << maps::hard::map.points[i].name;
+
+  EXPECT_TRUE(node.set_text("Tür"));
+  EXPECT_FALSE(node.set_text("0123456789")) << "longer than the point";
+  EXPECT_FALSE(node.set_text("面板")) << "not in latin-1";
+  const Point& point = *find(maps::hard::map, "text");
+  const auto index = static_cast<std::uint32_t>(&point - maps::hard::map.points.begin());
+  const std::uint16_t written[] = {0xFC54, 0x0072, 0, 0, 0};  // the low byte of a register comes first
+  EXPECT_TRUE(port.accept(index, written));
+  EXPECT_EQ(node.text, "Tür");
 }
 
 }  // namespace

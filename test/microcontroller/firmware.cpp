@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <iterator>
 
-#include "coupler/device/core/server.hpp"
-#include "example_map.hpp"
+#include "coupler/modbus/frame.hpp"
+#include "example_core.hpp"
 
 namespace coupler::device {
 namespace {
@@ -81,15 +81,23 @@ class Ports final : public Lines {
   volatile std::uint32_t out_ = 0b010;  // the lamp is on at start, and in its safe state
 };
 
-constexpr const Map& map = maps::example::map;
-Image::Area areas[32];
-std::uint16_t cells[128];
-EdgePoints::Link links[8];
+/// Has code behind two points.
+class Firmware final : public maps::example::NodeCore {
+ public:
+  using NodeCore::NodeCore;
+
+ private:
+  bool on_speed(std::int16_t speed) override {
+    return speed <= 1000 && set_revision(static_cast<std::uint16_t>(speed));
+  }
+  bool on_label(std::string_view label) override { return label != "root"; }
+};
+
 std::uint8_t reply[modbus::max_adu_size];
 
 /// The replies to a client's first requests, one after the other.
 void answer_all() {
-  constexpr std::uint8_t requests[][12] = {
+  constexpr std::uint8_t requests[][17] = {
       {0, 1, 0, 0, 0, 6, 1, 2, 0, 0, 0, 3},        // the three inputs
       {0, 2, 0, 0, 0, 6, 1, 5, 0, 0, 0xFF, 0},     // relay on
       {0, 3, 0, 0, 0, 6, 1, 1, 0, 0, 0, 4},        // the coils
@@ -98,38 +106,38 @@ void answer_all() {
       {0, 6, 0, 0, 0, 6, 1, 3, 0x12, 0x34, 0, 1},  // an address that is not mapped
       {0, 7, 0, 0, 0, 6, 1, 4, 0xFF, 0x2D, 0,
        8},  // which machine it is: how many registers, serial, "board-"
+      {0, 8, 0, 0, 0, 6, 1, 6, 0, 0, 0x01, 0xF4},   // speed 500, which the firmware takes …
+      {0, 9, 0, 0, 0, 6, 1, 4, 0, 0, 0, 1},         // … and shows as the revision
+      {0, 10, 0, 0, 0, 6, 1, 6, 0, 0, 0x07, 0xD0},  // speed 2000, which it refuses
+      {0, 11, 0, 0, 0, 11, 1, 16, 0, 5, 0, 2, 4, 'r', 'o', 'o', 't'},  // "root" and what was there: "rootmed"
   };
   Ports ports;
-  static Statistics statistics;
-  Image image(map, areas, cells);
-  static OutputWatchdog watchdog(map.service.watchdog);
-  static Handler handler(map, image, ports, statistics, watchdog, links);
+  static Firmware node(ports);
   // Of a chip: its unique number, hashed, and a name that somebody gave it.
-  handler.set_machine(identity::machine_of("board-1", 0x0011223344556677));
-  static Server server(map.connection.unit, handler, statistics);
+  node.handler().set_machine(identity::machine_of("board-1", 0x0011223344556677));
   static modbus::Framer framer;
   ClientSession client;
   for (const auto& request : requests) {
-    std::copy(std::begin(request), std::end(request), framer.room().begin());
-    framer.filled(sizeof request);
+    const std::size_t size = 6 + request[5];  // by its header
+    std::copy_n(request, size, framer.room().begin());
+    framer.filled(size);
     if (framer.next() != modbus::Framer::Outcome::frame) fail("the framer finds no frame");
-    print_hex({reply, server.answer(framer.frame(), client, TimePoint{}, reply)});
+    print_hex({reply, node.server().answer(framer.frame(), client, TimePoint{}, reply)});
   }
 }
 
 }  // namespace
 }  // namespace coupler::device
 
-// What the linker wants of every port: the entry, where a failed assertion ends, and the deallocation that
-// the table of a virtual destructor names and nobody calls.
+// What the linker wants of every port: the entry, where a failed assertion ends, the list of static objects
+// to be destroyed at an end that never comes, and the deallocation that the table of a virtual destructor
+// names and nobody calls.
 extern "C" void start() {
-  using namespace coupler::device;
-  const auto size = Image::size_for(map);
-  if (size.areas > std::size(areas) || size.cells > std::size(cells)) fail("the map needs a larger image");
-  if (EdgePoints::links_for(map) > std::size(links)) fail("the map needs more links");
-  answer_all();
-  stop_well();
+  coupler::device::answer_all();
+  coupler::device::stop_well();
 }
+extern "C" int __aeabi_atexit(void*, void (*)(void*), void*) { return 0; }
+void* __dso_handle = nullptr;
 extern "C" void __assert_func(const char*, int, const char*, const char* what) {
   coupler::device::fail(what);
 }

@@ -78,7 +78,9 @@ bool write_ends(const fs::path& folder, unsigned count, unsigned each) {
       const LoadResult loaded = load_map_file((folder / (name + ".yaml")).string());
       if (!loaded.map) return false;
       includes += fmt::format(
-          "#include \"{0}_client.cpp\"\n#include \"{0}_hooks.hpp\"\n#include \"{0}_map.cpp\"\n", name);
+          "#include \"{0}_client.cpp\"\n#include \"{0}_core.hpp\"\n#include \"{0}_hooks.hpp\"\n#include "
+          "\"{0}_map.cpp\"\n",
+          name);
       code += firmware(name, loaded.map->map());
     }
     const std::string text =

@@ -118,8 +118,8 @@ void add_generate(Program& program, Exit& exit) {
   command.add_flag("--quiet", arguments->quiet, "Say nothing of files when all is well");
   command.footer(
       "Example:\n  coupler generate device.yaml --out generated\n"
-      "makes device_map.hpp and .cpp, device_client.hpp and .cpp, device_hooks.hpp, device_node.cpp and "
-      "device_driver.cpp. Files that would not change are not touched.\n"
+      "makes device_map.hpp and .cpp, device_client.hpp and .cpp, device_hooks.hpp, device_core.hpp, "
+      "device_node.cpp and device_driver.cpp. Files that would not change are not touched.\n"
       "  coupler generate device.yaml --docs\nmakes device.md and device.html.\n"
       "  coupler generate device.yaml --vectors\nmakes device_vectors.json.\n"
       "In a CMake build, coupler_add_map(device device.yaml) does this and builds the "

@@ -54,26 +54,34 @@ bool for_each_encoded(std::string_view text, Encoding encoding, Put&& put) {
   return true;
 }
 
-void append_decoded(std::uint8_t byte, Encoding encoding, std::string& text) {
+/// The byte as UTF-8; returns the end of what it wrote.
+char* put_decoded(std::uint8_t byte, Encoding encoding, char* text) {
   if (byte < 0x80 || encoding == Encoding::utf8) {
-    text.push_back(static_cast<char>(byte));
+    *text++ = static_cast<char>(byte);
   } else if (encoding == Encoding::ascii) {
-    text.push_back('?');
+    *text++ = '?';
   } else {
-    text.push_back(static_cast<char>(0xC0 | (byte >> 6)));
-    text.push_back(static_cast<char>(0x80 | (byte & 0x3F)));
+    *text++ = static_cast<char>(0xC0 | (byte >> 6));
+    *text++ = static_cast<char>(0x80 | (byte & 0x3F));
   }
+  return text;
 }
 
 }  // namespace
 
-void decode_text(const std::uint16_t* registers, const Format& format, std::string& text) {
-  text.clear();
+std::size_t decode_text(const std::uint16_t* registers, const Format& format, char* text) {
+  char* end = text;
   for (std::size_t i = 0; i < format.length; ++i) {
     const std::uint8_t byte = wire_byte(registers, format, i);
-    if (byte == 0) return;
-    append_decoded(byte, format.encoding, text);
+    if (byte == 0) break;
+    end = put_decoded(byte, format.encoding, end);
   }
+  return static_cast<std::size_t>(end - text);
+}
+
+void decode_text(const std::uint16_t* registers, const Format& format, std::string& text) {
+  text.resize(max_text_size(format));
+  text.resize(decode_text(registers, format, text.data()));
 }
 
 TextError encode_text(std::string_view text, const Format& format, std::uint16_t* registers) {

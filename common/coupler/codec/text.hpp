@@ -10,9 +10,17 @@
 
 namespace coupler::codec {
 
-/// The text of a STRING, as UTF-8. It ends at the first NUL or at `format.length` bytes. Bytes that the
-/// encoding does not know become '?' (ascii) or stay as they are (utf-8). `text` keeps its capacity from call
-/// to call.
+/// How many bytes of UTF-8 the text of a STRING has at most.
+constexpr std::size_t max_text_size(const Format& format) {
+  return format.encoding == Encoding::latin1 ? std::size_t{2} * format.length : format.length;
+}
+
+/// Writes the text of a STRING, as UTF-8, and returns its size: at most max_text_size() bytes, no NUL behind
+/// them. It ends at the first NUL or at `format.length` bytes. Bytes that the encoding does not know become
+/// '?' (ascii) or stay as they are (utf-8). No heap.
+std::size_t decode_text(const std::uint16_t* registers, const Format& format, char* text);
+
+/// The same. `text` keeps its capacity from call to call.
 void decode_text(const std::uint16_t* registers, const Format& format, std::string& text);
 
 /// Why a text does not fit into a STRING.
@@ -23,7 +31,7 @@ enum class TextError : std::uint8_t {
 };
 
 /// Writes UTF-8 `text`, padded with NUL, into codec::registers(format) registers; nothing is written on an
-/// error.
+/// error. No heap.
 TextError encode_text(std::string_view text, const Format& format, std::uint16_t* registers);
 
 }  // namespace coupler::codec

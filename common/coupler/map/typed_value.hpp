@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The value of a point as a C++ type: bool, char, std::intN_t, std::uintN_t, float, double (also of every
-// point with a scale, in its units), std::string as UTF-8, or std::array of one of them. Registers are
-// range(point).count() of them; bit tables give each bit as one register, 0 or 1.
+// The value of a point as a C++ type: as in plain_value.hpp, with std::string as UTF-8 in place of Text, and
+// with a text that says what is wrong with a value.
 #pragma once
 
 #include <array>
@@ -9,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "coupler/codec/number.hpp"
 #include "coupler/codec/text.hpp"
+#include "coupler/map/plain_value.hpp"
 #include "coupler/map/point.hpp"
 
 namespace coupler {
@@ -25,40 +24,18 @@ std::string encode_string(std::string_view text, const Point& point, std::uint16
 /// `decode` gives the value in the registers. `encode` writes it, leaves other bits of a shared register
 /// alone, and returns what is wrong and what would be right, or an empty text.
 template <class T>
-struct TypedValue {
-  static T decode(const std::uint16_t* registers, const Point& point) {
-    return codec::take<T>(point.format, registers);
-  }
-  static std::string encode(const T& value, const Point& point, std::uint16_t* registers) {
-    codec::put(value, point.format, registers);
+struct TypedValue : PlainValue<T> {
+  static std::string encode(T value, const Point& point, std::uint16_t* registers) {
+    (void)PlainValue<T>::encode(value, point, registers);  // takes every value
     return {};
   }
 };
 
 template <>
-struct TypedValue<bool> {
-  static bool decode(const std::uint16_t* registers, const Point& point) {
-    if (holds_bits(point.table)) return registers[0] != 0;
-    return codec::take<std::uint8_t>(point.format, registers) != 0;
-  }
-  static std::string encode(bool value, const Point& point, std::uint16_t* registers) {
-    if (holds_bits(point.table))
-      registers[0] = value ? 1 : 0;
-    else
-      codec::put(static_cast<std::uint8_t>(value), point.format, registers);
-    return {};
-  }
-};
-
-template <>
-struct TypedValue<double> {
-  static double decode(const std::uint16_t* registers, const Point& point) {
-    if (point.scale.present()) return codec::published(registers, point.format, point.scale);
-    return codec::take<double>(point.format, registers);
-  }
+struct TypedValue<double> : PlainValue<double> {
   static std::string encode(double value, const Point& point, std::uint16_t* registers) {
     if (point.scale.present()) return encode_scaled(value, point, registers);
-    codec::put(value, point.format, registers);
+    (void)PlainValue<double>::encode(value, point, registers);
     return {};
   }
 };

@@ -264,10 +264,10 @@ class Generate(Cli):
     def files(self):
         return {path.name: path.read_bytes() for path in (self.folder / "out").iterdir()}
 
-    def test_makes_a_table_a_client_hooks_and_two_programs(self):
+    def test_makes_a_table_a_client_a_core_hooks_and_two_programs(self):
         done = self.coupler("generate", self.file("cell.yaml", GOOD), "--out", "out")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertEqual(sorted(self.files()), ["cell_client.cpp", "cell_client.hpp", "cell_driver.cpp",
+        self.assertEqual(sorted(self.files()), ["cell_client.cpp", "cell_client.hpp", "cell_core.hpp", "cell_driver.cpp",
                                                 "cell_hooks.hpp", "cell_map.cpp", "cell_map.hpp", "cell_node.cpp"])
 
     def test_gives_the_same_bytes_anywhere(self):

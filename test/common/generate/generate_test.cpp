@@ -14,12 +14,12 @@ using ::testing::HasSubstr;
 
 const Provenance provenance{"cell", "cell.yaml", "1.2.3"};
 
-TEST(Generate, A_map_becomes_a_table_two_programs_and_two_classes) {
+TEST(Generate, A_map_becomes_a_table_two_programs_and_three_classes) {
   EXPECT_THAT(generate(testing::sample()->map(), provenance),
               ElementsAre(Field(&File::name, "cell_client.cpp"), Field(&File::name, "cell_client.hpp"),
-                          Field(&File::name, "cell_driver.cpp"), Field(&File::name, "cell_hooks.hpp"),
-                          Field(&File::name, "cell_map.cpp"), Field(&File::name, "cell_map.hpp"),
-                          Field(&File::name, "cell_node.cpp")));
+                          Field(&File::name, "cell_core.hpp"), Field(&File::name, "cell_driver.cpp"),
+                          Field(&File::name, "cell_hooks.hpp"), Field(&File::name, "cell_map.cpp"),
+                          Field(&File::name, "cell_map.hpp"), Field(&File::name, "cell_node.cpp")));
 }
 
 TEST(Generate, Every_file_says_where_it_comes_from) {
@@ -31,7 +31,7 @@ TEST(Generate, Every_file_says_where_it_comes_from) {
 
 TEST(Generate, Both_programs_run_the_one_table) {
   const auto files = generate(testing::sample()->map(), provenance);
-  EXPECT_THAT(files[2].content, HasSubstr("host::main_with(&::coupler::maps::cell::map, "));
+  EXPECT_THAT(files[3].content, HasSubstr("host::main_with(&::coupler::maps::cell::map, "));
   EXPECT_THAT(files.back().content, HasSubstr("device::main_with(::coupler::maps::cell::map, "));
 }
 

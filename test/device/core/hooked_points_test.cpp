@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "coupler/map/image_layout.hpp"
 #include "test/device/core/node_under_test.hpp"
 
 namespace coupler::device {
@@ -62,7 +63,7 @@ struct HookedNode : ::testing::Test {
   Statistics statistics;
   TimePoint now{};
   OutputWatchdog watchdog{map.service.watchdog};
-  std::vector<EdgePoints::Link> links{EdgePoints::links_for(map)};
+  std::vector<EdgePoints::Link> links{node_memory(map).links};
   Handler handler{map, memory.image, Hardware(lines, nullptr, &hooked), statistics, watchdog, links};
 };
 

@@ -17,7 +17,7 @@ Pdu pdu(int function, std::initializer_list<int> fields, const Pdu& rest) {
 }
 
 OwnedImage::OwnedImage(const Map& map)
-    : areas(Image::size_for(map).areas), cells(Image::size_for(map).cells), image(map, areas, cells) {}
+    : areas(node_memory(map).areas), cells(node_memory(map).cells), image(map, areas, cells) {}
 
 NodeUnderTest::NodeUnderTest(MapPtr of) : owner(std::move(of)) {}
 NodeUnderTest::~NodeUnderTest() = default;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coupler/device/core/handler.hpp"
+#include "coupler/map/image_layout.hpp"
 #include "test/device/core/fake_channels.hpp"
 #include "test/device/core/fake_lines.hpp"
 #include "test/fakes/map_builder.hpp"
@@ -43,7 +44,7 @@ struct NodeUnderTest {
   Statistics statistics;
   TimePoint now{};
   OutputWatchdog watchdog{map.service.watchdog};
-  std::vector<EdgePoints::Link> links{EdgePoints::links_for(map)};
+  std::vector<EdgePoints::Link> links{node_memory(map).links};
   Handler handler{map, image, Hardware(lines, &analogue), statistics, watchdog, links};
 };
 

@@ -6,6 +6,7 @@
 
 #include "coupler/device/node/guarded_hooks.hpp"
 #include "coupler/device/node/point_hooks.hpp"
+#include "coupler/map/image_layout.hpp"
 #include "test/device/core/fake_log.hpp"
 #include "test/fakes/map_builder.hpp"
 
@@ -59,8 +60,9 @@ TEST_F(Guarded, A_process_whose_firmware_cannot_begin_does_not_serve) {
 }
 
 TEST_F(Guarded, At_the_end_what_make_safe_sets_is_in_the_image) {
-  std::vector<Image::Area> areas(Image::size_for(map_->map()).areas);
-  std::vector<std::uint16_t> cells(Image::size_for(map_->map()).cells);
+  const NodeMemory size = node_memory(map_->map());
+  std::vector<Image::Area> areas(size.areas);
+  std::vector<std::uint16_t> cells(size.cells);
   Image image(map_->map(), areas, cells);
   EXPECT_FALSE(guarded_.end(image));
   EXPECT_THAT(log_.lines, ElementsAre("make_safe() threw an exception: the motor does not answer"));

@@ -49,12 +49,6 @@ void each_wish(const Map& map, Use use) {
 
 }  // namespace
 
-std::size_t EdgePoints::links_for(const Map& map) {
-  std::size_t count = 0;
-  each_wish(map, [&](const Point&, const EdgeOf&, bool) { ++count; });
-  return count;
-}
-
 EdgePoints::EdgePoints(const Map& map, Image& image, Statistics& statistics, Span<Link> links)
     : map_(map), statistics_(statistics) {
   if (links.empty()) return;  // to look at all points of a large map takes its time, and clients wait

@@ -19,10 +19,7 @@ class EdgePoints final : public EdgeSink {
     const Point* point = nullptr;
     std::uint16_t* cells = nullptr;  ///< the point's, in the image
   };
-  /// How many a map has.
-  static std::size_t links_for(const Map& map);
-
-  /// All of them outlive it; `links` has links_for() elements.
+  /// All of them outlive it; `links` has node_memory().links elements (coupler/map/image_layout.hpp).
   EdgePoints(const Map& map, Image& image, Statistics& statistics, Span<Link> links);
 
   /// Counters of the input go up, in their own width and order, and wrap; its latches are set.

@@ -24,7 +24,7 @@ namespace coupler::device {
 class Handler {
  public:
   /// All of them outlive the handler. The image shows outputs as the lines are driven. `links` has
-  /// EdgePoints::links_for() elements.
+  /// node_memory().links elements.
   Handler(const Map& map, Image& image, Hardware hardware, Statistics& statistics, OutputWatchdog& watchdog,
           Span<EdgePoints::Link> links);
 

@@ -4,42 +4,12 @@
 #include <algorithm>
 #include <cassert>
 
-#include "coupler/map/identity.hpp"
+#include "coupler/map/image_layout.hpp"
 
 namespace coupler::device {
 namespace {
 
 using modbus::Range;
-
-enum class Which { mapped, readable, writable };
-
-bool belongs(const Point& point, Table table, Which which) {
-  if (point.table != table) return false;
-  switch (which) {
-    case Which::mapped: return true;
-    case Which::readable: return is_readable(point);
-    case Which::writable: return is_writable(point);
-  }
-  return false;
-}
-
-/// Calls `use` with each maximal range without holes, in order; the map's points are sorted.
-template <class Use>
-void each_range(const Map& map, Table table, Which which, Use use) {
-  std::uint32_t start = 0;
-  std::uint32_t end = 0;
-  for (const Point& point : map.points) {
-    if (!belongs(point, table, which)) continue;
-    const Range next = range(point);
-    if (start != end && next.start() > end) use(Range::of(start, end - start));
-    if (start == end || next.start() > end) start = next.start();
-    end = std::max(end, next.end());
-  }
-  if (start != end) use(Range::of(start, end - start));
-  if (which == Which::writable) return;
-  if (table == Table::input_registers) use(Range::of(identity::reserved.start(), identity::size));
-  if (table == Table::holding_registers && map.service.watchdog.needs_reset()) use(identity::watchdog_reset);
-}
 
 const Image::Area* covering(Span<Image::Area> areas, Range range) {
   const auto* after =
@@ -59,36 +29,22 @@ void put_initial(const Point& point, Span<std::uint16_t> cells) {
 
 }  // namespace
 
-Image::Size Image::size_for(const Map& map) {
-  Size size;
-  for (const Table table : tables) {
-    each_range(map, table, Which::mapped, [&](Range range) {
-      ++size.areas;
-      size.cells += range.count();
-    });
-    if (!is_writable(table)) continue;
-    for (const Which which : {Which::readable, Which::writable})
-      each_range(map, table, which, [&](Range) { ++size.areas; });
-  }
-  return size;
-}
-
 Image::Image(const Map& map, Span<Area> areas, Span<std::uint16_t> cells) : cells_(cells) {
   std::size_t used = 0;
   std::uint32_t cell = 0;
-  const auto list = [&](Table table, Which which) {
+  const auto list = [&](Table table, Mapped which) {
     const std::size_t first = used;
     each_range(map, table, which, [&](Range range) {
       areas[used++] = {range.start(), range.end(), cell};
-      if (which == Which::mapped) cell += range.count();
+      if (which == Mapped::all) cell += range.count();
     });
     return areas.sub(first, used - first);
   };
   for (const Table table : tables) {
     const std::size_t i = index(table);
-    mapped_[i] = list(table, Which::mapped);
-    readable_[i] = is_writable(table) ? list(table, Which::readable) : mapped_[i];
-    if (is_writable(table)) writable_[i] = list(table, Which::writable);
+    mapped_[i] = list(table, Mapped::all);
+    readable_[i] = is_writable(table) ? list(table, Mapped::readable) : mapped_[i];
+    if (is_writable(table)) writable_[i] = list(table, Mapped::writable);
   }
   std::fill(cells_.begin(), cells_.end(), std::uint16_t{0});
   for (const Point& point : map.points) put_initial(point, find(point.table, range(point)));

@@ -21,14 +21,8 @@ class Image {
     std::uint32_t cell = 0;  ///< of `start`
   };
 
-  struct Size {
-    std::size_t areas = 0;
-    std::size_t cells = 0;
-  };
-  /// What an image of this map needs.
-  static Size size_for(const Map& map);
-
-  /// Holds initial values. The storage is at least as large as size_for() says and outlives the image.
+  /// Holds initial values. The storage is as large as node_memory() says (coupler/map/image_layout.hpp) and
+  /// outlives the image.
   Image(const Map& map, Span<Area> areas, Span<std::uint16_t> cells);
 
   /// The addresses of a table that are mapped, sorted.

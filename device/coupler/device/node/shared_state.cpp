@@ -33,15 +33,15 @@ bool may_change(const Point& point) {
 }  // namespace
 
 SharedState::SharedState(const Map& map, TimePoint now, const identity::Machine& machine)
-    : SharedState(map, now, Image::size_for(map), machine) {}
+    : SharedState(map, now, node_memory(map), machine) {}
 
-SharedState::SharedState(const Map& map, TimePoint now, Image::Size size, const identity::Machine& machine)
+SharedState::SharedState(const Map& map, TimePoint now, NodeMemory size, const identity::Machine& machine)
     : map_(map),
       areas_(size.areas),
       cells_(size.cells),
       image_(map, areas_, cells_.all()),
       lasting_(1, {started_at(now), OutputWatchdog(map.service.watchdog)}),
-      links_(EdgePoints::links_for(map)),
+      links_(size.links),
       machine_(machine) {}
 
 void SharedState::prepare_take_over(const SharedState& before) {

@@ -9,6 +9,7 @@
 #include "coupler/device/core/watchdog.hpp"
 #include "coupler/device/supervisor/shared_array.hpp"
 #include "coupler/map/identity.hpp"
+#include "coupler/map/image_layout.hpp"
 
 namespace coupler::device {
 
@@ -43,7 +44,7 @@ class SharedState {
     Span<std::uint16_t> to;
     std::uint16_t mask;
   };
-  SharedState(const Map& map, TimePoint now, Image::Size size, const identity::Machine& machine);
+  SharedState(const Map& map, TimePoint now, NodeMemory size, const identity::Machine& machine);
 
   const Map& map_;
   std::vector<Image::Area> areas_;

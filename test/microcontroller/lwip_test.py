@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What clients see of the node on lwIP: mbpoll, `coupler`, and sockets that misbehave. Started by test/microcontroller/lwip."""
+import os
+import pathlib
+import re
+import socket
+import struct
+import subprocess
+import sys
+import time
+import unittest
+
+BUILD = pathlib.Path(sys.argv.pop(1))
+NODE = ("192.0.2.2", 502)
+PATIENCE = 60
+TIMEOUT = 5  # LwipServer::timeout
+CLIENTS = 4  # LwipServer::max_clients
+
+
+def run(*words):
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=PATIENCE, check=False)
+
+
+def mbpoll(*options, values=()):
+    """The values that mbpoll has read by their number, or what it says of an error. Addresses count from 0."""
+    done = run("mbpoll", "-m", "tcp", "-p", NODE[1], "-1", "-0", "-q", *options, NODE[0], *values)
+    read = re.findall(r"^\[\d+\]:\s+(\S+)", done.stdout, re.M)
+    return [int(value) for value in read] if done.returncode == 0 else done.stdout + done.stderr
+
+
+def request(pdu, transaction=1):
+    return struct.pack(">HHHB", transaction, 0, len(pdu) + 1, 1) + pdu
+
+
+READ_COIL = b"\x01\x00\x00\x00\x01"
+
+
+class Client:
+    def __init__(self):
+        self.socket = socket.create_connection(NODE, PATIENCE)
+
+    def ask(self, pdu):
+        self.socket.sendall(request(pdu))
+        header = self.receive(7)
+        return self.receive(struct.unpack(">H", header[4:6])[0] - 1)
+
+    def receive(self, size):
+        data = b""
+        while len(data) < size:
+            more = self.socket.recv(size - len(data))
+            if not more:
+                raise EOFError
+            data += more
+        return data
+
+    def is_closed(self):
+        """Once the node has closed it: reset or ended."""
+        try:
+            return self.socket.recv(1) == b""
+        except ConnectionResetError:
+            return True
+
+    def close(self):
+        self.socket.close()
+
+
+class Lwip(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.node = subprocess.Popen([BUILD / "lwip" / "lwip_node"], stdout=subprocess.PIPE, text=True,
+                                    env=dict(os.environ, PRECONFIGURED_TAPIF="tap0"))
+        assert cls.node.stdout.readline() == "lwip_node: serving on 192.0.2.2:502\n"
+
+    @classmethod
+    def tearDownClass(cls):
+        assert cls.node.poll() is None, f"the node ended with {cls.node.returncode}"
+        cls.node.kill()
+        cls.node.wait()
+        cls.node.stdout.close()
+
+    def client(self):
+        client = Client()
+        self.addCleanup(client.close)
+        return client
+
+    def test_a_pin_follows_its_coil_and_is_read_back(self):
+        client = self.client()  # keeps the watchdog fed
+        self.assertEqual(client.ask(b"\x05\x00\x00\xFF\x00"), b"\x05\x00\x00\xFF\x00")
+        self.assertEqual(mbpoll("-t", 0, "-r", 0), [1])
+        self.assertEqual(mbpoll("-t", 1, "-r", 0), [1])
+        client.ask(b"\x05\x00\x00\x00\x00")
+        self.assertEqual(mbpoll("-t", 1, "-r", 0), [0])
+
+    def test_hooks_take_a_value_or_refuse_it_and_set_others(self):
+        before = mbpoll("-t", "3:int", "-B", "-r", 1)[0]
+        mbpoll("-t", 4, "-r", 0, values=[255])
+        self.assertEqual(mbpoll("-t", 4, "-r", 0), [255])
+        self.assertEqual(mbpoll("-t", 3, "-r", 0), [255])  # the temperature, which the firmware has set
+        self.assertEqual(mbpoll("-t", "3:int", "-B", "-r", 1), [before + 1])
+        self.assertIn("Slave device or server failure", mbpoll("-t", 4, "-r", 0, values=[401]))
+        self.assertEqual(mbpoll("-t", 4, "-r", 0), [255])
+
+    def test_an_address_that_is_not_mapped_is_exception_02(self):
+        self.assertIn("Illegal data address", mbpoll("-t", 4, "-r", 100))
+
+    def test_outputs_are_safe_when_the_client_that_wrote_is_silent(self):
+        writer, reader = self.client(), self.client()
+        writer.ask(b"\x05\x00\x00\xFF\x00")
+        end = time.monotonic() + PATIENCE
+        while reader.ask(READ_COIL) != b"\x01\x01\x00":
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.05)
+
+    def test_the_map_is_proven_equal_and_the_machine_has_a_name(self):
+        coupler = BUILD / "bin" / "coupler"
+        status = run(coupler, "status", NODE[0])
+        self.assertEqual(status.returncode, 0, status.stdout + status.stderr)
+        self.assertIn("board-1", status.stdout)
+        dump = run(coupler, "dump", "config/examples/lwip/board.yaml")
+        self.assertEqual(dump.returncode, 0, dump.stdout + dump.stderr)
+        self.assertIn("unnamed", dump.stdout)
+
+    def test_many_requests_at_once_are_all_answered_in_their_order(self):
+        client, count = self.client(), 2000
+        client.socket.sendall(b"".join(request(READ_COIL, i) for i in range(count)))
+        for i in range(count):
+            self.assertEqual(struct.unpack(">H", client.receive(10)[:2])[0], i)
+
+    def test_a_client_that_does_not_read_is_closed_and_the_others_are_served(self):
+        greedy = self.client()
+        greedy.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        greedy.socket.settimeout(0.2)
+        other = self.client()
+        end = time.monotonic() + PATIENCE
+        identity = request(b"\x04\xFF\x00\x00\x30")
+        with self.assertRaises(OSError) as closed:
+            while time.monotonic() < end:
+                try:
+                    greedy.socket.sendall(identity * 100)
+                except socket.timeout:
+                    self.assertEqual(other.ask(READ_COIL)[:2], b"\x01\x01")
+        self.assertIsInstance(closed.exception, (ConnectionResetError, BrokenPipeError))
+
+    def test_half_a_frame_is_closed_though_bytes_keep_coming(self):
+        client = self.client()
+        client.socket.sendall(request(READ_COIL)[:4])
+        began = time.monotonic()
+        for byte in b"\x00\x06\x01\x01\x00\x00":
+            time.sleep(TIMEOUT / 4)
+            try:
+                client.socket.sendall(bytes([byte]))
+            except OSError:
+                break
+        self.assertTrue(client.is_closed())
+        self.assertGreaterEqual(time.monotonic() - began, TIMEOUT - 0.5)
+
+    def test_what_is_no_frame_is_closed_at_once(self):
+        client = self.client()
+        client.socket.sendall(b"GET / HTTP/1.1\r\n\r\n")
+        self.assertTrue(client.is_closed())
+
+    def test_one_more_client_takes_the_place_of_who_has_not_written(self):
+        writer = self.client()
+        writer.ask(b"\x05\x00\x00\x00\x00")
+        others = [self.client() for _ in range(CLIENTS - 1)]
+        for other in others:
+            other.ask(READ_COIL)
+        self.assertEqual(self.client().ask(READ_COIL)[:2], b"\x01\x01")
+        self.assertTrue(others[0].is_closed())
+        for kept in (writer, *others[1:]):
+            self.assertEqual(kept.ask(READ_COIL)[:2], b"\x01\x01")
+
+    def test_after_a_thousand_connections_it_serves(self):
+        for i in range(1000):
+            client = Client()
+            if i % 3 == 0:
+                client.ask(READ_COIL)
+            if i % 2 == 0:  # reset, not closed
+                client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            client.close()
+        self.assertEqual(self.client().ask(READ_COIL)[:2], b"\x01\x01")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
