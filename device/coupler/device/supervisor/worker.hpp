@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A worker process, as its supervisor sees it, and its supervisor, as it sees that. Between them is a socket
-// pair.
+// Both ends of the socket pair between a supervisor and its worker process: Worker is the supervisor's end,
+// SupervisorLink is the worker process's.
 #pragma once
 
 #include <functional>
