@@ -107,11 +107,11 @@ check "nor stored" [ "$(answered client -t 4:hex -r 0 -c 4 127.0.0.1 | grep -oE 
 echo "# the worker process dies"
 start watch watch_pwm
 check "period and enable of the PWM are watched" wait_until says watch armed
-before=$(io_process)
+before=$(worker)
 kill -KILL "$before"
 check "the outputs are in their safe state" wait_until shown_is "12000 of 40000, 1"
 check "all of them" wait_until dac_is 0
-check "another worker process is started" wait_until new_io_process "$before"
+check "another worker process is started" wait_until new_worker "$before"
 check "its registers show it" wait_until refused_with 'illegal data value' 2 1001
 expect "in the point's scale" 300 "$(register 2)"
 check "inputs are sampled again" wait_until steps_are 123
@@ -162,9 +162,9 @@ check "the output has its value again" wait_until dac_is 250
 check "and takes another" wait_until set_real 0 0.5
 expect "which it shows" 500 "$(cat $dac)"
 expect "the PWM was left alone" "10000 of 40000, 1" "$(shown)"
-before=$(io_process)
+before=$(worker)
 sleep 3
-expect "nothing is found again that nobody asks for" "$before" "$(io_process)"
+expect "nothing is found again that nobody asks for" "$before" "$(worker)"
 unplug_adc
 stop node TERM || true
 cat "$(log node)"

@@ -115,7 +115,7 @@ expect "three presses that bounce are three" 3 "$(counter 3 4)"
 
 echo "# the worker process is killed"
 before=$(counter 3 0)
-kill -KILL "$(io_process)"
+kill -KILL "$(worker)"
 pulse 5 "$width" "$button"
 check "another one serves" wait_until counter 3 0
 pulse 5 "$width" "$button"
@@ -125,11 +125,11 @@ expect "nothing was lost by that" 0 "$(lost)"
 
 echo "# a reader that is stopped"
 before=$(counter 3 2)
-io=$(io_process)
+id=$(worker)
 kill -STOP "$(pid node)" # the supervisor, which would end a worker process that is silent for so long
-kill -STOP "$io"
+kill -STOP "$id"
 pulse 700 "$width" "$wave"
-kill -CONT "$io"
+kill -CONT "$id"
 kill -CONT "$(pid node)" # at once: a worker whose supervisor is silent for 5 s ends it
 counted=$(($(counter 3 2) - before))
 lost=$(lost)

@@ -14,7 +14,7 @@ hooks_called() { grep -E '^(motor|speed|safe) ' "$(log gate)" | cut -d' ' -f1,2 
 
 start gate "$bin/gate_firmware"
 check "the firmware serves" wait_until says gate 'serving gate'
-check "it begins in the process that serves" says gate "^began 0 in $(io_process gate)$"
+check "it begins in the process that serves" says gate "^began 0 in $(worker gate)$"
 check "what its thread sets is read" wait_until input_is 0 1
 sim_pull plant 2 up
 check "a line is read beside it" wait_until input_is 1 1
@@ -32,7 +32,7 @@ expect "the hooks were called in that order" "motor 1 speed 5 motor 1" "$(hooks_
 echo "# the process that serves dies"
 check "the brake is released" set_coils 1 0
 expect "its line is low" 0 "$(sim_value plant 0)"
-before=$(io_process gate)
+before=$(worker gate)
 kill -KILL "$before"
 check "the firmware is made safe" wait_until says gate '^safe 0 in'
 refuse "not in the supervisor, which runs no code of a firmware" says gate "^safe 0 in $(pid gate)$"
@@ -53,7 +53,7 @@ expect "clients read what it was" 1 "$(coil 0)"
 check "the hook alone goes on" set_coil 0 0
 
 echo "# it ends"
-before=$(io_process gate)
+before=$(worker gate)
 stop gate TERM || true
 check "the firmware is made safe, once, by the process that served" says gate "^safe 0 in $before$" 1
 expect "and by no other" 2 "$(grep -c '^safe 0 in' "$(log gate)")"

@@ -3,8 +3,8 @@
 # The chip of plant.yaml and a Modbus client, for the tests that run the project's programs. To be sourced:
 #   plant_chip                 makes the chip "plant" with 8 lines; line 2 is BUTTON, line 6 belongs to "hog-a"
 #   plant_node MAP [ARGS…]     starts the node with a map and waits until it serves
-#   io_process [NAME]          prints the id of the process that answers for the node (or NAME, as it was started)
-#   new_io_process ID          there is one, and it is not that one
+#   worker [NAME]              prints the id of the process that answers for the node (or NAME, as it was started)
+#   new_worker ID              there is one, and it is not that one
 #   input N, coil N            prints 0 or 1, as mbpoll reads it
 #   set_coil N 0|1             writes it
 #   watch_wires LINE…          tells each change of these wires; to be started, then wait for it to say "armed"
@@ -25,8 +25,8 @@ plant_node() {
   check "the node serves" wait_until says node 'serving plant'
 }
 
-io_process() { pgrep -P "$(pid "${1:-node}")" -x coupler-node-io; }
-new_io_process() { local now; now=$(io_process) && [ "$now" != "$1" ] && [[ "$(cat "/proc/$now/stat")" != *" Z "* ]]; }
+worker() { pgrep -P "$(pid "${1:-node}")" -x coupler-node-io; }
+new_worker() { local now; now=$(worker) && [ "$now" != "$1" ] && [[ "$(cat "/proc/$now/stat")" != *" Z "* ]]; }
 
 client() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 1502 "$@"; }
 

@@ -23,7 +23,7 @@ reload_with() {
   wait_until says node "$said" $((before + 1))
 }
 taken='read the map again: serving plant'
-refused='the new map is refused; the old one goes on'
+refused='the new map is refused; the old one stays in force'
 
 # Writes a coil and reads it back without a pause, on one connection as long as it lasts. Tells each lost one, and each answer
 # that is wrong; says "going" when the first round is done, and the number of rounds at the end.
@@ -81,7 +81,7 @@ start traffic traffic
 check "a client writes and reads" wait_until says traffic going
 
 echo "# maps that are refused"
-before=$(io_process)
+before=$(worker)
 check "one that is no map" reload_with "$refused" <<<'name: ['
 check "its place is told" says node 'map.yaml:[0-9]+:[0-9]+: error'
 check "a line that belongs to somebody else" reload_with "$refused" < <(sed 's/offset: 3}/offset: 6}/' reload.yaml)
@@ -90,9 +90,9 @@ check "a line that is not there" reload_with "$refused" < <(sed 's/line: BUTTON/
 check "an address that this machine has not" reload_with "$refused" < <(cat reload.yaml; echo 'listen: 192.0.2.1')
 check "another polarity of an output beside one that stays" reload_with "$refused" \
   < <(sed 's/offset: 0}/offset: 0}, active_low: true/' reload.yaml)
-check "with the remedy" says node "point 'kept'.* start the node anew"
+check "with the remedy" says node "point 'kept'.* restart the node"
 check "a point in the identity area" reload_with "$refused" < <(sed 's/presses: {address: 0/presses: {address: 0xFF00/' reload.yaml)
-expect "the worker process is the same after all of them" "$before" "$(io_process)"
+expect "the worker process is the same after all of them" "$before" "$(worker)"
 expect "nothing moved" 0 "$(sim_value plant 3)"
 
 echo "# a map that looks the same to clients: one output has another line"
@@ -130,7 +130,7 @@ echo "# a map through standard input"
 start piped bash -c "exec '$bin/coupler-node' - --sim --port 1504 <reload.yaml"
 check "it is served" wait_until says piped 'serving plant'
 kill -HUP "$(pid piped)"
-check "it cannot be read again" wait_until says piped 'there is nothing to read again'
+check "it cannot be read again" wait_until says piped 'it cannot be read again'
 refuse "and is not refused" says piped 'is refused'
 check "the node ends well" stop piped TERM
 
@@ -182,7 +182,7 @@ echo "# a map that never comes, while the process that drives dies"
 check "the output is written" set_coil 0 1
 sim_pull plant 0 up
 mv "$map" "$map.kept"; mkfifo "$map"
-before=$(io_process)
+before=$(worker)
 kill -HUP "$(pid node)"
 check "a pipe is refused" wait_until says node 'map.yaml: error: it is not a regular file'
 rm "$map"; mv "$map.kept" "$map"
@@ -193,7 +193,7 @@ check "a long one is being read" wait_until pgrep -x coupler-map
 kill -KILL "$before"
 check "the output is safe meanwhile, against its pull" wait_until level_is 0 0
 check "the map is still being read" pgrep -x coupler-map
-check "another worker process is started" wait_until new_io_process "$before"
+check "another worker process is started" wait_until new_worker "$before"
 reader=$(pgrep -x coupler-map)
 check "the node ends well at SIGTERM, at once" stop node TERM
 check "and so does the process that reads" wait_until ended "$reader"

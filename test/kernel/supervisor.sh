@@ -37,12 +37,12 @@ write_outputs() { answered client -t 0 -r 0 127.0.0.1 -- "${written[@]}" >/dev/n
 sim_define plant 8
 sim_plug plant
 plant_node supervisor.yaml
-check "there is a worker process" wait_until io_process
-check "its name tells it from its supervisor" grep -qx coupler-node-io "/proc/$(io_process)/comm"
+check "there is a worker process" wait_until worker
+check "its name tells it from its supervisor" grep -qx coupler-node-io "/proc/$(worker)/comm"
 
 for signal in KILL STOP SEGV TERM; do
   echo "# SIG$signal to the worker process"
-  before=$(io_process)
+  before=$(worker)
   check "the outputs are written" wait_until write_outputs
   check "and driven" wires_are written
   pull_away_from safe
@@ -50,7 +50,7 @@ for signal in KILL STOP SEGV TERM; do
   check "the held lines are watched" wait_until says wires armed
   kill -s "$signal" "$before"
   check "every output is in its safe state, against its pull" wait_until wires_are safe
-  check "another worker process is started" wait_until new_io_process "$before"
+  check "another worker process is started" wait_until new_worker "$before"
   check "outputs are as they were left" wires_are safe
   check "it serves, and its image shows them" wait_until coils_are "${safe[*]}"
   check "inputs work" wait_until input_is 0 0
@@ -67,12 +67,12 @@ check "the others are as before" level_is 2 1
 check "and the active-low one too" level_is 5 0
 
 echo "# a supervisor that was stopped itself does not take its child's silence for death"
-before=$(io_process)
+before=$(worker)
 kill -s STOP "$(pid node)"
 sleep 2
 kill -s CONT "$(pid node)"
 sleep 1
-expect "the worker process is the same" "$before" "$(io_process)"
+expect "the worker process is the same" "$before" "$(worker)"
 
 echo "# a signal to the supervisor"
 check "it ends well" stop node TERM
@@ -83,18 +83,18 @@ cat "$(log node)"
 echo "# the supervisor is killed"
 plant_node supervisor.yaml
 check "outputs are written" wait_until write_outputs
-io=$(io_process)
+id=$(worker)
 status=0; stop node KILL || status=$?
 expect "it dies" 137 "$status"
-check "its worker process drives the safe state and ends" wait_until ended "$io"
+check "its worker process drives the safe state and ends" wait_until ended "$id"
 check "and says so" says node 'Terminated: outputs are in their safe state'
 
 echo "# the supervisor is stopped: its worker process, after which nobody would look, ends safely"
 plant_node supervisor.yaml
 check "outputs are written" wait_until write_outputs
-io=$(io_process)
+id=$(worker)
 kill -s STOP "$(pid node)"
-check "its worker process ends" wait_until ended "$io"
+check "its worker process ends" wait_until ended "$id"
 check "and tells why" says node 'the supervisor, process [0-9]+, was silent for 5 s and is killed; outputs are in their safe state'
 status=0; stop node CONT || status=$?
 expect "the supervisor was killed, stopped as it was" 137 "$status"
@@ -102,11 +102,11 @@ expect "the supervisor was killed, stopped as it was" 137 "$status"
 echo "# the worker process is stopped, and before that is noticed the supervisor is killed"
 plant_node supervisor.yaml
 check "outputs are written" wait_until write_outputs
-io=$(io_process)
-kill -s STOP "$io"
+id=$(worker)
+kill -s STOP "$id"
 status=0; stop node KILL || status=$?
 expect "the supervisor dies" 137 "$status"
-check "the worker process, which the kernel makes go on, drives the safe state and ends" wait_until ended "$io"
+check "the worker process, which the kernel makes go on, drives the safe state and ends" wait_until ended "$id"
 check "and says so" says node 'Terminated: outputs are in their safe state'
 
 echo "# nobody reads the log"
@@ -116,8 +116,8 @@ start node sh -c 'exec "$@" 2>&9' sh "$bin/coupler-node" supervisor.yaml
 check "the node serves" wait_until write_outputs
 dd if=/dev/zero of="$check_folder/unread" bs=4096 count=200 oflag=nonblock 2>"$check_folder/dd" || true
 check "its pipe is full" grep -q 'temporarily unavailable' "$check_folder/dd"
-before=$(io_process)
+before=$(worker)
 kill -s KILL "$before"
 check "every output is in its safe state" wait_until wires_are safe
-check "another worker process is started" wait_until new_io_process "$before"
+check "another worker process is started" wait_until new_worker "$before"
 check "the supervisor ends at SIGTERM" stop node TERM

@@ -15,9 +15,9 @@ press() { sim_pull plant 2 up; sleep 0.02; sim_pull plant 2 down; sleep 0.02; }
 lost='(failed: No such device)'
 back='works again'
 holds_no_line() {
-  local io
-  io=$(io_process) && [ -d "/proc/$io/fd" ] || return
-  [ -z "$(find "/proc/$(pid node)/fd" "/proc/$io/fd" -lname '*gpio*')" ]
+  local id
+  id=$(worker) && [ -d "/proc/$id/fd" ] || return
+  [ -z "$(find "/proc/$(pid node)/fd" "/proc/$id/fd" -lname '*gpio*')" ]
 }
 # Requests to the kernel for the map: libgpiod 1 wants one for each polarity of outputs.
 if [[ $(gpiomon --version) == *v1.* ]]; then requests=3; else requests=2; fi
@@ -77,5 +77,5 @@ expect "told once, not at each try" $((before + 1)) "$(times 'is busy')"
 refuse "no worker process died" says node 'the worker process'
 status=0; stop node TERM || status=$?
 expect "who stops the node is told that the thief's output is not safe" 3 "$status"
-check "in words, too" says node 'ended, and not every output could be driven to its safe state'
+check "in words, too" says node 'not every output could be driven to its safe state when the node ended'
 cat "$(log node)"

@@ -16,7 +16,7 @@
 namespace coupler::random {
 
 /// Work for the node's thread, and the end of it.
-class NodeEnd::Bell : public device::Watcher {
+class NodeEnd::Bell : public device::EventHandler {
  public:
   explicit Bell(device::Loop& loop) : loop_(loop), event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
     if (!loop_.watch(event_.get(), device::Interest::read, *this)) std::abort();
@@ -52,14 +52,6 @@ class NodeEnd::Bell : public device::Watcher {
   std::optional<std::packaged_task<void()>> work_;
 };
 
-namespace {
-
-struct Unheard : device::Heartbeat {
-  void beat() override {}
-};
-
-}  // namespace
-
 NodeEnd::NodeEnd(const Map& map, device::Hooks* hooks)
     : simulated_(std::any_of(map.points.begin(), map.points.end(), has_hardware)) {
   auto listener = device::listen_on("127.0.0.1", 0);
@@ -84,8 +76,7 @@ NodeEnd::~NodeEnd() {
 
 void NodeEnd::run() {
   device::IoService service(context_, loop_, log_);
-  Unheard pulse;
-  service.run([this](device::TimePoint) { return bell_->is_over.load(); }, pulse);
+  service.run([this](device::TimePoint) { return bell_->is_over.load(); }, [] {});
 }
 
 std::uint16_t NodeEnd::port() const {

@@ -16,7 +16,7 @@ property() { systemctl show --value -p "$1" "$unit"; }
 is() { [ "$(property "$1")" = "$2" ]; }
 in_journal() { grep -qE -- "$1" <<<"$(journalctl -u "$unit" -o cat --no-pager "${@:2}")"; }
 supervisor() { property MainPID; }
-io_process() { pgrep -P "$(supervisor)" -x coupler-node-io; }
+worker() { pgrep -P "$(supervisor)" -x coupler-node-io; }
 of_process() { sed -nE "s/^$2:[[:space:]]*(.*)/\1/p" "/proc/$1/status"; }
 serves() { answered client -t 1 -r 0 -c 1 127.0.0.1 >/dev/null; }
 is_another() { [ "$(property MainPID)" != "$1" ] && is ActiveState active && serves; }
@@ -50,7 +50,7 @@ cp node.yaml /etc/coupler/node.yaml
 check "it starts, and systemd is told when it serves" quietly systemctl enable --now "$unit"
 expect "the service is active" "active running" "$(property ActiveState) $(property SubState)"
 check "it says what it serves" [ "$(property StatusText | grep -c 'serving plant .* on .*:502')" -eq 1 ]
-for process in "$(supervisor)" "$(io_process)"; do
+for process in "$(supervisor)" "$(worker)"; do
   name=$(cat "/proc/$process/comm")
   expect "$name is the user coupler" coupler "$(stat -c %U "/proc/$process")"
   check "$name is in group gpio" grep -qw "$(getent group gpio | cut -d: -f3)" <<<"$(of_process "$process" Groups)"
@@ -84,7 +84,7 @@ check "a point that is new is served at once" set_coil 5 1
 check "the journal tells" in_journal '^read the map again: serving plant \(8 points'
 echo 'name: [' >/etc/coupler/node.yaml
 refuse "a reload with a wrong map fails" systemctl reload "$unit"
-check "the map is refused" wait_until in_journal '^the new map is refused; the old one goes on'
+check "the map is refused" wait_until in_journal '^the new map is refused; the old one stays in force'
 expect "the service is as active as before" "active running" "$(property ActiveState) $(property SubState)"
 check "and serves the map that it had" set_coil 5 0
 expect "outputs are as they were" "0 1" "$(sim_value plant 0) $(sim_value plant 1)"
@@ -110,9 +110,9 @@ check "and serves" wait_until serves
 is_locked() { [ "$(of_process "$1" VmLck)" != "0 kB" ]; }
 policy_of() { chrt -p "$1" | sed -n 's/.*policy: //p; s/.*priority: //p' | paste -sd ' '; }
 expect "the supervisor has real-time priority" "SCHED_FIFO|SCHED_RESET_ON_FORK 11" "$(policy_of "$(supervisor)")"
-expect "so has the worker process" "SCHED_FIFO|SCHED_RESET_ON_FORK 10" "$(policy_of "$(io_process)")"
+expect "so has the worker process" "SCHED_FIFO|SCHED_RESET_ON_FORK 10" "$(policy_of "$(worker)")"
 check "the supervisor's memory is locked" is_locked "$(supervisor)"
-check "so is the worker process's" is_locked "$(io_process)"
+check "so is the worker process's" is_locked "$(worker)"
 rm -r "$drop_in"
 systemctl daemon-reload
 check "without it, it starts again" quietly systemctl restart "$unit"
@@ -120,7 +120,7 @@ check "and serves" wait_until serves
 
 echo "# the worker process dies"
 before=$(supervisor)
-kill -KILL "$(io_process)"
+kill -KILL "$(worker)"
 check "the supervisor starts another" wait_until serves
 expect "systemd has nothing to do" "$before 0" "$(supervisor) $(property NRestarts)"
 expect "outputs are safe" "1 0" "$(sim_value plant 0) $(sim_value plant 1)"

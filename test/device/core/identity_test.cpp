@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "coupler/codec/number.hpp"
-#include "coupler/device/core/map_file.hpp"
+#include "coupler/device/core/identity.hpp"
 #include "coupler/map/identity.hpp"
 #include "test/device/core/node_under_test.hpp"
 

@@ -67,11 +67,9 @@ class Grouped : public testing::Test {
   GroupedLines make() {
     std::vector<WiredOutputs> outputs;
     outputs.push_back({std::make_unique<FakeOutputs>("chip0", first_),
-                       {0, 2, 10},
-                       {Safe::off, Safe::on, Safe::hold},
-                       first_.levels});
+                       {{0, Safe::off, 0}, {2, Safe::on, 0}, {10, Safe::hold, 1}}});
     outputs.push_back(
-        {std::make_unique<FakeOutputs>("chip1", second_), {1, 11}, {Safe::on, Safe::on}, second_.levels});
+        {std::make_unique<FakeOutputs>("chip1", second_), {{1, Safe::on, 0}, {11, Safe::on, 0}}});
     std::vector<WiredInputs> inputs;
     inputs.push_back({std::make_unique<FakeInputs>(third_), {4, 6}});
     return GroupedLines(std::move(outputs), std::move(inputs), log_);
@@ -90,9 +88,9 @@ class ReadBack : public testing::Test {
   GroupedLines make() {
     std::vector<WiredOutputs> outputs;
     outputs.push_back(
-        {std::make_unique<FakeOutputs>("chip0", first_), {0, 1}, {Safe::off, Safe::on}, {0, 0}, true});
+        {std::make_unique<FakeOutputs>("chip0", first_), {{0, Safe::off, 0}, {1, Safe::on, 0}}, true});
     outputs.push_back(
-        {std::make_unique<FakeOutputs>("chip1", second_), {2, 3}, {Safe::off, Safe::on}, {0, 0}, true});
+        {std::make_unique<FakeOutputs>("chip1", second_), {{2, Safe::off, 0}, {3, Safe::on, 0}}, true});
     return GroupedLines(std::move(outputs), {}, log_);
   }
 
@@ -181,7 +179,7 @@ TEST_F(Grouped, A_failure_is_logged_once_per_change_of_state) {
 }
 
 /// A group whose second line loses edges when the test says so.
-class FakeEvents : public FakeInputs, public EventSource {
+class FakeEvents : public FakeInputs {
  public:
   using FakeInputs::FakeInputs;
   int descriptor() const override { return -1; }
@@ -203,7 +201,7 @@ TEST(CountedLines, Edges_are_told_by_address_and_losses_logged_once_per_burst) {
   auto group = std::make_unique<FakeEvents>(hardware);
   FakeEvents& events = *group;
   std::vector<WiredInputs> inputs;
-  inputs.push_back({std::move(group), {4, 6}, &events, true});
+  inputs.push_back({std::move(group), {4, 6}, true});
   GroupedLines lines({}, std::move(inputs), log);
   Told told;
   TimePoint now{std::chrono::hours(1)};

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "coupler/device/gpio/backend.hpp"
-#include "coupler/device/gpio/prepare_lines.hpp"
+#include "coupler/device/gpio/line_requests.hpp"
 #include "test/device/core/fake_log.hpp"
 #include "test/fakes/map_builder.hpp"
 
@@ -119,9 +119,9 @@ tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const st
   return std::make_unique<FakeOutputs>(lines);
 }
 
-tl::expected<Inputs, std::string> request_inputs(const std::vector<LineSpec>& lines) {
+tl::expected<std::unique_ptr<InputGroup>, std::string> request_inputs(const std::vector<LineSpec>& lines) {
   if (!is_free(lines)) return tl::unexpected("busy: " + names_of(lines));
-  return Inputs{std::make_unique<FakeInputs>(lines), nullptr};
+  return std::make_unique<FakeInputs>(lines);
 }
 
 }  // namespace backend
@@ -145,7 +145,7 @@ class Wires : public testing::Test {
   /// The error; empty: it is in force.
   std::string change_to(const MapBuilder& builder, bool safe = false) {
     const MapPtr map = builder.build();
-    auto next = prepare_lines(map->map(), wiring(), safe, log_);
+    auto next = LineRequests::prepare(map->map(), wiring(), safe, log_);
     if (!next) return next.error();
     machine.history.push_back("prepared");
     auto taken = (*next)->take_over();
@@ -250,7 +250,7 @@ TEST_F(Wires, The_settings_of_an_output_change_only_without_others_beside_it) {
   EXPECT_THAT(change_to(MapBuilder()
                             .add(Table::coils, "a", 0, codec::Type::BOOL, at(0, Safe::off, true))
                             .add(Table::coils, "b", 1, codec::Type::BOOL, at(1))),
-              AllOf(HasSubstr("point 'a'"), HasSubstr("start the node anew")));
+              AllOf(HasSubstr("point 'a'"), HasSubstr("restart the node")));
   news();
   EXPECT_EQ(change_to(MapBuilder()
                           .add(Table::coils, "a", 0, codec::Type::BOOL, at(0, Safe::off, true))
@@ -285,32 +285,32 @@ TEST_F(Wires, What_the_kernel_takes_back_only_later_is_told_and_tried_again) {
   EXPECT_THAT(log_.lines, Contains(HasSubstr("busy: gpiochip0 line 0")));
   EXPECT_FALSE(write(0, 1));
   machine.refused.clear();
-  EXPECT_TRUE(wiring_->mend(false));
+  EXPECT_TRUE(wiring_->reconnect(false));
   EXPECT_TRUE(write(0, 1));
 }
 
 TEST_F(Wires, A_chip_that_comes_back_has_its_outputs_driven_as_before_wherever_it_is) {
   EXPECT_EQ(change_to(two_lamps().add(Table::discrete_inputs, "x", 0, codec::Type::BOOL, at(4))), "");
   EXPECT_TRUE(write(0, 1));
-  EXPECT_FALSE(wiring_->mend(false)) << "all is well";
+  EXPECT_FALSE(wiring_->reconnect(false)) << "all is well";
   news();
   log_.lines.clear();
 
   machine.gone = {"gpiochip0"};
   const std::vector<Chip> chips = std::exchange(machine.chips, {});
-  EXPECT_TRUE(wiring_->mend(false));
+  EXPECT_TRUE(wiring_->reconnect(false));
   EXPECT_TRUE(machine.held.empty());
   EXPECT_FALSE(write(0, 0));
   std::uint16_t level = 0;
   EXPECT_FALSE(wiring_->lines().read(modbus::Range::of(0, 1), Span<std::uint16_t>(&level, 1), {}));
-  EXPECT_FALSE(wiring_->mend(false)) << "nothing new";
+  EXPECT_FALSE(wiring_->reconnect(false)) << "nothing new";
   EXPECT_THAT(log_.lines,
               ElementsAre(HasSubstr("failed: No such device"), HasSubstr("failed: No such device")));
 
   machine.chips = chips;
   machine.chips[0].name = "gpiochip3";
   news();
-  EXPECT_TRUE(wiring_->mend(false));
+  EXPECT_TRUE(wiring_->reconnect(false));
   EXPECT_THAT(news(), ElementsAre("take 0 1", "take 1 0", "take 4"));
   EXPECT_TRUE(write(0, 0));
   EXPECT_TRUE(wiring_->lines().read(modbus::Range::of(0, 1), Span<std::uint16_t>(&level, 1), {}));
@@ -322,11 +322,11 @@ TEST_F(Wires, After_the_watchdog_it_comes_back_safe) {
   EXPECT_TRUE(write(0, 1));
   machine.gone = {"gpiochip0"};
   const std::vector<Chip> chips = std::exchange(machine.chips, {});
-  EXPECT_TRUE(wiring_->mend(true));
+  EXPECT_TRUE(wiring_->reconnect(true));
   machine.chips = chips;
   machine.gone.clear();
   news();
-  EXPECT_TRUE(wiring_->mend(true));
+  EXPECT_TRUE(wiring_->reconnect(true));
   EXPECT_THAT(news(), ElementsAre("take 0 0", "take 1 1"));
 }
 
@@ -335,12 +335,12 @@ TEST_F(Wires, A_safe_state_that_an_unplugged_chip_missed_is_what_it_comes_back_w
   EXPECT_TRUE(write(0, 1));
   machine.gone = {"gpiochip0"};
   const std::vector<Chip> chips = std::exchange(machine.chips, {});
-  EXPECT_TRUE(wiring_->mend(false));
+  EXPECT_TRUE(wiring_->reconnect(false));
   EXPECT_FALSE(wiring_->lines().drive_safe());
   machine.chips = chips;
   machine.gone.clear();
   news();
-  EXPECT_TRUE(wiring_->mend(false)) << "the watchdog may be idle, or fed again, by now";
+  EXPECT_TRUE(wiring_->reconnect(false)) << "the watchdog may be idle, or fed again, by now";
   EXPECT_THAT(news(), ElementsAre("take 0 0", "take 1 1"));
 }
 
@@ -348,7 +348,7 @@ TEST_F(Wires, Outputs_that_are_to_be_held_are_safe_on_an_unplugged_chip_too) {
   EXPECT_EQ(change_to(MapBuilder().add(Table::coils, "a", 0, codec::Type::BOOL, at(0, Safe::hold))), "");
   machine.gone = {"gpiochip0"};
   machine.chips.clear();
-  EXPECT_TRUE(wiring_->mend(false));
+  EXPECT_TRUE(wiring_->reconnect(false));
   EXPECT_TRUE(wiring_->lines().drive_safe());
   EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("failed: No such device")));
 }

@@ -50,9 +50,7 @@ TEST(SharedLevels, What_one_process_drove_the_others_know) {
   std::vector<int> driven;
   std::vector<WiredOutputs> outputs;
   outputs.push_back({std::make_unique<RememberingOutputs>(driven),
-                     {0, 1, 2},
-                     {Safe::hold, Safe::hold, Safe::on},
-                     {0, 1, 0}});
+                     {{0, Safe::hold, 0}, {1, Safe::hold, 1}, {2, Safe::on, 0}}});
   FakeLog log;
   GroupedLines lines(std::move(outputs), {}, log);
 

@@ -73,13 +73,13 @@ class Client {
 
 /// A server on a free loopback port, run by the test step by step.
 struct TcpUnderTest {
-  explicit TcpUnderTest(std::size_t capacity = 8, AllowList guests = {})
-      : listener(listen(std::move(guests))), tcp(loop, listener, server, node.statistics, log, capacity) {}
+  explicit TcpUnderTest(std::size_t capacity = 8, AllowList allowed = {})
+      : listener(listen(std::move(allowed))), tcp(loop, listener, server, node.statistics, log, capacity) {}
 
-  static Listener listen(AllowList guests) {
+  static Listener listen(AllowList allowed) {
     auto listener = listen_on("127.0.0.1", 0);
     EXPECT_TRUE(listener.has_value());
-    listener->guests = std::move(guests);
+    listener->allowed = std::move(allowed);
     return *std::move(listener);
   }
 

@@ -94,7 +94,8 @@ TEST_F(Simulated, Another_unit_id_too) {
 
 TEST_F(Simulated, A_map_that_cannot_be_read_is_refused) {
   EXPECT_FALSE(is_taken());
-  EXPECT_THAT(log_.lines, Contains(HasSubstr("the new map is refused; the old one goes on: serving plant")));
+  EXPECT_THAT(log_.lines,
+              Contains(HasSubstr("the new map is refused; the old one stays in force: serving plant")));
 }
 
 TEST_F(Simulated, A_map_that_no_node_can_serve_is_refused) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/device/node/realtime.hpp"
+#include "coupler/device/node/point_hooks.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -13,8 +14,6 @@
 #include <mutex>
 #include <string>
 #include <thread>
-
-#include "coupler/device/node/urgent_mutex.hpp"
 
 namespace coupler::device {
 namespace {
@@ -44,7 +43,7 @@ long priority_of_this_thread() {
 class Realtime : public testing::Test {
  protected:
   void SetUp() override {
-    if (in_a_process([] { return become_realtime(RealtimePriority::io_process) ? 0 : 1; }) != 0)
+    if (in_a_process([] { return become_realtime(RealtimePriority::worker) ? 0 : 1; }) != 0)
       GTEST_SKIP() << "this user may not have real-time priority or lock memory";
   }
 };
@@ -61,7 +60,7 @@ TEST_F(Realtime, The_thread_that_asks_for_it_has_it) {
 
 TEST_F(Realtime, Threads_that_are_started_later_have_ordinary_priority) {
   EXPECT_EQ(in_a_process([] {
-              (void)become_realtime(RealtimePriority::io_process);
+              (void)become_realtime(RealtimePriority::worker);
               int policy = -1;
               std::thread([&] { policy = policy_of_this_thread(); }).join();
               return policy;
@@ -73,16 +72,15 @@ TEST_F(Realtime, So_have_processes_which_can_ask_for_it_themselves) {
   EXPECT_EQ(in_a_process([] {
               (void)become_realtime(RealtimePriority::supervisor);
               if (in_a_process(policy_of_this_thread) != SCHED_OTHER) return -1;
-              return in_a_process([] {
-                return become_realtime(RealtimePriority::io_process) ? policy_of_this_thread() : -1;
-              });
+              return in_a_process(
+                  [] { return become_realtime(RealtimePriority::worker) ? policy_of_this_thread() : -1; });
             }),
             SCHED_FIFO);
 }
 
 TEST_F(Realtime, Who_holds_a_mutex_that_an_urgent_thread_waits_for_is_as_urgent) {
   EXPECT_EQ(in_a_process([] {
-              (void)become_realtime(RealtimePriority::io_process);
+              (void)become_realtime(RealtimePriority::worker);
               UrgentMutex mutex;
               std::atomic<bool> is_held = false;
               std::atomic<bool> became_urgent = false;

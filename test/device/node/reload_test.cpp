@@ -20,13 +20,13 @@ Child node_that_answers(bool taken) {
     Loop loop;
     Signals signals(loop);
     ::prctl(PR_SET_NAME, "coupler-node");
-    Askers askers;
+    ReloadRequests requests;
     for (;;) {
       loop.run_once(std::nullopt);
       const auto asker = signals.take_reload();
       if (!asker) continue;
-      askers.add(*asker);
-      askers.tell(taken, taken ? "read the map again" : "the new map is refused");
+      requests.add(*asker);
+      requests.reply(taken, taken ? "read the map again" : "the new map is refused");
     }
     return 0;
   });

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "coupler/device/node/service_manager.hpp"
+#include "coupler/device/supervisor/heartbeat.hpp"
 
 namespace coupler::device {
 namespace {
@@ -54,7 +55,7 @@ TEST_F(Managed, Its_watchdog_is_fed_twice_in_its_time) {
   manager.beat();
   news();
   int fed = 0;
-  for (auto time = Heartbeat::period; time < std::chrono::seconds(10); time += Heartbeat::period) {
+  for (auto time = heartbeat_period; time < std::chrono::seconds(10); time += heartbeat_period) {
     manager.beat();
     for (std::string text = news(); !text.empty(); text = news()) {
       EXPECT_EQ(text, "WATCHDOG=1");

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "coupler/device/supervisor/shared_array.hpp"
+#include "coupler/device/supervisor/shared_memory.hpp"
 #include "coupler/device/supervisor/supervisor.hpp"
 #include "test/device/core/fake_log.hpp"
 
@@ -27,7 +27,7 @@ using Life = std::function<int(SupervisorLink&)>;
 
 /// A supervisor and the worker processes that it forks; these know by their inherited memory how many there
 /// were before.
-class Kept : public testing::Test, public Heartbeat, public Workload {
+class Supervised : public testing::Test, public Workload {
  public:
   int serve(SupervisorLink& supervisor, std::vector<OpenConnection> clients) override {
     clients_ = std::move(clients);
@@ -70,9 +70,9 @@ class Kept : public testing::Test, public Heartbeat, public Workload {
     }
     return 0;
   }
-  bool keep(Life life) {
+  bool supervise(Life life) {
     life_ = std::move(life);
-    return Supervisor(loop_, signals_, *this, log_, this).run();
+    return Supervisor(loop_, signals_, *this, log_).run();
   }
 
   Loop loop_;
@@ -95,53 +95,53 @@ class Kept : public testing::Test, public Heartbeat, public Workload {
   std::size_t clients_kept_ = 0;  ///< at the last change
 };
 
-TEST_F(Kept, A_signal_ends_both_and_the_outputs_are_safe) {
-  EXPECT_TRUE(keep(beat_for_ever));
+TEST_F(Supervised, A_signal_ends_both_and_the_outputs_are_safe) {
+  EXPECT_TRUE(supervise(beat_for_ever));
   EXPECT_EQ(safe_calls_[0], 1);
   EXPECT_THAT(log_.lines, testing::IsEmpty());
 }
 
-TEST_F(Kept, A_process_that_is_killed_leaves_safe_outputs_and_is_started_again) {
-  keep([&](SupervisorLink& heartbeat) {
+TEST_F(Supervised, A_process_that_is_killed_leaves_safe_outputs_and_is_started_again) {
+  supervise([&](SupervisorLink& supervisor) {
     if (ended_before() == 0) ::kill(::getpid(), SIGKILL);
-    return beat_for_ever(heartbeat);
+    return beat_for_ever(supervisor);
   });
   EXPECT_EQ(safe_calls_[0], 2);
   EXPECT_THAT(log_.lines, ElementsAre(AllOf(HasSubstr("was killed by signal 9"), HasSubstr("safe state"),
                                             HasSubstr("starting it again in 100 ms"))));
 }
 
-TEST_F(Kept, A_process_that_exits_is_started_again) {
-  keep([&](SupervisorLink& heartbeat) { return ended_before() < 2 ? 3 : beat_for_ever(heartbeat); });
+TEST_F(Supervised, A_process_that_exits_is_started_again) {
+  supervise([&](SupervisorLink& supervisor) { return ended_before() < 2 ? 3 : beat_for_ever(supervisor); });
   EXPECT_EQ(safe_calls_[0], 3);
   ASSERT_THAT(log_.lines, SizeIs(2));
   EXPECT_THAT(log_.lines[1], AllOf(HasSubstr("exited with status 3"), HasSubstr("in 200 ms")));
 }
 
-TEST_F(Kept, A_process_that_stands_still_is_killed_and_started_again) {
-  keep([&](SupervisorLink& heartbeat) {
+TEST_F(Supervised, A_process_that_stands_still_is_killed_and_started_again) {
+  supervise([&](SupervisorLink& supervisor) {
     if (ended_before() == 0) ::kill(::getpid(), SIGSTOP);
-    return beat_for_ever(heartbeat);
+    return beat_for_ever(supervisor);
   });
   EXPECT_EQ(safe_calls_[0], 2);
   EXPECT_THAT(log_.lines, ElementsAre(AllOf(HasSubstr("was silent for "), HasSubstr("signal 9"))));
 }
 
-TEST_F(Kept, A_process_that_does_not_want_to_end_is_killed) {
+TEST_F(Supervised, A_process_that_does_not_want_to_end_is_killed) {
   enough_ = 1;
-  keep([](SupervisorLink& heartbeat) -> int {
+  supervise([](SupervisorLink& supervisor) -> int {
     for (;;) {
-      heartbeat.beat();
+      supervisor.beat();
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   });
   EXPECT_EQ(safe_calls_[0], 1);
 }
 
-TEST_F(Kept, Outputs_that_cannot_be_driven_are_told) {
+TEST_F(Supervised, Outputs_that_cannot_be_driven_are_told) {
   drive_safe_ = [] { return false; };
-  EXPECT_FALSE(
-      keep([&](SupervisorLink& heartbeat) { return ended_before() == 0 ? 0 : beat_for_ever(heartbeat); }));
+  EXPECT_FALSE(supervise(
+      [&](SupervisorLink& supervisor) { return ended_before() == 0 ? 0 : beat_for_ever(supervisor); }));
   EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("not every output could be driven")));
 }
 
@@ -157,13 +157,13 @@ struct Client {
   OpenConnection nodes;
 };
 
-TEST_F(Kept, A_reload_replaces_the_process_and_leaves_outputs_and_clients_alone) {
+TEST_F(Supervised, A_reload_replaces_the_process_and_leaves_outputs_and_clients_alone) {
   Client client;
   client.nodes.has_written = true;
   client.nodes.unread = {1, 2, 3};
   client.nodes.unsent = {4};
   enough_ = 20;
-  keep([&](SupervisorLink& supervisor) {
+  supervise([&](SupervisorLink& supervisor) {
     if (changes_ == 0) {
       supervisor.beat();
       ::kill(::getppid(), SIGHUP);
@@ -187,10 +187,10 @@ TEST_F(Kept, A_reload_replaces_the_process_and_leaves_outputs_and_clients_alone)
   EXPECT_STREQ(said.data(), "good");
 }
 
-TEST_F(Kept, A_reload_that_is_refused_leaves_the_process_alone) {
+TEST_F(Supervised, A_reload_that_is_refused_leaves_the_process_alone) {
   reload_is_good_ = false;
   enough_ = 20;
-  keep([&](SupervisorLink& supervisor) {
+  supervise([&](SupervisorLink& supervisor) {
     ::kill(::getppid(), SIGHUP);
     return beat_for_ever(supervisor);
   });
@@ -199,12 +199,12 @@ TEST_F(Kept, A_reload_that_is_refused_leaves_the_process_alone) {
   EXPECT_EQ(safe_calls_[0], 1);
 }
 
-TEST_F(Kept, Signals_in_quick_succession_are_not_taken_for_silence) {
+TEST_F(Supervised, Signals_in_quick_succession_are_not_taken_for_silence) {
   reload_is_good_ = false;
   enough_ = 2;
-  keep([&](SupervisorLink& supervisor) {
+  supervise([&](SupervisorLink& supervisor) {
     supervisor.beat();
-    // Each cuts a glance short: more of them than glances fit into the supervisor's patience.
+    // Each cuts a turn of the loop short: more of them than turns fit into the supervisor's timeout.
     for (int i = 0; i < 15; ++i) {
       ::kill(::getppid(), SIGHUP);
       while (reloads_[0] == i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -216,18 +216,18 @@ TEST_F(Kept, Signals_in_quick_succession_are_not_taken_for_silence) {
   EXPECT_THAT(log_.lines, testing::IsEmpty());
 }
 
-TEST_F(Kept, Lines_that_come_and_go_are_a_reason_to_replace_the_process) {
+TEST_F(Supervised, Lines_that_come_and_go_are_a_reason_to_replace_the_process) {
   lines_changed_ = true;
   enough_ = 20;
-  keep(beat_for_ever);
+  supervise(beat_for_ever);
   EXPECT_EQ(changes_, 1);
   EXPECT_EQ(safe_calls_[0], 1);
 }
 
-TEST_F(Kept, A_process_that_does_not_make_room_leaves_safe_outputs) {
+TEST_F(Supervised, A_process_that_does_not_make_room_leaves_safe_outputs) {
   lines_changed_ = true;
   enough_ = 30;
-  keep([&](SupervisorLink& supervisor) -> int {
+  supervise([&](SupervisorLink& supervisor) -> int {
     if (changes_ > 0) return beat_for_ever(supervisor);
     for (;;) {
       supervisor.beat();
@@ -239,24 +239,24 @@ TEST_F(Kept, A_process_that_does_not_make_room_leaves_safe_outputs) {
   EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("was killed by signal 9")));
 }
 
-TEST_F(Kept, An_end_that_was_asked_for_leaves_the_firmware_to_the_process_that_served) {
+TEST_F(Supervised, An_end_that_was_asked_for_leaves_the_firmware_to_the_process_that_served) {
   make_firmware_safe_ = [] { return true; };
-  EXPECT_TRUE(keep(beat_for_ever));
+  EXPECT_TRUE(supervise(beat_for_ever));
   EXPECT_EQ(firmware_calls_[0], 0);
 }
 
-TEST_F(Kept, A_process_that_died_has_its_firmware_made_safe_by_another_one) {
-  const pid_t supervisor = ::getpid();
-  make_firmware_safe_ = [&] { return ::getpid() != supervisor; };
-  keep([&](SupervisorLink& heartbeat) {
+TEST_F(Supervised, A_process_that_died_has_its_firmware_made_safe_by_another_one) {
+  const pid_t self = ::getpid();
+  make_firmware_safe_ = [&] { return ::getpid() != self; };
+  supervise([&](SupervisorLink& supervisor) {
     if (ended_before() == 0) ::kill(::getpid(), SIGKILL);
-    return beat_for_ever(heartbeat);
+    return beat_for_ever(supervisor);
   });
   EXPECT_EQ(firmware_calls_[0], 1);
   EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("outputs are in their safe state")));
 }
 
-TEST_F(Kept, Firmware_that_dies_or_never_returns_costs_its_own_outputs_only) {
+TEST_F(Supervised, Firmware_that_dies_or_never_returns_costs_its_own_outputs_only) {
   for (const bool dies : {true, false}) {
     safe_calls_[0] = beats_ = 0;
     log_.lines.clear();
@@ -265,36 +265,35 @@ TEST_F(Kept, Firmware_that_dies_or_never_returns_costs_its_own_outputs_only) {
       for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
     };
     Signals again(loop_);
-    life_ = [&](SupervisorLink& heartbeat) { return ended_before() == 0 ? 3 : beat_for_ever(heartbeat); };
-    EXPECT_TRUE(Supervisor(loop_, again, *this, log_, this).run())
-        << "the end that was asked for is a good one";
+    life_ = [&](SupervisorLink& supervisor) { return ended_before() == 0 ? 3 : beat_for_ever(supervisor); };
+    EXPECT_TRUE(Supervisor(loop_, again, *this, log_).run()) << "the end that was asked for is a good one";
     EXPECT_EQ(safe_calls_[0], 2);
     EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("not every output could be driven to its safe state")));
   }
 }
 
-TEST_F(Kept, Lines_that_hang_do_not_hang_the_keeper) {
+TEST_F(Supervised, Lines_that_hang_do_not_hang_the_supervisor) {
   drive_safe_ = [&] {
     if (safe_calls_[0] == 1)
       for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
     return true;
   };
-  EXPECT_TRUE(
-      keep([&](SupervisorLink& heartbeat) { return ended_before() == 0 ? 3 : beat_for_ever(heartbeat); }));
+  EXPECT_TRUE(supervise(
+      [&](SupervisorLink& supervisor) { return ended_before() == 0 ? 3 : beat_for_ever(supervisor); }));
   EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("not every output could be driven to its safe state")));
 }
 
-TEST_F(Kept, A_keeper_that_is_stopped_is_silent_to_its_process_until_it_goes_on) {
+TEST_F(Supervised, A_supervisor_that_is_stopped_is_silent_to_its_process_until_it_goes_on) {
   SharedArray<std::atomic<int>> heard(1);
   enough_ = 1000;
-  keep([&](SupervisorLink& supervisor) {
+  supervise([&](SupervisorLink& supervisor) {
     Loop loop;
     supervisor.watch(loop);
     ::kill(::getppid(), SIGSTOP);
     TimePoint now = TimePoint::clock::now();
-    while (!supervisor.is_silent(now)) now = loop.run_once(Heartbeat::period);
+    while (!supervisor.is_silent(now)) now = loop.run_once(heartbeat_period);
     ::kill(::getppid(), SIGCONT);
-    do now = loop.run_once(Heartbeat::period);
+    do now = loop.run_once(heartbeat_period);
     while (supervisor.is_silent(now));
     heard[0] = 1;
     ::kill(::getppid(), SIGTERM);
@@ -305,14 +304,14 @@ TEST_F(Kept, A_keeper_that_is_stopped_is_silent_to_its_process_until_it_goes_on)
 
 /// A process of somebody else, whom this one may not kill, is to its supervisor like one in a call of the
 /// kernel that hangs.
-TEST_F(Kept, A_process_that_cannot_be_killed_does_not_hang_the_keeper) {
+TEST_F(Supervised, A_process_that_cannot_be_killed_does_not_hang_the_supervisor) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
   constexpr uid_t nobody = 65534;
   SharedArray<std::atomic<int>> lives(1);
   SharedArray<std::atomic<bool>> may_end(1);
   enough_ = 1'000'000;
   ASSERT_EQ(::setresuid(nobody, nobody, 0), 0);
-  keep([&](SupervisorLink& supervisor) {
+  supervise([&](SupervisorLink& supervisor) {
     const int life = lives[0]++;
     if (life == 0) {
       if (::setresuid(0, 0, 0) != 0) return 3;
@@ -325,8 +324,8 @@ TEST_F(Kept, A_process_that_cannot_be_killed_does_not_hang_the_keeper) {
   });
   ASSERT_EQ(::setresuid(0, 0, 0), 0);
   EXPECT_THAT(log_.lines,
-              ElementsAre(AllOf(HasSubstr("was silent for "), HasSubstr("in a call of the kernel")),
-                          HasSubstr("was replaced, since one before it, which hung")));
+              ElementsAre(AllOf(HasSubstr("was silent for "), HasSubstr("hangs in a system call")),
+                          HasSubstr("was replaced: an earlier one, which hung")));
   EXPECT_EQ(safe_calls_[0], 3) << "once more after the one that hung has ended";
 }
 

@@ -46,8 +46,8 @@ tl::expected<Device, std::string> find_device(const std::string& sysfs, std::str
   }
   if (matching.size() == 1) return *matching.front();
   if (matching.size() > 1)
-    return Error(fmt::format("'{}' is the name of {} and of {}; say which", wanted, matching[0]->described(),
-                             matching[1]->described()));
+    return Error(fmt::format("'{}' is the name of {} and of {}; choose one by its number, as 'iio:device0'",
+                             wanted, matching[0]->described(), matching[1]->described()));
   return Error(fmt::format(
       "there is no IIO device '{}' (by name, label or as 'iio:device0'); this machine has {}", wanted,
       there.empty() ? "none: is the driver of the chip loaded? (run with --sim to do without)" : there));

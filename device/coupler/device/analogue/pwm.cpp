@@ -16,8 +16,8 @@ using Error = tl::unexpected<std::string>;
 namespace fs = std::filesystem;
 
 /// udev needs a moment to give a new channel's files to the group.
-constexpr std::chrono::milliseconds udev_patience{2000};
-constexpr std::chrono::milliseconds glance{20};
+constexpr std::chrono::milliseconds udev_timeout{2000};
+constexpr std::chrono::milliseconds retry_interval{20};
 
 struct Chip {
   std::string name;    ///< "pwmchip0"
@@ -58,9 +58,9 @@ int write_once(const std::string& path, std::int64_t value) {
 
 tl::expected<Attribute, int> open_new(const std::string& path) {
   auto file = Attribute::open(path, Attribute::For::writing);
-  for (auto waited = glance * 0; !file && file.error() == EACCES && waited < udev_patience;
-       waited += glance) {
-    std::this_thread::sleep_for(glance);
+  for (auto waited = retry_interval * 0; !file && file.error() == EACCES && waited < udev_timeout;
+       waited += retry_interval) {
+    std::this_thread::sleep_for(retry_interval);
     file = Attribute::open(path, Attribute::For::writing);
   }
   return file;

@@ -1,21 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cerrno>
+#include <chrono>
 #include <deque>
+#include <memory>
+#include <optional>
 #include <string>
+#include <tl/expected.hpp>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "coupler/device/analogue/iio.hpp"
-#include "coupler/device/analogue/latest.hpp"
 #include "coupler/device/analogue/pwm.hpp"
 #include "coupler/device/core/channels.hpp"
 #include "coupler/device/core/log.hpp"
+#include "coupler/device/core/time.hpp"
 #include "coupler/device/gpio/fault.hpp"
-#include "coupler/device/supervisor/shared_array.hpp"
+#include "coupler/device/supervisor/shared_memory.hpp"
+#include "coupler/map/map.hpp"
 
 namespace coupler::device {
+
+/// The newest sample of an input: one thread stores it, another one reads it, and neither waits.
+class Latest {
+ public:
+  /// An input without a sample for so long counts as broken: its chip, or its bus, hangs.
+  static constexpr std::chrono::seconds timeout{10};
+
+  /// Sampling begins.
+  void begin(TimePoint now) {
+    taken_ = now;
+    error_ = EAGAIN;
+  }
+
+  void put(const tl::expected<double, int>& sample, TimePoint now) {
+    if (sample) value_ = *sample;
+    taken_ = now;
+    error_ = sample ? 0 : sample.error();
+  }
+
+  /// The error is an errno. EAGAIN: there is none yet; ETIMEDOUT: it is too old.
+  tl::expected<double, int> get(TimePoint now) const {
+    const int error = error_;
+    if (now - taken_.load() > timeout) return tl::unexpected(ETIMEDOUT);
+    if (error != 0) return tl::unexpected(error);
+    return value_.load();
+  }
+
+ private:
+  std::atomic<double> value_{0};
+  std::atomic<TimePoint> taken_{TimePoint::max()};  ///< or begun
+  std::atomic<int> error_{EAGAIN};
+};
 
 struct WiredInput {
   const Point* point;
@@ -35,8 +74,9 @@ class SysfsChannels : public Channels {
  public:
   /// An input and its newest sample.
   struct Sampled {
-    explicit Sampled(WiredInput input) : wired(std::move(input)) {}
+    Sampled(WiredInput input, Fault its) : wired(std::move(input)), fault(std::move(its)) {}
     WiredInput wired;
+    Fault fault;
     Latest latest;
   };
 
@@ -48,23 +88,31 @@ class SysfsChannels : public Channels {
   bool accepts(const Point& output, double value) const override;
   Outcome drive(const Point& output, double value) override;
 
-  /// Drives outputs that its successor (may be null) does not have to their safe state.
+  /// Drives outputs that `successor` (may be null) does not have to their safe state.
   void hand_over(const SysfsChannels* successor);
 
-  /// Finds channels again whose device was unplugged and is back; tells which. Processes that were forked
-  /// before do not know of it.
-  std::vector<const Point*> mend();
+  /// Opens channels again whose device was unplugged and is plugged in again; returns their points. Processes
+  /// that were forked before still have the old ones.
+  std::vector<const Point*> reconnect();
 
   std::deque<Sampled>& inputs() { return inputs_; }
 
  private:
-  std::size_t index_of(const Point& output) const;
+  struct Driven {
+    WiredOutput wired;
+    Fault fault;
+  };
 
   std::string sysfs_;
-  SharedArray<int> errors_;  ///< the last of each input, then of each output
+  SharedArray<int> errors_;  ///< of the faults
   std::deque<Sampled> inputs_;
-  std::vector<WiredOutput> outputs_;
-  std::vector<Fault> faults_;  ///< as errors_
+  std::vector<Driven> outputs_;
 };
+
+/// The channels behind the map's registers, with outputs as they are; null if it has none. The error says for
+/// each channel that cannot be opened what there is instead, and what to do; it may have several lines. `map`
+/// and `log` outlive the result.
+tl::expected<std::unique_ptr<SysfsChannels>, std::string> open_channels(const Map& map, Log& log,
+                                                                        const std::string& sysfs = "/sys");
 
 }  // namespace coupler::device

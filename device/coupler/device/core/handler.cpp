@@ -4,9 +4,7 @@
 #include <algorithm>
 
 #include "coupler/device/core/each_point.hpp"
-#include "coupler/device/core/identification.hpp"
-#include "coupler/device/core/identity_area.hpp"
-#include "coupler/device/core/map_file.hpp"
+#include "coupler/device/core/identity.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/modbus/reply.hpp"
 

@@ -7,7 +7,6 @@
 #include <optional>
 #include <tl/expected.hpp>
 
-#include "coupler/device/core/client_session.hpp"
 #include "coupler/device/core/edge_points.hpp"
 #include "coupler/device/core/hardware.hpp"
 #include "coupler/device/core/image.hpp"

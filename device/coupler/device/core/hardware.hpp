@@ -4,7 +4,7 @@
 #include <tl/expected.hpp>
 
 #include "coupler/device/core/analogue_points.hpp"
-#include "coupler/device/core/hooked_points.hpp"
+#include "coupler/device/core/hooks.hpp"
 #include "coupler/device/core/lines.hpp"
 #include "coupler/modbus/exception.hpp"
 

@@ -9,18 +9,18 @@
 
 namespace coupler::device {
 
-/// Where the node says what happens. Each call is one line, without a newline.
+/// The node's log. Each call is one line, without a newline.
 class Log {
  public:
-  /// What somebody may want to know.
+  /// Information.
   virtual void write(std::string_view line) = 0;
-  /// What somebody should look at: something fails, or was lost.
+  /// A warning: something fails, or was lost.
   virtual void warn(std::string_view line) { write(line); }
-  /// What keeps the node, or a new map, from being served.
+  /// An error: the node cannot serve, or refuses a map.
   virtual void fail(std::string_view line) { write(line); }
 
-  /// Lines that clients can cause again and again. Of those of one kind, one a second is kept at most: the
-  /// newest, with how many there were beside it.
+  /// Lines that clients can cause again and again. Of each kind at most one a second is logged: the newest,
+  /// with the number of the others.
   virtual void write_limited(std::string_view kind, std::string_view line) {
     (void)kind;
     write(line);
@@ -29,7 +29,7 @@ class Log {
     (void)kind;
     warn(line);
   }
-  /// Says what was held back, when it is due. Returns how long it need not be called; nullopt: nothing waits.
+  /// Logs lines that were held back and are due. Returns how long it need not be called; nullopt: none waits.
   virtual std::optional<std::chrono::milliseconds> tick(TimePoint) { return std::nullopt; }
 
  protected:

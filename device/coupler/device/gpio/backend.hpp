@@ -4,21 +4,19 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "coupler/device/gpio/event_source.hpp"
+#include "coupler/device/gpio/inventory.hpp"
 #include "coupler/device/gpio/line_group.hpp"
-#include "coupler/device/gpio/line_spec.hpp"
 
 namespace coupler::device::backend {
 
 /// The chips of this machine.
 Inventory chips();
 
-/// Whether the kernel would take `line` into the same request as these (of which there is at least one).
+/// Whether the kernel takes `line` into the same request as these (of which there is at least one).
 /// Inputs and outputs are never mixed.
 bool fits(const std::vector<LineSpec>& group, const LineSpec& line);
 
@@ -26,10 +24,7 @@ bool fits(const std::vector<LineSpec>& group, const LineSpec& line);
 /// level in between. The error names chip, line and holder.
 tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<LineSpec>& lines);
 
-struct Inputs {
-  std::unique_ptr<InputGroup> group;
-  EventSource* events = nullptr;  ///< the group, if it has a descriptor to be watched
-};
-tl::expected<Inputs, std::string> request_inputs(const std::vector<LineSpec>& lines);
+/// The same for inputs; the group has a descriptor if its edges are to be watched.
+tl::expected<std::unique_ptr<InputGroup>, std::string> request_inputs(const std::vector<LineSpec>& lines);
 
 }  // namespace coupler::device::backend

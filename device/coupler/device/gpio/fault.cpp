@@ -22,4 +22,14 @@ bool Fault::note(int error) {
   return error == 0;
 }
 
+void LostEdges::note(std::uint32_t count, TimePoint now) {
+  if (count == 0) return;
+  if (now >= quiet_from_)
+    log_->warn(
+        fmt::format("{}: edges came faster than they were read, at least {} lost; counters and latched "
+                    "points may have missed them (the statistics count further losses)",
+                    what_, count));
+  quiet_from_ = now + std::chrono::seconds(1);
+}
+
 }  // namespace coupler::device

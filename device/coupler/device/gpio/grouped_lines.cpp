@@ -5,21 +5,21 @@
 #include <cerrno>
 #include <utility>
 
-#include "coupler/device/gpio/absent.hpp"
-
 namespace coupler::device {
 namespace {
 
 using modbus::Range;
-using Addresses = std::vector<std::optional<std::uint16_t>>;
+
+std::optional<std::uint16_t> address_of(const WiredOutputs::Line& line) { return line.address; }
+std::optional<std::uint16_t> address_of(std::optional<std::uint16_t> input) { return input; }
 
 /// Calls `use(line, i)` for each line of the group whose address is the range's i-th. Returns whether there
 /// was one.
-template <class Use>
-bool each_in(Range range, const Addresses& addresses, Use use) {
+template <class Line, class Use>
+bool each_in(Range range, const std::vector<Line>& lines, Use use) {
   bool any = false;
-  for (std::size_t line = 0; line < addresses.size(); ++line) {
-    const auto& address = addresses[line];
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    const auto address = address_of(lines[line]);
     if (!address || !range.contains(*address)) continue;
     use(line, static_cast<std::size_t>(*address - range.start()));
     any = true;
@@ -29,7 +29,8 @@ bool each_in(Range range, const Addresses& addresses, Use use) {
 
 /// Its safe state asks for no level.
 bool only_holds(const WiredOutputs& wired) {
-  return std::all_of(wired.safe.begin(), wired.safe.end(), [](Safe safe) { return safe == Safe::hold; });
+  return std::all_of(wired.lines.begin(), wired.lines.end(),
+                     [](const auto& line) { return line.safe == Safe::hold; });
 }
 
 void copy(Span<const int> from, Span<int> to) { std::copy(from.begin(), from.end(), to.begin()); }
@@ -51,11 +52,11 @@ void GroupedLines::release() {
 }
 
 GroupedLines::Output GroupedLines::output(WiredOutputs wired) {
-  const std::size_t lines = wired.levels.size();
-  auto shared = std::make_unique<SharedArray<int>>(lines + 1);
-  copy(wired.levels, shared->all().first(lines));
-  std::vector<int> next = wired.levels;
-  Fault fault(wired.group->name(), (*shared)[lines], log_);
+  std::vector<int> next;
+  for (const WiredOutputs::Line& line : wired.lines) next.push_back(line.level);
+  auto shared = std::make_unique<SharedArray<int>>(next.size() + 1);
+  copy(next, shared->all().first(next.size()));
+  Fault fault(wired.group->name(), (*shared)[next.size()], log_);
   return {std::move(wired), std::move(shared), std::move(next), std::move(fault)};
 }
 
@@ -82,12 +83,11 @@ bool GroupedLines::read(Range range, Span<std::uint16_t> levels, TimePoint now) 
 
 void GroupedLines::take_edges(TimePoint now, EdgeSink& sink) {
   for (Input& input : inputs_) {
-    EventSource* source = input.wired.events;
     if (!input.wired.counted) continue;
-    // What was taken counts, even if the chip is unplugged since: that is read()'s to say.
-    (void)source->take_edges();
+    // Edges that were taken count, even if the chip is unplugged since; read() reports that.
+    (void)input.wired.group->take_edges();
     for (std::size_t line = 0; line < input.wired.addresses.size(); ++line) {
-      const Edges edges = source->edges(line, now);
+      const Edges edges = input.wired.group->edges(line, now);
       const auto address = input.wired.addresses[line];
       if (!edges.any() || !address) continue;
       input.lost.note(edges.lost, now);
@@ -111,12 +111,12 @@ bool GroupedLines::drive(Range range, Span<const std::uint16_t> levels) {
     copy(output.levels(), output.next);
   }
   for (Output& output : outputs_) {
-    const bool wanted = each_in(range, output.wired.addresses, [&](std::size_t line, std::size_t i) {
+    const bool wanted = each_in(range, output.wired.lines, [&](std::size_t line, std::size_t i) {
       output.next[line] = levels[i] != 0 ? 1 : 0;
     });
     if (!wanted) continue;
     if (!output.fault.note(drive(output, scratch_))) {
-      // Its other lines have moved; what becomes of them was said with the fault.
+      // Its other lines have moved; if they cannot be driven back, that fault is already logged.
       if (output.wired.readback) (void)output.wired.group->drive(output.levels());
       restore();
       return false;
@@ -131,7 +131,7 @@ bool GroupedLines::drive(Range range, Span<const std::uint16_t> levels) {
 bool GroupedLines::driven(Range range, Span<std::uint16_t> levels) const {
   bool any = false;
   for (const Output& output : outputs_)
-    any |= each_in(range, output.wired.addresses, [&](std::size_t line, std::size_t i) {
+    any |= each_in(range, output.wired.lines, [&](std::size_t line, std::size_t i) {
       levels[i] = static_cast<std::uint16_t>(output.levels()[line]);
     });
   return any;
@@ -148,20 +148,20 @@ bool GroupedLines::drive_safe() {
   bool good = true;
   for (Output& output : outputs_) {
     for (std::size_t line = 0; line < output.next.size(); ++line)
-      output.next[line] = safe_level(output.wired.safe[line], output.levels()[line]);
+      output.next[line] = safe_level(output.wired.lines[line].safe, output.levels()[line]);
     const bool is_driven = output.fault.note(drive(output, scratch_));
     const bool is_gone = !is_driven && !output.wired.group->is_plugged();
-    // A chip that is unplugged has to come back safe, whoever asks for it then.
+    // A chip that is unplugged has to come back in its safe state.
     if (is_driven || is_gone) copy(output.next, output.levels());
     good &= is_driven || (is_gone && only_holds(output.wired));
   }
   return good;
 }
 
-std::vector<EventSource*> GroupedLines::events() const {
-  std::vector<EventSource*> all;
+std::vector<InputGroup*> GroupedLines::event_sources() const {
+  std::vector<InputGroup*> all;
   for (const Input& input : inputs_)
-    if (input.wired.events != nullptr) all.push_back(input.wired.events);
+    if (input.wired.group->descriptor() >= 0) all.push_back(input.wired.group.get());
   return all;
 }
 
@@ -169,14 +169,14 @@ void GroupedLines::lose_outputs(std::size_t group) {
   Output& lost = outputs_[group];
   lost.fault.note(ENODEV);
   lost.wired.group = std::make_shared<AbsentOutputs>(lost.wired.group->name());
+  lost.wired.request.lost = true;
 }
 
 void GroupedLines::lose_inputs(std::size_t group) {
   Input& lost = inputs_[group];
   lost.fault.note(ENODEV);
   lost.wired.group = std::make_shared<AbsentInputs>(lost.wired.group->name());
-  lost.wired.events = nullptr;
-  lost.wired.counted = false;
+  lost.wired.request.lost = true;
 }
 
 void GroupedLines::renew_outputs(std::size_t group, WiredOutputs again) {
@@ -193,14 +193,14 @@ void GroupedLines::renew_inputs(std::size_t group, WiredInputs again) {
   inputs_[group] = std::move(renewed);
 }
 
-/// Lines of `old` that have no coil in `successor` (null: there is none) go to their safe state.
+/// Lines of `old` that have no coil in `successor` (null: there is none) go to tsuccessor safe state.
 void GroupedLines::abandon(Output& old, const Output* successor) {
   bool any = false;
   for (std::size_t line = 0; line < old.next.size(); ++line) {
-    const bool goes_on = successor != nullptr && successor->wired.addresses[line];
+    const bool goes_on = successor != nullptr && successor->wired.lines[line].address;
     old.next[line] = old.levels()[line];
-    if (goes_on || !old.wired.addresses[line]) continue;
-    old.next[line] = safe_level(old.wired.safe[line], old.next[line]);
+    if (goes_on || !old.wired.lines[line].address) continue;
+    old.next[line] = safe_level(old.wired.lines[line].safe, old.next[line]);
     any = true;
   }
   if (any && old.fault.note(old.wired.group->drive(old.next))) copy(old.next, old.levels());
@@ -208,11 +208,11 @@ void GroupedLines::abandon(Output& old, const Output* successor) {
 
 void GroupedLines::take_over(GroupedLines& before) {
   for (Output& old : before.outputs_) {
-    const auto heir = std::find_if(outputs_.begin(), outputs_.end(),
-                                   [&](const Output& o) { return o.wired.group == old.wired.group; });
-    abandon(old, heir == outputs_.end() ? nullptr : &*heir);
-    if (heir == outputs_.end()) continue;
-    copy(old.shared->all(), heir->shared->all());
+    const auto successor = std::find_if(outputs_.begin(), outputs_.end(),
+                                        [&](const Output& o) { return o.wired.group == old.wired.group; });
+    abandon(old, successor == outputs_.end() ? nullptr : &*successor);
+    if (successor == outputs_.end()) continue;
+    copy(old.shared->all(), successor->shared->all());
   }
   for (const Input& old : before.inputs_)
     for (Input& input : inputs_)

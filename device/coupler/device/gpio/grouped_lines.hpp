@@ -2,43 +2,69 @@
 #pragma once
 
 #include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "coupler/device/core/lines.hpp"
-#include "coupler/device/gpio/event_source.hpp"
 #include "coupler/device/gpio/fault.hpp"
 #include "coupler/device/gpio/line_group.hpp"
-#include "coupler/device/gpio/lost_edges.hpp"
-#include "coupler/device/supervisor/shared_array.hpp"
-#include "coupler/map/line.hpp"
+#include "coupler/device/supervisor/shared_memory.hpp"
+#include "coupler/map/point.hpp"
 
 namespace coupler::device {
 
 /// The level of an output in its safe state, if its level is `now`.
 inline int safe_level(Safe safe, int now) { return safe == Safe::hold ? now : safe == Safe::on ? 1 : 0; }
 
-/// An output group and the coils that it drives. The vectors have one element for each line of the group.
+/// A line of this machine and how it was requested.
+struct HeldLine {
+  std::string chip;  ///< the kernel's name
+  unsigned offset = 0;
+  bool output = false;
+  bool active_low = false;
+  Bias bias = Bias::as_is;
+  Drive drive = Drive::push_pull;
+  std::chrono::microseconds debounce{0};
+  std::optional<Edge> counted{};
+  const Point* point = nullptr;  ///< that is wired to it; null: none of the map
+};
+
+/// What a group's request to the kernel holds.
+struct HeldRequest {
+  std::vector<HeldLine> lines{};  ///< in the order of the group
+  bool lost = false;              ///< the chip is unplugged
+  std::string error{};            ///< why the lines cannot be requested again, as it was logged
+};
+
+/// An output group and the coils that it drives.
 struct WiredOutputs {
+  struct Line {
+    std::optional<std::uint16_t> address;  ///< nullopt: no coil has it any more
+    Safe safe = Safe::off;
+    int level = 0;  ///< at which it is driven
+  };
   std::shared_ptr<OutputGroup> group;
-  std::vector<std::optional<std::uint16_t>> addresses;  ///< nullopt: a line that no coil has any more
-  std::vector<Safe> safe;
-  std::vector<int> levels;  ///< at which they are driven
-  bool readback = false;    ///< its levels are compared after each call that drives it
+  std::vector<Line> lines;
+  bool readback = false;  ///< its levels are compared after each call that drives it
+  HeldRequest request{};
 };
 
 /// An input group and the discrete inputs that it reads.
 struct WiredInputs {
   std::shared_ptr<InputGroup> group;
   std::vector<std::optional<std::uint16_t>> addresses;
-  EventSource* events = nullptr;  ///< the group, if it reports edges
-  bool counted = false;           ///< counters or latched points want them
+  bool counted = false;  ///< counters or latched points want its edges
+  HeldRequest request{};
 };
 
 /// Drives and reads any number of groups as one: a write that needs several of them is done by all or by
-/// none. Processes forked from this one use the same lines, and all of them know how outputs are driven as
-/// long as one at a time drives them.
+/// none. Processes forked from this one use the same lines, and all of them know how outputs are driven, if
+/// only one at a time drives them.
 class GroupedLines : public Lines {
  public:
   GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredInputs> inputs, Log& log);
@@ -51,27 +77,25 @@ class GroupedLines : public Lines {
 
   void add(WiredOutputs wired);
   void add(WiredInputs wired);
-  /// Lets go of all groups.
+  /// Releases all groups.
   void release();
 
   std::size_t output_groups() const { return outputs_.size(); }
   std::size_t input_groups() const { return inputs_.size(); }
-  const WiredOutputs& outputs(std::size_t group) const { return outputs_[group].wired; }
-  const WiredInputs& inputs(std::size_t group) const { return inputs_[group].wired; }
-  /// As its lines are driven.
-  Span<const int> levels(std::size_t output_group) const { return outputs_[output_group].levels(); }
-  /// The descriptors to be watched.
-  std::vector<EventSource*> events() const;
+  WiredOutputs& outputs(std::size_t group) { return outputs_[group].wired; }
+  WiredInputs& inputs(std::size_t group) { return inputs_[group].wired; }
+  /// The groups whose descriptors are to be watched.
+  std::vector<InputGroup*> event_sources() const;
 
   /// A group's chip was unplugged: what needs it fails from now on, and nothing of it is held any more.
   void lose_outputs(std::size_t group);
   void lose_inputs(std::size_t group);
-  /// It is back, requested anew.
+  /// It is plugged in again, and its lines have been requested again.
   void renew_outputs(std::size_t group, WiredOutputs again);
   void renew_inputs(std::size_t group, WiredInputs again);
 
-  /// Takes the place of `before`: lines that only that one drives go to their safe state, and groups of both
-  /// are driven here as they are there.
+  /// Replaces `before`: lines that only `before` drives go to their safe state, and groups of both stay
+  /// driven as they are.
   void take_over(GroupedLines& before);
 
  private:

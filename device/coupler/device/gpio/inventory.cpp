@@ -28,6 +28,18 @@ std::string names_of_lines(const Chip& chip) {
   return text;
 }
 
+std::string busy_lines(const std::vector<LineSpec>& lines, const HolderOf& holder_of) {
+  std::string text;
+  for (const LineSpec& wanted : lines) {
+    const auto holder = holder_of(wanted.line.offset);
+    if (!holder) continue;
+    text += fmt::format("{}point '{}': {} is busy: held by {}; release it there or choose another line",
+                        text.empty() ? "" : "\n", wanted.point->name, to_string(wanted.line),
+                        holder->empty() ? "the kernel" : fmt::format("'{}'", *holder));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string to_string(const FoundLine& found) {
@@ -102,6 +114,30 @@ tl::expected<const Chip*, std::string> Inventory::find_chip(const std::string& w
     if (chip.name == real || chip.label == wanted) return &chip;
   return tl::unexpected(
       fmt::format("there is no GPIO chip '{}' (by name, path or label){}", wanted, contents()));
+}
+
+std::string names_of(const std::vector<LineSpec>& lines) {
+  constexpr std::size_t enough = 8;
+  std::string text = to_string(lines.front().line);
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    if (i == enough) return text + fmt::format(" and {} more", lines.size() - i);
+    text += ", " + to_string(lines[i].line);
+  }
+  return text;
+}
+
+std::string request_error(const std::vector<LineSpec>& lines, int error, const HolderOf& holder_of) {
+  if (error == EBUSY)
+    if (std::string busy = busy_lines(lines, holder_of); !busy.empty()) return busy;
+  const char* remedy = "";
+  if (error == EACCES || error == EPERM)
+    remedy = "; run as a user who may write to the chip's device in /dev";
+  if (error == EINVAL || error == ENOTSUP || error == ENXIO || error == EIO || error == ENODEV)
+    remedy =
+        "; check that the chip can do what the map asks (direction, bias, drive, edges for counters, latched "
+        "points and debounce)";
+  return fmt::format("point '{}': {} cannot be requested: {}{}", lines.front().point->name, names_of(lines),
+                     std::strerror(error), remedy);
 }
 
 }  // namespace coupler::device

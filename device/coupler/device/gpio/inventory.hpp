@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// The GPIO lines of this machine, and those of them that a map wants.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "coupler/map/edge.hpp"
 #include "coupler/map/line.hpp"
+#include "coupler/map/point.hpp"
 
 namespace coupler::device {
 
@@ -48,5 +52,25 @@ class Inventory {
   std::vector<Chip> chips_;
   std::string unopened_;  ///< "/dev/gpiochip1: Permission denied"
 };
+
+/// A point of the map and the line behind it: a coil's is an output, a discrete input's an input.
+struct LineSpec {
+  const Point* point = nullptr;
+  FoundLine line;
+  std::optional<Edge> counted;  ///< the edges that counters and latched points want of it
+  int level = 0;                ///< that an output begins with
+};
+
+inline bool is_output(const LineSpec& wanted) { return wanted.point->table == Table::coils; }
+
+/// "gpiochip0 line 5 (GPIO5), gpiochip0 line 6 (GPIO6) and 3 more".
+std::string names_of(const std::vector<LineSpec>& lines);
+
+/// The holder of a line of the chip: the consumer's name, empty if it has none; nullopt: nobody holds it.
+using HolderOf = std::function<std::optional<std::string>(unsigned offset)>;
+
+/// Why the kernel refused to give these lines with `error` (an errno), and what to do. The kernel refuses a
+/// request as a whole; which line is the reason is found line by line.
+std::string request_error(const std::vector<LineSpec>& lines, int error, const HolderOf& holder_of);
 
 }  // namespace coupler::device

@@ -2,10 +2,13 @@
 // What a backend offers: lines that one call drives or reads together. Levels are logical, 0 or 1.
 #pragma once
 
+#include <cerrno>
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include "coupler/base/span.hpp"
+#include "coupler/device/core/edges.hpp"
 #include "coupler/device/core/time.hpp"
 
 namespace coupler::device {
@@ -33,6 +36,39 @@ class InputGroup : public LineGroup {
  public:
   /// All lines of the group at once. Returns 0 or an errno.
   [[nodiscard]] virtual int read(Span<int> levels, TimePoint now) = 0;
+
+  /// Where the kernel reports edges; -1: it reports none. The owner of the event loop watches it.
+  virtual int descriptor() const { return -1; }
+  /// Takes the waiting edges without blocking. False: the lines are gone (their chip was unplugged). The
+  /// descriptor stays readable for ever then, so it must not be watched any more.
+  [[nodiscard]] virtual bool take_edges() { return true; }
+  /// The edges of the group's i-th line that were taken since the last call.
+  virtual Edges edges([[maybe_unused]] std::size_t line, [[maybe_unused]] TimePoint now) { return {}; }
+};
+
+// Stand-ins for lines whose chip is unplugged.
+template <class Group>
+class Absent : public Group {
+ public:
+  explicit Absent(std::string name) : name_(std::move(name)) {}
+  const std::string& name() const override { return name_; }
+  bool is_plugged() override { return false; }
+
+ private:
+  std::string name_;
+};
+
+class AbsentOutputs : public Absent<OutputGroup> {
+ public:
+  using Absent::Absent;
+  int drive(Span<const int>) override { return ENODEV; }
+  int read(Span<int>) override { return ENODEV; }
+};
+
+class AbsentInputs : public Absent<InputGroup> {
+ public:
+  using Absent::Absent;
+  int read(Span<int>, TimePoint) override { return ENODEV; }
 };
 
 }  // namespace coupler::device

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/device/gpio/line_requests.hpp"
 
-#include <algorithm>
 #include <optional>
+#include <tuple>
 #include <utility>
 
-#include "coupler/device/gpio/absent.hpp"
 #include "coupler/device/gpio/backend.hpp"
 
 namespace coupler::device {
@@ -13,33 +12,23 @@ namespace {
 
 HeldRequest held(const std::vector<LineSpec>& lines) {
   HeldRequest held;
-  for (const LineSpec& line : lines) {
-    held.lines.push_back(held_as(line));
-    held.points.push_back(line.point);
-  }
+  for (const LineSpec& line : lines) held.lines.push_back(held_as(line));
   return held;
 }
 
 WiredOutputs wired_outputs(std::shared_ptr<OutputGroup> group, const std::vector<LineSpec>& lines,
                            bool readback) {
-  WiredOutputs wired;
-  wired.group = std::move(group);
-  wired.readback = readback;
-  for (const LineSpec& line : lines) {
-    wired.addresses.emplace_back(line.point->address);
-    wired.safe.push_back(line.point->safe);
-    wired.levels.push_back(line.level);
-  }
+  WiredOutputs wired{std::move(group), {}, readback, held(lines)};
+  for (const LineSpec& line : lines)
+    wired.lines.push_back({line.point->address, line.point->safe, line.level});
   return wired;
 }
 
-WiredInputs wired_inputs(backend::Inputs made, const std::vector<LineSpec>& lines) {
-  WiredInputs wired;
-  wired.group = std::move(made.group);
-  wired.events = made.events;
+WiredInputs wired_inputs(std::shared_ptr<InputGroup> group, const std::vector<LineSpec>& lines) {
+  WiredInputs wired{std::move(group), {}, false, held(lines)};
   for (const LineSpec& line : lines) {
     wired.addresses.emplace_back(line.point->address);
-    wired.counted |= line.counted.has_value() && made.events != nullptr;
+    wired.counted |= line.counted.has_value();
   }
   return wired;
 }
@@ -48,11 +37,11 @@ WiredInputs wired_inputs(backend::Inputs made, const std::vector<LineSpec>& line
 /// them are there.
 std::optional<std::vector<LineSpec>> find_again(const HeldRequest& held, const Inventory& inventory) {
   std::vector<LineSpec> found;
-  for (std::size_t i = 0; i < held.lines.size(); ++i) {
-    if (held.points[i] == nullptr) continue;
-    const auto line = inventory.find(held.points[i]->line);
-    if (!line) return std::nullopt;
-    const LineSpec wanted{held.points[i], *line, held.lines[i].counted};
+  for (const HeldLine& line : held.lines) {
+    if (line.point == nullptr) continue;
+    const auto again = inventory.find(line.point->line);
+    if (!again) return std::nullopt;
+    const LineSpec wanted{line.point, *again, line.counted};
     if (!found.empty() && !backend::fits(found, wanted)) return std::nullopt;
     found.push_back(wanted);
   }
@@ -62,79 +51,83 @@ std::optional<std::vector<LineSpec>> find_again(const HeldRequest& held, const I
 
 }  // namespace
 
-void LineRequests::release() {
-  lines_.release();
-  outputs_.clear();
-  inputs_.clear();
+HeldLine held_as(const LineSpec& wanted) {
+  const Line& line = wanted.point->line;
+  return {wanted.line.chip->name, wanted.line.offset, is_output(wanted),
+          line.active_low,        line.bias,          line.drive,
+          line.debounce,          wanted.counted,     wanted.point};
 }
 
-void LineRequests::keep_outputs(WiredOutputs wired, HeldRequest held) {
-  lines_.add(std::move(wired));
-  outputs_.push_back(std::move(held));
+bool is_same_line(const HeldLine& a, const HeldLine& b) { return a.chip == b.chip && a.offset == b.offset; }
+
+bool is_same_request(const HeldLine& a, const HeldLine& b) {
+  const auto settings = [](const HeldLine& line) {
+    return std::tie(line.output, line.active_low, line.bias, line.drive, line.debounce, line.counted);
+  };
+  return is_same_line(a, b) && settings(a) == settings(b);
 }
 
-void LineRequests::keep_inputs(WiredInputs wired, HeldRequest held) {
-  lines_.add(std::move(wired));
-  inputs_.push_back(std::move(held));
+LineRequests::Prepared LineRequests::prepare_next(const Map& map, bool safe, Log& log) {
+  return prepare(map, this, safe, log);
 }
 
 tl::expected<void, std::string> LineRequests::request(const std::vector<LineSpec>& lines, bool readback) {
   if (is_output(lines.front())) {
     auto group = backend::request_outputs(lines);
     if (!group) return tl::unexpected(std::move(group).error());
-    keep_outputs(wired_outputs(*std::move(group), lines, readback), held(lines));
+    lines_.add(wired_outputs(*std::move(group), lines, readback));
   } else {
-    auto made = backend::request_inputs(lines);
-    if (!made) return tl::unexpected(std::move(made).error());
-    keep_inputs(wired_inputs(*std::move(made), lines), held(lines));
+    auto group = backend::request_inputs(lines);
+    if (!group) return tl::unexpected(std::move(group).error());
+    lines_.add(wired_inputs(*std::move(group), lines));
   }
   return {};
 }
 
 void LineRequests::add_missing(const std::vector<LineSpec>& lines, bool readback) {
-  HeldRequest missing = held(lines);
-  missing.lost = true;
-  if (is_output(lines.front()))
-    keep_outputs(wired_outputs(std::make_shared<AbsentOutputs>(names_of(lines)), lines, readback),
-                 std::move(missing));
-  else
-    keep_inputs(wired_inputs({std::make_unique<AbsentInputs>(names_of(lines)), nullptr}, lines),
-                std::move(missing));
+  if (is_output(lines.front())) {
+    WiredOutputs missing = wired_outputs(std::make_shared<AbsentOutputs>(names_of(lines)), lines, readback);
+    missing.request.lost = true;
+    lines_.add(std::move(missing));
+  } else {
+    WiredInputs missing = wired_inputs(std::make_shared<AbsentInputs>(names_of(lines)), lines);
+    missing.request.lost = true;
+    lines_.add(std::move(missing));
+  }
 }
 
-bool LineRequests::mend(bool safe) {
+bool LineRequests::reconnect(bool safe) {
   const bool lost = lose();
   return renew(safe) || lost;
 }
 
 bool LineRequests::lose() {
   bool any = false;
-  for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    if (outputs_[i].lost || lines_.outputs(i).group->is_plugged()) continue;
+  for (std::size_t i = 0; i < lines_.output_groups(); ++i) {
+    if (lines_.outputs(i).request.lost || lines_.outputs(i).group->is_plugged()) continue;
     lines_.lose_outputs(i);
-    outputs_[i].lost = any = true;
+    any = true;
   }
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    if (inputs_[i].lost || lines_.inputs(i).group->is_plugged()) continue;
+  for (std::size_t i = 0; i < lines_.input_groups(); ++i) {
+    if (lines_.inputs(i).request.lost || lines_.inputs(i).group->is_plugged()) continue;
     lines_.lose_inputs(i);
-    inputs_[i].lost = any = true;
+    any = true;
   }
   return any;
 }
 
 bool LineRequests::renew(bool safe) {
-  const auto is_lost = [](const HeldRequest& held) { return held.lost; };
-  if (std::none_of(outputs_.begin(), outputs_.end(), is_lost) &&
-      std::none_of(inputs_.begin(), inputs_.end(), is_lost))
-    return false;
-  const Inventory inventory = backend::chips();
+  std::optional<Inventory> inventory;  // it takes time to read, and is seldom needed
+  const auto find = [&](const HeldRequest& held) {
+    if (!held.lost) return std::optional<std::vector<LineSpec>>();
+    if (!inventory) inventory = backend::chips();
+    return find_again(held, *inventory);
+  };
   bool any = false;
-  for (std::size_t i = 0; i < outputs_.size(); ++i)
-    if (outputs_[i].lost)
-      if (const auto lines = find_again(outputs_[i], inventory)) any |= renew_outputs(i, *lines, safe);
-  for (std::size_t i = 0; i < inputs_.size(); ++i)
-    if (inputs_[i].lost)
-      if (const auto lines = find_again(inputs_[i], inventory)) any |= renew_inputs(i, *lines);
+  for (std::size_t i = 0; i < lines_.output_groups(); ++i)
+    if (const auto lines = find(lines_.outputs(i).request)) any |= renew_outputs(i, *lines, safe);
+  for (std::size_t i = 0; i < lines_.input_groups(); ++i)
+    if (const auto lines = find(lines_.inputs(i).request)) any |= renew_inputs(i, *lines);
   return any;
 }
 
@@ -147,29 +140,27 @@ bool LineRequests::renew_outputs(std::size_t group, const std::vector<LineSpec>&
   }
   auto made = backend::request_outputs(wanted);
   if (!made) {
-    refuse(outputs_[group], made.error());
+    fail(lines_.outputs(group).request, made.error());
     return false;
   }
   lines_.renew_outputs(group, wired_outputs(*std::move(made), wanted, lines_.outputs(group).readback));
-  outputs_[group] = held(wanted);
   return true;
 }
 
 bool LineRequests::renew_inputs(std::size_t group, const std::vector<LineSpec>& lines) {
   auto made = backend::request_inputs(lines);
   if (!made) {
-    refuse(inputs_[group], made.error());
+    fail(lines_.inputs(group).request, made.error());
     return false;
   }
   lines_.renew_inputs(group, wired_inputs(*std::move(made), lines));
-  inputs_[group] = held(lines);
   return true;
 }
 
-/// Said once, not at each try.
-void LineRequests::refuse(HeldRequest& held, const std::string& refusal) {
-  if (held.refusal != refusal) log_.warn(refusal);
-  held.refusal = refusal;
+/// Logged once, not at each try.
+void LineRequests::fail(HeldRequest& held, const std::string& error) {
+  if (held.error != error) log_.warn(error);
+  held.error = error;
 }
 
 }  // namespace coupler::device

@@ -7,42 +7,39 @@
 #include <vector>
 
 #include "coupler/device/gpio/grouped_lines.hpp"
-#include "coupler/device/gpio/held_line.hpp"
+#include "coupler/device/gpio/inventory.hpp"
 #include "coupler/device/gpio/wiring.hpp"
 
 namespace coupler::device {
 
-/// What one request to the kernel holds.
-struct HeldRequest {
-  std::vector<HeldLine> lines;
-  std::vector<const Point*> points;  ///< for each line; null: no point of the map is wired to it
-  bool lost = false;                 ///< its chip is gone
-  std::string refusal{};             ///< why its lines cannot be requested again, as the log has it
-};
+/// The line as it is when it has been requested.
+HeldLine held_as(const LineSpec& wanted);
+
+bool is_same_line(const HeldLine& a, const HeldLine& b);
+/// Whether both are one line, requested in the same way.
+bool is_same_request(const HeldLine& a, const HeldLine& b);
 
 /// GPIO lines of this machine, each held by one of several requests.
 class LineRequests : public Wiring {
  public:
+  /// The GPIO lines of the map, found and requested by the libgpiod that is built in (backend.hpp): as few
+  /// requests as it allows, each of up to max_group_size lines. Lines that `before` (may be null) holds with
+  /// the same settings stay in their requests, which cannot release single lines: a line of such a request
+  /// that the map does not want any more stays held, an output in its safe state.
+  static Prepared prepare(const Map& map, LineRequests* before, bool safe, Log& log);
+
   explicit LineRequests(Log& log) : lines_({}, {}, log), log_(log) {}
 
   Lines& lines() override { return lines_; }
-  std::vector<EventSource*> events() const override { return lines_.events(); }
-  bool mend(bool safe) override;
+  std::vector<InputGroup*> event_sources() const override { return lines_.event_sources(); }
+  bool reconnect(bool safe) override;
+  Prepared prepare_next(const Map& map, bool safe, Log& log) override;
 
   GroupedLines& groups() { return lines_; }
-  /// In the order of the groups.
-  const std::vector<HeldRequest>& outputs() const { return outputs_; }
-  const std::vector<HeldRequest>& inputs() const { return inputs_; }
 
-  /// Lets go of all lines that no other wiring goes on with.
-  void release();
-
-  /// A group goes on from another wiring of this process, its lines wired to these points.
-  void keep_outputs(WiredOutputs wired, HeldRequest held);
-  void keep_inputs(WiredInputs wired, HeldRequest held);
   /// Requests lines that fit together and adds them. The error names chip, line and holder.
   tl::expected<void, std::string> request(const std::vector<LineSpec>& lines, bool readback);
-  /// Adds lines that cannot be had now; mend() will request them.
+  /// Adds lines that cannot be requested now; reconnect() will request them.
   void add_missing(const std::vector<LineSpec>& lines, bool readback);
 
  private:
@@ -50,11 +47,9 @@ class LineRequests : public Wiring {
   bool renew(bool safe);
   bool renew_outputs(std::size_t group, const std::vector<LineSpec>& lines, bool safe);
   bool renew_inputs(std::size_t group, const std::vector<LineSpec>& lines);
-  void refuse(HeldRequest& held, const std::string& refusal);
+  void fail(HeldRequest& held, const std::string& error);
 
   GroupedLines lines_;
-  std::vector<HeldRequest> outputs_;
-  std::vector<HeldRequest> inputs_;
   Log& log_;
 };
 

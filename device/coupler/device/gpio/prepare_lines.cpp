@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/device/gpio/prepare_lines.hpp"
-
+// From the lines that are held to those that another map wants.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "coupler/device/gpio/backend.hpp"
-#include "coupler/device/gpio/request_plan.hpp"
+#include "coupler/device/gpio/line_requests.hpp"
 
 namespace coupler::device {
 namespace {
@@ -24,9 +25,15 @@ std::optional<Edge> counted(const Map& map, const Point& input) {
   return all;
 }
 
+/// The level that an output begins with: the map's initial one, or its safe one if `safe`.
+int first_level(const Point& point, bool safe) {
+  const int initial = !point.initial.empty() && point.initial[0] != 0 ? 1 : 0;
+  return safe ? safe_level(point.safe, initial) : initial;
+}
+
 void add_line(std::string& errors, const std::string& text) { errors += (errors.empty() ? "" : "\n") + text; }
 
-/// The lines of the map; `errors` says which there are not.
+/// The lines of the map; `errors` names those that do not exist.
 LineSpecs find_lines(const Map& map, const Inventory& inventory, bool safe, std::string& errors) {
   LineSpecs wanted;
   std::map<std::pair<const Chip*, unsigned>, const Point*> users;
@@ -42,7 +49,7 @@ LineSpecs find_lines(const Map& map, const Inventory& inventory, bool safe, std:
       wanted.push_back({&point, *found, counted(map, point), first_level(point, safe)});
     else
       add_line(errors,
-               fmt::format("point '{}': {} is the line of point '{}' too; give one of them another line",
+               fmt::format("point '{}': {} is already the line of point '{}'; give one of them another line",
                            point.name, to_string(*found), other->second->name));
   }
   return wanted;
@@ -63,44 +70,121 @@ std::vector<LineSpecs> grouped(const LineSpecs& wanted) {
   return groups;
 }
 
-std::string name_of(const HeldLine& line) { return fmt::format("{} line {}", line.chip, line.offset); }
+/// A request of the wiring before that is kept.
+struct KeptRequest {
+  std::size_t group = 0;                ///< of the outputs, or of the inputs
+  std::vector<const LineSpec*> wanted;  ///< for each of its lines; null: the map does not want it
+};
 
-/// Finds and requests, and collects what went wrong so that one run tells everything.
-class NextLines : public NextWiring {
+/// What becomes of held lines when other ones are wanted: the difference of two wirings. Views the wanted
+/// lines.
+class RequestPlan {
  public:
-  NextLines(const Map& map, LineRequests* before, bool safe, Log& log)
+  /// `before` may be null.
+  RequestPlan(GroupedLines* before, const LineSpecs& wanted) : wanted_(wanted) {
+    if (before != nullptr) {
+      for (std::size_t i = 0; i < before->output_groups(); ++i) keep_outputs(i, before->outputs(i).request);
+      for (std::size_t i = 0; i < before->input_groups(); ++i) keep_inputs(i, before->inputs(i).request);
+    }
+    for (const LineSpec& line : wanted)
+      if (kept_.count(&line) == 0) (held_.count(&line) != 0 ? later : fresh).push_back(line);
+  }
+
+  std::vector<KeptRequest> outputs;
+  std::vector<KeptRequest> inputs;
+  LineSpecs fresh;     ///< nobody holds them: they can be requested while the others are in use
+  LineSpecs later;     ///< held in requests that end: they can be requested after that
+  std::string errors;  ///< outputs whose settings cannot change, since lines beside them stay; one a line
+
+ private:
+  /// What is wanted of the request with other settings than it has.
+  LineSpecs note(const HeldRequest& request, KeptRequest& kept) {
+    LineSpecs changed;
+    for (const LineSpec& line : wanted_)
+      for (std::size_t i = 0; i < request.lines.size(); ++i) {
+        if (!is_same_line(held_as(line), request.lines[i])) continue;
+        held_.insert(&line);
+        if (is_same_request(held_as(line), request.lines[i]))
+          kept.wanted[i] = &line;
+        else
+          changed.push_back(line);
+      }
+    return changed;
+  }
+
+  void keep(std::vector<KeptRequest>& requests, KeptRequest kept) {
+    kept_.insert(kept.wanted.begin(), kept.wanted.end());
+    requests.push_back(std::move(kept));
+  }
+
+  static bool is_wanted(const KeptRequest& kept) {
+    return std::any_of(kept.wanted.begin(), kept.wanted.end(),
+                       [](const auto* line) { return line != nullptr; });
+  }
+
+  void keep_outputs(std::size_t group, const HeldRequest& request) {
+    if (request.lost) return;
+    KeptRequest kept{group, std::vector<const LineSpec*>(request.lines.size())};
+    const LineSpecs changed = note(request, kept);
+    if (!is_wanted(kept)) return;
+    for (const LineSpec& line : changed)
+      add_line(errors,
+               fmt::format("point '{}': {} is held by one request together with outputs that stay, so its "
+                           "direction and its keys (active_low, bias, drive) cannot change while the node "
+                           "runs; restart the node",
+                           line.point->name, to_string(line.line)));
+    keep(outputs, std::move(kept));
+  }
+
+  /// To request inputs again moves nothing, so a request is only kept if none of its lines changes.
+  void keep_inputs(std::size_t group, const HeldRequest& request) {
+    if (request.lost) return;
+    KeptRequest kept{group, std::vector<const LineSpec*>(request.lines.size())};
+    if (note(request, kept).empty() && is_wanted(kept)) keep(inputs, std::move(kept));
+  }
+
+  const LineSpecs& wanted_;
+  std::set<const LineSpec*> kept_;
+  std::set<const LineSpec*> held_;
+};
+
+/// Finds and requests lines, and collects the errors so that one run reports all of them.
+class PreparedLines : public PreparedWiring {
+ public:
+  PreparedLines(const Map& map, LineRequests* before, bool safe, Log& log)
       : map_(map),
         before_(before),
         log_(log),
         inventory_(backend::chips()),
         wanted_(find_lines(map, inventory_, safe, errors_)),
-        plan_(plan_requests(before, wanted_)),
-        next_(std::make_unique<LineRequests>(log)) {
+        plan_(before == nullptr ? nullptr : &before->groups(), wanted_),
+        next_(std::make_unique<LineRequests>(log)) {}
+
+  /// Requests what nobody holds, unless there are errors already. Returns all errors.
+  const std::string& request() {
     if (!plan_.errors.empty()) add_line(errors_, plan_.errors);
-    if (!errors_.empty()) return;
+    if (!errors_.empty()) return errors_;
     for (const KeptRequest& kept : plan_.outputs) keep_outputs(kept);
     for (const KeptRequest& kept : plan_.inputs) keep_inputs(kept);
     for (const LineSpecs& lines : grouped(plan_.fresh))
-      if (const auto made = next_->request(lines, map.service.readback); !made)
+      if (const auto made = next_->request(lines, map_.service.readback); !made)
         add_line(errors_, made.error());
+    return errors_;
   }
-
-  const std::string& errors() const { return errors_; }
 
   std::unique_ptr<Wiring> take_over() override {
     if (before_ == nullptr) return std::move(next_);
-    const std::vector<const LineSpec*> taken_up = wanted_of_idle_outputs();
+    const LineSpecs reused = reused_outputs();
     next_->groups().take_over(before_->groups());
-    for (const LineSpec* wanted : taken_up) {
-      const auto level = static_cast<std::uint16_t>(wanted->level);
-      (void)next_->groups().drive(range(*wanted->point), Span<const std::uint16_t>(&level, 1));
+    for (const LineSpec& wanted : reused) {
+      const auto level = static_cast<std::uint16_t>(wanted.level);
+      (void)next_->groups().drive(range(*wanted.point), Span<const std::uint16_t>(&level, 1));
     }
-    before_->release();
+    before_->groups().release();
     for (const std::string& line : idle_)
-      log_.write(
-          line +
-          " is not in the map any more, but stays held until the node ends (an output in its safe state): "
-          "it was requested together with lines that stay");
+      log_.write(line +
+                 " is not in the map any more, but stays held until the node ends (an output in its safe "
+                 "state): it was requested together with lines that stay");
     for (const LineSpecs& lines : grouped(plan_.later)) {
       const auto made = next_->request(lines, map_.service.readback);
       if (made) continue;
@@ -111,43 +195,43 @@ class NextLines : public NextWiring {
   }
 
  private:
-  HeldRequest held_from(const HeldRequest& old, const KeptRequest& kept) {
-    HeldRequest held{old.lines, {}};
-    for (std::size_t i = 0; i < kept.wanted.size(); ++i) {
-      held.points.push_back(kept.wanted[i] == nullptr ? nullptr : kept.wanted[i]->point);
-      if (kept.wanted[i] == nullptr && old.points[i] != nullptr) idle_.push_back(name_of(old.lines[i]));
-    }
-    return held;
+  void rewire(HeldLine& line, const LineSpec* wanted) {
+    if (wanted == nullptr && line.point != nullptr)
+      idle_.push_back(fmt::format("{} line {}", line.chip, line.offset));
+    line.point = wanted == nullptr ? nullptr : wanted->point;
   }
 
   void keep_outputs(const KeptRequest& kept) {
     WiredOutputs wired = before_->groups().outputs(kept.group);
     wired.readback = map_.service.readback;
     for (std::size_t i = 0; i < kept.wanted.size(); ++i) {
-      wired.addresses[i].reset();
+      rewire(wired.request.lines[i], kept.wanted[i]);
+      wired.lines[i].address.reset();
       if (kept.wanted[i] == nullptr) continue;
-      wired.addresses[i] = kept.wanted[i]->point->address;
-      wired.safe[i] = kept.wanted[i]->point->safe;
+      wired.lines[i].address = kept.wanted[i]->point->address;
+      wired.lines[i].safe = kept.wanted[i]->point->safe;
     }
-    next_->keep_outputs(std::move(wired), held_from(before_->outputs()[kept.group], kept));
+    next_->groups().add(std::move(wired));
   }
 
   void keep_inputs(const KeptRequest& kept) {
     WiredInputs wired = before_->groups().inputs(kept.group);
     for (std::size_t i = 0; i < kept.wanted.size(); ++i) {
+      rewire(wired.request.lines[i], kept.wanted[i]);
       wired.addresses[i].reset();
       if (kept.wanted[i] != nullptr) wired.addresses[i] = kept.wanted[i]->point->address;
     }
-    next_->keep_inputs(std::move(wired), held_from(before_->inputs()[kept.group], kept));
+    next_->groups().add(std::move(wired));
   }
 
-  /// Outputs that are held, but were no point's.
-  std::vector<const LineSpec*> wanted_of_idle_outputs() const {
-    std::vector<const LineSpec*> all;
-    for (const KeptRequest& kept : plan_.outputs)
+  /// Outputs that are held, but had no point in the map before.
+  LineSpecs reused_outputs() const {
+    LineSpecs all;
+    for (const KeptRequest& kept : plan_.outputs) {
+      const HeldRequest& held = before_->groups().outputs(kept.group).request;
       for (std::size_t i = 0; i < kept.wanted.size(); ++i)
-        if (kept.wanted[i] != nullptr && before_->outputs()[kept.group].points[i] == nullptr)
-          all.push_back(kept.wanted[i]);
+        if (kept.wanted[i] != nullptr && held.lines[i].point == nullptr) all.push_back(*kept.wanted[i]);
+    }
     return all;
   }
 
@@ -159,15 +243,14 @@ class NextLines : public NextWiring {
   LineSpecs wanted_;
   RequestPlan plan_;
   std::unique_ptr<LineRequests> next_;
-  std::vector<std::string> idle_;  ///< held on, for no point
+  std::vector<std::string> idle_;  ///< lines that stay held for no point
 };
 
 }  // namespace
 
-tl::expected<std::unique_ptr<NextWiring>, std::string> prepare_lines(const Map& map, LineRequests* before,
-                                                                     bool safe, Log& log) {
-  auto next = std::make_unique<NextLines>(map, before, safe, log);
-  if (!next->errors().empty()) return tl::unexpected(next->errors());
+Wiring::Prepared LineRequests::prepare(const Map& map, LineRequests* before, bool safe, Log& log) {
+  auto next = std::make_unique<PreparedLines>(map, before, safe, log);
+  if (const std::string& errors = next->request(); !errors.empty()) return tl::unexpected(errors);
   return next;
 }
 

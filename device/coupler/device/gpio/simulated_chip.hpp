@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "coupler/device/core/lines.hpp"
-#include "coupler/device/supervisor/shared_array.hpp"
+#include "coupler/device/supervisor/shared_memory.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::device {

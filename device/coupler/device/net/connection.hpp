@@ -14,9 +14,9 @@ namespace coupler::device {
 
 /// One client. In a turn it receives once, at most as much as the longest frame, and answers what that
 /// completes; so clients that pipeline thousands of requests take turns with the others. While a reply waits
-/// for the client to read, no further request of it is carried out or received: what it is owed is bounded.
+/// for the client to read, no further request of it is carried out or received, so its replies are bounded.
 /// Its memory is used again for the next client.
-class Connection : public Watcher {
+class Connection : public EventHandler {
  public:
   /// For the rest of a frame once its beginning is there, and for a client to take a reply; absolute, so that
   /// single bytes do not extend it.
@@ -30,9 +30,9 @@ class Connection : public Watcher {
 
   /// Takes over a connected, non-blocking socket of a client from there (origin_of()).
   void open(Descriptor socket, const IpAddress& origin, TimePoint now);
-  /// Takes over what another one let go.
+  /// Continues with a client that another connection released.
   void open(OpenConnection from, const IpAddress& origin, TimePoint now);
-  /// Lets go of the client without closing its connection.
+  /// Releases the client without closing its connection.
   OpenConnection release();
   bool is_open() const { return socket_.is_open(); }
   void close();

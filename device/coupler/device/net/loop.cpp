@@ -7,10 +7,10 @@
 namespace coupler::device {
 namespace {
 
-epoll_event event_for(Interest interest, Watcher& watcher) {
+epoll_event event_for(Interest interest, EventHandler& handler) {
   epoll_event event{};
   event.events = static_cast<std::uint32_t>(interest);
-  event.data.ptr = &watcher;
+  event.data.ptr = &handler;
   return event;
 }
 
@@ -18,22 +18,22 @@ epoll_event event_for(Interest interest, Watcher& watcher) {
 
 Loop::Loop() : epoll_(::epoll_create1(EPOLL_CLOEXEC)) {}
 
-bool Loop::watch(int fd, Interest interest, Watcher& watcher) {
-  epoll_event event = event_for(interest, watcher);
+bool Loop::watch(int fd, Interest interest, EventHandler& handler) {
+  epoll_event event = event_for(interest, handler);
   return ::epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-void Loop::change(int fd, Interest interest, Watcher& watcher) {
-  epoll_event event = event_for(interest, watcher);
+void Loop::change(int fd, Interest interest, EventHandler& handler) {
+  epoll_event event = event_for(interest, handler);
   [[maybe_unused]] const int result = ::epoll_ctl(epoll_.get(), EPOLL_CTL_MOD, fd, &event);
   assert(result == 0);
 }
 
-void Loop::forget(int fd, const Watcher& watcher) {
+void Loop::forget(int fd, const EventHandler& handler) {
   ::epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, fd, nullptr);
   for (int i = 0; i < waiting_; ++i) {
     epoll_event& event = events_[static_cast<std::size_t>(i)];
-    if (event.data.ptr == &watcher) event.data.ptr = nullptr;
+    if (event.data.ptr == &handler) event.data.ptr = nullptr;
   }
 }
 
@@ -42,8 +42,8 @@ TimePoint Loop::run_once(std::optional<std::chrono::milliseconds> timeout) {
   waiting_ = std::max(0, ::epoll_wait(epoll_.get(), events_.data(), static_cast<int>(events_.size()), wait));
   const TimePoint now = TimePoint::clock::now();
   for (int i = 0; i < waiting_; ++i)
-    if (void* watcher = events_[static_cast<std::size_t>(i)].data.ptr)
-      static_cast<Watcher*>(watcher)->ready(now);
+    if (void* handler = events_[static_cast<std::size_t>(i)].data.ptr)
+      static_cast<EventHandler*>(handler)->ready(now);
   waiting_ = 0;
   return now;
 }

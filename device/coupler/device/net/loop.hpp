@@ -13,14 +13,14 @@
 
 namespace coupler::device {
 
-/// Whoever waits for a descriptor. `ready` comes again as long as the descriptor stays ready, and may come
-/// without reason: only non-blocking calls are safe in it.
-class Watcher {
+/// What is called when a descriptor is ready. `ready` is called again as long as the descriptor stays ready,
+/// and may be called without reason: only non-blocking calls are safe in it.
+class EventHandler {
  public:
   virtual void ready(TimePoint now) = 0;
 
  protected:
-  ~Watcher() = default;
+  ~EventHandler() = default;
 };
 
 enum class Interest : std::uint32_t { nothing = 0, read = EPOLLIN, write = EPOLLOUT };
@@ -32,20 +32,20 @@ class Loop {
   /// False: the kernel had no descriptor left for it.
   bool is_open() const { return epoll_.is_open(); }
 
-  /// False if the kernel refuses (no memory). The watcher stays where it is until forget().
-  [[nodiscard]] bool watch(int fd, Interest interest, Watcher& watcher);
-  void change(int fd, Interest interest, Watcher& watcher);
-  /// After this no call comes for it, not even one that was already on its way.
-  void forget(int fd, const Watcher& watcher);
+  /// False if the kernel refuses (no memory). The handler stays where it is until forget().
+  [[nodiscard]] bool watch(int fd, Interest interest, EventHandler& handler);
+  void change(int fd, Interest interest, EventHandler& handler);
+  /// After this the handler is not called for it any more, not even if it was ready in this round.
+  void forget(int fd, const EventHandler& handler);
 
-  /// Waits until something is ready or the time is over (nullopt: for ever), then calls who is concerned.
-  /// Returns the time when it was.
+  /// Waits until a descriptor is ready or the time is over (nullopt: for ever), then calls the handlers.
+  /// Returns the time after the wait.
   TimePoint run_once(std::optional<std::chrono::milliseconds> timeout);
 
  private:
   Descriptor epoll_;
-  /// Few at a time: who becomes ready meanwhile queues behind who was there before, and nobody waits two
-  /// rounds.
+  /// Few at a time: what becomes ready meanwhile queues behind what was ready before, so nothing waits for
+  /// two rounds.
   std::array<epoll_event, 8> events_{};
   int waiting_ = 0;  ///< events of this round
 };

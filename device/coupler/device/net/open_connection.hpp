@@ -8,7 +8,7 @@
 
 namespace coupler::device {
 
-/// A client between two processes, or two maps, that answer it.
+/// A client that one process, or one map, hands over to the next.
 struct OpenConnection {
   Descriptor socket;
   bool has_written = false;            ///< ClientSession's

@@ -18,7 +18,7 @@ bool has_terminal();
 /// own time. The SIGHUP of a terminal that is closed is a request to stop. A SIGHUP that is ignored at the
 /// start (nohup) stays ignored; SIGPIPE is. SIGTSTP, which Ctrl-Z sends, is only noted. To be made before any
 /// thread is started.
-class Signals : public Watcher {
+class Signals : public EventHandler {
  public:
   explicit Signals(Loop& loop);
   Signals(const Signals&) = delete;

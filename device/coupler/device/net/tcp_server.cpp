@@ -16,8 +16,6 @@
 #include <tuple>
 #include <utility>
 
-#include "coupler/device/net/client_address.hpp"
-
 namespace coupler::device {
 namespace {
 
@@ -85,7 +83,7 @@ void TcpServer::take_over(std::vector<OpenConnection> clients, TimePoint now) {
     socklen_t size = sizeof peer;
     const bool is_there = ::getpeername(client.socket.get(), reinterpret_cast<sockaddr*>(&peer), &size) == 0;
     if (!is_there || this->size() == capacity()) continue;
-    if (!listener_.guests.admits(peer)) {
+    if (!listener_.allowed.admits(peer)) {
       refuse(std::move(client.socket), peer);
       continue;
     }
@@ -114,7 +112,7 @@ bool TcpServer::accept_one(TimePoint now) {
     if (error != EAGAIN && error != EWOULDBLOCK) pause(error);
     return false;
   }
-  if (!listener_.guests.admits(peer)) {
+  if (!listener_.allowed.admits(peer)) {
     refuse(std::move(socket), peer);
     return true;
   }
@@ -127,12 +125,12 @@ bool TcpServer::accept_one(TimePoint now) {
   return true;
 }
 
-/// Says so once: who knocks again and again must not fill the log.
+/// Logged once: a client that tries again and again must not fill the log.
 void TcpServer::refuse(Descriptor socket, const sockaddr_storage& peer) {
   if (statistics_.refusals++ == 0)
     log_.write(
-        fmt::format("{} may not connect, the map's 'allow' does not list it; from now on such are only "
-                    "counted",
+        fmt::format("{} may not connect: the map's 'allow' does not list it; further refused connections are "
+                    "only counted",
                     host_of(peer)));
   socket.close();
 }

@@ -13,10 +13,10 @@
 
 namespace coupler::device {
 
-/// Accepts clients and ends those that overstay: a fixed number of connections. When all are taken, the
-/// address with the most of them makes room: first who never asked anything, then who never wrote an output,
-/// then the longest idle. Allocates at the start only.
-class TcpServer : public Watcher {
+/// Accepts clients, up to a fixed number of connections, and closes those that time out. When all are in use,
+/// one of the address that has the most is closed: first one that never sent a request, then one that never
+/// wrote an output, then the longest idle. Allocates at the start only.
+class TcpServer : public EventHandler {
  public:
   static constexpr std::size_t max_connections = 256;
 
@@ -32,15 +32,15 @@ class TcpServer : public Watcher {
   /// Connections that are open now.
   std::size_t size() const;
 
-  /// Takes over clients that another server let go, as far as they may connect and there is room.
+  /// Continues with clients that another server released, if they may connect and there is room.
   void take_over(std::vector<OpenConnection> clients, TimePoint now);
-  /// Lets go of all clients without closing their connections.
+  /// Releases all clients without closing their connections.
   std::vector<OpenConnection> release();
 
-  /// Somebody wants to connect.
+  /// A client connects.
   void ready(TimePoint now) override;
 
-  /// How long the loop may wait before it calls tick() again; nullopt: as long as it likes.
+  /// How long tick() need not be called; nullopt: not before something happens.
   std::optional<std::chrono::milliseconds> time_until_due() const;
   /// Closes what is overdue.
   void tick(TimePoint now);

@@ -24,13 +24,13 @@ bool guard(Call call, Thrown thrown) {
 
 }  // namespace
 
-void GuardedHooks::tell(const std::string& who, const char* what) {
+void GuardedHooks::log(const std::string& who, const char* what) {
   log_.fail(fmt::format("{} threw an exception: {}", who, what));
 }
 
 bool GuardedHooks::begin() {
   hooks_.allow_setting();
-  return guard([&] { hooks_.serving_began(); }, [&](const char* what) { tell("serving_began()", what); });
+  return guard([&] { hooks_.serving_began(); }, [&](const char* what) { log("serving_began()", what); });
 }
 
 bool GuardedHooks::end(Image& image) {
@@ -41,7 +41,7 @@ bool GuardedHooks::end(Image& image) {
 }
 
 bool GuardedHooks::made_safe() {
-  return guard([&] { hooks_.make_safe(); }, [&](const char* what) { tell("make_safe()", what); });
+  return guard([&] { hooks_.make_safe(); }, [&](const char* what) { log("make_safe()", what); });
 }
 
 bool GuardedHooks::accept(std::uint32_t point, const std::uint16_t* registers) {

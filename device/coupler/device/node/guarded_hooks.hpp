@@ -9,8 +9,8 @@
 
 namespace coupler::device {
 
-/// A firmware's code, of which an exception ends no process: it is told in the log, and the request that it
-/// was called for is refused.
+/// A firmware's hooks. An exception that one throws is logged and ends no process; the request that it was
+/// called for is refused.
 class GuardedHooks final : public Hooks {
  public:
   /// All of them outlive it; the map is the one whose points `hooks` is behind.
@@ -27,7 +27,7 @@ class GuardedHooks final : public Hooks {
 
  private:
   bool made_safe();
-  void tell(const std::string& who, const char* what);
+  void log(const std::string& who, const char* what);
 
   Hooks& hooks_;
   const Map& map_;

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/device/node/io_service.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "coupler/base/line_limit.hpp"
-#include "coupler/device/node/shutdown_summary.hpp"
+#include "coupler/device/supervisor/heartbeat.hpp"
 
 namespace coupler::device {
 namespace {
@@ -18,29 +23,65 @@ TimeUntilDue shorter(TimeUntilDue a, TimeUntilDue b) {
   return std::min(*a, *b);
 }
 
+/// " (01: 2, 03: 1)"; nothing if there were none.
+std::string by_code(const Statistics& statistics) {
+  std::string text;
+  for (std::size_t i = 0; i < statistics.exceptions_of.size(); ++i)
+    if (const auto count = statistics.exceptions_of[i]; count != 0)
+      text += fmt::format("{}{:02}: {}", text.empty() ? " (" : ", ", i + 1, count);
+  return text.empty() ? text : text + ")";
+}
+
 }  // namespace
+
+/// Takes edges from the kernel as they come. A line that is gone is not watched any more.
+class IoService::EdgeHandler : public EventHandler {
+ public:
+  EdgeHandler(Loop& loop, InputGroup& group, Log& log) : loop_(loop), group_(group) {
+    if (!loop_.watch(group_.descriptor(), Interest::read, *this))
+      log.write(fmt::format(
+          "edges of an input cannot be watched: {}; they are taken only when a client sends a request",
+          std::strerror(errno)));
+  }
+  EdgeHandler(const EdgeHandler&) = delete;
+  EdgeHandler& operator=(const EdgeHandler&) = delete;
+  ~EdgeHandler() { loop_.forget(group_.descriptor(), *this); }
+
+  void ready(TimePoint) override {
+    if (!group_.take_edges()) loop_.forget(group_.descriptor(), *this);
+  }
+
+ private:
+  Loop& loop_;
+  InputGroup& group_;
+};
 
 IoService::IoService(const ServingContext& context, Loop& loop, Log& log)
     : hardware_(context.hardware()),
       loop_(loop),
       log_(log),
       statistics_(context.state->statistics()),
-      node_(*context.map, hardware_, *context.state),
-      tcp_(loop, context.listener, node_.server(), context.state->statistics(), log),
+      handler_(*context.map, context.state->image(), hardware_, context.state->statistics(),
+               context.state->watchdog(), context.state->links()),
+      server_(context.map->connection.unit, handler_, context.state->statistics()),
+      tcp_(loop, context.listener, server_, context.state->statistics(), log),
       now_(TimePoint::clock::now()),
       trips_(statistics_.watchdog_trips) {
-  for (EventSource* source : context.wiring->events()) watchers_.emplace_back(loop, *source, log);
+  handler_.set_machine(context.state->machine());
+  for (InputGroup* group : context.wiring->event_sources()) edge_handlers_.emplace_back(loop, *group, log);
 }
+
+IoService::~IoService() = default;
 
 void IoService::take_over(std::vector<OpenConnection> clients) { tcp_.take_over(std::move(clients), now_); }
 
-void IoService::run(const std::function<bool(TimePoint)>& is_over, Heartbeat& heartbeat) {
+void IoService::run(const std::function<bool(TimePoint)>& is_over, const std::function<void()>& beat) {
   for (TimePoint next_beat = now_; !is_over(now_); turn()) {
     if (now_ < next_beat) continue;
-    heartbeat.beat();
-    next_beat = now_ + Heartbeat::period;
+    beat();
+    next_beat = now_ + heartbeat_period;
   }
-  (void)log_.tick(now_ + LineLimit::interval);  // nobody says later what is still held back
+  (void)log_.tick(now_ + LineLimit::interval);  // logs what is still held back
 }
 
 std::vector<OpenConnection> IoService::release() { return tcp_.release(); }
@@ -50,10 +91,10 @@ void IoService::end(int signal) {
 }
 
 void IoService::turn() {
-  const TimeUntilDue work = shorter(tcp_.time_until_due(), node_.handler().time_until_due(now_));
-  now_ = loop_.run_once(shorter(Heartbeat::period, shorter(work, log_.tick(now_))));
+  const TimeUntilDue work = shorter(tcp_.time_until_due(), handler_.time_until_due(now_));
+  now_ = loop_.run_once(shorter(heartbeat_period, shorter(work, log_.tick(now_))));
   tcp_.tick(now_);
-  node_.handler().tick(now_);
+  handler_.tick(now_);
   log_trips();
 }
 
@@ -62,7 +103,30 @@ void IoService::log_trips() {
   trips_ = statistics_.watchdog_trips;
   log_.warn_limited(
       "watchdog",
-      "the watchdog expired: no client that writes was heard in time; outputs go to their safe state");
+      "the watchdog expired: no client that writes sent a request in time; outputs go to their safe state");
+}
+
+std::string shutdown_summary(int signal, bool safe, const Statistics& statistics, TimePoint now) {
+  struct Count {
+    std::string_view of;
+    std::uint32_t count;
+  };
+  std::string text = fmt::format(
+      "{}: {}; answered {} requests, {} of them with an exception{}; uptime {} s", ::strsignal(signal),
+      safe ? "outputs are in their safe state" : "not every output could be driven to its safe state",
+      statistics.requests, statistics.exceptions, by_code(statistics),
+      std::chrono::duration_cast<std::chrono::seconds>(now - statistics.started).count());
+  for (const Count& item : {Count{"connections", statistics.connections},
+                            {"refused", statistics.refusals},
+                            {"evicted", statistics.evictions},
+                            {"closed for what they sent", statistics.bad_frames},
+                            {"timed out", statistics.timeouts},
+                            {"requests for other units", statistics.foreign_units},
+                            {"hardware errors", statistics.hardware_errors},
+                            {"events lost", statistics.events_lost},
+                            {"watchdog trips", statistics.watchdog_trips}})
+    if (item.count != 0) text += fmt::format(", {}: {}", item.of, item.count);
+  return text;
 }
 
 }  // namespace coupler::device

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <deque>
 #include <functional>
+#include <list>
+#include <string>
 #include <vector>
 
 #include "coupler/device/core/log.hpp"
+#include "coupler/device/core/server.hpp"
 #include "coupler/device/net/tcp_server.hpp"
-#include "coupler/device/node/edge_watcher.hpp"
-#include "coupler/device/node/node.hpp"
 #include "coupler/device/node/serving_context.hpp"
-#include "coupler/device/supervisor/heartbeat.hpp"
 
 namespace coupler::device {
 
@@ -19,31 +18,42 @@ class IoService {
  public:
   /// All of them outlive it. The context is in force.
   IoService(const ServingContext& context, Loop& loop, Log& log);
+  IoService(const IoService&) = delete;
+  IoService& operator=(const IoService&) = delete;
+  ~IoService();
 
-  /// Goes on with clients that another one let go.
+  /// Continues with clients that another service released.
   void take_over(std::vector<OpenConnection> clients);
-  /// Serves until `is_over`, asked at each turn, says so. `heartbeat` is told that the loop turns.
-  void run(const std::function<bool(TimePoint)>& is_over, Heartbeat& heartbeat);
-  /// Lets go of its clients, outputs as they are.
+  /// Serves until `is_over`, which is called in each turn of the loop, is true. Calls `beat` once in each
+  /// heartbeat_period.
+  void run(const std::function<bool(TimePoint)>& is_over, const std::function<void()>& beat);
+  /// Releases its clients; outputs stay as they are.
   std::vector<OpenConnection> release();
-  /// The end after a signal: drives the outputs to their safe state and says what there was.
+  /// The end after a signal: drives the outputs to their safe state and logs the summary.
   void end(int signal);
-  /// Drives them there for another reason. False: one of them could not be driven.
+  /// Drives the outputs to their safe state. False: one of them could not be driven.
   bool make_safe() { return hardware_.drive_safe(); }
 
  private:
+  class EdgeHandler;
+
   void turn();
   void log_trips();
 
   Hardware hardware_;
   Loop& loop_;
   Log& log_;
-  std::deque<EdgeWatcher> watchers_;
+  std::list<EdgeHandler> edge_handlers_;
   const Statistics& statistics_;
-  Node node_;
+  Handler handler_;
+  Server server_;
   TcpServer tcp_;
   TimePoint now_;
-  std::uint32_t trips_;  ///< of the watchdog, in the log
+  std::uint32_t trips_;  ///< of the watchdog, that were logged
 };
+
+/// What a process that answered clients logs when `signal` stops it. `safe`: all outputs are in their safe
+/// state. Statistics that are 0 are left out, but for requests and their exceptions.
+std::string shutdown_summary(int signal, bool safe, const Statistics& statistics, TimePoint now);
 
 }  // namespace coupler::device

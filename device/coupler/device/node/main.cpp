@@ -1,11 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
 // coupler-node: serves a map that it reads at the start, and again at SIGHUP.
 #include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <variant>
 
 #include "coupler/base/standard_files.hpp"
-#include "coupler/device/node/map_input.hpp"
+#include "coupler/device/node/map_reading.hpp"
+#include "coupler/device/node/options.hpp"
+#include "coupler/device/node/program.hpp"
 #include "coupler/device/node/reload.hpp"
-#include "coupler/device/node/serve.hpp"
+#include "coupler/device/node/serving_context.hpp"
+#include "coupler/device/node/stderr_log.hpp"
+#include "coupler/map/loader/load.hpp"
+
+namespace coupler::device {
+namespace {
+
+/// The map file of a node. Its errors and warnings are logged.
+class MapInput {
+ public:
+  /// `path` may be "-", standard input, which can be read once. The log outlives it.
+  MapInput(std::string path, StderrLog& log) : path_(std::move(path)), log_(log) {}
+
+  /// Any file will do, a pipe too.
+  ReadMap first() const {
+    return {[this] { return read(); }, log_.descriptor()};
+  }
+
+  /// For a node that serves: only a regular file is read. Others may have no end, or block.
+  ReadMap again() const {
+    if (path_ == "-") return {};
+    const auto read = [this]() -> MapPtr {
+      for (const std::string& path : {path_, path_ + ".lock"})
+        if (!is_regular(path)) return nullptr;
+      return this->read();
+    };
+    return {read, log_.descriptor()};
+  }
+
+ private:
+  MapPtr read() const {
+    const LoadResult loaded = load_map_file(path_);
+    for (const Diagnostic& diagnostic : loaded.diagnostics) log_.tell(diagnostic);
+    return loaded.map;
+  }
+
+  /// A file that does not exist, or cannot be examined, is reported when it is read.
+  bool is_regular(const std::string& path) const {
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+    if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return true;
+    log_.tell({Diagnostic::Severity::error, path, 0, 0, "it is not a regular file",
+               "a running node reads only regular files: write the map to one, or restart the node"});
+    return false;
+  }
+
+  std::string path_;
+  StderrLog& log_;
+};
+
+}  // namespace
+}  // namespace coupler::device
 
 int main(int argc, char** argv) {
   using namespace coupler::device;
@@ -20,7 +78,7 @@ int main(int argc, char** argv) {
   const auto map = read_first(input.first());
   if (!map) {
     if (!map.error().empty()) log.fail(map.error());
-    return Refusal::map_is_wrong;
+    return ServeError::map_is_wrong;
   }
   return serve((*map)->map(), std::get<Options>(options), log, input.again(), nullptr);
 }

@@ -14,7 +14,7 @@
 namespace coupler::device {
 namespace {
 
-enum Status { done, told, too_large };
+enum Status { done, logged, too_large };
 
 }  // namespace
 
@@ -28,7 +28,7 @@ MapReading::~MapReading() {
 tl::expected<std::unique_ptr<MapReading>, std::string> MapReading::start(Loop& loop, const ReadMap& source,
                                                                          TimePoint now) {
   const auto failed = [](const char* why) {
-    return tl::unexpected(fmt::format("the map cannot be read: no process can be had for it: {}", why));
+    return tl::unexpected(fmt::format("the map cannot be read: no process can be started for it: {}", why));
   };
   try {
     std::unique_ptr<MapReading> reading(new MapReading(loop, now));
@@ -47,13 +47,13 @@ tl::expected<std::unique_ptr<MapReading>, std::string> MapReading::start(Loop& l
 /// In the process of its own. Nothing is destroyed in it: the map is the other one's.
 int MapReading::read(const ReadMap& source, pid_t parent) {
   ::prctl(PR_SET_NAME, "coupler-map");
-  if (!end_with_parent(parent, SIGKILL)) return told;
+  if (!end_with_parent(parent, SIGKILL)) return logged;
   close_descriptors(source.descriptor);
   std::pmr::set_default_resource(arena_.get());
   try {
     const MapPtr map = source.read();
     made_[0].map = map.get();
-    ::_exit(map == nullptr ? told : done);
+    ::_exit(map == nullptr ? logged : done);
   } catch (const std::bad_alloc&) {
     return too_large;
   }
@@ -71,18 +71,16 @@ bool MapReading::is_over(TimePoint now) {
 
 tl::expected<MapPtr, std::string> MapReading::take() {
   if (!status_)
-    return tl::unexpected(
-        fmt::format("the map could not be read in {} s; is the disk or the network file system that it is on "
-                    "still there?",
-                    timeout.count()));
+    return tl::unexpected(fmt::format(
+        "the map could not be read in {} s; check the disk or the network file system that it is on",
+        timeout.count()));
   if (*status_ == 0) {
     arena_->give_back_rest();
     return MapPtr(arena_, made_[0].map);
   }
   if (!WIFEXITED(*status_)) return tl::unexpected("the process that read the map " + describe_end(*status_));
   if (WEXITSTATUS(*status_) == too_large)
-    return tl::unexpected(
-        fmt::format("the map needs more than {} MiB of memory; leave points out", room >> 20));
+    return tl::unexpected(fmt::format("the map needs more than {} MiB of memory; remove points", room >> 20));
   return tl::unexpected(std::string());
 }
 

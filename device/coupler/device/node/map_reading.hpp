@@ -8,8 +8,7 @@
 
 #include "coupler/device/net/loop.hpp"
 #include "coupler/device/supervisor/child.hpp"
-#include "coupler/device/supervisor/shared_arena.hpp"
-#include "coupler/device/supervisor/shared_array.hpp"
+#include "coupler/device/supervisor/shared_memory.hpp"
 #include "coupler/map/owned_map.hpp"
 
 namespace coupler::device {
@@ -17,12 +16,12 @@ namespace coupler::device {
 /// How a node reads a map. It is called in a process of its own, which has none of the node's lines and
 /// sockets, and may take its time.
 struct ReadMap {
-  std::function<MapPtr()> read;  ///< null after telling what is wrong; empty: there is nothing to read
+  std::function<MapPtr()> read;  ///< null if the map is wrong, which it logs; empty: there is nothing to read
   int descriptor = -1;           ///< that it needs besides 0 to 2: the log's
 };
 
 /// A map that is being read in a process of its own. It dies with this one.
-class MapReading : public Watcher {
+class MapReading : public EventHandler {
  public:
   /// A slow board reads the largest map in a third of it.
   static constexpr std::chrono::seconds timeout{60};
@@ -36,7 +35,7 @@ class MapReading : public Watcher {
 
   /// It has ended, or its time is over.
   bool is_over(TimePoint now);
-  /// Once it is over. The error says what went wrong; it is empty if the process has told.
+  /// Once it is over. The error says what went wrong; it is empty if it is logged already.
   tl::expected<MapPtr, std::string> take();
 
   void ready(TimePoint) override;

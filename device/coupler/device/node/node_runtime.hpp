@@ -7,7 +7,6 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "coupler/device/net/signals.hpp"
 #include "coupler/device/node/guarded_hooks.hpp"
 #include "coupler/device/node/io_service.hpp"
 #include "coupler/device/node/map_reading.hpp"
@@ -15,23 +14,12 @@
 #include "coupler/device/node/reload.hpp"
 #include "coupler/device/node/service_manager.hpp"
 #include "coupler/device/node/serving_context.hpp"
-#include "coupler/device/supervisor/heartbeat.hpp"
-#include "coupler/device/supervisor/workload.hpp"
+#include "coupler/device/supervisor/supervisor.hpp"
 
 namespace coupler::device {
 
-/// Why a map is not served.
-struct Refusal {
-  enum Reason : int { map_is_wrong = 1, device_failed = 3 };
-  Reason reason;       ///< also the exit status
-  std::string errors;  ///< one a line
-};
-
-/// Says each line.
-void tell(Log& log, const Refusal& refusal);
-
 /// A node with the map in force, which may be replaced by another one while clients are served.
-class NodeRuntime final : public Workload, public Heartbeat {
+class NodeRuntime final : public Workload {
  public:
   /// `loop` is the supervisor's. `again` is empty if the map is built in, `hooks` null if no code is bound to
   /// its points. All of them outlive it.
@@ -39,28 +27,26 @@ class NodeRuntime final : public Workload, public Heartbeat {
               Hooks* hooks = nullptr);
 
   /// Puts the first map in force; it outlives the runtime.
-  tl::expected<void, Refusal> start(const Map& map);
+  tl::expected<void, ServeError> start(const Map& map);
 
   int serve(SupervisorLink& supervisor, std::vector<OpenConnection> clients) override;
-  void reload(pid_t asker) override;
+  void reload(pid_t requester) override;
   bool look_after(TimePoint now) override;
   void change(std::vector<OpenConnection>& clients) override;
   bool drive_safe() override;
   bool make_firmware_safe() override;
   bool has_firmware() const override { return firmware_ != nullptr; }
 
-  /// A sign of life of the worker process. With the first one the node says that it serves.
+  /// The worker process serves: the first time, the log says so.
   void beat() override;
 
  private:
-  tl::expected<std::unique_ptr<ServingContext>, Refusal> prepare(const Map& map, MapPtr owner);
-  tl::expected<Listener, std::string> listen(const std::string& address, std::uint16_t port);
   std::string status_line() const;
   void begin_reading(TimePoint now);
   bool take_map();
-  void refuse(const Refusal& refusal);
-  bool mend(TimePoint now);
-  int end_without_keeper(IoService& service);
+  void refuse(const ServeError& error);
+  bool reconnect(TimePoint now);
+  int end_without_supervisor(IoService& service);
 
   Loop& loop_;
   const Options& options_;
@@ -68,14 +54,13 @@ class NodeRuntime final : public Workload, public Heartbeat {
   ServiceManager& manager_;
   Log& log_;
   Hooks* firmware_;
-  identity::Machine machine_;
   bool has_announced_ = false;
   std::unique_ptr<GuardedHooks> hooks_;  ///< null: there is no firmware
   std::unique_ptr<ServingContext> context_;
   std::unique_ptr<ServingContext> next_;    ///< waits for change()
   std::unique_ptr<ServingContext> former_;  ///< waits to be freed
   std::unique_ptr<MapReading> reading_;     ///< null: no map is being read
-  Askers askers_;
+  ReloadRequests requests_;
   TimePoint next_look_{};
 };
 

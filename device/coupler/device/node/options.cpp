@@ -28,10 +28,9 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
                   : ""));
   if (source == MapSource::argument) {
     const auto file = app.add_option("MAP", options.map, "The map file, YAML or JSON; - is standard input");
-    app.add_option(
-           "--reload", options.reload,
-           "Instead: make the coupler-node with this process id read its map again, wait, and tell how it "
-           "ended (exit status 0: taken, 1: refused)")
+    app.add_option("--reload", options.reload,
+                   "Instead: make the coupler-node with this process id read its map again, wait, and print "
+                   "the result (exit status 0: it serves the new map, 1: refused)")
         .type_name("PID")
         .excludes(file);
     app.callback([&options, file] {
@@ -45,8 +44,8 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
   app.add_flag("--sim", options.simulated,
                "Simulate every coil and discrete input, wired as the map's sim: section says");
   app.add_flag("--realtime", options.realtime,
-               "Ahead of other programs (SCHED_FIFO), with memory locked; ends with status 3 if the system "
-               "refuses that");
+               "Run ahead of other programs (SCHED_FIFO) with locked memory; exit with status 3 if the "
+               "system refuses that");
   if (const auto done = app.parse(argc, argv)) return *done;
   return options;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <pthread.h>
 #include <sys/types.h>
 
 #include <array>
@@ -9,12 +10,34 @@
 #include <vector>
 
 #include "coupler/device/core/hooks.hpp"
-#include "coupler/device/node/urgent_mutex.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/map/typed_value.hpp"
 #include "coupler/modbus/limits.hpp"
 
 namespace coupler::device {
+
+/// A mutex with priority inheritance, which std::mutex has not: while the thread that answers clients waits
+/// for it (--realtime), the ordinary thread that holds it runs with that thread's priority. Otherwise the
+/// former would wait for every program that runs ahead of the latter.
+class UrgentMutex {
+ public:
+  UrgentMutex() {
+    pthread_mutexattr_t attributes;
+    ::pthread_mutexattr_init(&attributes);
+    ::pthread_mutexattr_setprotocol(&attributes, PTHREAD_PRIO_INHERIT);
+    ::pthread_mutex_init(&mutex_, &attributes);
+    ::pthread_mutexattr_destroy(&attributes);
+  }
+  UrgentMutex(const UrgentMutex&) = delete;
+  UrgentMutex& operator=(const UrgentMutex&) = delete;
+  ~UrgentMutex() { ::pthread_mutex_destroy(&mutex_); }
+
+  void lock() { ::pthread_mutex_lock(&mutex_); }
+  void unlock() { ::pthread_mutex_unlock(&mutex_); }
+
+ private:
+  pthread_mutex_t mutex_;
+};
 
 /// What the generated hooks of every map have in common: values <-> registers, and values that any thread
 /// sets.

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/device/node/program.hpp"
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
+#include <variant>
 
 #include "coupler/base/standard_files.hpp"
-#include "coupler/device/node/serve.hpp"
+#include "coupler/device/node/node_runtime.hpp"
+#include "coupler/device/node/options.hpp"
+#include "coupler/device/node/realtime.hpp"
+#include "coupler/device/node/stderr_log.hpp"
+#include "coupler/device/supervisor/supervisor.hpp"
 
 namespace coupler::device {
 
@@ -23,5 +30,27 @@ int run(const Map& map, Hooks* hooks, int argc, char** argv) {
 int main_with(const Map& map, int argc, char** argv) { return run(map, nullptr, argc, argv); }
 
 int main_with(const Map& map, Hooks& hooks, int argc, char** argv) { return run(map, &hooks, argc, argv); }
+
+int serve(const Map& map, const Options& options, StderrLog& log, const ReadMap& again, Hooks* hooks) {
+  const auto failed = [&](const ServeError& error) {
+    log_errors(log, error);
+    return error.reason;
+  };
+  if (options.realtime)
+    if (const auto had = become_realtime(RealtimePriority::supervisor); !had)
+      return failed({ServeError::device_failed, had.error()});
+  Loop loop;
+  if (!loop.is_open()) return failed({ServeError::device_failed, std::strerror(errno)});
+  Signals signals(loop);
+  log.never_wait();
+  ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"));
+  NodeRuntime runtime(loop, options, again, manager, log, hooks);
+  if (const auto started = runtime.start(map); !started) return failed(started.error());
+  const bool safe = Supervisor(loop, signals, runtime, log).run();
+  manager.stopping();
+  if (safe) return 0;
+  return failed(
+      {ServeError::device_failed, "not every output could be driven to its safe state when the node ended"});
+}
 
 }  // namespace coupler::device

@@ -19,8 +19,7 @@ std::string refused(const std::string& what, int error, const std::string& setti
                     const std::string& command) {
   return fmt::format(
       "--realtime: {} is refused: {}; in a service's unit set {} (the drop-in examples/realtime.conf does), "
-      "in a "
-      "shell run '{}' as root first",
+      "in a shell run '{}' as root first",
       what, std::strerror(error), setting, command);
 }
 

@@ -9,7 +9,7 @@ namespace coupler::device {
 /// Priorities of SCHED_FIFO under --realtime. Both are above every ordinary program, and below the kernel's
 /// threads for interrupts (50), which bring requests and edges. The supervisor's is the higher one: on a
 /// board with one processor it would otherwise never get to end a worker process that has run wild.
-enum class RealtimePriority : int { io_process = 10, supervisor = 11 };
+enum class RealtimePriority : int { worker = 10, supervisor = 11 };
 
 /// Puts the calling thread ahead of ordinary programs and locks the memory of its process, so that neither
 /// load nor swapping delays it. Each process of a node calls it for itself, before it starts threads: threads

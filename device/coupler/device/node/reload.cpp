@@ -35,10 +35,10 @@ struct Name {
 };
 
 /// In the kernel's own space for such names, which begin with a zero byte: no file is left behind.
-Name name_of(pid_t asker) {
+Name name_of(pid_t requester) {
   Name name;
   name.address.sun_family = AF_UNIX;
-  const std::string text = fmt::format("coupler-node-reload-{}", asker);
+  const std::string text = fmt::format("coupler-node-reload-{}", requester);
   std::copy(text.begin(), text.end(), &name.address.sun_path[1]);
   name.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
   return name;
@@ -93,16 +93,16 @@ bool is_another_program(pid_t pid) {
 
 }  // namespace
 
-void Askers::add(pid_t asker) {
-  if (asker != 0) all_.push_back(asker);
+void ReloadRequests::add(pid_t requester) {
+  if (requester != 0) all_.push_back(requester);
 }
 
-void Askers::tell(bool taken, std::string_view text) {
+void ReloadRequests::reply(bool taken, std::string_view text) {
   if (all_.empty()) return;
   const std::string answer = (taken ? "1" : "0") + std::string(text);
   const Descriptor socket = open_socket();
-  for (const pid_t asker : std::exchange(all_, {})) {
-    const Name name = name_of(asker);
+  for (const pid_t requester : std::exchange(all_, {})) {
+    const Name name = name_of(requester);
     ::sendto(socket.get(), answer.data(), answer.size(), MSG_NOSIGNAL, name.get(), name.size);
   }
 }
@@ -114,21 +114,21 @@ int ask_to_reload(pid_t node, StderrLog& log) {
   };
   if (is_another_program(node))
     return fail(
-        fmt::format("process {} is not a coupler-node; systemctl show -P MainPID coupler-node tells the one "
-                    "of the service",
+        fmt::format("process {} is not a coupler-node; 'systemctl show -P MainPID coupler-node' prints the "
+                    "id of the service's process",
                     node));
   const Descriptor socket = open_socket();
   const Name name = name_of(::getpid());
   const int on = 1;
   if (::bind(socket.get(), name.get(), name.size) != 0 ||
       ::setsockopt(socket.get(), SOL_SOCKET, SO_PASSCRED, &on, sizeof on) != 0)
-    return fail(fmt::format("no answer can be had: {}", std::strerror(errno)));
+    return fail(fmt::format("cannot listen for the answer of the node: {}", std::strerror(errno)));
   if (::kill(node, SIGHUP) != 0)
-    return fail(fmt::format("process {} cannot be asked: {}", node, std::strerror(errno)));
+    return fail(fmt::format("cannot send SIGHUP to process {}: {}", node, std::strerror(errno)));
   const auto answer = wait_for_answer(socket.get(), node);
   if (!answer)
-    return fail(
-        fmt::format("process {} gave no answer in {} s; its log may tell why", node, longest_wait.count()));
+    return fail(fmt::format("process {} did not answer within {} s; its log may say why", node,
+                            longest_wait.count()));
   if (log.is_journal()) return answer->taken ? taken : refused;
   if (answer->taken)
     log.write(answer->text);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answer to SIGHUP: who sends it may wait to hear whether the map was taken. It listens on a datagram
-// socket that is named after its process id, which the node knows from the signal.
+// The reply to SIGHUP: the process that sent it may wait for the result of the reload, on a datagram socket
+// that is named after its process id, which the node knows from the signal.
 #pragma once
 
 #include <sys/types.h>
@@ -13,13 +13,13 @@
 
 namespace coupler::device {
 
-/// Processes that asked for the reload that is going on.
-class Askers {
+/// Processes that asked for the reload in progress.
+class ReloadRequests {
  public:
-  /// 0 is nobody.
-  void add(pid_t asker);
-  /// Those who wait for it hear how it ended; nobody is waited for.
-  void tell(bool taken, std::string_view text);
+  /// 0: an unknown process.
+  void add(pid_t requester);
+  /// Sends the result to those that wait for it, without waiting for them.
+  void reply(bool taken, std::string_view text);
 
  private:
   std::vector<pid_t> all_;

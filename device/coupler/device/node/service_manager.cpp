@@ -11,6 +11,8 @@
 #include <cstring>
 #include <utility>
 
+#include "coupler/device/supervisor/heartbeat.hpp"
+
 namespace coupler::device {
 namespace {
 
@@ -32,7 +34,7 @@ unsigned interval_for(const char* watchdog) {
   using std::chrono::microseconds;
   const microseconds wait(watchdog == nullptr ? 0 : std::strtoll(watchdog, nullptr, 10));
   if (wait.count() <= 0) return 0;
-  return static_cast<unsigned>(std::max<std::int64_t>(1, wait / 2 / Heartbeat::period));
+  return static_cast<unsigned>(std::max<std::int64_t>(1, wait / 2 / heartbeat_period));
 }
 
 }  // namespace
@@ -60,8 +62,8 @@ void ServiceManager::ready(std::string status) {
 
 void ServiceManager::stopping() { send("STOPPING=1"); }
 
-void ServiceManager::send(std::string_view news) {
-  if (is_there()) ::send(socket_.get(), news.data(), news.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+void ServiceManager::send(std::string_view state) {
+  if (is_there()) ::send(socket_.get(), state.data(), state.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
 }  // namespace coupler::device

@@ -7,31 +7,30 @@
 
 #include "coupler/device/core/time.hpp"
 #include "coupler/device/net/descriptor.hpp"
-#include "coupler/device/supervisor/heartbeat.hpp"
 
 namespace coupler::device {
 
-/// Tells systemd how the node is, in the protocol of sd_notify(3): a datagram for each piece of news. Why it
+/// Reports the node's state to systemd, in the protocol of sd_notify(3): a datagram for each change. Why it
 /// does without libsystemd: docs/decisions/0006-sd-notify-without-libsystemd.md.
-class ServiceManager : public Heartbeat {
+class ServiceManager {
  public:
-  /// The values of NOTIFY_SOCKET and WATCHDOG_USEC; null: nobody wants to know.
+  /// The values of NOTIFY_SOCKET and WATCHDOG_USEC; null: there is no service manager.
   ServiceManager(const char* socket, const char* watchdog);
 
   bool is_there() const { return socket_.is_open(); }
 
-  /// What it is told with the first sign of life.
+  /// What the first beat() reports.
   void set_status(std::string status) { status_ = std::move(status); }
-  /// The first one: ready, with the status. Later ones keep the manager's watchdog from killing the node, at
-  /// twice the rate that it asks for. Never blocks.
-  void beat() override;
-  /// A new map is being read; ready() tells how that ended.
+  /// The node's loop turns. The first call reports that the node is ready, with the status. Later ones feed
+  /// the manager's watchdog, at twice the rate that it asks for. Never blocks.
+  void beat();
+  /// A new map is being read, until ready() is called.
   void reloading(TimePoint now);
   void ready(std::string status);
   void stopping();
 
  private:
-  void send(std::string_view news);
+  void send(std::string_view state);
 
   Descriptor socket_;
   std::string status_;

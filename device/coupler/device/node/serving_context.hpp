@@ -1,42 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <tl/expected.hpp>
 
 #include "coupler/device/analogue/sysfs_channels.hpp"
 #include "coupler/device/core/hardware.hpp"
 #include "coupler/device/gpio/wiring.hpp"
 #include "coupler/device/net/listener.hpp"
+#include "coupler/device/node/options.hpp"
 #include "coupler/device/node/shared_state.hpp"
 #include "coupler/map/owned_map.hpp"
 
 namespace coupler::device {
 
+/// Why a map is not served.
+struct ServeError {
+  enum Reason : int { map_is_wrong = 1, device_failed = 3 };
+  Reason reason;       ///< also the exit status
+  std::string errors;  ///< one a line
+};
+
+/// Logs each of the errors.
+void log_errors(Log& log, const ServeError& error);
+
+/// Whether a node can serve this map, which is stricter than a map of any other coupler. The error names the
+/// points that prevent it, one a line, and what to do.
+tl::expected<void, std::string> check_servable(const Map& map);
+
 /// A map and all that it takes to serve it. It outlives the processes that do.
 struct ServingContext {
-  MapPtr owner;  ///< null: the map is somebody else's
+  /// What is needed to serve the map, after `before` (null: there was no other). The network and channels
+  /// come first, so a program that then cannot serve the outputs does not touch them: to request a line
+  /// drives it; to open a channel does not. `hooks` may be null.
+  static tl::expected<std::unique_ptr<ServingContext>, ServeError> prepare(const Map& map, MapPtr owner,
+                                                                           const Options& options,
+                                                                           const ServingContext* before,
+                                                                           Hooks* hooks, Log& log);
+
+  MapPtr owner;  ///< null: the map is not owned
   const Map* map = nullptr;
   std::string address;  ///< that the listener was asked for
   std::uint16_t port = 0;
   Listener listener;
-  std::unique_ptr<NextWiring> prepared;  ///< before it is in force
-  std::unique_ptr<Wiring> wiring;        ///< when it is
+  std::unique_ptr<PreparedWiring> prepared;  ///< before it is in force
+  std::unique_ptr<Wiring> wiring;            ///< when it is
   std::unique_ptr<SharedState> state;
   std::unique_ptr<SysfsChannels> channels;   ///< null: no register has one
   std::unique_ptr<AnaloguePoints> analogue;  ///< the points that have them; null as well
   std::unique_ptr<HookedPoints> hooked;      ///< null: no firmware's code is behind points
 
-  /// Channels whose device is back are used again, outputs driven as they were before, or safe if `safe`.
-  /// True: there are some.
-  bool mend_channels(bool safe) {
-    if (!channels) return false;
-    const auto mended = channels->mend();
-    for (const Point* point : mended)
-      if (is_writable(point->table)) (void)analogue->drive(*point, safe);
-    return !mended.empty();
-  }
+  /// Uses channels again whose device is plugged in again; drives outputs as before, or safe if `safe`. True:
+  /// there are some.
+  bool reconnect_channels(bool safe);
 
+  /// Whether clients need not notice when one is replaced by the other.
+  bool looks_like(const ServingContext& other) const;
+  /// Whether its watchdog has expired.
   bool has_expired() const { return state->watchdog().state() == OutputWatchdog::State::expired; }
   /// Once it is in force.
   Hardware hardware() const { return {wiring->lines(), analogue.get(), hooked.get()}; }

@@ -7,7 +7,7 @@
 #include "coupler/device/core/image.hpp"
 #include "coupler/device/core/statistics.hpp"
 #include "coupler/device/core/watchdog.hpp"
-#include "coupler/device/supervisor/shared_array.hpp"
+#include "coupler/device/supervisor/shared_memory.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/map/image_layout.hpp"
 

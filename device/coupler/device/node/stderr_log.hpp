@@ -2,17 +2,41 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "coupler/base/line_limit.hpp"
 #include "coupler/device/core/log.hpp"
-#include "coupler/device/node/log_stream.hpp"
-#include "coupler/device/supervisor/shared_array.hpp"
+#include "coupler/device/net/descriptor.hpp"
+#include "coupler/device/supervisor/shared_memory.hpp"
 #include "coupler/map/diagnostic.hpp"
 
 namespace coupler::device {
+
+/// Stderr, without waiting for whoever reads it: a terminal that was stopped, a pipe that is full. Other
+/// programs that use it see no difference: O_NONBLOCK of a descriptor that they share would be theirs, too.
+class LogStream {
+ public:
+  /// Stderr as it is now.
+  LogStream();
+
+  /// Returns how much of the text was written: what stderr takes at once.
+  std::size_t write(std::string_view text) const;
+  /// That write() needs besides stderr; -1: none.
+  int descriptor() const { return own_.get(); }
+
+ private:
+  std::size_t write_some(std::string_view text) const;
+
+  /// Of the same pipe or terminal, does not block. Closed: there can be none, or none is needed.
+  Descriptor own_;
+  bool is_socket_ = false;
+};
 
 /// The log on stderr: "coupler-node: …" for people; for systemd's journal, which knows who writes, a priority
 /// instead (sd-daemon(3): "<4>…").

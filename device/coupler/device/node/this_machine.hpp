@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which machine this is, as the node tells it: two boards with one map are told apart by it.
+// Which machine this is, as the node reports it: it distinguishes two boards with one map.
 #pragma once
 
 #include <cstdint>

@@ -2,23 +2,63 @@
 #include "coupler/device/supervisor/supervisor.hpp"
 
 #include <fmt/format.h>
+#include <sys/prctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstring>
+#include <functional>
+#include <optional>
 #include <utility>
 
-#include "coupler/device/supervisor/backoff.hpp"
 #include "coupler/device/supervisor/cpu_time.hpp"
-#include "coupler/device/supervisor/safety.hpp"
-#include "coupler/device/supervisor/silence.hpp"
+#include "coupler/device/supervisor/heartbeat.hpp"
 
 namespace coupler::device {
 namespace {
 
-constexpr std::chrono::milliseconds glance{100};
+/// How often the loop turns at least.
+constexpr std::chrono::milliseconds turn{100};
 /// Ten in the time after which a worker process takes its supervisor for dead.
 constexpr std::chrono::milliseconds beat_period = std::chrono::milliseconds(SupervisorLink::timeout) / 10;
+/// How long outputs may take to be driven to their safe state before the process that drives them is killed.
+constexpr std::chrono::seconds safety_timeout{1};
+
+/// A process that also ends by itself, in case nobody is left to kill it.
+std::optional<Child> start_safety(const std::function<bool()>& work) {
+  auto child = Child::start([&] {
+    ::prctl(PR_SET_NAME, "coupler-safety");
+    ::alarm(2 * static_cast<unsigned>(safety_timeout.count()));
+    return work() ? 0 : 1;
+  });
+  return child ? std::optional(*std::move(child)) : std::nullopt;
+}
+
+bool finish_safety(Child child, TimePoint deadline, std::vector<Child>& lost) {
+  using std::chrono::milliseconds;
+  const auto left = std::chrono::ceil<milliseconds>(deadline - TimePoint::clock::now());
+  if (const auto status = child.wait(std::max(left, milliseconds(0)))) return ended_well(*status);
+  if (!child.kill()) lost.push_back(std::move(child));
+  return false;
+}
+
+/// Drives the outputs of the workload to their safe state while nobody else does: the hardware, and at the
+/// same time what its firmware is behind if that is wanted, each in a process of its own. False: one could
+/// not be driven, or took too long. A process that cannot be killed is added to `lost`.
+bool make_safe(Workload& workload, bool firmware_too, std::vector<Child>& lost) {
+  auto hardware = start_safety([&] { return workload.drive_safe(); });
+  bool safe = hardware || workload.drive_safe();
+  std::optional<Child> firmware;
+  if (firmware_too && workload.has_firmware()) {
+    firmware = start_safety([&] { return workload.make_firmware_safe(); });
+    safe &= firmware.has_value();
+  }
+  const TimePoint deadline = TimePoint::clock::now() + safety_timeout;
+  if (hardware) safe &= finish_safety(*std::move(hardware), deadline, lost);
+  if (firmware) safe &= finish_safety(*std::move(firmware), deadline, lost);
+  return safe;
+}
 
 }  // namespace
 
@@ -35,7 +75,7 @@ bool Supervisor::run() {
         "the worker process {}; {}; starting it again in {} ms", how_it_ended_,
         is_safe_ ? "outputs are in their safe state" : "not every output could be driven to its safe state",
         pause.count()));
-    rest(pause);
+    wait(pause);
     if (signals_.stop() != 0) make_safe(false);
   }
   return is_safe_;
@@ -45,7 +85,7 @@ bool Supervisor::run_one(Clients& clients) {
   const auto work = [&](SupervisorLink& supervisor) {
     return workload_.serve(supervisor, std::move(clients));
   };
-  auto process = Worker::start(loop_, work, heard_);
+  auto process = Worker::start(loop_, work, [&] { workload_.beat(); });
   clients.clear();
   if (!process) {
     how_it_ended_ = fmt::format("cannot be started: {}", std::strerror(process.error()));
@@ -65,13 +105,13 @@ bool Supervisor::run_one(Clients& clients) {
 Worker::End Supervisor::watch_over(Worker& process) {
   TimePoint now = TimePoint::clock::now();
   CpuWait cpu_wait(process.pid());
-  Silence silence(now, glance, cpu_wait.sample(now));
+  Silence silence(now, turn, cpu_wait.sample(now));
   for (TimePoint heard = process.last_beat(), next_beat{}; !silence.is_too_long();) {
     if (now >= next_beat) {
       process.beat();
       next_beat = now + beat_period;
     }
-    now = loop_.run_once(glance);
+    now = loop_.run_once(turn);
     if (signals_.stop() != 0) {
       process.terminate(signals_.stop() == SIGINT ? SIGINT : SIGTERM);
       return wait_for(process);
@@ -84,7 +124,7 @@ Worker::End Supervisor::watch_over(Worker& process) {
     if (has_lost_one_ended()) {
       Worker::End end = this->end(process);
       end.in_order = false;
-      end.how = "was replaced, since one before it, which hung, may have moved lines when it ended";
+      end.how = "was replaced: an earlier one, which hung, has ended and may have moved lines";
       return end;
     }
     const bool was_heard = process.last_beat() != std::exchange(heard, process.last_beat());
@@ -99,7 +139,7 @@ Worker::End Supervisor::watch_over(Worker& process) {
 Worker::End Supervisor::wait_for(Worker& process) {
   TimePoint now = TimePoint::clock::now();
   for (const TimePoint until = now + timeout; now < until && !process.has_ended();)
-    now = loop_.run_once(glance);
+    now = loop_.run_once(turn);
   return end(process);
 }
 
@@ -111,8 +151,8 @@ Worker::End Supervisor::end(Worker& process) {
 
 bool Supervisor::is_to_change(TimePoint now) {
   if (signals_.take_suspend())
-    log_.warn("Ctrl-Z is not obeyed: a stopped node could not keep its outputs safe; Ctrl-C ends it");
-  if (const auto asker = signals_.take_reload()) workload_.reload(*asker);
+    log_.warn("Ctrl-Z is ignored: a stopped node could not keep its outputs safe; Ctrl-C ends it");
+  if (const auto requester = signals_.take_reload()) workload_.reload(*requester);
   to_change_ = to_change_ || workload_.look_after(now);
   return to_change_;
 }
@@ -129,10 +169,9 @@ void Supervisor::make_safe(bool firmware_too) {
   is_safe_ = device::make_safe(workload_, firmware_too, lost_);
 }
 
-void Supervisor::rest(std::chrono::milliseconds pause) {
+void Supervisor::wait(std::chrono::milliseconds pause) {
   TimePoint now = TimePoint::clock::now();
-  for (const TimePoint until = now + pause; now < until && signals_.stop() == 0;)
-    now = loop_.run_once(glance);
+  for (const TimePoint until = now + pause; now < until && signals_.stop() == 0;) now = loop_.run_once(turn);
 }
 
 }  // namespace coupler::device

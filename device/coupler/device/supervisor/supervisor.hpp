@@ -1,29 +1,81 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string>
 #include <vector>
 
 #include "coupler/device/core/log.hpp"
 #include "coupler/device/net/signals.hpp"
 #include "coupler/device/supervisor/worker.hpp"
-#include "coupler/device/supervisor/workload.hpp"
 
 namespace coupler::device {
 
+/// What a supervisor has its worker processes do. The supervisor calls it, unless a function says otherwise;
+/// it waits for nothing there.
+class Workload {
+ public:
+  /// The life of a worker process: answers clients, beginning with `clients`, until a signal asks to stop or
+  /// the supervisor to make room; then it gives the supervisor its clients. After a signal it tries to leave
+  /// its outputs in their safe state. Returns the exit status: 0 if it was asked to end.
+  virtual int serve(SupervisorLink& supervisor, std::vector<OpenConnection> clients) = 0;
+  /// The worker process reported that its loop turns.
+  virtual void beat() {}
+
+  /// That process (0: unknown) asked to reload, by SIGHUP. look_after() tells when it is done.
+  virtual void reload(pid_t requester) = 0;
+  /// Called every 100 ms or so. True: change() is to be called.
+  virtual bool look_after(TimePoint now) = 0;
+  /// There is no worker process: what reload() or look_after() prepared comes into force. Outputs stay as
+  /// they are. Closes those of the clients that have to find out.
+  virtual void change(std::vector<OpenConnection>& clients) = 0;
+
+  /// There is no worker process. Drives the outputs to their safe state, in a process of its own, since lines
+  /// can hang; in the supervisor if there is none to be had. False: one of them could not be driven.
+  virtual bool drive_safe() = 0;
+  /// The same for what a firmware's code is behind, never in the supervisor.
+  virtual bool make_firmware_safe() = 0;
+  virtual bool has_firmware() const = 0;
+
+ protected:
+  ~Workload() = default;
+};
+
+/// The pause before a process that ended is started again: doubled each time, short again after one that
+/// lived long enough.
+class Backoff {
+ public:
+  static constexpr std::chrono::milliseconds shortest{100};
+  static constexpr std::chrono::milliseconds longest{5000};
+  static constexpr std::chrono::seconds long_enough{10};
+
+  std::chrono::milliseconds after(std::chrono::nanoseconds lived) {
+    if (lived >= long_enough) next_ = shortest;
+    const auto pause = next_;
+    next_ = std::min(2 * next_, longest);
+    return pause;
+  }
+
+ private:
+  std::chrono::milliseconds next_ = shortest;
+};
+
 /// Holds the lines while another process works with them. Lines that nobody holds fall back to whatever pulls
-/// them, so the process that holds them does as little as it can that could fail or wait: when the I/O
+/// them, so the process that holds them does as little as possible that could fail or wait. When the worker
 /// process dies, or its loop stands still, the supervisor has the outputs driven to their safe state and
-/// starts it anew. When lines or the map change, it replaces the worker process by one that knows, while
-/// outputs stay as they are.
+/// starts the worker process again. When lines or the map change, it replaces the worker process by one that
+/// has the new ones, while outputs stay as they are.
 class Supervisor {
  public:
   /// For a worker process that was asked to end. One that does not beat has as long as Silence says.
   static constexpr std::chrono::seconds timeout{1};
 
-  /// The workload shares what it knows with the worker process. `heard` (may be null) is told of each beat of
-  /// it.
-  Supervisor(Loop& loop, Signals& signals, Workload& workload, Log& log, Heartbeat* heard)
-      : loop_(loop), signals_(signals), workload_(workload), log_(log), heard_(heard) {}
+  /// All of them outlive it.
+  Supervisor(Loop& loop, Signals& signals, Workload& workload, Log& log)
+      : loop_(loop), signals_(signals), workload_(workload), log_(log) {}
 
   /// Runs worker processes until a signal asks to stop; then the outputs are in their safe state. False: one
   /// of them could not be driven.
@@ -42,13 +94,12 @@ class Supervisor {
   bool is_to_change(TimePoint now);
   bool has_lost_one_ended();
   void make_safe(bool firmware_too);
-  void rest(std::chrono::milliseconds pause);
+  void wait(std::chrono::milliseconds pause);
 
   Loop& loop_;
   Signals& signals_;
   Workload& workload_;
   Log& log_;
-  Heartbeat* heard_;
   bool to_change_ = false;    ///< the workload waits for change()
   bool is_safe_ = false;      ///< at the end of the last worker process
   std::string how_it_ended_;  ///< of the same

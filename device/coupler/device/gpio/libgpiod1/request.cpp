@@ -53,7 +53,8 @@ Request::~Request() {
 tl::expected<std::unique_ptr<Request>, std::string> Request::make(const std::vector<LineSpec>& lines,
                                                                   int type) {
   const auto refused = [&](gpiod_chip* chip) {
-    return tl::unexpected(refusal(lines, errno, [chip](unsigned offset) { return holder_of(chip, offset); }));
+    return tl::unexpected(
+        request_error(lines, errno, [chip](unsigned offset) { return holder_of(chip, offset); }));
   };
   ChipHandle chip(gpiod_chip_open(lines.front().line.chip->path.c_str()), gpiod_chip_close);
   if (!chip) return refused(nullptr);

@@ -94,7 +94,7 @@ tl::expected<Request, std::string> request(const std::vector<LineSpec>& lines) {
   ChipHandle chip(gpiod_chip_open(lines.front().line.chip->path.c_str()));
   const auto refused = [&] {
     return tl::unexpected(
-        refusal(lines, errno, [&](unsigned offset) { return holder_of(chip.get(), offset); }));
+        request_error(lines, errno, [&](unsigned offset) { return holder_of(chip.get(), offset); }));
   };
   const LineConfig config(gpiod_line_config_new());
   const RequestConfig options(gpiod_request_config_new());

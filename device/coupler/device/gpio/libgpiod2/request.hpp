@@ -9,7 +9,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "coupler/device/gpio/line_spec.hpp"
+#include "coupler/device/gpio/inventory.hpp"
 
 namespace coupler::device::libgpiod2 {
 

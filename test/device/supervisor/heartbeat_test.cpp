@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/device/supervisor/silence.hpp"
+#include "coupler/device/supervisor/heartbeat.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 using std::chrono::seconds;
 
-constexpr milliseconds glance{100};
+constexpr milliseconds turn{100};
 
 /// Looks at another process; the clock is here.
 class Watched : public testing::Test {
@@ -20,10 +20,10 @@ class Watched : public testing::Test {
     waited_ += waits;
     silence_.sample(now_, heard, waited_);
   }
-  /// Full glances until it was silent for too long; how many there were.
-  int glances_until_too_long(nanoseconds waits) {
+  /// Full turns until it was silent for too long; how many there were.
+  int turns_until_too_long(nanoseconds waits) {
     for (int count = 1; count < 1000; ++count) {
-      look(glance, waits);
+      look(turn, waits);
       if (silence_.is_too_long()) return count;
     }
     return -1;
@@ -31,66 +31,66 @@ class Watched : public testing::Test {
 
   TimePoint now_{seconds(1000)};
   nanoseconds waited_{seconds(7)};  ///< in its life before
-  Silence silence_{now_, glance, waited_};
+  Silence silence_{now_, turn, waited_};
 };
 
-TEST_F(Watched, A_silence_of_a_second_is_too_long) { EXPECT_EQ(glances_until_too_long(milliseconds(0)), 10); }
+TEST_F(Watched, A_silence_of_a_second_is_too_long) { EXPECT_EQ(turns_until_too_long(milliseconds(0)), 10); }
 
 TEST_F(Watched, Whatever_is_heard_ends_a_silence) {
   for (int i = 0; i < 100; ++i) {
-    look(glance, milliseconds(0), i % 9 == 8);
+    look(turn, milliseconds(0), i % 9 == 8);
     EXPECT_FALSE(silence_.is_too_long()) << i;
   }
 }
 
 TEST_F(Watched, The_time_without_a_CPU_is_deducted) {
-  EXPECT_EQ(glances_until_too_long(milliseconds(50)), 20);
+  EXPECT_EQ(turns_until_too_long(milliseconds(50)), 20);
   EXPECT_EQ(silence_.lasted(), seconds(2));
   EXPECT_EQ(silence_.starved(), seconds(1));
 }
 
 TEST_F(Watched, Five_seconds_are_too_long_in_any_case) {
-  EXPECT_EQ(glances_until_too_long(glance), 50);
+  EXPECT_EQ(turns_until_too_long(turn), 50);
   EXPECT_EQ(silence_.starved(), seconds(5));
 }
 
 TEST_F(Watched, What_it_waited_before_it_fell_silent_is_not_deducted) {
-  look(glance, milliseconds(90), true);
-  EXPECT_EQ(glances_until_too_long(milliseconds(0)), 10);
+  look(turn, milliseconds(90), true);
+  EXPECT_EQ(turns_until_too_long(milliseconds(0)), 10);
 }
 
 TEST_F(Watched, A_wait_that_is_counted_late_is_deducted_all_the_same) {
-  look(glance);
-  look(glance, milliseconds(190));
+  look(turn);
+  look(turn, milliseconds(190));
   EXPECT_EQ(silence_.starved(), milliseconds(190));
 }
 
 TEST_F(Watched, A_wait_that_was_none_is_deducted_no_longer) {
-  look(glance, milliseconds(100));
-  look(glance, milliseconds(-100));
+  look(turn, milliseconds(100));
+  look(turn, milliseconds(-100));
   EXPECT_EQ(silence_.lasted(), milliseconds(200));
   EXPECT_EQ(silence_.starved(), milliseconds(0));
 }
 
 TEST_F(Watched, No_more_than_the_silence_is_deducted) {
   look(milliseconds(10), seconds(3));
-  EXPECT_EQ(glances_until_too_long(milliseconds(0)), 10);
+  EXPECT_EQ(turns_until_too_long(milliseconds(0)), 10);
 }
 
-TEST_F(Watched, A_glance_counts_for_no_longer_than_it_may_last) {
+TEST_F(Watched, A_turn_counts_for_no_longer_than_it_may_last) {
   look(seconds(30));
-  EXPECT_EQ(silence_.lasted(), glance) << "this process was stopped itself";
+  EXPECT_EQ(silence_.lasted(), turn) << "this process was stopped itself";
   EXPECT_FALSE(silence_.is_too_long());
 }
 
-TEST_F(Watched, Of_a_glance_that_lasted_too_long_no_more_is_deducted_than_counts) {
-  look(glance);
+TEST_F(Watched, Of_a_turn_that_lasted_too_long_no_more_is_deducted_than_counts) {
+  look(turn);
   look(seconds(30), seconds(30));
-  EXPECT_EQ(silence_.lasted(), 2 * glance);
-  EXPECT_EQ(silence_.starved(), glance);
+  EXPECT_EQ(silence_.lasted(), 2 * turn);
+  EXPECT_EQ(silence_.starved(), turn);
 }
 
-TEST_F(Watched, A_glance_counts_for_no_longer_than_it_took) {
+TEST_F(Watched, A_turn_counts_for_no_longer_than_it_took) {
   for (int i = 0; i < 999; ++i) look(milliseconds(1));
   EXPECT_FALSE(silence_.is_too_long());
   look(milliseconds(1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/device/analogue/open_channels.hpp"
+#include "coupler/device/analogue/sysfs_channels.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -135,7 +135,8 @@ TEST_F(ChannelsOfAMap, Have_initial_and_safe_values_that_they_can_be_driven_to) 
     p.safe_value = too_much;
   });
   const std::string said = error(wrong.build());
-  EXPECT_THAT(said, HasSubstr("point 'second': pwmchip0 (fan) channel 0 is the channel of point 'fan' too"));
+  EXPECT_THAT(said,
+              HasSubstr("point 'second': pwmchip0 (fan) channel 0 is already the channel of point 'fan'"));
   EXPECT_THAT(said, HasSubstr("initial value 101; set 'initial' to one in its range, 0 to 100 %"));
   EXPECT_THAT(said, HasSubstr("safe value 101"));
 }
@@ -144,6 +145,41 @@ TEST(SamplingPeriod, Is_that_of_the_map_within_limits) {
   EXPECT_EQ(milliseconds(100), Sampler::period_for(10));
   EXPECT_EQ(Sampler::shortest, Sampler::period_for(1e6));
   EXPECT_EQ(Sampler::longest, Sampler::period_for(0.001));
+}
+
+using Sample = tl::expected<double, int>;
+
+struct LatestSample : testing::Test {
+  LatestSample() { latest.begin(now); }
+  TimePoint now{std::chrono::hours(1)};
+  Latest latest;
+};
+
+TEST_F(LatestSample, Is_not_there_before_the_first_conversion) {
+  EXPECT_EQ(Sample(tl::unexpected(EAGAIN)), latest.get(now));
+}
+
+TEST_F(LatestSample, Is_the_last_one) {
+  latest.put(1.5, now);
+  latest.put(2.5, now);
+  EXPECT_EQ(Sample(2.5), latest.get(now));
+}
+
+TEST_F(LatestSample, That_failed_is_an_error_until_one_succeeds) {
+  latest.put(1.5, now);
+  latest.put(tl::unexpected(EIO), now);
+  EXPECT_EQ(Sample(tl::unexpected(EIO)), latest.get(now));
+  latest.put(2.5, now);
+  EXPECT_EQ(Sample(2.5), latest.get(now));
+}
+
+TEST_F(LatestSample, Is_an_error_when_no_other_came_for_too_long) {
+  latest.put(1.5, now);
+  EXPECT_EQ(Sample(1.5), latest.get(now + Latest::timeout));
+  const TimePoint late = now + Latest::timeout + std::chrono::milliseconds(1);
+  EXPECT_EQ(Sample(tl::unexpected(ETIMEDOUT)), latest.get(late));
+  latest.begin(late);
+  EXPECT_EQ(Sample(tl::unexpected(EAGAIN)), latest.get(late));
 }
 
 }  // namespace

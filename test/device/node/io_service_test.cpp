@@ -3,20 +3,20 @@
 
 #include <csignal>
 
-#include "coupler/device/node/shutdown_summary.hpp"
+#include "coupler/device/node/io_service.hpp"
 
 namespace coupler::device {
 namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Farewell, Of_an_idle_node_is_short) {
+TEST(ShutdownSummary, Of_an_idle_node_is_short) {
   EXPECT_EQ(shutdown_summary(SIGTERM, true, {}, TimePoint() + 90s),
             "Terminated: outputs are in their safe state; answered 0 requests, 0 of them with an exception; "
             "uptime 90 s");
 }
 
-TEST(Farewell, Has_every_statistic_that_is_not_0_in_one_line) {
+TEST(ShutdownSummary, Has_every_statistic_that_is_not_0_in_one_line) {
   Statistics statistics;
   statistics.started = TimePoint() + 10s;
   statistics.requests = 1000;

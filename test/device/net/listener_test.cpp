@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coupler/device/net/client_address.hpp"
+#include "coupler/device/net/listener.hpp"
 #include "test/device/net/tcp_under_test.hpp"
 
 namespace coupler::device {
@@ -11,7 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-AllowList guests(std::initializer_list<const char*> ranges) {
+AllowList allow(std::initializer_list<const char*> ranges) {
   std::vector<Network> networks;
   for (const char* range : ranges) {
     const auto network = parse_network(range);
@@ -41,7 +41,7 @@ TEST(AllowList, Without_names_it_admits_everyone) {
 }
 
 TEST(AllowList, One_of_its_ranges_is_enough) {
-  const AllowList list = guests({"10.0.0.7", "192.168.0.0/24", "fd00::/8"});
+  const AllowList list = allow({"10.0.0.7", "192.168.0.0/24", "fd00::/8"});
   EXPECT_TRUE(list.admits(ipv4("10.0.0.7")));
   EXPECT_TRUE(list.admits(ipv4("192.168.0.200")));
   EXPECT_TRUE(list.admits(ipv6("fd12::1")));
@@ -50,16 +50,27 @@ TEST(AllowList, One_of_its_ranges_is_enough) {
 }
 
 TEST(AllowList, A_socket_of_both_families_shows_IPv4_as_IPv6) {
-  EXPECT_TRUE(guests({"10.0.0.0/8"}).admits(ipv6("::ffff:10.1.2.3")));
-  EXPECT_FALSE(guests({"10.0.0.0/8"}).admits(ipv6("::ffff:11.1.2.3")));
+  EXPECT_TRUE(allow({"10.0.0.0/8"}).admits(ipv6("::ffff:10.1.2.3")));
+  EXPECT_FALSE(allow({"10.0.0.0/8"}).admits(ipv6("::ffff:11.1.2.3")));
 }
 
 TEST(AllowList, All_of_IPv6_is_nobody_of_IPv4_and_the_other_way_round) {
-  EXPECT_TRUE(guests({"::/0"}).admits(ipv6("2001:db8::1")));
-  EXPECT_FALSE(guests({"::/0"}).admits(ipv6("::ffff:10.1.2.3")));
-  EXPECT_FALSE(guests({"::/0"}).admits(ipv4("10.1.2.3")));
-  EXPECT_TRUE(guests({"0.0.0.0/0"}).admits(ipv6("::ffff:10.1.2.3")));
-  EXPECT_FALSE(guests({"0.0.0.0/0"}).admits(ipv6("2001:db8::1")));
+  EXPECT_TRUE(allow({"::/0"}).admits(ipv6("2001:db8::1")));
+  EXPECT_FALSE(allow({"::/0"}).admits(ipv6("::ffff:10.1.2.3")));
+  EXPECT_FALSE(allow({"::/0"}).admits(ipv4("10.1.2.3")));
+  EXPECT_TRUE(allow({"0.0.0.0/0"}).admits(ipv6("::ffff:10.1.2.3")));
+  EXPECT_FALSE(allow({"0.0.0.0/0"}).admits(ipv6("2001:db8::1")));
+}
+
+TEST(AllowList, What_is_no_address_in_allow_is_named) {
+  constexpr std::string_view allow[] = {"10.0.0.7", "gripper"};
+  Map map;
+  map.service.allow = allow;
+  const auto list = AllowList::of(map);
+  ASSERT_FALSE(list.has_value());
+  EXPECT_THAT(list.error(), HasSubstr("'allow': 'gripper' is not an IP address"));
+  map.service.allow = Span<const std::string_view>(allow).first(1);
+  EXPECT_TRUE(AllowList::of(map).has_value());
 }
 
 TEST(Origin, IPv4_in_either_form_is_one_and_each_address_is_another) {
@@ -74,7 +85,7 @@ TEST(Origin, Of_IPv6_it_is_the_network_of_64_bits) {
 }
 
 TEST(Accepting, Who_is_not_on_the_list_is_closed_at_once_counted_and_named_once) {
-  TcpUnderTest server(8, guests({"192.0.2.0/24"}));
+  TcpUnderTest server(8, allow({"192.0.2.0/24"}));
   Client first = server.connect();
   Client second = server.connect();
   EXPECT_TRUE(first.is_closed());
@@ -86,7 +97,7 @@ TEST(Accepting, Who_is_not_on_the_list_is_closed_at_once_counted_and_named_once)
 }
 
 TEST(Accepting, Who_is_on_the_list_is_served) {
-  TcpUnderTest server(8, guests({"127.0.0.0/8"}));
+  TcpUnderTest server(8, allow({"127.0.0.0/8"}));
   Client client = server.connect();
   client.send(question(1));
   server.settle();

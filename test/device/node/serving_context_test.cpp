@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coupler/device/node/servable.hpp"
+#include "coupler/device/node/serving_context.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::device {
@@ -30,17 +30,6 @@ TEST(Servable, Bits_may_be_anywhere) {
   const auto map =
       MapBuilder().many(Table::coils, 0xFF00, 256).many(Table::discrete_inputs, 0xFF00, 256).build();
   EXPECT_TRUE(check_servable(map->map()).has_value());
-}
-
-TEST(Servable, What_is_no_address_in_allow_is_named) {
-  constexpr std::string_view allow[] = {"10.0.0.7", "gripper"};
-  Map map;
-  map.service.allow = allow;
-  const auto guests = allow_list_of(map);
-  ASSERT_FALSE(guests.has_value());
-  EXPECT_THAT(guests.error(), HasSubstr("'allow': 'gripper' is not an IP address"));
-  map.service.allow = Span<const std::string_view>(allow).first(1);
-  EXPECT_TRUE(allow_list_of(map).has_value());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/device/core/hooked_points.hpp"
+#include "coupler/device/core/hooks.hpp"
 
 #include <algorithm>
 

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/node/serving_context.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "coupler/device/node/this_machine.hpp"
+#include "coupler/map/identity.hpp"
+
+namespace coupler::device {
+namespace {
+
+tl::expected<Listener, std::string> listen(const ServingContext* before, const std::string& address,
+                                           std::uint16_t port) {
+  if (before != nullptr && before->address == address && before->port == port)
+    return before->listener.share();
+  auto listener = listen_on(address, port);
+  if (!listener && before != nullptr && before->port == port)
+    return tl::unexpected(listener.error() +
+                          "; this node already listens on that port: restart it to change only the address");
+  return listener;
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<ServingContext>, ServeError> ServingContext::prepare(
+    const Map& map, MapPtr owner, const Options& options, const ServingContext* before, Hooks* hooks,
+    Log& log) {
+  const auto failed = [](ServeError::Reason reason, std::string errors) {
+    return tl::unexpected(ServeError{reason, std::move(errors)});
+  };
+  if (auto servable = check_servable(map); !servable)
+    return failed(ServeError::map_is_wrong, std::move(servable).error());
+  auto allowed = AllowList::of(map);
+  if (!allowed) return failed(ServeError::map_is_wrong, std::move(allowed).error());
+
+  auto context = std::make_unique<ServingContext>();
+  context->owner = std::move(owner);
+  context->map = &map;
+  context->address = address_for(map, options);
+  context->port = options.port.value_or(map.connection.port);
+  auto listener = listen(before, context->address, context->port);
+  if (!listener) return failed(ServeError::device_failed, std::move(listener).error());
+  context->listener = *std::move(listener);
+  context->listener.allowed = *std::move(allowed);
+  context->state = std::make_unique<SharedState>(
+      map, TimePoint::clock::now(), before == nullptr ? this_machine() : before->state->machine());
+  if (before != nullptr) context->state->prepare_take_over(*before->state);
+  if (!options.simulated) {
+    auto channels = open_channels(map, log);
+    if (!channels) return failed(ServeError::device_failed, std::move(channels).error());
+    context->channels = *std::move(channels);
+  }
+  if (context->channels)
+    context->analogue = std::make_unique<AnaloguePoints>(map, context->state->image(), *context->channels);
+  if (hooks != nullptr)
+    context->hooked = std::make_unique<HookedPoints>(map, context->state->image(), *hooks);
+  const bool safe = before != nullptr && before->has_expired() && map.service.watchdog.present();
+  auto wiring =
+      prepare_wiring(map, options.simulated, before == nullptr ? nullptr : before->wiring.get(), safe, log);
+  if (!wiring) return failed(ServeError::device_failed, std::move(wiring).error());
+  context->prepared = *std::move(wiring);
+  return context;
+}
+
+bool ServingContext::looks_like(const ServingContext& other) const {
+  return map->fingerprint == other.map->fingerprint && map->connection.unit == other.map->connection.unit &&
+         address == other.address && port == other.port;
+}
+
+bool ServingContext::reconnect_channels(bool safe) {
+  if (!channels) return false;
+  const auto reconnected = channels->reconnect();
+  for (const Point* point : reconnected)
+    if (is_writable(point->table)) (void)analogue->drive(*point, safe);
+  return !reconnected.empty();
+}
+
+void log_errors(Log& log, const ServeError& error) {
+  for (std::string_view errors = error.errors; !errors.empty();) {
+    const auto end = std::min(errors.find('\n'), errors.size());
+    log.fail(fmt::format("error: {}", errors.substr(0, end)));
+    errors.remove_prefix(std::min(end + 1, errors.size()));
+  }
+}
+
+tl::expected<void, std::string> check_servable(const Map& map) {
+  std::string errors;
+  for (const Point& point : map.points) {
+    if (holds_bits(point.table) || !range(point).overlaps(identity::reserved)) continue;
+    errors += fmt::format(
+        "{}point '{}': {} {} is in the area that every node keeps for its identity (0x{:04X} to 0x{:04X}); "
+        "move it below",
+        errors.empty() ? "" : "\n", point.name, to_string(point.table), point.address,
+        identity::reserved.start(), identity::reserved.last());
+  }
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return {};
+}
+
+}  // namespace coupler::device
