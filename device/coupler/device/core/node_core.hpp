@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "coupler/device/core/analogue_points.hpp"
-#include "coupler/device/core/hooked_points.hpp"
 #include "coupler/device/core/hooks.hpp"
 #include "coupler/device/core/server.hpp"
 #include "coupler/map/image_layout.hpp"
