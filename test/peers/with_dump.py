@@ -273,7 +273,7 @@ def a_node_needs_no_file(coupler, command, checks):
                      [("c0", "true"), ("c1", "-"), ("gone", "-")])
         checks.equal("what is not the same is told", [text in other.stdout for text in (
             "the map differs from the device's", "not in the device's map",
-            "another one in the device's map: address 2 -> 1")], [True] * 3)
+            "different in the device's map: address 2 -> 1")], [True] * 3)
     with peer.silent_port() as port:
         done = dump(coupler, f"tcp://127.0.0.1:{port}")
     checks.equal("status, no node", done.returncode, 3)

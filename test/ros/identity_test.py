@@ -53,7 +53,7 @@ class Identity(testing.RosTest):
         driver = self.driver(f"_map:={process.write_map(press(lamp=6, speed='INT'))}", f"_port:={port}")
         clamp = self.topic("/press/clamp", Bool)
         driver.wait_for("Nothing is read or written")
-        driver.wait_for("the device's map is another one")
+        driver.wait_for("the device has another map")
         fingerprints = FINGERPRINT.search(driver.output)
         self.assertTrue(fingerprints, driver.output)
         self.assertNotEqual(*fingerprints.groups())

@@ -174,7 +174,7 @@ class Safe(LoadTest):
         rospy.wait_for_service("/slow/safe", PATIENCE)
         calling = threading.Thread(target=lambda: answer.append(self.call("safe", Trigger)))
         calling.start()
-        self.program.wait_for("slow: safe values are asked for")
+        self.program.wait_for("slow: safe values were requested")
         return calling, answer
 
     def test_safe_values_go_after_the_request_in_flight_and_before_what_waits(self):

@@ -89,7 +89,7 @@ class PresetTest(testing.RosTest):
         self.switch_on()
         self.stays_on()
         self.expire(driver)
-        driver.wait_for("watchdog has expired: 1500 ms without a request of the driver; its outputs are off")
+        driver.wait_for("watchdog has expired: 1500 ms without a request from the driver; its outputs are off")
         driver.wait_for("watchdog is reset and fed")
         wait_until(self.is_on, "the outputs to be restored")
         self.assertFalse(self.coupler.expired)
@@ -242,7 +242,7 @@ class Beckhoff(PresetTest):
         driver = self.start("beckhoff_bk9000")
         driver.wait_for("not connected")
         others.pop().close()
-        driver.wait_for("cannot be armed: exception 06 (server device busy) for 1500 at holding_registers 4384; "
+        driver.wait_for("cannot be armed: writing 1500 to holding_registers 4384: exception 06 (server device busy); "
                         "another client owns its outputs")
         self.assertIn("another client owns", diagnosis(DiagnosticStatus.ERROR).message)
         self.assertEqual(self.write("valve", "true").exception, 6)

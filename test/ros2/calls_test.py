@@ -81,7 +81,7 @@ class Calls(CallsTest):
                  threading.Thread(target=lambda: answers.update(safe=self.call("safe", Trigger)))]
         for call in calls:
             call.start()
-        self.program.wait_for("called: safe values are asked for")
+        self.program.wait_for("called: safe values were requested")
         free.set()
         for call in calls:
             call.join(PATIENCE)

@@ -108,7 +108,7 @@ class NoNode(Live):
         with socket.socket() as unused:
             unused.bind(("127.0.0.1", 0))  # not listening
             said = self.refused(3, f"tcp://127.0.0.1:{unused.getsockname()[1]}")
-        self.assertIn("no answer of a node", said)
+        self.assertIn("no answer from a node", said)
 
     def test_a_foreign_coupler_has_no_map(self):
         said = self.refused(1, f"tcp://127.0.0.1:{Foreign(bytes([0x84, 2])).port}")

@@ -44,7 +44,7 @@ TEST(DeviceReader, Of_a_node_with_another_map_only_what_is_the_same_is_read) {
   EXPECT_EQ(now.identity, Verdict::different);
   EXPECT_EQ(node.of(now, "a").state, State::good);
   EXPECT_EQ(node.of(now, "b").state, State::good);
-  EXPECT_EQ(node.of(now, "moved").why, "another one in the device's map: address 1 -> 7");
+  EXPECT_EQ(node.of(now, "moved").why, "different in the device's map: address 1 -> 7");
   EXPECT_EQ(node.of(now, "gone").why, "not in the device's map");
   EXPECT_EQ(now.failed(), 2U);
   ASSERT_EQ(now.notes.size(), 1U);
@@ -83,7 +83,8 @@ TEST(DeviceReader, A_coupler_that_ignores_the_question_for_its_identity_is_read_
   const Snapshot now = looking.reader.look();
   EXPECT_EQ(now.failed(), 0U);
   EXPECT_EQ(now.identity, std::nullopt);
-  EXPECT_THAT(now.notes, ElementsAre(HasSubstr("is not answered (no reply within 9 ms)")));
+  EXPECT_THAT(now.notes,
+              ElementsAre(HasSubstr("does not answer the request for its identity (no reply within 9 ms)")));
   EXPECT_THAT(looking.requests(), ElementsAre("connect", identity_question, "connect", "read coils 0+1"));
 }
 
@@ -98,7 +99,7 @@ TEST(DeviceReader, A_node_that_falls_silent_while_it_gives_its_map_is_no_foreign
     };
   };
   const Snapshot now = node.reader.look();
-  EXPECT_EQ(now.trouble, "no reply within 9 ms");
+  EXPECT_EQ(now.error_text, "no reply within 9 ms");
   EXPECT_EQ(node.device.count("read coils 0+1"), 0U);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/cli/dump_json.hpp"
+#include "coupler/host/cli/dump_output.hpp"
 
 #include <gtest/gtest.h>
 
@@ -85,7 +85,7 @@ TEST(DumpJson, It_is_one_line_that_says_whether_the_device_answers) {
   EXPECT_EQ(json::parse(text)["online"], true);
   EXPECT_EQ(json::parse(text)["trouble"], nullptr);
   EXPECT_EQ(json::parse(text)["device"], "tcp://[::1]:502/1");
-  now.trouble = "refused";
+  now.error_text = "refused";
   EXPECT_EQ(json::parse(dump_json(map->map(), now))["online"], false);
   EXPECT_EQ(json::parse(dump_json(map->map(), now))["trouble"], "refused");
 }

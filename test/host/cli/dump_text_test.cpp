@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "coupler/host/cli/dump_text.hpp"
+#include "coupler/host/cli/dump_output.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::cli {
@@ -69,7 +69,7 @@ TEST_F(DumpText, Notes_stand_below_the_table) {
 }
 
 TEST_F(DumpText, An_offline_device_is_called_so_in_the_first_line) {
-  now.trouble = "no reply within 9 ms";
+  now.error_text = "no reply within 9 ms";
   EXPECT_THAT(table_lines(map(), now, Colour::no)[0], HasSubstr(": offline: no reply within 9 ms"));
 }
 
@@ -134,12 +134,25 @@ TEST_F(DumpText, Later_only_what_has_changed_is_news) {
 TEST_F(DumpText, Offline_is_told_once_and_what_comes_back_is_told_anew) {
   Snapshot away;
   away.at = noon;
-  away.trouble = "refused";
+  away.error_text = "refused";
   EXPECT_THAT(change_lines(map(), &now, away), ElementsAre(std::string(noon_text) + " offline: refused"));
   EXPECT_THAT(change_lines(map(), &away, away), IsEmpty());
   EXPECT_THAT(change_lines(map(), &away, now),
               ElementsAre(HasSubstr(" online again"), HasSubstr(" lamp true"), HasSubstr(" horn "),
                           HasSubstr(" level 21.5 °C")));
+}
+
+TEST(Screen, A_frame_begins_at_the_top_and_leaves_nothing_of_the_one_before) {
+  EXPECT_EQ(frame({"a", "bb"}, 24), "\033[Ha\033[K\nbb\033[K\n\033[J");
+}
+
+TEST(Screen, Lines_that_fit_are_all_shown) {
+  EXPECT_EQ(frame({"a", "b"}, 3).find("more"), std::string::npos);
+}
+
+TEST(Screen, Of_too_many_lines_the_last_row_says_how_many_there_are) {
+  EXPECT_EQ(frame({"a", "b", "c", "d"}, 4),
+            "\033[Ha\033[K\nb\033[K\n… and 2 lines more; choose points with --points\033[K\n\033[J");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/cli/status_report.hpp"
+#include "coupler/host/cli/node_status.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -89,7 +89,7 @@ TEST(StatusJson, Everything_has_a_key) {
 
 TEST(StatusJson, Of_a_device_that_is_no_node_or_does_not_answer_the_keys_are_the_same) {
   NodeStatus silent;
-  silent.trouble = "no reply within 9 ms";
+  silent.error_text = "no reply within 9 ms";
   const auto of_node = ordered_json::parse(status_json(node(), where));
   for (const NodeStatus& status : {foreign(), silent}) {
     const auto json = ordered_json::parse(status_json(status, where));

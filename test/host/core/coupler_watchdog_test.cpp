@@ -189,7 +189,7 @@ TEST_F(CouplerWatchdogTest, A_reset_that_does_not_help_is_told_once_and_tried_ag
   run_for(seconds(5));
   EXPECT_EQ(status().state, State::expired);
   EXPECT_EQ(status().expiries, 1U);
-  EXPECT_EQ(sink->reported("still outputs are refused"), 1);
+  EXPECT_EQ(sink->reported("writes to outputs are still refused"), 1);
   EXPECT_GE(device.count("write register 1007"), 3U);
   EXPECT_LE(device.count("write register 1007"), 6U);
 }
@@ -211,14 +211,14 @@ TEST_F(CouplerWatchdogTest, One_that_cannot_be_armed_is_told_once_and_tried_agai
   start_with_watchdog();
   run_for(seconds(3));
   EXPECT_EQ(status().state, State::not_fed);
-  EXPECT_EQ(
-      sink->reported("cannot be armed: exception 02 (illegal data address) for 3 at holding_registers 1000"),
-      1);
+  EXPECT_EQ(sink->reported(
+                "cannot be armed: writing 3 to holding_registers 1000: exception 02 (illegal data address)"),
+            1);
   EXPECT_TRUE(engine->statistics().online);
   device.missing.clear();
   run_for(seconds(2));
   EXPECT_EQ(status().state, State::fed);
-  EXPECT_EQ(status().trouble, "");
+  EXPECT_EQ(status().error_text, "");
 }
 
 TEST_F(CouplerWatchdogTest, One_that_can_no_longer_be_fed_is_armed_again) {
@@ -227,7 +227,7 @@ TEST_F(CouplerWatchdogTest, One_that_can_no_longer_be_fed_is_armed_again) {
   device.missing.insert({Table::holding_registers, 1003});
   run_for(milliseconds(200));
   EXPECT_EQ(status().state, State::not_fed);
-  EXPECT_EQ(sink->reported("cannot be fed: exception 02"), 1);
+  EXPECT_EQ(sink->reported("cannot be fed: writing 1 to holding_registers 1003: exception 02"), 1);
   device.missing.clear();
   run_for(seconds(2));
   EXPECT_EQ(status().state, State::fed);

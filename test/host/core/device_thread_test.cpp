@@ -6,7 +6,7 @@
 
 #include <future>
 
-#include "coupler/host/core/write_ticket.hpp"
+#include "coupler/host/core/write.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_device.hpp"
 

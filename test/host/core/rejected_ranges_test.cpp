@@ -35,13 +35,13 @@ TEST_F(RejectedRangesTest, A_hole_is_told_once_with_what_to_add_to_the_map) {
   missing = {9};
   plan(registers({0, 2, 8, 12}));
   run();
-  const auto refusals = cycle->take_refusals();
+  const auto refusals = cycle->take_rejected_ranges();
   ASSERT_EQ(refusals.size(), 1U);
   EXPECT_THAT(to_string(refusals[0]),
               testing::HasSubstr("unreadable: [{table: holding_registers, from: 9, to: 11}]"));
   run();
   run();
-  EXPECT_THAT(cycle->take_refusals(), IsEmpty());
+  EXPECT_THAT(cycle->take_rejected_ranges(), IsEmpty());
 }
 
 TEST_F(RejectedRangesTest, Several_holes_are_found_in_one_cycle) {
@@ -58,7 +58,7 @@ TEST_F(RejectedRangesTest, A_point_that_is_refused_by_itself_is_given_up_and_the
   EXPECT_THAT(run(), ElementsAre("0+4!", "0+2", "2+2!", "2+1!", "3+1"));
   EXPECT_THAT(given_up, ElementsAre("holding_registers_2"));
   EXPECT_THAT(run(), ElementsAre("0+2", "3+1"));
-  EXPECT_THAT(cycle->take_refusals(), IsEmpty()) << "the point has been told";
+  EXPECT_THAT(cycle->take_rejected_ranges(), IsEmpty()) << "the point has been told";
 }
 
 TEST_F(RejectedRangesTest, All_bits_of_a_refused_register_are_given_up_with_one_request) {
@@ -78,7 +78,7 @@ TEST_F(RejectedRangesTest, A_device_that_takes_fewer_than_the_map_says_is_asked_
   plan(MapBuilder().many(hr, 0, 100));
   EXPECT_THAT(run(), ElementsAre("0+100!", "0+50!", "0+25", "25+25", "50+50!", "50+25", "75+25"));
   EXPECT_THAT(run(), ElementsAre("0+25", "25+25", "50+25", "75+25"));
-  const auto refusals = cycle->take_refusals();
+  const auto refusals = cycle->take_rejected_ranges();
   ASSERT_EQ(refusals.size(), 2U);
   EXPECT_THAT(to_string(refusals[0]), testing::HasSubstr("limits: {read_registers: ...}"));
 }

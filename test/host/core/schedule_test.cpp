@@ -38,5 +38,19 @@ TEST_F(ScheduleTest, A_cycle_that_ends_on_the_next_deadline_has_missed_it) {
   EXPECT_EQ(schedule.overruns(), 1U);
 }
 
+TEST(Backoff, The_wait_doubles_from_a_tenth_of_a_second_up_to_5_seconds) {
+  Backoff backoff;
+  for (const int expected : {100, 200, 400, 800, 1600, 3200, 5000, 5000})
+    EXPECT_EQ(backoff.next(), milliseconds(expected));
+}
+
+TEST(Backoff, After_a_success_it_begins_anew) {
+  Backoff backoff;
+  backoff.next();
+  backoff.next();
+  backoff.reset();
+  EXPECT_EQ(backoff.next(), milliseconds(100));
+}
+
 }  // namespace
 }  // namespace coupler::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/core/watchdog_writes.hpp"
+#include "coupler/host/core/coupler_watchdog.hpp"
 
 #include <gmock/gmock.h>
 
@@ -68,11 +68,13 @@ TEST_F(WatchdogWrites, What_cannot_be_read_has_no_value) {
 }
 
 TEST_F(WatchdogWrites, A_refusal_is_told_with_what_to_do) {
-  EXPECT_THAT(to_string(RefusedStep{steps[0], Exception::server_device_busy}),
-              AllOf(StartsWith("exception 06 (server device busy) for 43605 at holding_registers 4104; "),
-                    HasSubstr("another client owns its outputs")));
-  EXPECT_THAT(to_string(RefusedStep{steps[1], Exception::illegal_data_address}), HasSubstr("'preset'"));
-  EXPECT_THAT(to_string(RefusedStep{steps[1], Exception::illegal_data_value}), HasSubstr("docs/couplers.md"));
+  EXPECT_THAT(
+      to_string(RejectedStep{steps[0], Exception::server_device_busy}),
+      AllOf(StartsWith("writing 43605 to holding_registers 4104: exception 06 (server device busy); "),
+            HasSubstr("another client owns its outputs")));
+  EXPECT_THAT(to_string(RejectedStep{steps[1], Exception::illegal_data_address}), HasSubstr("'preset'"));
+  EXPECT_THAT(to_string(RejectedStep{steps[1], Exception::illegal_data_value}),
+              HasSubstr("docs/couplers.md"));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 
 #include <arpa/inet.h>
 
-#include "coupler/host/modbus/event.hpp"
+#include "coupler/host/modbus/wait.hpp"
 
 namespace coupler::host::test {
 

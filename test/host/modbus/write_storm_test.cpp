@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "coupler/host/core/device_thread.hpp"
-#include "coupler/host/core/write_ticket.hpp"
+#include "coupler/host/core/write.hpp"
 #include "coupler/host/modbus/modbus_transport.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/modbus/modbus_server.hpp"

@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "coupler/host/scan/client.hpp"
-#include "coupler/host/scan/scan_progress.hpp"
+#include "coupler/host/scan/ports.hpp"
 #include "test/host/core/fake_clock.hpp"
 
 namespace coupler::scan::test {

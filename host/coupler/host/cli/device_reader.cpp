@@ -7,13 +7,14 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/cli/identity_findings.hpp"
-#include "coupler/host/core/refusal.hpp"
+#include "coupler/host/core/poll_cycle.hpp"
+#include "coupler/map/node_address.hpp"
 #include "coupler/plan/split.hpp"
 
 namespace coupler::cli {
 namespace {
 
+using host::Identity;
 using host::Result;
 using modbus::Exception;
 using plan::ReadSpan;
@@ -34,7 +35,7 @@ std::string text_of(plan::NotRead reason) {
   switch (reason) {
     case plan::NotRead::write_only: return "write-only";
     case plan::NotRead::unreadable: return "in what the map calls unreadable";
-    case plan::NotRead::too_long: return "fits into no reply";
+    case plan::NotRead::too_long: return "too long for one reply";
   }
   return {};
 }
@@ -50,6 +51,39 @@ plan::Split split_or_narrow(ReadSpan span, const Map& map) {
   if (narrow == span.range) return plan::split(span, map);
   span.range = narrow;
   return {{std::move(span)}, {}};
+}
+
+/// What a device's identity means for reading it.
+struct IdentityFindings {
+  struct LeftOut {
+    std::uint32_t point;  ///< index into Map::points
+    std::string why;
+  };
+  std::vector<std::string> notes;  ///< for people
+  std::vector<LeftOut> left_out;   ///< points whose places mean something else in the device's own map
+};
+
+std::string difference_note(const Map& map, const Identity& identity) {
+  return difference_text(map, identity) +
+         "\nOnly points that are the same are read. To read by the device's own map, give " +
+         node_address_text(map.connection) + " instead of this one";
+}
+
+IdentityFindings findings(const Map& map, const Identity& identity) {
+  if (identity.verdict == Identity::Verdict::superset) return {{host::superset_text}, {}};
+  if (identity.verdict != Identity::Verdict::different) return {};
+  IdentityFindings found{{difference_note(map, identity)}, {}};
+  for (const Difference& difference : identity.points) {
+    if (!is_breaking(difference.kind)) continue;
+    const bool missing = difference.kind == Difference::Kind::missing;
+    const auto point = static_cast<std::uint32_t>(find(map, difference.point) - map.points.begin());
+    found.left_out.push_back(
+        {point, missing ? "not in the device's map" : "different in the device's map: " + difference.what});
+  }
+  if (identity.points.empty())
+    for (std::uint32_t point = 0; point < map.points.size(); ++point)
+      found.left_out.push_back({point, "the device's map cannot be compared"});
+  return found;
 }
 
 }  // namespace
@@ -79,9 +113,9 @@ Snapshot DeviceReader::look() {
   if (done) now_ = known_;
   const Result<> read = done ? read_all() : done;
   if (!read) {
-    now_.trouble = to_string(read.error());
+    now_.error_text = to_string(read.error());
     for (Reading& reading : now_.readings)
-      if (reading.state == State::failed && reading.why.empty()) reading.why = now_.trouble;
+      if (reading.state == State::failed && reading.why.empty()) reading.why = now_.error_text;
     transport_.close();
     connected_ = false;
   }
@@ -106,15 +140,15 @@ Result<> DeviceReader::identify() {
     return {};
   }
   if (transport_.replies() != replies) return tl::make_unexpected(identity.error());
-  // There are couplers that ignore addresses they do not have. A late answer must not be taken for another.
+  // Some couplers ignore addresses that they do not have. A late answer must not be taken for another.
   known_.notes.push_back(fmt::format(
-      "the question for the device's identity is not answered ({}): it is read as a foreign coupler",
+      "the device does not answer the request for its identity ({}): it is read as a foreign coupler",
       to_string(identity.error())));
   transport_.close();
   return transport_.connect();
 }
 
-void DeviceReader::judge(const host::Identity& identity) {
+void DeviceReader::judge(const Identity& identity) {
   known_.identity = identity.verdict;
   IdentityFindings found = findings(map_, identity);
   known_.notes = std::move(found.notes);
@@ -127,7 +161,7 @@ void DeviceReader::judge(const host::Identity& identity) {
 
 void DeviceReader::plan() {
   spans_.clear();
-  std::vector<Unreadable> left_out;  // what is there in the device is not known
+  std::vector<Unreadable> left_out;  // the device may have anything there
   for (const Reading& reading : known_.readings) {
     const Point& point = map_.points[reading.point];
     if (reading.state == State::failed && !reading.why.empty())
@@ -153,7 +187,7 @@ Result<> DeviceReader::read_all() {
 
 /// Appends to `next` the requests to make in its place at the next look.
 Result<> DeviceReader::ask(const ReadSpan& span, std::vector<ReadSpan>& next) {
-  Result<> answer = request(span);
+  Result<> answer = transport_.read(span.table, span.range, registers_.data());
   if (answer) {
     keep(span);
     next.push_back(span);
@@ -187,7 +221,7 @@ Result<> DeviceReader::in_parts(const ReadSpan& span, Exception code, std::vecto
                   [this](std::uint32_t point) { return reading(point).state == State::good; });
   if (parts_are_good) {
     const bool hole = split.hole && !planner_.has_points(span.table, *split.hole);
-    note(to_string(host::Refusal{span.table, hole ? *split.hole : span.range, hole}));
+    note(to_string(host::RejectedRange{span.table, hole ? *split.hole : span.range, hole}));
   }
   if (!whole.points.empty()) next.push_back(std::move(whole));
   next.insert(next.end(), std::make_move_iterator(parts.begin()), std::make_move_iterator(parts.end()));
@@ -197,13 +231,6 @@ Result<> DeviceReader::in_parts(const ReadSpan& span, Exception code, std::vecto
 void DeviceReader::note(std::string text) {
   std::vector<std::string>& notes = known_.notes;
   if (std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(std::move(text));
-}
-
-Result<> DeviceReader::request(const ReadSpan& span) {
-  if (!holds_bits(span.table)) return transport_.read_registers(span.table, span.range, registers_.data());
-  Result<> answer = transport_.read_bits(span.table, span.range, bits_.data());
-  if (answer) std::copy_n(bits_.begin(), span.range.count(), registers_.begin());
-  return answer;
 }
 
 void DeviceReader::keep(const ReadSpan& span) {

@@ -11,20 +11,19 @@
 
 namespace coupler::cli {
 
-/// Looks at a device, and only looks: it makes no write request, arms no watchdog and repeats no output.
+/// Reads a device, and only reads: it makes no write request, arms no watchdog and repeats no output.
 ///
-/// Requests are those of `coupler plan`, with the pauses that the map asks for. One that the device refuses
-/// is made in parts, so that a bad address costs only its points; what an address refused once is then asked
-/// for apart as long as the connection lasts. Nothing is read from a place that means something else in the
-/// device's own map.
+/// Requests are those of `coupler plan`, with the pauses of the map. One that the device refuses is made in
+/// parts, so that a bad address costs only its points; the parts stay apart while the connection lasts.
+/// Nothing is read from a place that means something else in the device's own map.
 class DeviceReader {
  public:
   /// `chosen` by point. What `map` views, and everything given by reference, must outlive it.
   DeviceReader(const Map& map, const std::vector<bool>& chosen, host::Transport& transport,
                host::Clock& clock, host::MapLoader load);
 
-  /// Reads every chosen point once; connects for that if there is no connection. If the device falls silent,
-  /// it says so and has the readings made until then.
+  /// Reads every chosen point once, after connecting if there is no connection. If the device falls silent,
+  /// the snapshot says so and has the readings until then.
   Snapshot look();
 
  private:
@@ -37,7 +36,6 @@ class DeviceReader {
   host::Result<> read_all();
   host::Result<> ask(const ReadSpan& span, std::vector<ReadSpan>& next);
   host::Result<> in_parts(const ReadSpan& span, modbus::Exception code, std::vector<ReadSpan>& next);
-  host::Result<> request(const ReadSpan& span);
   void note(std::string text);
   void keep(const ReadSpan& span);
   void fail(const ReadSpan& span, modbus::Exception code);
@@ -55,10 +53,9 @@ class DeviceReader {
 
   // For the time of a connection.
   bool connected_ = false;
-  Snapshot known_;               ///< blank_, with what the identity tells
+  Snapshot known_;               ///< blank_, with what follows from the identity
   std::vector<ReadSpan> spans_;  ///< the requests of a look
 
-  std::array<std::uint8_t, modbus::max_read_bits> bits_{};
   std::array<std::uint16_t, modbus::max_read_bits> registers_{};  ///< bits too, as registers
 };
 

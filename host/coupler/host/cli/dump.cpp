@@ -13,12 +13,10 @@
 #include <fmt/format.h>
 
 #include "coupler/host/cli/device_reader.hpp"
-#include "coupler/host/cli/dump_json.hpp"
-#include "coupler/host/cli/dump_text.hpp"
+#include "coupler/host/cli/dump_output.hpp"
 #include "coupler/host/cli/interruption.hpp"
-#include "coupler/host/cli/screen.hpp"
-#include "coupler/host/core/backoff.hpp"
-#include "coupler/host/core/steady_clock.hpp"
+#include "coupler/host/core/clock.hpp"
+#include "coupler/host/core/schedule.hpp"
 #include "coupler/host/modbus/modbus_transport.hpp"
 #include "coupler/map/loader/print.hpp"
 #include "coupler/map/node_address.hpp"
@@ -40,7 +38,7 @@ std::size_t terminal_rows() {
   return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 ? size.ws_row : 24;
 }
 
-/// Some that say they are terminals obey no ANSI sequence.
+/// Some terminals know no ANSI sequences.
 bool is_screen() {
   const char* kind = std::getenv("TERM");
   return ::isatty(STDOUT_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";
@@ -74,8 +72,10 @@ Exit once(const Map& map, const DumpWish& wish) {
     for (const std::string& line : table_lines(map, now, Colour::no)) put(line);
   }
   if (!now.online())
-    fmt::print(stderr, "coupler dump: error: {}: {}; see that a device serves there, or give --at\n",
-               printable(node_address_text(map.connection)), printable_lines(now.trouble));
+    fmt::print(
+        stderr,
+        "coupler dump: error: {}: {}; check that a device serves there, or give another place with --at\n",
+        printable(node_address_text(map.connection)), printable_lines(now.error_text));
   return now.online() && now.failed() == 0 ? ok : failed;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/cli/dump_json.hpp"
+#include "coupler/host/cli/dump_output.hpp"
 
 #include <cmath>
 #include <cstdlib>
@@ -80,7 +80,7 @@ std::string dump_json(const Map& map, const Snapshot& now) {
                     {"time", time_text(now.at)}, {"online", now.online()},
                     {"trouble", nullptr},        {"identity", host::to_string(now.identity)},
                     {"notes", now.notes},        {"points", ordered_json::array()}};
-  if (!now.online()) json["trouble"] = now.trouble;
+  if (!now.online()) json["trouble"] = now.error_text;
   for (const Reading& reading : now.readings) json["points"].push_back(reading_json(map, reading));
   // A text of the device need not be UTF-8.
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/cli/dump_text.hpp"
+#include "coupler/host/cli/dump_output.hpp"
 
 #include <algorithm>
 #include <array>
@@ -54,7 +54,7 @@ Cells cells_of(const Map& map, const Reading& reading) {
 std::string head(const Map& map, const Snapshot& now) {
   const std::string where =
       printable(fmt::format("{} at {}, {}", map.name, node_address_text(map.connection), time_text(now.at)));
-  if (!now.online()) return fmt::format("{}: offline: {}", where, printable(now.trouble));
+  if (!now.online()) return fmt::format("{}: offline: {}", where, printable(now.error_text));
   if (const std::size_t failed = now.failed(); failed > 0)
     return fmt::format("{}: {} of {} points not read", where, failed, now.readings.size());
   return fmt::format("{}: {} point{}", where, now.readings.size(), now.readings.size() == 1 ? "" : "s");
@@ -103,7 +103,7 @@ std::vector<std::string> change_lines(const Map& map, const Snapshot* before, co
     lines.push_back(fmt::format("{} {}", time, printable(text)));
   };
   if (!now.online()) {
-    if (before == nullptr || before->trouble != now.trouble) add("offline: " + now.trouble);
+    if (before == nullptr || before->error_text != now.error_text) add("offline: " + now.error_text);
     return lines;
   }
   const bool all = before == nullptr || !before->online();
@@ -112,6 +112,16 @@ std::vector<std::string> change_lines(const Map& map, const Snapshot* before, co
     if (all || reading.changed)
       add(fmt::format("{} {}", map.points[reading.point].name, value_text(map, reading)));
   return lines;
+}
+
+std::string frame(const std::vector<std::string>& lines, std::size_t rows) {
+  const std::size_t room = rows > 2 ? rows - 1 : 1;  // below them the cursor has a row of its own
+  const std::size_t shown = lines.size() <= room ? lines.size() : room - 1;
+  std::string text = "\033[H";
+  for (std::size_t i = 0; i < shown; ++i) text += lines[i] + "\033[K\n";
+  if (shown < lines.size())
+    text += fmt::format("… and {} lines more; choose points with --points\033[K\n", lines.size() - shown);
+  return text + "\033[J";
 }
 
 }  // namespace coupler::cli

@@ -8,7 +8,7 @@
 
 namespace coupler::cli {
 
-/// While it lives, the first SIGINT (Ctrl-C) or SIGTERM calls a function, in a thread of its own, in place of
+/// While it exists, the first SIGINT (Ctrl-C) or SIGTERM calls a function, in a thread of its own, instead of
 /// ending the program. To be made before any other thread.
 class Interruption {
  public:

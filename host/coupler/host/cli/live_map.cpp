@@ -25,8 +25,8 @@ tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where) {
   if (!served && host::exception_in(served.error()) != nullptr)
     return none(failed, "the node does not give its map: " + host::to_string(served.error()), give_a_file);
   if (!served)
-    return none(failed, "no answer of a node: " + host::to_string(served.error()),
-                fmt::format("see that a node serves port {} there, as unit {}", where.port, where.unit));
+    return none(failed, "no answer from a node: " + host::to_string(served.error()),
+                fmt::format("check that a node serves port {} there, as unit {}", where.port, where.unit));
   if (!*served) return none(bad_input, "a foreign coupler, which serves no map", give_a_file);
   auto map = host::load_node_map((*served)->text, (*served)->head, load_served_map);
   if (!map) return none(bad_input, "the node's map cannot be used: " + map.error(), give_a_file);

@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/cli/modbus_client.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "coupler/modbus/identification_reply.hpp"
 
 namespace coupler::cli {
-
-host::Result<> ModbusClient::read(Table table, modbus::Range range, std::uint16_t* values) {
-  if (!holds_bits(table)) return transport_.read_registers(table, range, values);
-  std::array<std::uint8_t, modbus::max_read_bits> bits{};
-  auto result = transport_.read_bits(table, range, bits.data());
-  if (result) std::copy_n(bits.begin(), range.count(), values);
-  return result;
-}
 
 host::Result<scan::IdentificationPage> read_identification(host::ModbusTransport& transport,
                                                            modbus::ReadDeviceIdentification wanted) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "coupler/host/modbus/modbus_transport.hpp"
-#include "coupler/host/scan/client.hpp"
+#include "coupler/host/scan/ports.hpp"
 
 namespace coupler::cli {
 
@@ -18,7 +18,9 @@ class ModbusClient : public scan::Client {
   host::Result<> connect() override { return transport_.connect(); }
   void close() override { transport_.close(); }
   void select(std::uint8_t unit) override { transport_.select(unit, timeout_); }
-  host::Result<> read(Table table, modbus::Range range, std::uint16_t* values) override;
+  host::Result<> read(Table table, modbus::Range range, std::uint16_t* values) override {
+    return transport_.read(table, range, values);
+  }
   host::Result<scan::IdentificationPage> identify(modbus::ReadDeviceIdentification wanted) override {
     return read_identification(transport_, wanted);
   }

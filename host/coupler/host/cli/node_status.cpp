@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/cli/node_status.hpp"
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "coupler/host/cli/snapshot.hpp"
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/host/scan/identification.hpp"
+#include "coupler/map/fingerprint.hpp"
+#include "coupler/map/node_address.hpp"
+#include "coupler/map/printable.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -17,7 +24,7 @@ Result<bool> read_area(host::Transport& transport, NodeStatus& status) {
   const auto report = host::read_report(transport);
   if (!report) {
     if (is_unit_away(report.error())) return tl::make_unexpected(report.error());
-    status.trouble = to_string(report.error());
+    status.error_text = to_string(report.error());
     transport.close();  // a late answer must not be taken for another
     if (auto connected = transport.connect(); !connected) return tl::make_unexpected(connected.error());
     return false;
@@ -37,7 +44,7 @@ Result<> read_all(host::Transport& transport, const Identify& identify, NodeStat
   std::optional<Error> failure;
   const auto ask = [&](modbus::ReadDeviceIdentification wanted) -> std::optional<scan::IdentificationPage> {
     auto page = identify(wanted);
-    if (page || is_answer(page.error())) status.trouble.clear();  // it is there, and foreign
+    if (page || is_answer(page.error())) status.error_text.clear();  // it is there, and foreign
     if (page) return *std::move(page);
     if (!is_answer(page.error())) failure = page.error();
     return std::nullopt;
@@ -48,15 +55,133 @@ Result<> read_all(host::Transport& transport, const Identify& identify, NodeStat
   return {};
 }
 
+using identity::Report;
+using nlohmann::ordered_json;
+
+// What a node has in FC 43/14.
+constexpr std::uint8_t product_code = 1;  ///< the map's name
+constexpr std::uint8_t revision = 2;      ///< the version of OpenCoupler
+
+std::string object(const NodeStatus& status, std::uint8_t id) {
+  const auto found = status.identification.find(id);
+  return found == status.identification.end() ? std::string() : found->second;
+}
+
+std::string or_unknown(const std::string& text) { return text.empty() ? "unknown" : printable(text); }
+
+std::string serial_text(const identity::Machine& machine) {
+  return machine.serial == 0 ? std::string() : fmt::format("{:016x}", machine.serial);
+}
+
+/// A state that a newer node has is shown as its number.
+std::string state_text(const Report& report) {
+  const std::size_t state = report.watchdog_state;
+  return state < identity::watchdog_states.size() ? std::string(identity::watchdog_states[state])
+                                                  : fmt::to_string(state);
+}
+
+std::string watchdog_text(const Report& report) {
+  std::string text = state_text(report);
+  if (report.watchdog_left != 0)
+    text += fmt::format(", {}{} ms left", report.watchdog_left == 0xFFFF ? "at least " : "",
+                        report.watchdog_left);
+  return text;
+}
+
+/// "93784 s (1 d 2 h 3 min)"
+std::string uptime_text(std::uint32_t seconds) {
+  std::string text = fmt::format("{} s", seconds);
+  if (seconds < 60) return text;
+  const auto minutes = seconds / 60;
+  text += " (";
+  if (minutes >= 24 * 60) text += fmt::format("{} d ", minutes / (24 * 60));
+  if (minutes >= 60) text += fmt::format("{} h ", minutes / 60 % 24);
+  return text + fmt::format("{} min)", minutes % 60);
+}
+
+std::string row(std::string_view what, const std::string& value) {
+  return fmt::format("  {:<36}  {}\n", what, value);
+}
+
+ordered_json or_null(const std::string& text) { return text.empty() ? ordered_json() : ordered_json(text); }
+
+ordered_json statistics_json(const Report& report) {
+  ordered_json json = ordered_json::object();
+  for (std::size_t i = 0; i < identity::counters.size(); ++i)
+    json[std::string(identity::counters[i].key)] = report.counts[i];
+  return json;
+}
+
+ordered_json identification_json(const NodeStatus& status) {
+  ordered_json json = ordered_json::object();
+  for (const auto& [id, value] : status.identification) json[scan::object_name(id)] = value;
+  return json;
+}
+
 }  // namespace
 
 NodeStatus read_status(host::Transport& transport, const Identify& identify) {
   NodeStatus status;
   if (const auto done = read_all(transport, identify, status); !done)
-    status.trouble = to_string(done.error());
+    status.error_text = to_string(done.error());
   transport.close();
   status.at = std::chrono::system_clock::now();
   return status;
+}
+
+std::string status_text(const NodeStatus& status, const Connection& where) {
+  const std::string device = printable(node_address_text(where));
+  if (!status.report) {
+    std::string text;
+    for (const auto& [id, value] : status.identification)
+      text += row(scan::object_name(id), printable(value));
+    return text.empty() ? text : fmt::format("identification of {} (FC 43/14):\n{}", device, text);
+  }
+  const Report& report = *status.report;
+  std::string text = fmt::format("the node at {}, {}:\n", device, time_text(status.at));
+  text += row("map", or_unknown(object(status, product_code)));
+  text += row("fingerprint", fingerprint_text(report.head.fingerprint));
+  text += row("size and CRC-32 of the map",
+              fmt::format("{} bytes, {:08x}", report.head.map_size, report.head.map_crc));
+  text += row("version of OpenCoupler", or_unknown(object(status, revision)));
+  text += row("hostname", or_unknown(std::string(hostname_of(status.machine))));
+  text += row("serial", or_unknown(serial_text(status.machine)));
+  text += row("watchdog", watchdog_text(report));
+  text += row("uptime", uptime_text(report.uptime));
+  for (std::size_t i = 0; i < identity::counters.size(); ++i)
+    text += row(identity::counters[i].text, fmt::to_string(report.counts[i]));
+  return text;
+}
+
+std::string status_json(const NodeStatus& status, const Connection& where) {
+  ordered_json json{{"device", node_address_text(where)},
+                    {"time", time_text(status.at)},
+                    {"trouble", or_null(status.error_text)},
+                    {"node", status.report.has_value()},
+                    {"name", nullptr},
+                    {"version", nullptr},
+                    {"fingerprint", nullptr},
+                    {"map", nullptr},
+                    {"hostname", nullptr},
+                    {"serial", nullptr},
+                    {"watchdog", nullptr},
+                    {"uptime_s", nullptr},
+                    {"statistics", nullptr},
+                    {"identification", identification_json(status)}};
+  if (status.report) {
+    const Report& report = *status.report;
+    json["name"] = or_null(object(status, product_code));
+    json["version"] = or_null(object(status, revision));
+    json["fingerprint"] = fingerprint_text(report.head.fingerprint);
+    json["map"] = {{"bytes", report.head.map_size}, {"crc32", fmt::format("{:08x}", report.head.map_crc)}};
+    json["hostname"] = or_null(std::string(hostname_of(status.machine)));
+    json["serial"] = or_null(serial_text(status.machine));
+    json["watchdog"] = {{"state", state_text(report)}, {"left_ms", report.watchdog_left}};
+    json["uptime_s"] = report.uptime;
+    json["statistics"] = statistics_json(report);
+  }
+  // A text of the device need not be UTF-8.
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 }  // namespace coupler::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node says of itself, at one moment.
+// What a node says about itself at one moment: asking for it, and showing it.
 #pragma once
 
 #include <chrono>
@@ -10,14 +10,15 @@
 #include <string>
 
 #include "coupler/host/core/transport.hpp"
-#include "coupler/host/scan/client.hpp"
+#include "coupler/host/scan/ports.hpp"
 #include "coupler/map/identity.hpp"
+#include "coupler/map/map.hpp"
 
 namespace coupler::cli {
 
 struct NodeStatus {
   std::chrono::system_clock::time_point at{};
-  std::string trouble{};                                 ///< why not everything could be asked; empty: it was
+  std::string error_text{};                              ///< why not everything could be asked; empty: it was
   std::optional<identity::Report> report{};              ///< nullopt: a foreign coupler, or no answer
   identity::Machine machine{};                           ///< as far as the node says
   std::map<std::uint8_t, std::string> identification{};  ///< the objects of FC 43/14
@@ -27,8 +28,15 @@ struct NodeStatus {
 using Identify =
     std::function<host::Result<scan::IdentificationPage>(modbus::ReadDeviceIdentification wanted)>;
 
-/// Asks for all of it, over a connection of its own, which is closed then. A device that ignores the question
-/// for the identity area, as some foreign couplers do, is asked for the rest over another one.
+/// Reads all of it, over a connection of its own, which is then closed. If the device ignores the request for
+/// the identity area, as some foreign couplers do, the rest is read over another connection.
 NodeStatus read_status(host::Transport& transport, const Identify& identify);
+
+/// For people, a line each. Of a foreign coupler its identification; empty if it has none. Texts of the
+/// device are made harmless for a terminal.
+std::string status_text(const NodeStatus& status, const Connection& where);
+
+/// One line of JSON. docs/commands.md has a table of its fields.
+std::string status_json(const NodeStatus& status, const Connection& where);
 
 }  // namespace coupler::cli

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,17 +15,114 @@
 #include "coupler/generate/output.hpp"
 #include "coupler/host/cli/interruption.hpp"
 #include "coupler/host/cli/modbus_client.hpp"
-#include "coupler/host/cli/probe_call.hpp"
 #include "coupler/host/cli/probe_report.hpp"
 #include "coupler/host/cli/progress_bar.hpp"
-#include "coupler/host/core/steady_clock.hpp"
+#include "coupler/host/core/clock.hpp"
+#include "coupler/host/scan/known_value.hpp"
+#include "coupler/host/scan/scan.hpp"
+#include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/node_address.hpp"
 
 namespace coupler::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using scan::Task;
 
-scan::Findings look(const ProbeCall& call) {
+struct Arguments {
+  std::string host;
+  std::vector<std::string> units;
+  std::uint32_t from = Task{}.window.start();
+  std::uint32_t to = Task{}.window.last();
+  std::uint32_t stride = Task{}.stride;
+  double rate = Task{}.rate;
+  double timeout = 1;  ///< s
+  std::vector<std::string> known;
+  std::string out;
+  bool force = false;
+};
+
+struct Call {
+  Connection connection;
+  Task task;
+  std::vector<scan::KnownValue> known;
+};
+
+/// Why a call cannot be understood, and what to do.
+struct WrongCall {
+  std::string what;
+  std::string remedy;
+};
+
+/// Units on Modbus/TCP; 248 to 254 are reserved.
+bool is_unit(std::uint64_t unit) { return unit <= 247 || unit == 255; }
+
+/// "5" or "1-247".
+bool add_units(std::string_view text, std::vector<std::uint8_t>& units) {
+  const auto dash = text.find('-');
+  const auto first = loader::parse_unsigned(text.substr(0, dash));
+  const auto last = dash == std::string_view::npos ? first : loader::parse_unsigned(text.substr(dash + 1));
+  if (!first || !last || *first > *last || !is_unit(*first) || !is_unit(*last)) return false;
+  for (auto unit = *first; unit <= *last; ++unit)
+    if (is_unit(unit)) units.push_back(static_cast<std::uint8_t>(unit));
+  return true;
+}
+
+/// Empty: those that are asked by default.
+tl::expected<std::vector<std::uint8_t>, WrongCall> units_of(const Arguments& arguments,
+                                                            const NodeAddress& where, bool has_unit) {
+  std::vector<std::uint8_t> units;
+  for (const std::string& text : arguments.units)
+    if (!add_units(text, units))
+      return tl::make_unexpected(
+          WrongCall{fmt::format("'{}' is not a unit id", text), "give 0 to 247 or 255, as --units 1-10,255"});
+  if (!units.empty()) return units;
+  if (has_unit && !is_unit(where.unit))
+    return tl::make_unexpected(
+        WrongCall{fmt::format("unit {} is reserved", where.unit), "give 0 to 247 or 255"});
+  if (has_unit) units.push_back(where.unit);
+  return units;
+}
+
+tl::expected<std::vector<scan::KnownValue>, WrongCall> known_values(const std::vector<std::string>& texts) {
+  std::vector<scan::KnownValue> known;
+  for (const std::string& text : texts) {
+    auto value = scan::parse_known_value(text);
+    if (!value)
+      return tl::make_unexpected(WrongCall{"--known: " + value.error(), "see `coupler probe --help`"});
+    for (const scan::KnownValue& other : known)
+      if (!other.name.empty() && other.name == value->name)
+        return tl::make_unexpected(WrongCall{fmt::format("two values are named '{}'", other.name),
+                                             "give each --known its own name"});
+    known.push_back(std::move(*value));
+  }
+  return known;
+}
+
+/// What the command line means. The connection is a view of `address`.
+tl::expected<Call, WrongCall> understand(const Arguments& arguments, const std::string& address) {
+  const auto where = parse_node_address(address);
+  if (!where) return tl::make_unexpected(WrongCall{where.error().what, where.error().remedy});
+  if (arguments.from > arguments.to)
+    return tl::make_unexpected(WrongCall{
+        fmt::format("--from {} is greater than --to {}", arguments.from, arguments.to), "swap them"});
+  const auto slash = address.find('/', std::string_view("tcp://").size());
+  auto units = units_of(arguments, *where, slash != std::string::npos && slash + 1 < address.size());
+  if (!units) return tl::make_unexpected(units.error());
+  auto known = known_values(arguments.known);
+  if (!known) return tl::make_unexpected(known.error());
+  Call call;
+  call.connection = {where->host, where->port, where->unit,
+                     std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000))};
+  if (!units->empty()) call.task.units = std::move(*units);
+  call.task.stride = arguments.stride;
+  call.task.rate = arguments.rate;
+  call.task.window = modbus::Range::of(arguments.from, arguments.to - arguments.from + 1);
+  call.known = std::move(*known);
+  return call;
+}
+
+scan::Findings look(const Call& call) {
   ModbusClient client(call.connection);
   host::SteadyClock clock;
   ProgressBar progress;
@@ -37,16 +135,16 @@ scan::Findings look(const ProbeCall& call) {
 }
 
 /// Before anything is asked: a draft that cannot be written would cost a scan.
-tl::expected<void, WrongCall> can_write(const ProbeArguments& arguments) {
+tl::expected<void, WrongCall> can_write(const Arguments& arguments) {
   if (arguments.out.empty()) return {};
   const fs::path path(arguments.out);
   std::error_code ignored;
   if (!arguments.force && fs::exists(path, ignored))
-    return tl::make_unexpected(WrongCall{arguments.out + " is there already",
+    return tl::make_unexpected(WrongCall{arguments.out + " already exists",
                                          "name another file with --out, or replace it with --force"});
   if (path.has_parent_path() && !fs::is_directory(path.parent_path(), ignored))
-    return tl::make_unexpected(
-        WrongCall{path.parent_path().string() + " is not a folder", "make it, or name another with --out"});
+    return tl::make_unexpected(WrongCall{path.parent_path().string() + " is not a folder",
+                                         "create it, or name another one with --out"});
   return {};
 }
 
@@ -63,31 +161,33 @@ Exit write(const std::string& path, const std::string& text) {
   return ok;
 }
 
-Exit run(const ProbeArguments& arguments) {
-  const auto understood = understand(arguments);
-  if (!understood) return complain("probe", bad_call, understood.error().what, understood.error().remedy);
-  ProbeCall& call = **understood;
+Exit run(const Arguments& arguments) {
+  const std::string address = node_argument(arguments.host);
+  auto call = understand(arguments, address);
+  if (!call) return complain("probe", bad_call, call.error().what, call.error().remedy);
   if (const auto can = can_write(arguments); !can)
     return complain("probe", bad_call, can.error().what, can.error().remedy);
 
-  const scan::Findings findings = look(call);
+  const scan::Findings findings = look(*call);
   if (findings.broke_off)
     complain("probe", failed, host::to_string(*findings.broke_off),
-             "see that the device is on, the port right, and no other client has its last connection");
+             "check that the device is on, that the port is right, and that no other client holds its last "
+             "connection");
   if (!findings.unit && findings.is_complete)
-    return complain("probe", failed,
-                    fmt::format("a server is there, but none of {} units answers", call.task.units.size()),
-                    "give its unit id, as HOST/17, or try all with --units 0-247,255");
+    return complain(
+        "probe", failed,
+        fmt::format("a server accepts connections, but none of {} units answers", call->task.units.size()),
+        "give its unit id, as HOST/17, or try all with --units 0-247,255");
   if (!findings.unit) return failed;
 
   std::vector<scan::Match> matches;
-  for (const scan::KnownValue& known : call.known)
+  for (const scan::KnownValue& known : call->known)
     matches.push_back({known, scan::find_candidates(known, findings.tables)});
-  call.connection.unit = *findings.unit;
-  std::fputs(probe_report(findings, call.task, call.connection, matches).c_str(), stdout);
+  call->connection.unit = *findings.unit;
+  std::fputs(probe_report(findings, call->task, call->connection, matches).c_str(), stdout);
   Exit exit = findings.broke_off ? failed : ok;
   if (!arguments.out.empty()) {
-    const Exit written = write(arguments.out, scan::draft_map(findings, call.connection, matches));
+    const Exit written = write(arguments.out, scan::draft_map(findings, call->connection, matches));
     if (written != ok) exit = written;
   }
   return exit;
@@ -98,8 +198,8 @@ Exit run(const ProbeArguments& arguments) {
 void add_probe(Program& program, Exit& exit) {
   auto command = program.add_command(
       "probe",
-      "Find out what a device answers to that has no map, and draft one. It reads and never writes.");
-  const auto arguments = std::make_shared<ProbeArguments>();
+      "Find out what a device without a map answers to, and draft its map. It reads and never writes.");
+  const auto arguments = std::make_shared<Arguments>();
   command.add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], with tcp:// in front or not")
       .required()
       .type_name("");
@@ -116,7 +216,7 @@ void add_probe(Program& program, Exit& exit) {
       .type_name("N");
   command
       .add_option("--stride", arguments->stride,
-                  "Where blocks are refused, try one address in so many; 1 tries all")
+                  "Where blocks are refused, try one address in N; 1 tries all")
       .in_range(1, 1000)
       .show_default()
       .type_name("N");
@@ -130,11 +230,11 @@ void add_probe(Program& program, Exit& exit) {
       .type_name("S");
   command
       .add_option("--known", arguments->known,
-                  "A value that the device shows, to be searched for: 230.4, voltage=230.4, voltage=230.4±2")
+                  "A value that the device displays, to search for: 230.4, voltage=230.4, voltage=230.4±2")
       .type_name("[NAME=]VALUE")
       .one_value();
   command.add_option("--out", arguments->out, "Write a draft of the map").type_name("FILE");
-  command.add_flag("--force", arguments->force, "Replace a file that is there");
+  command.add_flag("--force", arguments->force, "Replace an existing file");
   command.footer(
       "Example:\n  coupler probe 192.168.1.17 --known voltage=230.4 --known frequency=50.02 --out "
       "meter.yaml\n"

@@ -31,7 +31,7 @@ std::string units_text(const Findings& findings, const Connection& connection) {
     answer += fmt::format("{}{}", answer.empty() ? "" : ", ", unit);
   std::string text = fmt::format("units that answer: {}\n", answer);
   if (findings.units.size() > 1)
-    text += fmt::format("the rest is about unit {}; another one: coupler probe {}\n", *findings.unit,
+    text += fmt::format("the rest is about unit {}; for another one: coupler probe {}\n", *findings.unit,
                         place(connection, findings.units[1]));
   return text;
 }
@@ -54,7 +54,7 @@ std::string ranges_text(const std::vector<modbus::Range>& ranges) {
     text += ranges[i].count() == 1 ? fmt::format("{}", ranges[i].start())
                                    : fmt::format("{} … {}", ranges[i].start(), ranges[i].last());
   }
-  if (ranges.size() > most_ranges) text += fmt::format(" and {} ranges more", ranges.size() - most_ranges);
+  if (ranges.size() > most_ranges) text += fmt::format(" and {} more ranges", ranges.size() - most_ranges);
   return text;
 }
 
@@ -69,7 +69,7 @@ std::string table_text(const TableFindings& table) {
   for (const std::uint32_t seam : table.seams())
     text += fmt::format("  no read may cross {}: read from there, or up to there\n", seam);
   if (table.gave_up_at)
-    text += fmt::format("  left at {} after {} time-outs; go on with --from {}\n", *table.gave_up_at,
+    text += fmt::format("  stopped at {} after {} time-outs; continue with --from {}\n", *table.gave_up_at,
                         scan::most_timeouts, *table.gave_up_at);
   return text;
 }
@@ -83,7 +83,7 @@ std::string match_text(const scan::Match& match) {
   std::string text =
       fmt::format("known value {}{}{} ± {:.6g}:\n", match.known.name, match.known.name.empty() ? "" : " = ",
                   match.known.value, match.known.tolerance);
-  if (match.candidates.empty()) return text + "  nowhere in the registers that were read\n";
+  if (match.candidates.empty()) return text + "  not found in the registers that were read\n";
   for (std::size_t i = 0; i < std::min(match.candidates.size(), most_candidates); ++i) {
     const scan::Candidate& candidate = match.candidates[i];
     text += fmt::format("  {:<18} {:<52} {}\n", to_string(candidate.table), scan::point_text(candidate, true),

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <string>
 
-#include "coupler/host/scan/scan_progress.hpp"
+#include "coupler/host/scan/ports.hpp"
 
 namespace coupler::cli {
 

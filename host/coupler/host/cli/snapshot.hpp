@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one look at a device has shown.
+// What was read from a device at one moment.
 #pragma once
 
 #include <chrono>
@@ -29,12 +29,12 @@ struct Reading {
 
 struct Snapshot {
   std::chrono::system_clock::time_point at;
-  std::string trouble{};                              ///< why the device does not answer; empty: it does
+  std::string error_text{};                           ///< why the device does not answer; empty: it does
   std::optional<host::Identity::Verdict> identity{};  ///< nullopt: not answered
-  std::vector<std::string> notes{};  ///< what is to be known of this connection, one text or more lines each
-  std::vector<Reading> readings{};   ///< of the chosen points, in the map's order
+  std::vector<std::string> notes{};                   ///< about this connection, one or more lines each
+  std::vector<Reading> readings{};                    ///< of the chosen points, in the map's order
 
-  bool online() const { return trouble.empty(); }
+  bool online() const { return error_text.empty(); }
   std::size_t failed() const;
 };
 

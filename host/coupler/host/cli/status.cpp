@@ -8,7 +8,7 @@
 #include "coupler/cli/commands.hpp"
 #include "coupler/cli/complain.hpp"
 #include "coupler/host/cli/modbus_client.hpp"
-#include "coupler/host/cli/status_report.hpp"
+#include "coupler/host/cli/node_status.hpp"
 #include "coupler/map/node_address.hpp"
 
 namespace coupler::cli {
@@ -35,9 +35,9 @@ Exit run(const Arguments& arguments) {
       stdout);
   std::fflush(stdout);
   const std::string device = node_address_text(connection);
-  if (!status.trouble.empty())
-    return complain("status", failed, device + ": " + status.trouble,
-                    "see that a node serves there, with this unit id");
+  if (!status.error_text.empty())
+    return complain("status", failed, device + ": " + status.error_text,
+                    "check that a node serves there, with this unit id");
   if (!status.report)
     return complain("status", bad_input, device + " is a foreign coupler: it has no identity area",
                     "`coupler dump` shows its values if you have its map, `coupler probe` looks into it");
@@ -48,7 +48,8 @@ Exit run(const Arguments& arguments) {
 
 void add_status(Program& program, Exit& exit) {
   auto command = program.add_command(
-      "status", "Show what a node says of itself: machine, map, watchdog, statistics. Never writes to it.");
+      "status",
+      "Show what a node says about itself: machine, map, watchdog, statistics. Never writes to it.");
   const auto arguments = std::make_shared<Arguments>();
   command.add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], with tcp:// in front or not")
       .required()

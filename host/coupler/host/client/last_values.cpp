@@ -18,7 +18,7 @@ bool LastValues::keep(Entry& entry, const Point& point, const std::uint16_t* reg
   return first || changed;
 }
 
-void LastValues::bring(const plan::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at) {
+void LastValues::set(const plan::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at) {
   std::vector<News> news;
   {
     const std::lock_guard lock(mutex_);

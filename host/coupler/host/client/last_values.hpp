@@ -26,12 +26,12 @@ class LastValues {
     host::Time at;
   };
 
-  /// What `map` views must outlive it.
+  /// The map must outlive it.
   explicit LastValues(const Map& map) : map_(map), entries_(map.points.size()) {}
 
-  /// Values were read: all of them are there at once. Then calls, in this thread, the listeners of points
-  /// that have another value than before, or their first one.
-  void bring(const plan::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at);
+  /// Keeps values that were read, all at once. Then calls, in this thread, the listeners of points that have
+  /// another value than before, or their first one.
+  void set(const plan::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at);
   void listen(std::uint32_t point, Listener listener);
 
   /// nullopt: none was read yet.
@@ -51,7 +51,7 @@ class LastValues {
   /// Whether it is another value.
   static bool keep(Entry& entry, const Point& point, const std::uint16_t* registers, host::Time at);
 
-  Map map_;
+  const Map& map_;
   mutable std::mutex mutex_;
   mutable std::condition_variable came_;
   std::vector<Entry> entries_;

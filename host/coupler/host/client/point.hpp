@@ -64,13 +64,13 @@ class Settable : public Base {
  public:
   using Base::Base;
 
-  /// Sends the value to the device. One that is none of the point is refused; the text then says what would
-  /// be right.
+  /// Sends the value to the device. A value that is not valid for the point is refused; the text then says
+  /// what is.
   PendingWrite set(const T& value) {
     return send(
         [&](std::uint16_t* registers) { return TypedValue<T>::encode(value, this->point(), registers); });
   }
-  /// A number of another type, checked: 300 is no std::uint8_t, and 1.5 no integer.
+  /// A number of another type, checked: 300 does not fit std::uint8_t, and 1.5 is not an integer.
   template <class U, std::enable_if_t<is_other_number<T, U>, int> = 0>
   PendingWrite set(U value) {
     if (this->point().scale.present()) return set(static_cast<T>(value));
@@ -92,7 +92,7 @@ class Settable : public Base {
   }
 };
 
-/// Neither: what a point that can only be written begins with.
+/// The base of a point that can only be written.
 class WriteOnly : public PointHandle {
  public:
   WriteOnly(Session& session, std::uint32_t index) : PointHandle(session, index) {}

@@ -12,6 +12,8 @@
 namespace coupler::client {
 namespace {
 
+using host::WriteResult;
+
 Map moved(Map map, const Options& options) {
   if (!options.address.empty()) map.connection.address = options.address;
   if (options.port) map.connection.port = *options.port;
@@ -22,10 +24,33 @@ std::unique_ptr<host::Transport> make_transport(const Map& map) {
   return std::move(host::make_transports({map}).front());
 }
 
+SetResult copy(const WriteResult& result) { return {result.outcome, result.exception, to_string(result)}; }
+
+/// Deletes itself once it has its result: nobody else knows when that is.
+class Promise final : public host::WriteListener {
+ public:
+  void on_result(const WriteResult& result) override {
+    const std::unique_ptr<Promise> ends(this);
+    promise_.set_value(copy(result));
+  }
+  PendingWrite future() { return promise_.get_future(); }
+
+ private:
+  std::promise<SetResult> promise_;
+};
+
+/// Makes `write` give its result to the future. The write must be pushed, or its listener called.
+PendingWrite listen_to(host::Write& write) {
+  auto promise = std::make_unique<Promise>();
+  PendingWrite future = promise->future();
+  write.listener = promise.release();
+  return future;
+}
+
 }  // namespace
 
-struct Session::Link {
-  Link(const Map& map, Verify verify, host::Sink& sink)
+struct Session::Engine {
+  Engine(const Map& map, Verify verify, host::Sink& sink)
       : transport(make_transport(map)), thread(map, verify, load_served_map, *transport, sink) {}
 
   std::unique_ptr<host::Transport> transport;
@@ -40,24 +65,30 @@ std::string to_string(const NoValue& why) {
                                    : std::string(host::to_string(why.quality)));
 }
 
+PendingWrite refused(std::string_view why) {
+  std::promise<SetResult> known;
+  known.set_value(copy({SetResult::Outcome::refused, std::nullopt, why}));
+  return known.get_future();
+}
+
 Session::Session(const Map& map, Options options)
     : options_(std::move(options)), map_(moved(map, options_)), values_(map_) {}
 
 Session::~Session() { disconnect(); }
 
 void Session::connect() {
-  const std::unique_lock lock(link_mutex_);
+  const std::unique_lock lock(engine_mutex_);
   host::Sink& news = *this;
-  if (!link_) link_ = std::make_unique<Link>(map_, options_.verify, news);
+  if (!engine_) engine_ = std::make_unique<Engine>(map_, options_.verify, news);
 }
 
 void Session::disconnect() {
-  std::unique_ptr<Link> link;
+  std::unique_ptr<Engine> engine;
   {
-    const std::unique_lock lock(link_mutex_);
-    link = std::move(link_);
+    const std::unique_lock lock(engine_mutex_);
+    engine = std::move(engine_);
   }
-  link.reset();  // outside the lock: callbacks that are on their way may set points
+  engine.reset();  // outside the lock: callbacks that run now may set points
 }
 
 bool Session::online() const {
@@ -80,20 +111,18 @@ tl::expected<Session::Sample, NoValue> Session::judge(std::uint32_t point,
 }
 
 host::PointQuality Session::quality(std::uint32_t point) const {
-  const std::shared_lock lock(link_mutex_);
-  return link_ ? link_->thread.quality(point) : host::PointQuality{Quality::offline};
+  const std::shared_lock lock(engine_mutex_);
+  return engine_ ? engine_->thread.quality(point) : host::PointQuality{Quality::offline};
 }
 
 PendingWrite Session::write(host::Write& write) {
   PendingWrite pending = listen_to(write);
-  const std::shared_lock lock(link_mutex_);
-  if (link_) {
-    link_->thread.write(write);
+  const std::shared_lock lock(engine_mutex_);
+  if (engine_) {
+    engine_->thread.write(write);
   } else {
-    host::WriteResult result;
-    result.outcome = SetResult::Outcome::dropped;
-    result.why = "not connected; call connect() first";
-    write.listener->on_result(result);
+    write.listener->on_result(
+        {SetResult::Outcome::dropped, std::nullopt, "not connected; call connect() first"});
   }
   return pending;
 }
@@ -104,7 +133,7 @@ void Session::on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits,
 }
 
 void Session::on_registers(const host::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at) {
-  values_.bring(span, registers, at);
+  values_.set(span, registers, at);
 }
 
 void Session::on_online(bool online) {

@@ -5,15 +5,17 @@
 #include <chrono>
 #include <condition_variable>
 #include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <string>
+#include <string_view>
+
 #include <tl/expected.hpp>
 
 #include "coupler/host/client/last_values.hpp"
-#include "coupler/host/client/pending_write.hpp"
 #include "coupler/host/core/device_thread.hpp"
 
 namespace coupler::client {
@@ -25,8 +27,8 @@ using Quality = host::PointQuality::State;
 struct Options {
   std::string address;                ///< empty: the map's
   std::optional<std::uint16_t> port;  ///< default: the map's
-  Verify verify = Verify::require;    ///< what to do if the device's map is another one
-  /// What a log should have: who is not reachable and why, how two maps differ. Called in the connection's
+  Verify verify = Verify::require;    ///< what to do if the device has another map
+  /// Gets lines for a log: why the device cannot be reached, how two maps differ. Called in the connection's
   /// thread, or in one that sets a value; it must neither wait nor use the client.
   std::function<void(Level, const std::string&)> on_report{};
 };
@@ -34,30 +36,49 @@ struct Options {
 /// Why there is no value.
 struct NoValue {
   Quality quality = Quality::never_read;         ///< never_read, offline, rejected, or exception
-  std::optional<modbus::Exception> exception{};  ///< the last that there was
+  std::optional<modbus::Exception> exception{};  ///< the last one
 };
 std::string to_string(const NoValue& why);
 
-/// One coupler as the generated clients see it: a connection that comes back by itself, the last values, the
-/// way for new ones. It runs the engine of the ROS driver in a thread of its own, with the same poll plan,
-/// write queue and identity check.
+/// What became of a value that was set.
+struct SetResult {
+  using Outcome = host::WriteResult::Outcome;
+
+  Outcome outcome = Outcome::ok;
+  std::optional<modbus::Exception> exception{};  ///< that the device answered with
+  std::string text;                              ///< what happened, in words that follow the point's name
+
+  /// The device has taken the value.
+  explicit operator bool() const { return outcome == Outcome::ok; }
+};
+
+/// get() waits for the device's answer: a few of its timeouts at most. A callback must not wait for it, since
+/// the answer comes in the same thread. It may be ignored.
+using PendingWrite = std::future<SetResult>;
+
+/// The result of a value that is not valid for its point: known at once.
+PendingWrite refused(std::string_view why);
+
+/// One coupler as the generated clients see it: a connection that reconnects by itself, the last values, and
+/// writes. It runs the engine of the ROS driver in a thread of its own, with the same poll plan, write queue
+/// and identity check.
 ///
-/// All is for any thread. Callbacks come in the connection's thread: they may read and set points, but must
-/// wait for nothing, nor disconnect.
+/// All may be called from any thread. Callbacks come in the connection's thread: they may read and set
+/// points, but must neither wait nor disconnect.
 class Session : private host::Sink {
  public:
   ~Session() override;
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Begins to look for the device, and goes on until disconnect(). Returns at once.
+  /// Connects in the background, again and again until disconnect(). Returns at once.
   void connect();
   /// Ends the connection, outputs as the map's `on_shutdown` says. The last values stay, as offline.
   void disconnect();
 
   /// The device answers, and has this map.
   bool online() const;
-  /// Waits for that. False: it does not yet.
+  /// Waits for online(); false if it is not within `at_most`.
   bool wait_online(std::chrono::milliseconds at_most) const;
 
  protected:
@@ -81,7 +102,7 @@ class Session : private host::Sink {
   void on_online(bool online) override;
   void on_report(Level level, const std::string& text) override;
 
-  struct Link;
+  struct Engine;
 
   const Options options_;
   const Map map_;
@@ -90,8 +111,8 @@ class Session : private host::Sink {
   mutable std::mutex online_mutex_;
   mutable std::condition_variable came_online_;
   bool online_ = false;
-  mutable std::shared_mutex link_mutex_;  ///< link_ is not replaced while it is used
-  std::unique_ptr<Link> link_;            ///< null: disconnected
+  mutable std::shared_mutex engine_mutex_;  ///< engine_ is not replaced while it is used
+  std::unique_ptr<Engine> engine_;          ///< null: disconnected
 };
 
 /// What the points of a client have in common.

@@ -9,8 +9,8 @@
 
 namespace coupler::host {
 
-/// Callers in any thread who wait for something that the connection's owner does: reset the coupler's
-/// watchdog, write the safe values.
+/// Calls from any thread that the connection's owner carries out: to reset the coupler's watchdog, to write
+/// the safe values.
 class Calls {
  public:
   struct Answer {
@@ -18,7 +18,7 @@ class Calls {
     std::string text;
   };
 
-  /// Answered at once where nobody would do it: there is no connection.
+  /// Answered at once if there is no connection.
   std::future<Answer> ask() {
     const std::lock_guard lock(mutex_);
     std::promise<Answer> asked;
@@ -32,18 +32,18 @@ class Calls {
     return answer;
   }
   bool any() const { return any_; }
-  /// All who have asked.
+  /// Answers all calls that wait.
   void answer(const Answer& answer) {
     const std::lock_guard lock(mutex_);
     answer_all(answer);
   }
 
-  /// From now on somebody does it.
+  /// There is a connection.
   void open() {
     const std::lock_guard lock(mutex_);
     closed_.clear();
   }
-  /// Nobody does it: who has asked and who asks is told `why`.
+  /// There is no connection: calls that wait, and new ones, are answered with `why`.
   void close(const std::string& why) {
     const std::lock_guard lock(mutex_);
     closed_ = why;

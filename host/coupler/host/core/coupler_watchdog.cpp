@@ -6,16 +6,64 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/core/probe.hpp"
-#include "coupler/host/core/watchdog_writes.hpp"
-
 namespace coupler::host {
 namespace {
 
-/// Whatever it is that keeps it from being armed or reset: it is tried again.
+using Step = WatchdogSequences::Write;
+
+std::string_view remedy(modbus::Exception code) {
+  switch (code) {
+    case modbus::Exception::server_device_busy: return "another client owns its outputs; end that client";
+    case modbus::Exception::illegal_function:
+    case modbus::Exception::illegal_data_address: return "check that 'preset' is right for this coupler";
+    default:
+      return "check that no other client keeps it running; docs/couplers.md says what each coupler needs";
+  }
+}
+
+/// Makes one write (FC 5 or 6).
+Result<std::optional<RejectedStep>> write_step(const Step& step, Transport& transport) {
+  const auto request = step.table == Table::coils
+                           ? modbus::WriteRequest::coil(step.address, step.value != 0)
+                           : modbus::WriteRequest::register_value(step.address, step.value);
+  Result<> done = transport.send(request);
+  if (done) done = transport.receive(request);
+  if (done) return std::nullopt;
+  const ExceptionReply* exception = exception_in(done.error());
+  if (exception == nullptr || is_unit_away(done.error())) return tl::make_unexpected(done.error());
+  return RejectedStep{step, exception->code};
+}
+
+/// Until it is tried again to arm or reset it.
 constexpr auto shortest_retry = std::chrono::milliseconds(1000);
 
 }  // namespace
+
+std::string to_string(const RejectedStep& rejected) {
+  return fmt::format("writing {} to {} {}: {}; {}", rejected.step.value, to_string(rejected.step.table),
+                     rejected.step.address, to_string(Error(ExceptionReply{rejected.code})),
+                     remedy(rejected.code));
+}
+
+Result<std::optional<RejectedStep>> write_steps(Span<const Step> steps, Transport& transport) {
+  for (const Step& step : steps) {
+    const Result<bool> is_so = step.if_different ? has_value(step, transport) : Result<bool>(false);
+    if (!is_so) return tl::make_unexpected(is_so.error());
+    if (*is_so) continue;
+    if (auto done = write_step(step, transport); !done || done->has_value()) return done;
+  }
+  return std::nullopt;
+}
+
+Result<bool> has_value(const Step& place, Transport& transport) {
+  const auto range = modbus::Range::of(place.address, 1);
+  std::uint16_t value = 0;
+  const Result<> read = transport.read(place.table, range, &value);
+  if (read) return value == place.value;
+  if (exception_in(read.error()) == nullptr || is_unit_away(read.error()))
+    return tl::make_unexpected(read.error());
+  return false;
+}
 
 CouplerWatchdog::CouplerWatchdog(const Map& map, PacedTransport& transport, Clock& clock,
                                  DeviceStatistics& statistics, Sink& sink)
@@ -39,7 +87,7 @@ void CouplerWatchdog::disconnected(const std::string& why) {
   if (!std::exchange(connected_, false)) return;
   if (status_.state == State::expired) return;  // it still is, as far as we know
   status_.state = State::not_fed;
-  status_.trouble.clear();
+  status_.error_text.clear();
   statistics_.watchdog(status_);
 }
 
@@ -57,7 +105,7 @@ Result<bool> CouplerWatchdog::step() {
   auto is_back = bring_up(true);
   if (!is_back) return is_back;  // disconnected() tells them
   const bool success = status_.state == State::fed;
-  resets_.answer({success, !success   ? status_.trouble
+  resets_.answer({success, !success   ? status_.error_text
                            : *is_back ? "reset, and fed again"
                                       : "it had not expired"});
   return is_back;
@@ -86,10 +134,10 @@ Result<bool> CouplerWatchdog::bring_up(bool may_reset) {
     auto still = is_expired();
     if (!still) return still;
     if (*still) {
-      trouble(
-          State::expired,
-          "the coupler's watchdog is reset, and still outputs are refused: look for a fault of its bus or "
-          "modules");
+      report_failure(State::expired,
+                     "the coupler's watchdog was reset, but writes to outputs are still refused: look for a "
+                     "fault of its bus "
+                     "or its modules");
       return false;
     }
   }
@@ -99,12 +147,12 @@ Result<bool> CouplerWatchdog::bring_up(bool may_reset) {
 }
 
 Result<> CouplerWatchdog::feed() {
-  if (known_.feed.empty()) return probe(map_, transport_);
+  if (known_.feed.empty()) return transport_.keep_alive(map_);
   next_ = clock_.now() + known_.feed_every;
-  const auto refused = write_step(known_.feed[turn_++ % known_.feed.size()], transport_);
-  if (!refused) return tl::make_unexpected(refused.error());
-  if (refused->has_value() && (*refused)->code != known_.refusal)
-    trouble(State::not_fed, "the coupler's watchdog cannot be fed: " + to_string(**refused));
+  const auto rejected = write_step(known_.feed[turn_++ % known_.feed.size()], transport_);
+  if (!rejected) return tl::make_unexpected(rejected.error());
+  if (rejected->has_value() && (*rejected)->code != known_.refusal)
+    report_failure(State::not_fed, "the coupler's watchdog cannot be fed: " + to_string(**rejected));
   return {};
 }
 
@@ -112,19 +160,19 @@ Result<bool> CouplerWatchdog::is_expired() {
   transport_.forget_exceptions();
   if (known_.alarm) return has_value(*known_.alarm, transport_);
   if (!known_.refusal) return false;
-  if (const auto asked = probe(map_, transport_); !asked) return tl::make_unexpected(asked.error());
-  const bool refused = transport_.has_seen(*known_.refusal);
+  if (const auto asked = transport_.keep_alive(map_); !asked) return tl::make_unexpected(asked.error());
+  const bool rejected = transport_.has_seen(*known_.refusal);
   transport_.forget_exceptions();
-  return refused;
+  return rejected;
 }
 
 Result<bool> CouplerWatchdog::carry_out(Span<const WatchdogSequences::Write> steps) {
-  const auto refused = write_steps(steps, transport_);
-  if (!refused) return tl::make_unexpected(refused.error());
-  if (!refused->has_value()) return true;
+  const auto rejected = write_steps(steps, transport_);
+  if (!rejected) return tl::make_unexpected(rejected.error());
+  if (!rejected->has_value()) return true;
   transport_.forget_exceptions();
-  trouble(status_.state == State::expired ? State::expired : State::not_fed,
-          "the coupler's watchdog cannot be armed: " + to_string(**refused));
+  report_failure(status_.state == State::expired ? State::expired : State::not_fed,
+                 "the coupler's watchdog cannot be armed: " + to_string(**rejected));
   return false;
 }
 
@@ -133,19 +181,20 @@ void CouplerWatchdog::expired() {
   if (status_.state == State::expired) return;
   ++status_.expiries;
   const bool automatic = known_.recovery == Watchdog::Recovery::automatic;
-  trouble(State::expired,
-          fmt::format(
-              "the coupler's watchdog has expired: {} ms without a request of the driver; its outputs are "
-              "off. {}",
-              known_.timeout.count(),
-              automatic ? "It is reset now"
-                        : fmt::format("When the machine may go on, call {}/reset_watchdog", map_.name)));
+  report_failure(
+      State::expired,
+      fmt::format(
+          "the coupler's watchdog has expired: {} ms without a request from the driver; its outputs are "
+          "off. {}",
+          known_.timeout.count(),
+          automatic ? "It is being reset"
+                    : fmt::format("When the machine may go on, call {}/reset_watchdog", map_.name)));
 }
 
-void CouplerWatchdog::trouble(State state, const std::string& what) {
+void CouplerWatchdog::report_failure(State state, const std::string& what) {
   next_ = clock_.now() + std::max<Duration>(known_.timeout, shortest_retry);
   status_.state = state;
-  if (std::exchange(status_.trouble, what) != what) sink_.on_report(Level::error, what);
+  if (std::exchange(status_.error_text, what) != what) sink_.on_report(Level::error, what);
   statistics_.watchdog(status_);
 }
 
@@ -154,13 +203,13 @@ void CouplerWatchdog::fed() {
   turn_ = 0;
   const bool was_expired = status_.state == State::expired;
   status_.state = State::fed;
-  status_.trouble.clear();
+  status_.error_text.clear();
   statistics_.watchdog(status_);
   if (was_expired && map_.on_reconnect == OnReconnect::drop)
     sink_.on_report(
         Level::warning,
         "the coupler's watchdog is reset and fed again; its outputs stay off until they are written "
-        "('on_reconnect: restore' would do that)");
+        "('on_reconnect: restore' in the map would do that)");
   else
     sink_.on_report(Level::info,
                     fmt::format("the coupler's watchdog is {}fed: outputs go off after {} ms of silence",

@@ -9,31 +9,50 @@
 #include "coupler/host/core/paced_transport.hpp"
 #include "coupler/host/core/sink.hpp"
 #include "coupler/map/map.hpp"
+#include "coupler/map/watchdog_sequences.hpp"
 
 namespace coupler::host {
 
-/// Makes use of the watchdog that a coupler has of its own, as Map::coupler_watchdog says: arms it at each
-/// connect, feeds it, notices that it has expired, resets it and arms it again. Each write is a request by
-/// itself.
+// The requests that a coupler's own watchdog needs. An exception is an answer here, unless it says that the
+// unit is away.
+
+/// A write that the coupler answered with an exception.
+struct RejectedStep {
+  WatchdogSequences::Write step;
+  modbus::Exception code;
+};
+
+/// "writing 5 to holding_registers 4096: exception 02 (illegal data address)", and what to do about it.
+std::string to_string(const RejectedStep& rejected);
+
+/// Makes the writes (FC 5 or 6) in order, up to the first that is rejected.
+Result<std::optional<RejectedStep>> write_steps(Span<const WatchdogSequences::Write> steps,
+                                                Transport& transport);
+
+/// Whether the place holds the value. False if it cannot be read.
+Result<bool> has_value(const WatchdogSequences::Write& place, Transport& transport);
+
+/// Uses the coupler's own watchdog as Map::coupler_watchdog says: arms it at each connect, feeds it, notices
+/// that it has expired, resets it and arms it again. Each write is a request of its own.
 ///
-/// ask_reset() is for any thread. All others belong to the one who uses the transport.
+/// ask_reset() may be called from any thread, all else only from the one that uses the transport.
 class CouplerWatchdog {
  public:
-  /// What `map` views, and everything given by reference, must outlive it.
+  /// Everything given by reference must outlive it.
   CouplerWatchdog(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
                   Sink& sink);
 
-  /// Resets it, whether or not the map wants that done automatically.
+  /// Resets it, also where the map wants no automatic reset.
   std::future<Calls::Answer> ask_reset() { return resets_.ask(); }
 
-  /// A new connection, on which nothing has been written. An error means that it is of no more use.
+  /// A new connection, on which nothing has been written. An error means that it can no longer be used.
   Result<> connected();
-  /// There is no connection: who waits for a reset is told `why` there is none.
+  /// There is no connection: resets that wait are answered with `why`.
   void disconnected(const std::string& why);
 
   /// When step() has something to do; Time::max() if there is no watchdog.
   Time due() const;
-  /// Does that. True: it had expired and is fed again; outputs are as the coupler left them.
+  /// Does it. True if it had expired and is fed again; outputs are as the coupler left them.
   Result<bool> step();
 
  private:
@@ -45,10 +64,10 @@ class CouplerWatchdog {
   Result<bool> is_expired();
   Result<bool> carry_out(Span<const WatchdogSequences::Write> steps);
   void expired();
-  void trouble(State state, const std::string& what);
+  void report_failure(State state, const std::string& what);
   void fed();
 
-  Map map_;
+  const Map& map_;
   WatchdogSequences known_;
   PacedTransport& transport_;
   Clock& clock_;

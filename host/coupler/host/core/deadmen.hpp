@@ -10,15 +10,15 @@
 
 namespace coupler::host {
 
-/// The points whose commands must not fall silent. Each is armed by its first message, and again by the first
-/// one after it has expired.
+/// The deadman of each point that has one. It is armed by the first message, and again by the first one after
+/// it has expired.
 class Deadmen {
  public:
   /// What `map` views must outlive it.
   explicit Deadmen(const Map& map);
 
-  /// A message came for a point. From any thread. True if that armed it: its deadline is a new one to wait
-  /// for.
+  /// A message has come for the point. From any thread. True if that armed it: there is a new deadline to
+  /// wait for.
   bool fed(std::uint32_t point, Time now);
   /// The earliest deadline; Time::max() if none is armed.
   Time due() const;

@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/core/probe.hpp"
-
 namespace coupler::host {
 
 namespace {
@@ -15,7 +13,7 @@ namespace {
 std::string loss_text(const Map& map, const Error& error, bool was_online) {
   const std::string why = to_string(error);
   if (is_unit_away(error))
-    return fmt::format("the gateway cannot reach unit {}: {}; asking again", map.connection.unit, why);
+    return fmt::format("the gateway cannot reach unit {}: {}; trying again", map.connection.unit, why);
   return was_online ? fmt::format("connection lost: {}; connecting again", why)
                     : fmt::format("not connected: {}; trying again", why);
 }
@@ -30,17 +28,17 @@ Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transpo
       sink_(sink),
       qualities_(map),
       transport_(transport, clock, map.limits, statistics_),
-      watchdog_(map, transport_, clock, statistics_, sink),
-      writer_(map, transport_, clock, statistics_, qualities_, sink),
-      reader_(map, transport_, clock, writer_, statistics_, qualities_, sink) {}
+      watchdog_(map_, transport_, clock, statistics_, sink),
+      writer_(map_, transport_, clock, statistics_, qualities_, sink),
+      poller_(map_, transport_, clock, writer_, statistics_, qualities_, sink) {}
 
 Time Device::step() {
-  if (!connected_) {
+  if (!is_verified()) {
     writer_.disconnected(NotConnected{"not connected"});
     return clock_.now() < retry_at_ ? retry_at_ : connect();
   }
   if (const auto done = do_what_is_due(clock_.now()); !done) lost(done.error());
-  return connected_ ? due() : retry_at_;
+  return is_verified() ? due() : retry_at_;
 }
 
 Result<> Device::do_what_is_due(Time now) {
@@ -52,11 +50,11 @@ Result<> Device::do_what_is_due(Time now) {
   else if (watchdog_.due() <= now)
     answer = serve_watchdog();
   else if (writer_.due() <= now)
-    answer = is_read_first(now) && reader_.has_request(now) ? read_or_write() : write();
-  else if (reader_.due() <= now)
+    answer = is_read_first(now) && poller_.has_request(now) ? read_or_write() : write();
+  else if (poller_.due() <= now)
     answer = read(write_due);
-  else if (probe_due() <= now && transport_.await_turn(write_due) == Transport::Turn::read)
-    answer = probe(map_, transport_);
+  else if (keep_alive_due() <= now && transport_.await_turn(write_due) == Transport::Turn::read)
+    answer = transport_.keep_alive(map_);
   else
     return {};
   if (answer && transport_.replies() > replies_at_connect_) {
@@ -71,8 +69,8 @@ Result<> Device::write() {
   return writer_.step();
 }
 
-/// A device by itself reads. One behind a gateway waits for both, and so for no more than one read of the
-/// others.
+/// Reads, unless units share the connection: then a read and a write wait for a turn, and the one that gets
+/// it first is made, so that no more than one read of the others comes before.
 Result<> Device::read_or_write() {
   transport_.rank(Rank::read);
   switch (transport_.await_turn(Time::max(), true)) {
@@ -86,7 +84,7 @@ Result<> Device::read_or_write() {
 
 Result<> Device::read(Time until) {
   const std::uint64_t replies = transport_.replies();
-  auto answer = reader_.step(until);
+  auto answer = poller_.step(until);
   if (transport_.replies() != replies) wrote_last_ = false;
   return answer;
 }
@@ -97,33 +95,34 @@ Result<> Device::serve_watchdog() {
   return *is_back ? writer_.reconnected() : Result<>{};
 }
 
-Time Device::due() const { return std::min({writer_.due(), watchdog_.due(), reader_.due(), probe_due()}); }
+Time Device::due() const {
+  return std::min({writer_.due(), watchdog_.due(), poller_.due(), keep_alive_due()});
+}
 
 void Device::arrived() {
   if (writer_.awaits_answer()) return;
-  if (!connected_) {  // the unit was away; the gateway goes, too
+  if (!is_verified()) {  // the unit was away, and now the gateway is, too
     transport_.close();
-    linked_ = false;
+    state_ = State::none;
     return;
   }
   lost(TransportFailure{"the device closed the connection, or sent an unexpected reply"});
 }
 
 bool Device::stop() {
-  const bool is_safe = writer_.shut_down(connected_);
+  const bool is_safe = writer_.shut_down(is_verified());
   writer_.disconnected(NotConnected{"the driver ends"});
   watchdog_.disconnected("the driver ends");
   transport_.close();
-  connected_ = linked_ = false;
-  if (std::exchange(online_, false)) sink_.on_online(false);
+  if (std::exchange(state_, State::none) == State::online) sink_.on_online(false);
   return is_safe;
 }
 
 Time Device::connect() {
   transport_.rank(Rank::read);
   wrote_last_ = false;
-  Result<> result = linked_ ? Result<>{} : transport_.connect();
-  linked_ = result.has_value();
+  Result<> result = state_ == State::open ? Result<>{} : transport_.connect();
+  state_ = result ? State::open : State::none;
   if (result && verify_ != Verify::off) result = prove_equal();
   if (result) result = watchdog_.connected();
   if (result) result = writer_.reconnected();
@@ -131,8 +130,8 @@ Time Device::connect() {
     lost(result.error());
     return retry_at_;
   }
-  connected_ = true;
-  reader_.start();
+  state_ = State::verified;
+  poller_.start();
   replies_at_connect_ = transport_.replies();
   if (verify_ != Verify::off && identity_suffices_) came_online();
   return due();
@@ -161,12 +160,12 @@ void Device::explain_silence(const Error& error) {
 
 Result<> Device::judge(const Identity& identity) {
   if (identity.verdict != Identity::Verdict::different) {
-    refused_fingerprint_ = 0;
+    reported_fingerprint_ = 0;
     if (identity.verdict == Identity::Verdict::superset) sink_.on_report(Level::info, superset_text);
     return {};
   }
   const bool refuse = verify_ == Verify::require;
-  if (std::exchange(refused_fingerprint_, identity.fingerprint) != identity.fingerprint) {
+  if (std::exchange(reported_fingerprint_, identity.fingerprint) != identity.fingerprint) {
     std::string text = difference_text(map_, identity);
     if (refuse)
       text +=
@@ -174,14 +173,14 @@ Result<> Device::judge(const Identity& identity) {
           "client: Options::verify)";
     sink_.on_report(refuse ? Level::error : Level::warning, text);
   }
-  if (refuse) return fail(NotConnected{"the device's map is another one"});
+  if (refuse) return fail(NotConnected{"the device has another map"});
   return {};
 }
 
 void Device::came_online() {
-  if (std::exchange(online_, true)) return;
+  if (std::exchange(state_, State::online) == State::online) return;
   backoff_.reset();
-  last_trouble_.clear();
+  last_error_text_.clear();
   statistics_.online();
   qualities_.online(true);
   sink_.on_online(true);
@@ -193,23 +192,22 @@ void Device::came_online() {
 }
 
 void Device::lost(const Error& error) {
-  linked_ = linked_ && is_unit_away(error);
-  if (!linked_) transport_.close();
-  connected_ = false;
+  const bool was_online = state_ == State::online;
+  state_ = state_ != State::none && is_unit_away(error) ? State::open : State::none;
+  if (state_ == State::none) transport_.close();
   retry_at_ = clock_.now() + backoff_.next();
   writer_.disconnected(error);
   watchdog_.disconnected(to_string(error));
   const std::string why = to_string(error);
   statistics_.offline(why);
   qualities_.online(false);
-  const bool was_online = std::exchange(online_, false);
   if (was_online) {
     identity_suffices_ = transport_.replies() > replies_at_connect_;
     sink_.on_online(false);
   }
-  if (!ending_ && (was_online || why != last_trouble_))
+  if (!ending_ && (was_online || why != last_error_text_))
     sink_.on_report(Level::warning, loss_text(map_, error, was_online));
-  last_trouble_ = why;
+  last_error_text_ = why;
 }
 
 }  // namespace coupler::host

@@ -5,27 +5,27 @@
 #include <future>
 #include <string>
 
-#include "coupler/host/core/backoff.hpp"
 #include "coupler/host/core/coupler_watchdog.hpp"
-#include "coupler/host/core/reader.hpp"
+#include "coupler/host/core/poller.hpp"
+#include "coupler/host/core/schedule.hpp"
 #include "coupler/host/core/writer.hpp"
 
 namespace coupler::host {
 
-/// One coupler: connects and comes back by itself, proves that both sides have the same map, writes first and
-/// reads on schedule. It has no thread of its own: step() is called again and again by one.
+/// One coupler: connects and reconnects by itself, verifies that both sides have the same map, writes first
+/// and reads on schedule. It has no thread of its own: one calls step() again and again.
 ///
 /// A device whose map differs is left alone under Verify::require: nothing is written, and nothing is read
 /// either, since a value from a place that now means something else would be published under the old name.
 /// The connection is closed (it may be the only one the device has) and the identity is asked for again after
 /// the back-off.
 ///
-/// A unit that its gateway cannot reach is offline, too, and tried again after the back-off, but the
-/// connection to the gateway stays: others may use it.
+/// A unit that its gateway cannot reach is offline, too, and tried again after the back-off. The connection
+/// to the gateway stays, since others may use it.
 ///
-/// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), statistics() and qualities() are for
-/// any thread. All others are for one at a time: the owner of the connection, or, for send_now() alone, one
-/// who has made sure that the owner only waits.
+/// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), end_comes(), statistics() and
+/// qualities() may be called from any thread. All else is for the thread that owns the connection; send_now()
+/// is also for another that has made sure that the owner only waits.
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
@@ -33,7 +33,7 @@ class Device {
 
   /// Queues a write. Its listener gets the result.
   void push(const Write& write) { writer_.push(write); }
-  /// A value that is none of its point: counted, and told to the listener.
+  /// A value that is not valid for its point: counted, and reported to the listener.
   void refuse(const Write& write, std::string_view why) { writer_.refuse(write, why); }
 
   /// As Writer's.
@@ -46,42 +46,51 @@ class Device {
 
   /// Sends what is queued without waiting for anything, if that is possible now. If false, step() must be
   /// called.
-  bool send_now() { return connected_ && !is_read_first(clock_.now()) && writer_.send_now(); }
+  bool send_now() { return is_verified() && !is_read_first(clock_.now()) && writer_.send_now(); }
 
   /// Does what is due, at most one read or one write, and returns the time of what is due next: now or
   /// earlier if there is more to do. A write in the queue is always due while connected.
   Time step();
   /// Bytes have come while no step() ran: an answer to send_now(), or else the end of the connection.
   void arrived();
-  /// From any thread: what breaks off from now on is not worth a line in the log.
+  /// From now on a lost connection is not logged.
   void end_comes() { ending_ = true; }
-  /// The program ends: outputs go where `on_shutdown` wants them, the connection is dropped for good. False
-  /// if an output should have its safe value and has not.
+  /// The program ends: outputs are set as `on_shutdown` says, and the connection is closed for good. False if
+  /// an output should have its safe value but does not.
   bool stop();
 
   /// Whether somebody wants the values of a point (index into Map::points).
-  void want(std::uint32_t point, bool wanted) { reader_.want(point, wanted); }
+  void want(std::uint32_t point, bool wanted) { poller_.want(point, wanted); }
 
   DeviceSnapshot statistics() const { return statistics_.snapshot(); }
   std::vector<PointQuality> qualities() const { return qualities_.snapshot(clock_.now()); }
   PointQuality quality(std::uint32_t point) const { return qualities_.of(point, clock_.now()); }
-  /// Another number, once qualities() or what statistics() tells of the connection is not what it was, for
-  /// another reason than that time has passed.
+  /// Changes whenever qualities() or the connection in statistics() changes, unless only by the passing of
+  /// time.
   std::uint64_t revision() const { return statistics_.revision() + qualities_.revision(); }
 
  private:
+  /// Each includes what the ones before it say.
+  enum class State {
+    none,
+    open,      ///< there is a connection, to the device or to its gateway
+    verified,  ///< the maps are equal: reads and writes may go out
+    online     ///< the device has answered
+  };
+  bool is_verified() const { return state_ >= State::verified; }
+
   Time connect();
   Result<> prove_equal();
   Result<> judge(const Identity& identity);
   void explain_silence(const Error& error);
   Result<> do_what_is_due(Time now);
-  bool is_read_first(Time now) const { return wrote_last_ && reader_.is_overdue(now); }
+  bool is_read_first(Time now) const { return wrote_last_ && poller_.is_overdue(now); }
   Result<> write();
   Result<> read_or_write();
   Result<> read(Time until);
   Result<> serve_watchdog();
   Time due() const;
-  Time probe_due() const { return transport_.last_answer() + map_.connection.timeout; }
+  Time keep_alive_due() const { return transport_.last_answer() + map_.connection.timeout; }
   void came_online();
   void lost(const Error& error);
 
@@ -95,23 +104,20 @@ class Device {
   PacedTransport transport_;
   CouplerWatchdog watchdog_;
   Writer writer_;
-  Reader reader_;
+  Poller poller_;
   Backoff backoff_;
 
   std::atomic<bool> ending_{false};
-  bool linked_ = false;      ///< there is a connection, to the device or to its gateway
-  bool connected_ = false;   ///< proven equal; reads and writes may go out
-  bool online_ = false;      ///< connected, and the device has answered
+  State state_ = State::none;
   bool wrote_last_ = false;  ///< the last request was a write: an overdue read goes before the next one
-  /// Of PacedTransport, when the connection had been proven equal.
-  std::uint64_t replies_at_connect_ = 0;
-  /// To be online; not of a device that the last time answered nothing after it: its online would flicker.
+  std::uint64_t replies_at_connect_ = 0;  ///< PacedTransport::replies() when the maps were verified
+  /// A verified device is online at once. Not one that answered nothing else the last time: it would flicker.
   bool identity_suffices_ = true;
   Time retry_at_ = Time::min();
-  std::string last_trouble_;               ///< why the last attempt failed, so that it is told once
-  bool explains_silence_ = true;           ///< until the identity has been answered, or the remedy told
-  std::string peer_;                       ///< which machine it is, as far as a node says
-  std::uint64_t refused_fingerprint_ = 0;  ///< whose differences have been told
+  std::string last_error_text_;             ///< of the last attempt, so that it is logged once
+  bool explains_silence_ = true;            ///< until the identity was answered, or silence_text() logged
+  std::string peer_;                        ///< which machine it is, if a node says so
+  std::uint64_t reported_fingerprint_ = 0;  ///< whose differences have been logged
 };
 
 }  // namespace coupler::host

@@ -11,17 +11,28 @@
 #include "coupler/host/core/error.hpp"
 #include "coupler/host/core/histogram.hpp"
 #include "coupler/host/core/identity_check.hpp"
-#include "coupler/host/core/watchdog_status.hpp"
-#include "coupler/host/core/write_result.hpp"
+#include "coupler/host/core/write.hpp"
 
 namespace coupler::host {
 
-/// What can be said of a device at one moment. Counts are since the program began.
+/// The state of the coupler's own watchdog.
+struct WatchdogStatus {
+  enum class State : std::uint8_t {
+    not_fed,  ///< not connected, or it could not be armed
+    fed,      ///< armed, where the coupler lets the host do that
+    expired   ///< outputs are as the coupler leaves them then
+  };
+  State state = State::not_fed;
+  std::uint64_t expiries = 0;  ///< that were noticed
+  std::string error_text;      ///< what is wrong and what to do, while it is expired or could not be armed
+};
+
+/// The state of a device at one moment. Counts are since the program began.
 struct DeviceSnapshot {
   bool online = false;
   std::string trouble;                        ///< why it is not online
   std::optional<Identity::Verdict> identity;  ///< at the last connect; nullopt: not asked
-  identity::Machine machine{};                ///< of a node, at the last connect, as far as it says
+  identity::Machine machine{};                ///< of a node, at the last connect, as far as known
   std::uint64_t connections = 0;              ///< that were made and proven; all but the first are reconnects
   std::uint64_t requests = 0;
   std::uint64_t timeouts = 0;
@@ -39,7 +50,7 @@ struct DeviceSnapshot {
   }
 };
 
-/// Counts what a device does; read from any thread. Allocates nothing but the text of a trouble.
+/// Counts what a device does; read from any thread. Allocates nothing but error texts.
 class DeviceStatistics {
  public:
   void answered(Duration after, const Result<>& result);
@@ -52,7 +63,7 @@ class DeviceStatistics {
   void offline(const std::string& trouble);
 
   DeviceSnapshot snapshot() const;
-  /// Another number, once `online`, `trouble` or `identity` has been set.
+  /// Changes whenever `online`, `trouble` or `identity` is set.
   std::uint64_t revision() const { return revision_; }
 
  private:

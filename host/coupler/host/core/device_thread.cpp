@@ -7,7 +7,7 @@ namespace coupler::host {
 namespace {
 
 /// For safe values at the end: the program is to be gone within a second.
-constexpr auto longest_farewell = std::chrono::milliseconds(700);
+constexpr auto longest_shutdown = std::chrono::milliseconds(700);
 
 }  // namespace
 
@@ -25,7 +25,7 @@ bool DeviceThread::end() {
   if (!thread_.joinable()) return ended_safely_;
   stopping_ = true;
   transport_.wake();
-  if (ends_safely_) stopped_.get_future().wait_for(longest_farewell);
+  if (ends_safely_) stopped_.get_future().wait_for(longest_shutdown);
   clock_.stop();
   device_.end_comes();
   transport_.interrupt();
@@ -41,7 +41,7 @@ void DeviceThread::write(const Write& write) {
 }
 
 void DeviceThread::want(std::uint32_t point, bool wanted) {
-  demand_.say(point, wanted);
+  demand_.set(point, wanted);
   transport_.wake();
 }
 

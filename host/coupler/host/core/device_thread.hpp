@@ -2,19 +2,50 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <future>
 #include <mutex>
 #include <thread>
+#include <utility>
+#include <vector>
 
+#include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/device.hpp"
-#include "coupler/host/core/read_demand.hpp"
-#include "coupler/host/core/steady_clock.hpp"
 
 namespace coupler::host {
 
+/// Which points are to be read: set by any thread, taken by the connection's own.
+class ReadDemand {
+ public:
+  void set(std::uint32_t point, bool wanted) {
+    const std::lock_guard lock(mutex_);
+    given_.emplace_back(point, wanted);
+    any_ = true;
+  }
+
+  /// Calls f(point, wanted) for what was set since the last call, in order.
+  template <class F>
+  void take(F&& f) {
+    if (!any_) return;
+    {
+      const std::lock_guard lock(mutex_);
+      taken_.swap(given_);
+      any_ = false;
+    }
+    for (const auto& [point, wanted] : taken_) f(point, wanted);
+    taken_.clear();
+  }
+
+ private:
+  std::atomic<bool> any_{false};
+  std::mutex mutex_;
+  std::vector<std::pair<std::uint32_t, bool>> given_;
+  std::vector<std::pair<std::uint32_t, bool>> taken_;  ///< kept for its memory
+};
+
 /// Runs a device in its own thread, so that a dead one slows no other. That thread owns the connection, and
-/// it alone receives. While it waits for the next thing to do, another thread may send a write by itself: the
-/// answer wakes the owner. So a write to an idle device costs no thread hand-over.
+/// it alone receives. While it waits, another thread may send a write by itself; the answer wakes the owner.
+/// So a write to an idle device needs no switch of threads.
 class DeviceThread {
  public:
   /// With Poll::subscribed no point is wanted at first.
@@ -25,15 +56,14 @@ class DeviceThread {
   ~DeviceThread() { end(); }
   DeviceThread(const DeviceThread&) = delete;
   DeviceThread& operator=(const DeviceThread&) = delete;
-  /// What the destructor does, once. False if an output should have its safe value and has not.
+  /// What the destructor does, once. False if an output should have its safe value but does not.
   bool end();
 
   // From any thread; none of them waits for a request.
 
-  /// Takes a write on its way: sends it at once if the connection is idle, otherwise queues it. The sink may
-  /// call it.
+  /// Sends a write at once if the connection is idle, otherwise queues it. The sink may call it.
   void write(const Write& write);
-  /// Counts a value that is none of its point, and tells the listener.
+  /// Counts a value that is not valid for its point, and reports it to the listener.
   void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
   /// As Writer's. To be called a few times a second.
   void report_held_back() { device_.report_held_back(); }
@@ -58,12 +88,12 @@ class DeviceThread {
   Device device_;
   ReadDemand demand_;
   bool ends_safely_;  ///< writes safe values at the end
-  std::mutex turn_;   ///< held by the one who uses the connection; others than the owner only try
+  std::mutex turn_;   ///< held by whoever uses the connection; only the owner waits for it
   std::atomic<bool> stopping_{false};
   std::atomic<std::thread::id> owner_{};  ///< has its turn while it calls the sink
   std::promise<void> stopped_;
   bool ended_safely_ = true;  ///< once the thread has ended
-  std::thread thread_;        // begins when the others are there: it uses them
+  std::thread thread_;        // last: it uses the others
 };
 
 }  // namespace coupler::host

@@ -23,7 +23,7 @@ struct TransportFailure {
 struct Timeout {
   std::chrono::milliseconds after;
 };
-/// The device is there and says no. Any code may arrive (MAP 7).
+/// The device refuses the request. Any code may arrive (MAP 7).
 struct ExceptionReply {
   modbus::Exception code;
 };

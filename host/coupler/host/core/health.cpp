@@ -34,7 +34,7 @@ Health connection_health(const DeviceSnapshot& now) {
   if (!now.online)
     return {Level::error, now.trouble.empty() ? "not connected yet" : "offline: " + now.trouble};
   if (now.identity == Identity::Verdict::different)
-    return {Level::warning, "online, but the device's map is another one"};
+    return {Level::warning, "online, but the device has another map"};
   return {Level::info, "online"};
 }
 
@@ -54,7 +54,7 @@ Health polling_health(const Map& map, const std::vector<PointQuality>& points, c
   if (missing > names_at_most) names += fmt::format(" and {} more", missing - names_at_most);
   if (missing > 0) return {good == 0 ? Level::error : Level::warning, "no value of " + names};
   if (now.overruns > before.overruns)
-    return {Level::warning, fmt::format("{} cycles left out; lower the rate, or see what takes so long below",
+    return {Level::warning, fmt::format("{} cycles left out; lower the rate, or see below what takes so long",
                                         now.overruns - before.overruns)};
   return {Level::info, fmt::format("{} points good", good)};
 }
@@ -73,8 +73,8 @@ Health writes_health(const DeviceSnapshot& before, const DeviceSnapshot& now) {
 Health watchdog_health(const DeviceSnapshot& now) {
   const WatchdogStatus& watchdog = now.watchdog;
   if (watchdog.state == WatchdogStatus::State::fed) return {Level::info, "fed"};
-  if (watchdog.trouble.empty()) return {Level::warning, "not fed: the device is offline"};
-  return {Level::error, watchdog.trouble};
+  if (watchdog.error_text.empty()) return {Level::warning, "not fed: the device is offline"};
+  return {Level::error, watchdog.error_text};
 }
 
 }  // namespace coupler::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is to be said of a device's state, and how loud: the rules behind /diagnostics.
+// A device's state as text and level: the rules behind /diagnostics.
 #pragma once
 
 #include <string>
@@ -25,7 +25,7 @@ Health connection_health(const DeviceSnapshot& now);
 Health polling_health(const Map& map, const std::vector<PointQuality>& points, const DeviceSnapshot& before,
                       const DeviceSnapshot& now);
 
-/// warning: a write since `before` did not do what it should.
+/// warning: a write since `before` failed.
 Health writes_health(const DeviceSnapshot& before, const DeviceSnapshot& now);
 
 /// The coupler's own watchdog. error: it has expired, or it is not fed.

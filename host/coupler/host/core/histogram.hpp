@@ -9,8 +9,8 @@
 
 namespace coupler::host {
 
-/// Durations from 1 µs to about a minute, counted in steps of an eighth of each power of two: what it tells
-/// is at most 12.5 % above the truth. Of fixed size; copying it is a snapshot.
+/// Durations from 1 µs to about a minute, counted in steps of an eighth of each power of two: a quantile is
+/// at most 12.5 % too large. Of fixed size; a copy is a snapshot.
 class Histogram {
  public:
   void add(Duration duration) {

@@ -13,7 +13,7 @@ namespace coupler::host {
 /// What to do when the two sides do not agree.
 enum class Verify {
   require,  ///< do not talk to the device
-  warn,     ///< say so and go on
+  warn,     ///< report it and go on
   off       ///< do not ask
 };
 constexpr Enumeration<Verify, 3> enumeration(Verify) {
@@ -41,8 +41,8 @@ std::string difference_text(const Map& known, const Identity& identity);
 /// What `superset` means.
 constexpr auto superset_text = "the device has more points than this map; those of this map are unchanged";
 
-/// What it may mean that a device which has never answered the question does not do so now (a timeout, or a
-/// gateway that cannot reach it), and what to do.
+/// Why a device that has never answered the request for its identity may not do so (a timeout, or a gateway
+/// that cannot reach it), and what to do.
 std::string silence_text(const Map& known, const Error& error);
 
 /// Asks the device. An error is a broken connection, never a difference.

@@ -75,7 +75,8 @@ std::string to_string(const identity::Machine& machine) {
 }
 
 Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size) {
-  if (size > max_file_size) return fail(BadFrame{fmt::format("a map of {} bytes", size)});
+  if (size > max_file_size)
+    return fail(BadFrame{fmt::format("a map of {} bytes; at most {} are possible", size, max_file_size)});
   std::string text;
   text.reserve(size + 1);
   std::array<std::uint16_t, modbus::max_file_registers> registers{};

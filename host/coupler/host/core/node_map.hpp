@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node of this project says of itself: its identity and its map. Foreign couplers have neither.
+// What a node of this project says about itself: its identity and its map. Foreign couplers have neither.
 #pragma once
 
 #include <functional>
@@ -39,7 +39,7 @@ struct ServedMap {
 /// Both, over a connection of its own, which is closed then; nullopt: a foreign coupler.
 Result<std::optional<ServedMap>> fetch_served_map(Transport& transport);
 
-/// The map of a text that was fetched, or why it is none: a wrong checksum, errors.
+/// The map in a text that was fetched, or what is wrong with it: its checksum, errors.
 tl::expected<MapPtr, std::string> load_node_map(const std::string& text, const identity::Head& head,
                                                 const MapLoader& load);
 

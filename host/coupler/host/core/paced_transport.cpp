@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/core/paced_transport.hpp"
 
+#include <algorithm>
+#include <array>
+
+#include "coupler/modbus/limits.hpp"
+
 namespace coupler::host {
 
 void PacedTransport::pause() {
@@ -44,6 +49,16 @@ Result<> PacedTransport::send(const modbus::WriteRequest& request) {
 }
 Result<> PacedTransport::receive(const modbus::WriteRequest& request) {
   return answered(transport_.receive(request));
+}
+
+Result<> PacedTransport::keep_alive(const Map& map) {
+  const auto found = std::find_if(map.points.begin(), map.points.end(), is_readable);
+  const Point* const point = found == map.points.end() ? map.points.begin() : found;
+  std::array<std::uint16_t, modbus::max_read_bits> ignored;
+  Result<> answer = map.points.empty() ? read(Table::coils, modbus::Range::of(0, 1), ignored.data())
+                                       : read(point->table, read_range(*point), ignored.data());
+  if (answer || (exception_in(answer.error()) != nullptr && !is_unit_away(answer.error()))) return {};
+  return answer;
 }
 
 }  // namespace coupler::host

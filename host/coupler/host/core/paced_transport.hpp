@@ -10,8 +10,8 @@
 
 namespace coupler::host {
 
-/// Keeps the pauses that some devices need: `connect_delay` after a connect, `request_gap` between a reply
-/// and the next request; and takes the time of each request.
+/// Makes the pauses that some devices need: `connect_delay` after a connect, `request_gap` between a reply
+/// and the next request. Measures the time of each request.
 class PacedTransport : public Transport {
  public:
   PacedTransport(Transport& transport, Clock& clock, const Limits& limits, DeviceStatistics& statistics)
@@ -38,11 +38,15 @@ class PacedTransport : public Transport {
   Woken wait_until(Time time) override { return transport_.wait_until(time); }
   void wake() override { transport_.wake(); }
 
+  /// Makes a request only to see that the device answers: the first point that can be read, or else coil 0.
+  /// An exception is an answer, unless it says that the unit is away.
+  Result<> keep_alive(const Map& map);
+
   /// A request that is made now needs no pause.
   bool is_ready() const { return clock_.now() >= ready_; }
   /// When the last request was answered, well or not.
   Time last_answer() const { return answered_; }
-  /// How many requests have been answered, be it by an exception.
+  /// How many requests have been answered, also by an exception.
   std::uint64_t replies() const { return replies_; }
 
   /// Whether a request has been answered with it since the last forget_exceptions().

@@ -11,7 +11,7 @@
 
 #include "coupler/base/span.hpp"
 #include "coupler/host/core/clock.hpp"
-#include "coupler/host/core/write_result.hpp"
+#include "coupler/host/core/write.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/modbus/exception.hpp"
 
@@ -23,10 +23,10 @@ struct PointQuality {
     good,
     stale,       ///< nothing new for two periods of its rate and a timeout
     never_read,  ///< since the program began
-    exception,   ///< the last question was answered with an exception
-    rejected,    ///< the device does not have it: not asked for again while the connection lasts
+    exception,   ///< the last read was answered with an exception
+    rejected,    ///< the device does not have it: not read again while the connection lasts
     offline,     ///< the device does not answer
-    not_wanted   ///< nobody listens to it, so that it is not read
+    not_wanted   ///< not read, since nobody listens to it
   };
   State state = State::never_read;
   Time stale_from = Time::max();                      ///< of a good one: if nothing new comes
@@ -48,15 +48,15 @@ class PointQualities {
   void exception(Span<const std::uint32_t> points, modbus::Exception code);
   void wrote(std::uint32_t point, const WriteResult& result);
   void rejected(Span<const std::uint32_t> points, modbus::Exception code);
-  /// All that an earlier connection rejected may be there now.
+  /// What the device rejected over an earlier connection may be there now.
   void connected();
   void online(bool online);
 
   /// By point, as of `now`. Points that can only be written stay never_read.
   std::vector<PointQuality> snapshot(Time now) const;
   PointQuality of(std::uint32_t point, Time now) const;
-  /// Another number, once a snapshot would tell another state, exception or write for another reason than
-  /// that time has passed.
+  /// Changes whenever a state, exception or write in the snapshot changes, unless only by the passing of
+  /// time.
   std::uint64_t revision() const { return revision_; }
 
  private:

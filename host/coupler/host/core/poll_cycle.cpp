@@ -4,9 +4,30 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "coupler/plan/split.hpp"
 
 namespace coupler::host {
+
+std::string to_string(const RejectedRange& rejected) {
+  const auto table = to_string(rejected.table);
+  const unsigned first = rejected.range.start();
+  const unsigned last = rejected.range.last();
+  if (rejected.between_points)
+    return fmt::format(
+        "the device rejects {0} {1} to {2}, which lie between points; they are left out while this "
+        "connection "
+        "lasts. To leave them out always, add to the map (zero-based addresses): unreadable: [{{table: {0}, "
+        "from: {1}, to: {2}}}]",
+        table, first, last);
+  return fmt::format(
+      "the device rejects {} {} to {} in one request; they are read in parts. If it takes fewer than {} in "
+      "one "
+      "request, add to the map: limits: {{{}: ...}}",
+      table, first, last, rejected.range.count(),
+      holds_bits(rejected.table) ? "read_bits" : "read_registers");
+}
 
 PollCycle::PollCycle(const Map& map)
     : planner_(map), wanted_(map.points.size(), true), given_up_(map.points.size(), false) {
@@ -15,9 +36,9 @@ PollCycle::PollCycle(const Map& map)
 }
 
 void PollCycle::start(Time now) {
-  refused_.clear();
+  rejected_ranges_.clear();
   given_up_.assign(given_up_.size(), false);
-  found_.clear();
+  findings_.clear();
   others_first_ = false;
   for (Group& group : groups_) {
     group.next = 0;
@@ -77,7 +98,7 @@ bool PollCycle::answered(std::optional<modbus::Exception> exception, Time now) {
 std::vector<std::uint32_t> PollCycle::rejected(Time now) {
   Group& group = groups_[current_];
   const ReadSpan rejected = current();
-  refused_.push_back({rejected.table, rejected.range});
+  rejected_ranges_.push_back({rejected.table, rejected.range});
   std::vector<Step> pieces;
   std::vector<std::uint32_t> given_up;
   std::optional<modbus::Range> hole;
@@ -112,7 +133,7 @@ void PollCycle::give_up(Time now) {
   done(now);
 }
 
-std::vector<Refusal> PollCycle::take_refusals() { return std::exchange(found_, {}); }
+std::vector<RejectedRange> PollCycle::take_rejected_ranges() { return std::exchange(findings_, {}); }
 
 std::vector<PollCycle::Status> PollCycle::status() const {
   std::vector<Status> result;
@@ -132,7 +153,7 @@ void PollCycle::replan(Group& group, Time now) {
   for (const std::uint32_t point : group.points->points)
     if (wanted_[point] && !given_up_[point]) points.push_back(point);
   const std::vector<Step> old = std::exchange(group.steps, {});
-  for (ReadSpan& span : planner_.plan(points, refused_)) {
+  for (ReadSpan& span : planner_.plan(points, rejected_ranges_)) {
     const auto same = std::find_if(old.begin(), old.end(), [&](const Step& step) {
       return step.last && step.span.table == span.table && step.span.range == span.range;
     });
@@ -160,24 +181,25 @@ void PollCycle::done(Time now) {
   if (!group.parted.empty()) learn(group);
 }
 
-/// The parts of all that was rejected have been asked for. Where no smaller part was rejected, the hole
-/// between the parts is to blame, or, where there is none, the request was too long. Parts that need not be
-/// apart come together again in the next cycle.
+/// The parts of all that was rejected have been read. Where no smaller part was rejected, the hole between
+/// the parts is the cause, or, without a hole, the length of the request. Parts that need not be apart are
+/// joined again in the next cycle.
 void PollCycle::learn(Group& group) {
-  const std::vector<Unreadable> all = refused_;
+  const std::vector<Unreadable> all = rejected_ranges_;
   const auto holds_smaller = [&all](const Unreadable& whole) {
     return std::any_of(all.begin(), all.end(), [&](const Unreadable& other) {
       return other.table == whole.table && other.range != whole.range && whole.range.contains(other.range);
     });
   };
-  refused_.erase(std::remove_if(refused_.begin(), refused_.end(), holds_smaller), refused_.end());
+  rejected_ranges_.erase(std::remove_if(rejected_ranges_.begin(), rejected_ranges_.end(), holds_smaller),
+                         rejected_ranges_.end());
   bool found_hole = false;
   for (const auto& [whole, hole] : std::exchange(group.parted, {})) {
     if (holds_smaller(whole)) continue;
     // With points of another rate in it, the hole is an unlikely cause.
     const bool blame_hole = hole && !planner_.has_points(whole.table, *hole);
-    found_.push_back({whole.table, blame_hole ? *hole : whole.range, blame_hole});
-    if (blame_hole) refused_.push_back({whole.table, *hole});
+    findings_.push_back({whole.table, blame_hole ? *hole : whole.range, blame_hole});
+    if (blame_hole) rejected_ranges_.push_back({whole.table, *hole});
     found_hole = found_hole || blame_hole;
   }
   if (found_hole && !std::exchange(group.joined_again, true)) group.stale = true;

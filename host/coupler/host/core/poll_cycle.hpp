@@ -2,24 +2,37 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "coupler/host/core/error.hpp"
-#include "coupler/host/core/refusal.hpp"
 #include "coupler/host/core/schedule.hpp"
+#include "coupler/map/table.hpp"
+#include "coupler/modbus/range.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::host {
 
 using plan::ReadSpan;
 
-/// Which read request is next: the points of each rate on deadlines of their own. It learns, for the time of
-/// a connection, what the device rejects.
+/// Why a read request was rejected although its points can be read.
+struct RejectedRange {
+  Table table;
+  modbus::Range range;
+  bool between_points;  ///< no point needs these addresses; otherwise they can be read in parts, not in one
+                        ///< request
+};
+
+/// What it means for the map, in one line.
+std::string to_string(const RejectedRange& rejected);
+
+/// Which read request is next: the points of each rate have deadlines of their own. It learns, for the time
+/// of a connection, what the device rejects.
 ///
 /// Of the rates that are due the fastest goes first, so that a slow one with many requests delays it by one
-/// request at most; after a whole cycle of one rate the others have one request in any case, so that none
-/// starves when there is too much to do.
+/// request at most. After a whole cycle of one rate each other one that is due has a request, so that none
+/// starves.
 class PollCycle {
  public:
   /// What `map` views must outlive the cycle. All its points are wanted.
@@ -34,10 +47,10 @@ class PollCycle {
 
   /// When select() has a request; in the past while a cycle runs. Time::max() if nothing is left to read.
   Time due() const;
-  /// A deadline of one of the rates has passed by a whole period, and its cycle has not ended.
+  /// The cycle of one of the rates is late by a whole period.
   bool is_overdue(Time now) const;
-  /// Chooses the request to make now: nullptr if none is due. It is current() until one of the next three
-  /// functions tells how it went.
+  /// Chooses the request to make now: nullptr if none is due. It is current() until answered(), rejected() or
+  /// give_up() is called.
   const ReadSpan* select(Time now);
   const ReadSpan& current() const { return step().span; }
   /// The last answer to current() was an exception.
@@ -46,14 +59,14 @@ class PollCycle {
   /// current() was answered, with values (nullopt) or with an exception that may pass. True if that is news:
   /// another answer than that of the cycle before.
   bool answered(std::optional<modbus::Exception> exception, Time now);
-  /// The device does not take current(): smaller requests take its place, in this cycle. Returns the points
-  /// that cannot be read at all and are given up until the next start().
+  /// The device rejects current(): smaller requests take its place in this cycle. Returns the points that
+  /// cannot be read at all and are given up until the next start().
   std::vector<std::uint32_t> rejected(Time now);
   /// The device does not know the function of current(): its points are given up until the next start().
   void give_up(Time now);
 
-  /// What was found out, since the last call, about requests that were rejected: each is told once.
-  std::vector<Refusal> take_refusals();
+  /// What was learned since the last call about requests that were rejected: each once.
+  std::vector<RejectedRange> take_rejected_ranges();
 
   /// From its deadline to its last answer: the cycle that has ended since the last call, if one has.
   std::optional<Duration> take_cycle_time() { return std::exchange(cycle_time_, std::nullopt); }
@@ -103,9 +116,9 @@ class PollCycle {
   std::vector<Group> groups_;
   std::size_t current_ = 0;
   std::uint64_t requests_ = 0;
-  bool others_first_ = false;        ///< a cycle has ended: who waits has a turn
-  std::vector<Unreadable> refused_;  ///< no request of several points contains one
-  std::vector<Refusal> found_;
+  bool others_first_ = false;                ///< a cycle has ended: the rates that wait have a turn
+  std::vector<Unreadable> rejected_ranges_;  ///< no request of several points contains one
+  std::vector<RejectedRange> findings_;
   std::optional<Duration> cycle_time_;
 };
 

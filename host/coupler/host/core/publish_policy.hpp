@@ -21,8 +21,8 @@ class PublishPolicy {
   /// The point's registers as they came `at`; bit tables: each bit as one register, 0 or 1.
   bool calls_news(const std::uint16_t* registers, Time at);
 
-  /// The next value is news whatever it is: the device was away, since when the last one is history, or there
-  /// is a listener who has not seen it. From any thread.
+  /// The next value is news whatever it is: the device was away, or a new listener has not seen the last one.
+  /// From any thread.
   void renew() { renewed_ = true; }
 
  private:

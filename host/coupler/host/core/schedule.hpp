@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// When something is due again: at a rate, or after a failure.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "coupler/host/core/clock.hpp"
@@ -13,7 +15,7 @@ inline Duration period_of(double rate) {
 }
 
 /// Deadlines `period` apart, counted from the start and not from the last cycle: no drift. Deadlines that
-/// pass while a cycle runs are counted and left out, never made up for.
+/// pass while a cycle runs are counted and left out, not caught up on.
 class Schedule {
  public:
   explicit Schedule(Duration period) : period_(period) {}
@@ -39,6 +41,22 @@ class Schedule {
   Duration period_;
   Time due_{};
   std::uint64_t overruns_ = 0;
+};
+
+/// How long to wait before the next attempt: 0.1 s, doubling to 5 s.
+class Backoff {
+ public:
+  Duration next() {
+    const Duration delay = next_;
+    next_ = std::min<Duration>(2 * next_, longest);
+    return delay;
+  }
+  void reset() { next_ = shortest; }
+
+ private:
+  static constexpr Duration shortest = std::chrono::milliseconds(100);
+  static constexpr Duration longest = std::chrono::seconds(5);
+  Duration next_ = shortest;
 };
 
 }  // namespace coupler::host

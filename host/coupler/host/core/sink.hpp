@@ -13,8 +13,8 @@ using plan::ReadSpan;
 
 enum class Level { info, warning, error };
 
-/// Where a device's news go. Calls come from the connection's thread, values while the next request waits:
-/// what is done here delays it. Only on_report() may also come from a thread that writes.
+/// Gets what a device reads and reports. Calls come from the connection's thread, and delay its next request.
+/// Only on_report() may also come from a thread that writes.
 class Sink {
  public:
   virtual ~Sink() = default;
@@ -22,7 +22,7 @@ class Sink {
   virtual void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) = 0;
   /// `registers[i]` is the register `span.range.start() + i`, as of `at`.
   virtual void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) = 0;
-  /// The device answers (or no longer does). Only changes are told; it begins offline.
+  /// The device answers (or no longer does). Only changes; it begins offline.
   virtual void on_online(bool online) = 0;
   virtual void on_report(Level level, const std::string& text) = 0;
 };

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 
 #include "coupler/base/span.hpp"
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/error.hpp"
 #include "coupler/map/table.hpp"
+#include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/range.hpp"
 #include "coupler/modbus/write_request.hpp"
 
 namespace coupler::host {
 
 /// Who goes first where units share a connection: writes before reads, in turn
-/// (coupler/host/modbus/turn_order.hpp).
+/// (coupler/host/modbus/turns.hpp).
 enum class Rank {
   read,
   write,  ///< also the read before a write, and the one that verifies it
@@ -36,18 +39,27 @@ class Transport {
   virtual Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) = 0;
   /// FC 3 or 4: `range.count()` (at most 125) registers.
   virtual Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) = 0;
+  /// read_bits() or read_registers(), bits as 0 or 1.
+  Result<> read(Table table, modbus::Range range, std::uint16_t* values) {
+    if (!holds_bits(table)) return read_registers(table, range, values);
+    std::array<std::uint8_t, modbus::max_read_bits> bits{};
+    Result<> answer = read_bits(table, range, bits.data());
+    if (answer) std::copy_n(bits.begin(), range.count(), values);
+    return answer;
+  }
   /// FC 20 with one group: fills `registers` (1 … 121) from a file.
   virtual Result<> read_file_record(std::uint16_t file, std::uint16_t record,
                                     Span<std::uint16_t> registers) = 0;
 
   // For units that share a connection, and take turns.
 
-  /// That of the reads that follow, and of the writes where it is Rank::safe. Else writes are Rank::write.
+  /// Sets the rank of the reads that follow, and of the writes if it is Rank::safe. Otherwise writes are
+  /// Rank::write.
   virtual void rank(Rank /*rank*/) {}
   enum class Turn { none, read, write };
-  /// Waits until a read would be sent at once, or, if one waits too, a write: whichever comes first. It must
-  /// follow, or another call. None if it was woken meanwhile, or at `until`: there may be something to do
-  /// that comes before a read.
+  /// Waits until a read, or with `write_waits` a write, would be sent at once: whichever comes first. That
+  /// request or another call must follow. Turn::none after wake(), or at `until`: something else may come
+  /// before a read.
   virtual Turn await_turn(Time /*until*/, bool /*write_waits*/ = false) { return Turn::read; }
   /// Whether a send() made now would wait for nobody else's request. If true, send() must follow.
   virtual bool reserve() { return true; }

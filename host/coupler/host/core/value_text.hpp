@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of a point as a person writes and reads them: true, 4711, 0x2F, -1.5, some text, [1, 2, 3].
+// Values of a point as people write and read them: true, 4711, 0x2F, -1.5, some text, [1, 2, 3].
 #pragma once
 
 #include <cstdint>

@@ -5,9 +5,82 @@
 #include <cassert>
 #include <cmath>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "coupler/codec/number.hpp"
+#include "coupler/host/core/error.hpp"
 
 namespace coupler::host {
+namespace {
+
+using Outcome = WriteResult::Outcome;
+
+std::string registers_text(Span<const std::uint16_t> registers) {
+  return fmt::format("{:#06x}", fmt::join(registers.begin(), registers.end(), " "));
+}
+
+std::string exception_text(const WriteResult& result) {
+  return to_string(Error(ExceptionReply{result.exception.value_or(modbus::Exception{})}));
+}
+
+std::string not_taken_text(const WriteResult& result) {
+  if (result.found.empty())
+    return fmt::format("not taken: acknowledged, but it cannot be read back: {}", exception_text(result));
+  return fmt::format("not taken: acknowledged, but {} was written and {} reads back",
+                     registers_text(result.written), registers_text(result.found));
+}
+
+template <class T>
+bool are_finite(const Point& point, const std::uint16_t* registers) {
+  const std::size_t width = codec::registers(point.format);
+  for (std::size_t i = 0; i < point.count; ++i)
+    if (!std::isfinite(codec::take<T>(point.format, registers + i * width))) return false;
+  return true;
+}
+
+std::optional<Write> safe_value(const Map& map, std::uint32_t index) {
+  const Point& point = map.points[index];
+  if (!is_writable(point) || point.safe == Safe::hold) return std::nullopt;
+  if (point.table != Table::coils) {
+    if (point.safe == Safe::on) return make_write(map, index, point.safe_value);
+    return is_analogue(point) ? std::optional(make_write(map, index, {})) : std::nullopt;
+  }
+  Write write = make_write(map, index, point.safe_value);
+  if (point.safe == Safe::on && point.safe_value.empty())
+    for (std::size_t i = 0; i < point.count; ++i) write.set_bit(i);
+  return write;
+}
+
+}  // namespace
+
+std::string_view to_string(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::ok: return "ok";
+    case Outcome::superseded: return "superseded";
+    case Outcome::exception: return "exception";
+    case Outcome::not_taken: return "not taken";
+    case Outcome::lost: return "lost";
+    case Outcome::dropped: return "dropped";
+    case Outcome::kept: return "kept";
+    case Outcome::refused: return "refused";
+  }
+  return "?";
+}
+
+std::string to_string(const WriteResult& result) {
+  switch (result.outcome) {
+    case Outcome::exception: return exception_text(result);
+    case Outcome::not_taken: return not_taken_text(result);
+    case Outcome::kept: return "kept: it is written when the device is back";
+    case Outcome::ok:
+    case Outcome::superseded: return std::string(to_string(result.outcome));
+    case Outcome::lost:
+    case Outcome::dropped:
+    case Outcome::refused: break;
+  }
+  return fmt::format("{}: {}", to_string(result.outcome), result.why);
+}
 
 Write make_write(const Map& map, std::uint32_t point, Span<const std::uint16_t> value) {
   Write write;
@@ -22,18 +95,6 @@ Write make_write(const Map& map, std::uint32_t point, Span<const std::uint16_t> 
   return write;
 }
 
-namespace {
-
-template <class T>
-bool are_finite(const Point& point, const std::uint16_t* registers) {
-  const std::size_t width = codec::registers(point.format);
-  for (std::size_t i = 0; i < point.count; ++i)
-    if (!std::isfinite(codec::take<T>(point.format, registers + i * width))) return false;
-  return true;
-}
-
-}  // namespace
-
 bool is_finite(const Point& point, const Write& write) {
   if (holds_bits(point.table)) return true;
   switch (point.format.type) {
@@ -41,6 +102,13 @@ bool is_finite(const Point& point, const Write& write) {
     case codec::Type::LREAL: return are_finite<double>(point, write.registers.data());
     default: return true;
   }
+}
+
+std::vector<Write> safe_values(const Map& map) {
+  std::vector<Write> values;
+  for (std::uint32_t i = 0; i < map.points.size(); ++i)
+    if (const auto value = safe_value(map, i)) values.push_back(*value);
+  return values;
 }
 
 }  // namespace coupler::host

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/core/write_batch.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cassert>
 
 namespace coupler::host {
@@ -12,6 +12,23 @@ using modbus::WriteRequest;
 using Function = HostOptions::WriteFunction;
 
 bool is_neighbour(Range a, Range b) { return a.end() == b.start() || b.end() == a.start(); }
+
+Result<> write_batch(const WriteBatch& batch, const Map& map, Transport& transport,
+                     std::vector<RejectedValue>& rejected) {
+  Result<> answer = exchange(batch, map, transport);
+  const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
+  if (exception == nullptr) return answer;
+  if (batch.writes().size() == 1) {
+    rejected.push_back({batch.writes().front().point, exception->code});
+    return {};
+  }
+  for (const Write& write : batch.writes()) {  // one of them may be to blame, or their being together
+    WriteBatch alone(map);
+    alone.add(write);
+    if (auto one = write_batch(alone, map, transport, rejected); !one) return one;
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -30,7 +47,7 @@ bool WriteBatch::add(const Write& write) {
     if (point(write).table != first.table || !is_neighbour(own, range_)) return false;
     if (!merges(writes_.front()) || !merges(write)) return false;
     const auto both = Range::of(std::min(own.start(), range_.start()), own.count() + range_.count());
-    if (both.count() > (holds_bits(first.table) ? map_.limits.write_bits : map_.limits.write_registers))
+    if (both.count() > (holds_bits(first.table) ? map_->limits.write_bits : map_->limits.write_registers))
       return false;
     range_ = both;
   }
@@ -39,7 +56,7 @@ bool WriteBatch::add(const Write& write) {
 }
 
 bool WriteBatch::needs_read() const {
-  return !empty() && is_partial(point(writes_.front())) && !map_.limits.mask_write;
+  return !empty() && is_partial(point(writes_.front())) && !map_->limits.mask_write;
 }
 
 WriteRequest WriteBatch::part_request(std::uint16_t before) const {
@@ -47,7 +64,7 @@ WriteRequest WriteBatch::part_request(std::uint16_t before) const {
   const std::uint16_t mask = codec::mask(which.format);
   const auto others = static_cast<std::uint16_t>(~mask);
   const std::uint16_t value = writes_.front().registers[0];
-  if (map_.limits.mask_write) return WriteRequest::mask(which.address, others, value);
+  if (map_->limits.mask_write) return WriteRequest::mask(which.address, others, value);
   const auto word = static_cast<std::uint16_t>((before & others) | (value & mask));
   if (which.host.write_function == Function::multiple)
     return WriteRequest::registers(which.address, {&word, 1});
@@ -71,6 +88,51 @@ WriteRequest WriteBatch::request(std::uint16_t before) const {
   }
   const Span<const std::uint16_t> used(values.data(), range_.count());
   return coils ? WriteRequest::coils(range_.start(), used) : WriteRequest::registers(range_.start(), used);
+}
+
+Result<> exchange(const WriteBatch& batch, const Map& map, Transport& transport) {
+  std::uint16_t before = 0;
+  if (batch.needs_read()) {
+    const Point& point = map.points[batch.writes().front().point];
+    if (auto read = transport.read_registers(point.table, read_range(point), &before); !read) return read;
+  }
+  const modbus::WriteRequest request = batch.request(before);
+  if (auto sent = transport.send(request); !sent) return sent;
+  return transport.receive(request);
+}
+
+Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map,
+                                                Transport& transport) {
+  std::vector<RejectedValue> rejected;
+  WriteBatch batch(map);
+  for (const Write& write : writes) {
+    if (batch.add(write)) continue;
+    if (auto written = write_batch(batch, map, transport, rejected); !written)
+      return tl::make_unexpected(written.error());
+    batch.clear();
+    batch.add(write);
+  }
+  if (batch.empty()) return rejected;
+  if (auto written = write_batch(batch, map, transport, rejected); !written)
+    return tl::make_unexpected(written.error());
+  return rejected;
+}
+
+Result<> ReadBack::read(const Write& write, const Map& map, Transport& transport) {
+  const Point& point = map.points[write.point];
+  const modbus::Range where = read_range(point);
+  count_ = where.count();
+  if (auto read = transport.read(point.table, where, found_.data()); !read) return read;
+  const auto mask = is_partial(point) ? codec::mask(point.format) : std::uint16_t{0xFFFF};
+  for (std::size_t i = 0; i < count_; ++i) {
+    written_[i] = point.table == Table::coils ? write.bit(i) : write.registers[i] & mask;
+    found_[i] = found_[i] & mask;
+  }
+  return {};
+}
+
+bool ReadBack::is_equal() const {
+  return std::equal(written_.begin(), written_.begin() + static_cast<std::ptrdiff_t>(count_), found_.begin());
 }
 
 }  // namespace coupler::host

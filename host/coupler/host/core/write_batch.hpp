@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes as requests: several in one, sent, and read back.
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "coupler/host/core/transport.hpp"
 #include "coupler/host/core/write.hpp"
+#include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/range.hpp"
 #include "coupler/modbus/write_request.hpp"
 
 namespace coupler::host {
 
-/// The writes of one request: one, or several that are next to each other both in the queue and in the
-/// device.
+/// The writes of one request: one, or several that are neighbours both in the queue and in the device.
 class WriteBatch {
  public:
-  /// What `map` views must outlive the batch.
-  explicit WriteBatch(const Map& map) : map_(map) {}
+  /// The map must outlive the batch.
+  explicit WriteBatch(const Map& map) : map_(&map) {}
 
   /// Takes the write if it is the first one or goes into the same request: a neighbour in the same table,
   /// within the limits of a request, neither of them `write_function: single`, `write_queue: every` or part
@@ -26,20 +29,51 @@ class WriteBatch {
   /// In the order of add().
   const std::vector<Write>& writes() const { return writes_; }
 
-  /// One that shares its register with others, which a device without FC 22 needs to be told, too: the
-  /// register must be read first.
+  /// The register must be read first: the point is a part of it, and the device has no FC 22 (mask write).
   bool needs_read() const;
   /// `before`: the register as it is, where that is needed. Not of an empty batch.
   modbus::WriteRequest request(std::uint16_t before = 0) const;
 
  private:
-  const Point& point(const Write& write) const { return map_.points[write.point]; }
+  const Point& point(const Write& write) const { return map_->points[write.point]; }
   bool merges(const Write& write) const;
   modbus::WriteRequest part_request(std::uint16_t before) const;
 
-  Map map_;
+  const Map* map_;
   std::vector<Write> writes_;
   modbus::Range range_ = modbus::Range::of(0, 1);  ///< of all together
+};
+
+/// Makes the request of a batch, after the read that a part of a register may need, and waits for the answer.
+Result<> exchange(const WriteBatch& batch, const Map& map, Transport& transport);
+
+/// A value that the device answered with an exception.
+struct RejectedValue {
+  std::uint32_t point;
+  modbus::Exception code;
+};
+
+/// Writes values that no caller waits for, neighbours in one request. Returns those that were rejected; an
+/// error means that the connection broke.
+Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map,
+                                                Transport& transport);
+
+/// What a point holds after a write, compared with what was written.
+class ReadBack {
+ public:
+  /// Reads the point where it reads back.
+  Result<> read(const Write& write, const Map& map, Transport& transport);
+
+  /// Only the point's own bits count.
+  bool is_equal() const;
+  /// As Point::initial; valid as long as this.
+  Span<const std::uint16_t> written() const { return {written_.data(), count_}; }
+  Span<const std::uint16_t> found() const { return {found_.data(), count_}; }
+
+ private:
+  std::array<std::uint16_t, modbus::max_read_bits> written_{};
+  std::array<std::uint16_t, modbus::max_read_bits> found_{};
+  std::size_t count_ = 0;
 };
 
 }  // namespace coupler::host

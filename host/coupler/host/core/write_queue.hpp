@@ -21,13 +21,13 @@ namespace coupler::host {
 /// place of its own and they keep their order; but a value that equals the newest one of its point that waits
 /// joins that one.
 ///
-/// The lock is never held across a request, so that a caller who pushes waits for nobody. The queue allocates
-/// only while it grows.
+/// The lock is never held across a request, so that push() never waits for one. The queue allocates only
+/// while it grows.
 class WriteQueue {
  public:
   static constexpr std::size_t capacity = 1024;  ///< of ordered writes
 
-  /// What `map` views must outlive the queue.
+  /// The map must outlive the queue.
   explicit WriteQueue(const Map& map);
 
   struct Pushed {
@@ -42,13 +42,13 @@ class WriteQueue {
   std::optional<Write> take();
   /// Takes the first write to one of the points (by index, as long as the map's).
   std::optional<Write> take_one_of(const std::vector<bool>& points);
-  /// Writes that were taken and not sent are the first ones again, in their order.
+  /// Puts writes that were taken and not sent back to the front, in their order.
   void put_back(const std::vector<Write>& writes);
   bool empty() const { return size_now_.load(std::memory_order_relaxed) == 0; }
 
-  /// What take() gave has its result.
+  /// A write from take() has its result.
   void settled(std::uint32_t point);
-  /// A value of the point is on its way: one that was pushed and has no result yet.
+  /// A value of the point was pushed and has no result yet.
   bool is_pending(std::uint32_t point) const;
   bool any_pending() const { return pending_writes_.load() != 0; }
 
@@ -75,7 +75,7 @@ class WriteQueue {
   Index insert(const Write& write, bool ordered, Index behind);
   Write remove(Index place);
 
-  Map map_;
+  const Map& map_;
   mutable std::mutex mutex_;
   std::vector<Place> places_;
   std::vector<Index> free_;

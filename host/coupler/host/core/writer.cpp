@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/core/read_back.hpp"
-
 namespace coupler::host {
 namespace {
 
@@ -15,13 +13,6 @@ using Outcome = WriteResult::Outcome;
 bool may_be_of_merging(modbus::Exception code) {
   return code == modbus::Exception::illegal_function || code == modbus::Exception::illegal_data_address ||
          code == modbus::Exception::illegal_data_value;
-}
-
-WriteResult with_reason(Outcome outcome, std::string_view why) {
-  WriteResult result;
-  result.outcome = outcome;
-  result.why = why;
-  return result;
 }
 
 }  // namespace
@@ -36,7 +27,6 @@ Writer::Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceSt
       sink_(sink),
       queue_(map),
       deadmen_(map),
-      values_(map.on_reconnect),
       safe_values_(safe_values(map)),
       is_safe_point_(map.points.size()),
       acknowledged_(map.points.size()),
@@ -47,8 +37,8 @@ Writer::Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceSt
 
 void Writer::push(const Write& write) {
   if (!is_finite(map_.points[write.point], write)) {
-    const WriteResult wrong =
-        with_reason(Outcome::refused, "a number that is not finite (NaN or infinity); send a finite one");
+    const WriteResult wrong = {Outcome::refused, std::nullopt,
+                               "a number that is not finite (NaN or infinity); send a finite one"};
     tell(write, wrong);
     report(write, wrong);
     return;
@@ -57,18 +47,18 @@ void Writer::push(const Write& write) {
   const WriteQueue::Pushed pushed = queue_.push(write);
   if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
   if (pushed.accepted) return;
-  const WriteResult full = with_reason(Outcome::dropped, "too many writes wait already; write less often");
+  const WriteResult full = {Outcome::dropped, std::nullopt, "too many writes are waiting; write less often"};
   tell(write, full);
   report(write, full);
 }
 
 void Writer::refuse(const Write& write, std::string_view why) {
-  tell(write, with_reason(Outcome::refused, why));
+  tell(write, {Outcome::refused, std::nullopt, why});
 }
 
 std::future<Calls::Answer> Writer::ask_safe() {
   auto answer = safe_calls_.ask();
-  sink_.on_report(Level::info, "safe values are asked for");
+  sink_.on_report(Level::info, "safe values were requested");
   return answer;
 }
 
@@ -131,7 +121,7 @@ Result<> Writer::finish(const Result<>& answer) {
 
 Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
   if (answer) {
-    values_.remember(write);
+    remember(write);
     acknowledged_[write.point] = true;
     if (map_.points[write.point].host.verify_write) return verify(write);
     settle(write, {Outcome::ok});
@@ -141,9 +131,9 @@ Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
     settle(write, {Outcome::exception, exception->code});
     return {};
   }
-  values_.remember(write);
+  remember(write);
   if (write.of_deadman) deadmen_.put_back(write.point);
-  settle(write, with_reason(Outcome::lost, to_string(answer.error())));
+  settle(write, {Outcome::lost, std::nullopt, to_string(answer.error())});
   return answer;
 }
 
@@ -168,28 +158,28 @@ Result<> Writer::make_safe() {
   queue_.put_back(batch_.writes());
   batch_.clear();
   while (const auto write = queue_.take_one_of(is_safe_point_)) settle(*write, {Outcome::superseded});
-  const auto refused = write_safe_values();
-  if (!refused) {
+  const auto rejected = write_safe_values();
+  if (!rejected) {
     safe_calls_.answer(
-        {false, fmt::format("not all outputs have their safe values: {}", to_string(refused.error()))});
-    return tl::make_unexpected(refused.error());
+        {false, fmt::format("not all outputs have their safe values: {}", to_string(rejected.error()))});
+    return tl::make_unexpected(rejected.error());
   }
   std::string text = fmt::format("{} of {} outputs have their safe values",
-                                 safe_values_.size() - refused->size(), safe_values_.size());
-  for (const auto& [point, code] : *refused)
+                                 safe_values_.size() - rejected->size(), safe_values_.size());
+  for (const auto& [point, code] : *rejected)
     text += fmt::format("; {}: {}", name(point), to_string(Error(ExceptionReply{code})));
-  sink_.on_report(refused->empty() ? Level::info : Level::error, text);
-  safe_calls_.answer({refused->empty(), text});
+  sink_.on_report(rejected->empty() ? Level::info : Level::error, text);
+  safe_calls_.answer({rejected->empty(), text});
   return {};
 }
 
 /// `on_reconnect: restore` brings these back, and not what was written before them.
-Result<std::vector<RefusedValue>> Writer::write_safe_values() {
-  for (const Write& write : safe_values_) values_.remember(write);
+Result<std::vector<RejectedValue>> Writer::write_safe_values() {
+  for (const Write& write : safe_values_) remember(write);
   transport_.rank(Rank::safe);
-  auto refused = write_values(safe_values_, map_, transport_);
+  auto rejected = write_values(safe_values_, map_, transport_);
   transport_.rank(Rank::write);
-  return refused;
+  return rejected;
 }
 
 void Writer::tell(const Write& write, const WriteResult& result) {
@@ -219,15 +209,15 @@ Result<> Writer::reconnected() {
   merges_ = true;
   fire_deadmen();
   std::vector<Write> values;
-  for (const auto& [point, write] : values_.all())
+  for (const auto& [point, write] : last_written_)
     if (!queue_.is_pending(point)) values.push_back(write);
-  const auto refused = write_values(values, map_, transport_);
-  if (!refused) return tl::make_unexpected(refused.error());
-  for (const auto& [point, code] : *refused)
+  const auto rejected = write_values(values, map_, transport_);
+  if (!rejected) return tl::make_unexpected(rejected.error());
+  for (const auto& [point, code] : *rejected)
     sink_.on_report(Level::warning, fmt::format("{} was not restored: {}", name(point),
                                                 to_string(Error(ExceptionReply{code}))));
   if (!values.empty())
-    sink_.on_report(Level::info, fmt::format("{} outputs were restored", values.size() - refused->size()));
+    sink_.on_report(Level::info, fmt::format("{} outputs were restored", values.size() - rejected->size()));
   safe_calls_.open();
   return {};
 }
@@ -242,17 +232,26 @@ void Writer::disconnected(const Error& why) {
   while (const auto write = queue_.take()) drop(*write);
 }
 
+void Writer::remember(const Write& write) {
+  if (!restores()) return;
+  Write& value = last_written_[write.point];
+  value = write;
+  value.listener = nullptr;
+  value.ordered = false;
+}
+
 void Writer::drop(const Write& write) {
-  values_.remember(write);
+  remember(write);
   if (write.of_deadman) deadmen_.put_back(write.point);
-  const auto result = with_reason(
-      values_.are_kept() ? Outcome::kept : Outcome::dropped,
-      "not connected; with 'on_reconnect: restore' in the map it would be written when the device is there");
+  const WriteResult result = {
+      restores() ? Outcome::kept : Outcome::dropped, std::nullopt,
+      "not connected; with 'on_reconnect: restore' in the map it would be written when the device is back"};
   queue_.settled(write.point);
   tell(write, result);
-  if (values_.are_kept() || dropped_++ > 0) return;
-  sink_.on_report(Level::warning, fmt::format("write to {}: {}, as all until the device is back",
-                                              name(write.point), to_string(result)));
+  if (restores() || dropped_++ > 0) return;
+  sink_.on_report(Level::warning,
+                  fmt::format("write to {}: {}. Further writes are dropped silently until the device is back",
+                              name(write.point), to_string(result)));
 }
 
 bool Writer::shut_down(bool connected) {
@@ -262,16 +261,16 @@ bool Writer::shut_down(bool connected) {
     return false;
   }
   if (sent_) finish(transport_.receive(*sent_));
-  const auto refused = write_safe_values();
-  if (!refused) {
+  const auto rejected = write_safe_values();
+  if (!rejected) {
     sink_.on_report(Level::error,
-                    "not all outputs could be set to their safe values: " + to_string(refused.error()));
+                    "not all outputs could be set to their safe values: " + to_string(rejected.error()));
     return false;
   }
-  for (const auto& [point, code] : *refused)
+  for (const auto& [point, code] : *rejected)
     sink_.on_report(Level::error, fmt::format("{} could not be set to its safe value: {}", name(point),
                                               to_string(Error(ExceptionReply{code}))));
-  return refused->empty();
+  return rejected->empty();
 }
 
 }  // namespace coupler::host

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -13,30 +14,28 @@
 #include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/sink.hpp"
 #include "coupler/host/core/write_queue.hpp"
-#include "coupler/host/core/write_values.hpp"
-#include "coupler/host/core/written_values.hpp"
 
 namespace coupler::host {
 
-/// What writes to one device: sends what the queue holds, tells each write its result, and makes the writes
-/// that nobody asked for at that moment: those of deadmen, after a reconnect, at the end.
+/// Writes to one device: sends what the queue holds, gives each write its result, and makes the writes of
+/// deadmen, after a reconnect and at the end.
 ///
-/// push(), refuse() and ask_safe() may come from any thread. All others belong to the one who uses the
-/// transport.
+/// push(), refuse(), ask_safe() and report_held_back() may be called from any thread, all else only from the
+/// one that uses the transport.
 class Writer {
  public:
-  /// What `map` views, and everything given by reference, must outlive it.
+  /// Everything given by reference must outlive it.
   Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
          PointQualities& qualities, Sink& sink);
 
   /// NaN and infinity are refused.
   void push(const Write& write);
-  /// A value that is none of its point.
+  /// A value that is not valid for its point.
   void refuse(const Write& write, std::string_view why);
   /// Writes what `on_shutdown: safe` would, whatever that says: after the request in flight, and before all
   /// that waits. What waits for these points is superseded.
   std::future<Calls::Answer> ask_safe();
-  /// Lines about writes of which there were too many to say them at once. From any thread, now and then.
+  /// Logs the lines about writes that were held back because there were too many. To be called now and then.
   void report_held_back();
   bool is_safe_asked() const { return safe_calls_.any(); }
 
@@ -50,21 +49,21 @@ class Writer {
   Time due() const {
     return batch_.empty() && queue_.empty() && !is_safe_asked() ? deadmen_.due() : Time::min();
   }
-  /// Awaits the answer to what is in flight, or makes the next request and awaits that. An error means that
-  /// the connection is of no more use; an exception is none.
+  /// Waits for the answer to what is in flight, or makes the next request and waits for its answer. An error
+  /// means that the connection can no longer be used; an exception is not an error.
   Result<> step();
 
   /// A new connection, or a coupler whose watchdog had switched its outputs off: under
   /// `on_reconnect: restore` they get their last values.
   Result<> reconnected();
-  /// There is no connection: nobody waits for what was sent or queued.
+  /// There is no connection: all that was sent or queued gets its result.
   void disconnected(const Error& why);
-  /// As `on_shutdown` says, the last thing before the connection is closed. False if an output should have
-  /// its safe value and has not.
+  /// Does what `on_shutdown` says, last before the connection is closed. False if an output should have its
+  /// safe value but does not.
   bool shut_down(bool connected);
 
-  /// A newer value of the point is on its way than the one just read, which would flicker back. Where writes
-  /// follow each other without end, one value is shown after each that was acknowledged.
+  /// A newer value of the point waits to be written than the one just read, which would flicker back. Where
+  /// writes never end, one value is shown after each that was acknowledged.
   bool hides(std::uint32_t point) const { return queue_.is_pending(point) && !acknowledged_[point]; }
   bool hides_any() const { return queue_.any_pending(); }
   /// Values of these points have been shown.
@@ -72,7 +71,7 @@ class Writer {
     for (const std::uint32_t point : points) acknowledged_[point] = false;
   }
 
-  /// Writes that were dropped since the last call of it.
+  /// How many writes were dropped since the last call.
   std::uint64_t take_dropped() { return std::exchange(dropped_, 0); }
 
  private:
@@ -81,14 +80,16 @@ class Writer {
   Result<> finish_one(const Write& write, const Result<>& answer);
   Result<> verify(const Write& write);
   Result<> make_safe();
-  Result<std::vector<RefusedValue>> write_safe_values();
+  Result<std::vector<RejectedValue>> write_safe_values();
   void tell(const Write& write, const WriteResult& result);
   void settle(const Write& write, const WriteResult& result);
   void report(const Write& write, const WriteResult& result);
   void drop(const Write& write);
+  bool restores() const { return map_.on_reconnect == OnReconnect::restore; }
+  void remember(const Write& write);
   std::string_view name(std::uint32_t point) const { return map_.points[point].name; }
 
-  Map map_;
+  const Map& map_;
   PacedTransport& transport_;
   Clock& clock_;
   DeviceStatistics& statistics_;
@@ -96,7 +97,7 @@ class Writer {
   Sink& sink_;
   WriteQueue queue_;
   Deadmen deadmen_;
-  WrittenValues values_;
+  std::map<std::uint32_t, Write> last_written_;  ///< by point, for `on_reconnect: restore`
   std::vector<Write> safe_values_;
   std::vector<bool> is_safe_point_;  ///< by point: safe_values_ has one
   Calls safe_calls_;

@@ -10,10 +10,9 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/modbus/file_exchange.hpp"
 #include "coupler/host/modbus/open_socket.hpp"
 #include "coupler/host/modbus/raw_exchange.hpp"
-#include "coupler/host/modbus/wait_for.hpp"
+#include "coupler/modbus/file_record.hpp"
 
 namespace coupler::host {
 namespace {
@@ -36,7 +35,7 @@ Error receive_error(int error, std::chrono::milliseconds timeout) {
   }
 }
 
-/// libmodbus looks at the function code to find a reply's end, and at nothing else of its header.
+/// libmodbus checks nothing in the header of a reply: it finds its end by the function code.
 Result<> check_adu(Span<const std::uint8_t> adu, const modbus::Frame& request) {
   const bool is_modbus = adu.size() > modbus::mbap_size && modbus::get_u16(&adu[2]) == 0 &&
                          modbus::get_u16(&adu[4]) == adu.size() - modbus::mbap_size + 1;
@@ -50,7 +49,7 @@ Result<> check_adu(Span<const std::uint8_t> adu, const modbus::Frame& request) {
 Result<> result(const tl::expected<void, modbus::Refused>& taken) {
   if (taken) return {};
   if (taken.error().exception) return fail(ExceptionReply{*taken.error().exception});
-  return fail(BadFrame{"not the answer to what was asked"});
+  return fail(BadFrame{"not the reply to this request"});
 }
 
 }  // namespace
@@ -143,9 +142,14 @@ modbus::Frame ModbusTransport::next_header() {
 
 Result<> ModbusTransport::read_file_record(std::uint16_t file, std::uint16_t record,
                                            Span<std::uint16_t> registers) {
-  if (socket_ < 0) return fail(NotConnected{"not connected"});
-  const modbus::FileRecord wanted{file, record, static_cast<std::uint16_t>(registers.size())};
-  return exchange_file_record(socket_, next_header(), timeout_, wanted, registers);
+  std::array<std::uint8_t, modbus::file_request_size> pdu{};
+  modbus::build_file_request({file, record, static_cast<std::uint16_t>(registers.size())}, pdu);
+  const auto reply = exchange(pdu);
+  if (!reply) return tl::make_unexpected(reply.error());
+  const auto parsed = modbus::parse_file_reply(*reply, registers);
+  if (parsed) return {};
+  if (parsed.error().exception) return fail(ExceptionReply{*parsed.error().exception});
+  return fail(BadFrame{"not the file record that was requested"});
 }
 
 Result<modbus::Bytes> ModbusTransport::exchange(modbus::Bytes pdu) {

@@ -7,9 +7,7 @@
 #include <string>
 
 #include "coupler/host/core/transport.hpp"
-#include "coupler/host/modbus/deadline.hpp"
-#include "coupler/host/modbus/event.hpp"
-#include "coupler/host/modbus/wakeup.hpp"
+#include "coupler/host/modbus/wait.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/modbus/frame.hpp"
 #include "coupler/modbus/read_request.hpp"
@@ -18,10 +16,10 @@ struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for i
 
 namespace coupler::host {
 
-/// One unit of a Modbus/TCP device. libmodbus holds the connection and receives what is read. Requests are
-/// ADUs of ours, since it compares no unit id and keeps exception codes above 0B to itself, and cannot be
-/// asked to send a write and to receive the answer later, in another thread. Connecting is ours too:
-/// libmodbus's connect can be neither interrupted nor made to resolve names in the background.
+/// One unit of a Modbus/TCP device. libmodbus holds the connection and receives the replies to reads.
+/// Everything else is our own: libmodbus does not compare unit ids, does not report exception codes above 0B,
+/// cannot send a write in one thread and receive the answer in another, and its connect can neither be
+/// interrupted nor resolve names in the background.
 class ModbusTransport : public Transport {
  public:
   explicit ModbusTransport(const Connection& connection);
@@ -40,13 +38,13 @@ class ModbusTransport : public Transport {
   Woken wait_until(Time time) override;
   void wake() override { wakeup_.call(); }
 
-  /// Any request, by PDU, for answers that libmodbus cannot receive; and the PDU that answers, an exception
-  /// or not, valid until the next request.
+  /// Sends any PDU, also of a function that libmodbus does not know. Returns the PDU of the reply, which may
+  /// be an exception, valid until the next request.
   Result<modbus::Bytes> exchange(modbus::Bytes pdu);
 
   // For a connection that several units share.
 
-  /// Whom the next requests are for, and how long their answers may take.
+  /// The unit of the next requests, and how long their answers may take.
   Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout);
   /// connect() that ends when `interrupt` is set.
   Result<> open(const Event& interrupt);
@@ -54,7 +52,7 @@ class ModbusTransport : public Transport {
   void hang_up();
 
  private:
-  /// The PDU that answers; valid until the next request.
+  /// The PDU of the reply, valid until the next request.
   Result<modbus::Bytes> ask(const modbus::ReadRequest& request);
   modbus::Frame next_header();
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/modbus/open_socket.hpp"
 
+#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -10,13 +11,60 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <memory>
+#include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "coupler/host/modbus/resolve.hpp"
-
 namespace coupler::host {
 namespace {
+
+using Addresses = std::unique_ptr<addrinfo, void (*)(addrinfo*)>;
+
+struct Lookup {
+  std::string host;
+  std::string service;
+  Event done;
+  int status = 0;
+  Addresses found{nullptr, ::freeaddrinfo};
+
+  void run(int flags) {
+    addrinfo hints{};
+    hints.ai_family = AF_UNSPEC;
+    hints.ai_socktype = SOCK_STREAM;
+    hints.ai_flags = flags;
+    addrinfo* list = nullptr;
+    status = ::getaddrinfo(host.c_str(), service.c_str(), &hints, &list);
+    found.reset(list);
+  }
+};
+
+tl::unexpected<Error> unknown_host(const std::string& host, const char* why) {
+  return fail(NotConnected{fmt::format("unknown host '{}' ({}); check the map's address", host, why)});
+}
+
+/// The addresses of a host name or of a numeric address. Asking a name server cannot be interrupted, so a
+/// thread of its own does it; that thread is left behind when `interrupt` or the deadline comes first.
+Result<Addresses> resolve(const std::string& host, std::uint16_t port, Deadline deadline,
+                          const Event& interrupt) {
+  const auto lookup = std::make_shared<Lookup>();
+  lookup->host = host;
+  lookup->service = fmt::to_string(port);
+  lookup->run(AI_NUMERICHOST | AI_NUMERICSERV);
+  if (lookup->status == EAI_NONAME) {
+    std::thread([lookup] {
+      lookup->run(AI_NUMERICSERV);
+      lookup->done.set();
+    }).detach();
+    std::array<pollfd, 2> wanted{{{lookup->done.fd(), POLLIN, 0}, {interrupt.fd(), POLLIN, 0}}};
+    ::poll(wanted.data(), wanted.size(), deadline.left());
+    if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
+    if (!lookup->done.is_set()) return unknown_host(host, "no answer from the name server");
+  }
+  if (lookup->status != 0) return unknown_host(host, ::gai_strerror(lookup->status));
+  return std::move(lookup->found);
+}
 
 /// 0, or the errno of the failure.
 int connect_to(int fd, const addrinfo& address, const Deadline& deadline, const Event& interrupt) {

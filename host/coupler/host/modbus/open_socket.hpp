@@ -5,12 +5,12 @@
 #include <string>
 
 #include "coupler/host/core/error.hpp"
-#include "coupler/host/modbus/event.hpp"
+#include "coupler/host/modbus/wait.hpp"
 
 namespace coupler::host {
 
-/// A connected TCP socket without Nagle's delay, the first of the host's addresses that answers within
-/// `timeout` altogether. `interrupt` ends the attempt. Errors: NotConnected, naming host, port and cause.
+/// A connected TCP socket without Nagle's delay, to the first of the host's addresses that answers. `timeout`
+/// is for all attempts together; `interrupt` ends them. Errors: NotConnected with host, port and cause.
 Result<Descriptor> open_socket(const std::string& host, std::uint16_t port, std::chrono::milliseconds timeout,
                                const Event& interrupt);
 

@@ -35,10 +35,10 @@ Result<> receive_frame(int socket, std::chrono::milliseconds timeout, const Dead
 }  // namespace
 
 Result<> check_header(const modbus::Frame& reply, const modbus::Frame& request) {
-  if (reply.transaction != request.transaction) return fail(BadFrame{"the answer to another request"});
+  if (reply.transaction != request.transaction) return fail(BadFrame{"the reply to another request"});
   if (reply.unit != request.unit)
     return fail(
-        BadFrame{fmt::format("unit {0} answered what unit {1} was asked; if the device is unit {0}, "
+        BadFrame{fmt::format("unit {0} answered a request to unit {1}; if the device is unit {0}, "
                              "set `unit: {0}`",
                              reply.unit, request.unit)});
   return {};
@@ -51,7 +51,7 @@ Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu) {
   const std::size_t size = modbus::mbap_size + pdu.size();
   const auto sent = ::send(socket, adu.data(), size, MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(size)) return {};
-  return fail(TransportFailure{sent < 0 ? std::strerror(errno) : "the request could not be sent whole"});
+  return fail(TransportFailure{sent < 0 ? std::strerror(errno) : "only a part of the request could be sent"});
 }
 
 Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::chrono::milliseconds timeout,
@@ -60,7 +60,7 @@ Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::ch
     return tl::make_unexpected(received.error());
   const modbus::Frame& reply = framer.frame();
   if (auto answers = check_header(reply, to); !answers) return tl::make_unexpected(answers.error());
-  if (framer.is_partial()) return fail(BadFrame{"more than one answer"});
+  if (framer.is_partial()) return fail(BadFrame{"more than one reply"});
   return reply.pdu;
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests and replies that libmodbus cannot frame, or whose two halves it cannot part.
+// Sending a request and receiving its reply without libmodbus, which does not know all functions and cannot
+// send and receive in separate calls.
 #pragma once
 
 #include <chrono>
 
 #include "coupler/host/core/error.hpp"
-#include "coupler/host/modbus/deadline.hpp"
+#include "coupler/host/modbus/wait.hpp"
 #include "coupler/modbus/frame.hpp"
 
 namespace coupler::host {
@@ -17,7 +18,7 @@ Result<> check_header(const modbus::Frame& reply, const modbus::Frame& request);
 /// at once is an error.
 Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu);
 
-/// Awaits the one reply that has this transaction and unit. Its PDU is valid as long as the framer.
+/// Waits for the reply with this transaction and unit. Its PDU is valid as long as the framer.
 Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::chrono::milliseconds timeout,
                                     const Deadline& deadline, modbus::Framer& framer);
 

@@ -1,24 +1,107 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <condition_variable>
 #include <initializer_list>
 #include <mutex>
 #include <optional>
+#include <vector>
 
-#include "coupler/host/core/clock.hpp"
-#include "coupler/host/modbus/turn_order.hpp"
+#include "coupler/host/core/transport.hpp"
 
 namespace coupler::host {
 
-/// Who may use what several share, in a TurnOrder. Unlike a mutex it may be taken in one thread and released
-/// in another, and waiting for it can be ended.
+/// Which of the users that wait for a turn is next: writes before reads, each in the order in which they
+/// came. While a user claims all turns, no other gets one, also between two of its requests.
+///
+/// Writes cannot keep reads waiting for ever: between two reads each user writes once at most. If it has
+/// written since the last read, the read that waits longest goes first. Without a read that waits, nobody
+/// holds back.
+class TurnOrder {
+ public:
+  using Who = const void*;
+  /// `who` waits now, for a read or a write or, after two calls, for whichever comes first. Its place is at
+  /// the end, or the one that was kept.
+  void come(Who who, Rank rank) {
+    const auto kept = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
+      return place.who == who && place.rank == rank;
+    });
+    if (kept != places_.end())
+      kept->waits = true;
+    else
+      places_.push_back({who, rank, true});
+  }
+  /// `who` no longer waits. The place of a read is kept: it will come again.
+  void leave(Who who) {
+    for (auto place = places_.begin(); place != places_.end();) {
+      if (place->who == who) place->waits = false;
+      place = place->who == who && place->rank != Rank::read ? places_.erase(place) : place + 1;
+    }
+  }
+  /// From now on all turns are for `who`, and for others who have claimed them.
+  void claim(Who who) {
+    if (!claims(who)) claims_.push_back(who);
+  }
+  void give_up_claim(Who who) {
+    claims_.erase(std::remove(claims_.begin(), claims_.end(), who), claims_.end());
+  }
+  /// Whether `who`, who does not wait, may have the turn.
+  bool is_free_for(Who who) const { return next() == nullptr && (claims_.empty() || claims(who)); }
+  /// Null if nobody waits, or if all turns are claimed by others than those that wait.
+  Who next() const {
+    const auto place = next_place();
+    return place == places_.end() ? nullptr : place->who;
+  }
+  /// Gives the turn to the next one, for the rank that is returned; it no longer waits.
+  Rank serve() {
+    const auto place = next_place();
+    const auto [who, rank, waits] = *place;
+    if (rank == Rank::read)
+      wrote_.clear();
+    else if (!has_written(who))
+      wrote_.push_back(who);
+    places_.erase(place);
+    leave(who);
+    return rank;
+  }
+
+ private:
+  struct Place {
+    Who who;
+    Rank rank;
+    bool waits;
+  };
+
+  using Places = std::vector<Place>;
+
+  Places::const_iterator next_place() const {
+    auto read = places_.end();
+    auto write = places_.end();
+    for (auto place = places_.begin(); place != places_.end(); ++place) {
+      if (!place->waits || !(claims_.empty() || claims(place->who))) continue;
+      if (place->rank != Rank::read && !(claims_.empty() && has_written(place->who))) return place;
+      auto& first = place->rank == Rank::read ? read : write;
+      if (first == places_.end()) first = place;
+    }
+    return read != places_.end() ? read : write;
+  }
+  bool claims(Who who) const { return std::find(claims_.begin(), claims_.end(), who) != claims_.end(); }
+  bool has_written(Who who) const { return std::find(wrote_.begin(), wrote_.end(), who) != wrote_.end(); }
+
+  Places places_;  ///< in the order of coming
+  std::vector<Who> claims_;
+  std::vector<Who> wrote_;  ///< since the last read
+};
+
+/// A lock that is given in a TurnOrder. Unlike a mutex it may be taken in one thread and released in another,
+/// and waiting for it can be ended.
 class Turns {
  public:
   using Who = TurnOrder::Who;
 
-  /// Waits for a turn of one of these ranks, and returns which it is. None if none has come until `until`, or
-  /// if `give_up()` was true, which is asked at first and after each look_again().
+  /// Waits for a turn of one of these ranks, and returns which it is. nullopt if none has come until `until`,
+  /// or if `give_up()` is true, which is called at first and after each look_again().
   template <class GiveUp>
   std::optional<Rank> take(Who who, std::initializer_list<Rank> ranks, Time until, GiveUp give_up) {
     std::unique_lock lock(mutex_);
@@ -46,7 +129,7 @@ class Turns {
       order_.give_up_claim(who);
     changed_.notify_all();
   }
-  /// Takes it if nobody has it or waits for it.
+  /// Takes the turn if nobody has it or waits for it.
   bool try_take(Who who) {
     const std::lock_guard lock(mutex_);
     if (holder_ != nullptr || !order_.is_free_for(who)) return false;
@@ -58,12 +141,12 @@ class Turns {
     holder_ = nullptr;
     changed_.notify_all();
   }
-  /// Who waits asks again whether to give up.
+  /// All that wait call give_up() again.
   void look_again() {
     const std::lock_guard lock(mutex_);
     changed_.notify_all();
   }
-  /// look_again(); if it is `who`'s turn, `end` is called to cut it short.
+  /// look_again(), and calls `end` if `who` has the turn.
   template <class End>
   void interrupt(Who who, End end) {
     const std::lock_guard lock(mutex_);

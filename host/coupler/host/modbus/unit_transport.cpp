@@ -68,14 +68,15 @@ Result<> UnitTransport::connect() {
 }
 
 void UnitTransport::close() {
-  if (std::exchange(in_flight_, false)) {  // the answer may still come, and would be taken for another
+  if (std::exchange(in_flight_,
+                    false)) {  // its answer may still come, and would be taken for that to another request
     shared_->transport.close();
     shared_->open = false;
     release();
   }
   if (!std::exchange(connected_, false) || --shared_->users > 0) return;
-  // Nobody waits here: a unit that is lost says so at once. If another has the turn, it connects, or closes
-  // what nobody uses.
+  // It does not wait for its turn: a lost unit is to be reported at once. If another unit has the turn, that
+  // one goes on with the connection, or closes it.
   if (shared_->turns.try_take(this)) release();
 }
 
@@ -92,7 +93,7 @@ void UnitTransport::interrupt() {
 
 Time UnitTransport::ready() const { return std::max(shared_->opened + delay_, shared_->answered + gap_); }
 
-/// What must be so before a request, in its turn.
+/// Makes the connection ready for a request, in its turn.
 Result<> UnitTransport::prepare() {
   if (!connected_) return fail(NotConnected{"not connected"});
   if (is_lost()) return lost_error();
@@ -147,7 +148,7 @@ Transport::Turn UnitTransport::await_turn(Time until, bool write_waits) {
                                 : shared_->turns.take(this, {Rank::read}, until, give_up);
   has_turn_ = turn.has_value();
   if (turn) return *turn == Rank::read ? Turn::read : Turn::write;
-  return interrupted_.is_set() || is_lost() ? Turn::read : Turn::none;  // it will fail, and say why
+  return interrupted_.is_set() || is_lost() ? Turn::read : Turn::none;  // the read fails, with the reason
 }
 
 bool UnitTransport::reserve() {
@@ -166,7 +167,7 @@ Result<> UnitTransport::send(const modbus::WriteRequest& request) {
   }
   if (auto sent = shared_->transport.send(request); !sent) return done(sent);
   in_flight_ = true;
-  if (reserved) wake();  // nobody watches a shared socket: the owner goes to receive()
+  if (reserved) wake();  // no thread polls a shared socket: the owner must call receive()
   return {};
 }
 

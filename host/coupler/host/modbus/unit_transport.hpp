@@ -6,12 +6,12 @@
 
 #include "coupler/host/modbus/modbus_transport.hpp"
 #include "coupler/host/modbus/turns.hpp"
-#include "coupler/host/modbus/wait_for.hpp"
+#include "coupler/host/modbus/wait.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {
 
-/// One connection to a gateway. Who has the turn may use what is not atomic.
+/// One connection to a gateway. What is not atomic is for the unit that has the turn.
 struct SharedConnection {
   explicit SharedConnection(const Connection& gateway) : transport(gateway) {}
 
@@ -24,12 +24,12 @@ struct SharedConnection {
   Time answered{};  ///< the last request
 };
 
-/// One of several units behind a gateway that share a connection, request by request in turn:
-/// writes first, also those of a unit whose own read still waits for its turn.
+/// One of several units behind a gateway that share a connection, request by request: writes first, also
+/// those of a unit whose own read waits for its turn.
 ///
-/// A unit that stays silent closes the connection, since its answer may still come; the others open it again
-/// and notice nothing. Where the gateway has ended it, all units have lost it: what is behind may have
-/// changed.
+/// If a unit stays silent the connection is closed, since its answer may still come; the others open it again
+/// and notice nothing. If the gateway ends the connection, it is lost for all units: the devices behind it
+/// may have changed.
 class UnitTransport : public Transport {
  public:
   UnitTransport(std::shared_ptr<SharedConnection> shared, const Connection& unit, const Limits& limits);
@@ -69,7 +69,7 @@ class UnitTransport : public Transport {
   Duration delay_;
   Event interrupted_;
   Wakeup wakeup_;
-  std::atomic<bool> woken_{false};  ///< since await_turn() last returned for it
+  std::atomic<bool> woken_{false};  ///< since await_turn() returned because of it
   Rank rank_ = Rank::read;
   bool connected_ = false;
   std::uint64_t ended_ = 0;  ///< SharedConnection::ended when it connected

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/core/backoff.hpp"
 #include "coupler/host/core/node_map.hpp"
+#include "coupler/host/core/schedule.hpp"
 #include "coupler/host/modbus/modbus_transport.hpp"
 #include "coupler/host/ros/ending.hpp"
 #include "coupler/host/ros/program.hpp"

@@ -12,7 +12,7 @@
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/point_quality.hpp"
-#include "coupler/host/core/write_ticket.hpp"
+#include "coupler/host/core/write.hpp"
 #include "coupler/host/ros/listeners.hpp"
 #include "coupler/host/ros/log.hpp"
 #include "coupler/host/ros/write_handler.hpp"

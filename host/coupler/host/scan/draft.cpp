@@ -19,7 +19,7 @@ constexpr std::uint32_t longest_of_singles = 4;
 constexpr std::uint32_t most_bits_in_comment = 32;
 constexpr std::uint32_t most_registers_in_comment = 8;
 
-/// A known value that has found its place.
+/// A known value and its place.
 struct Named {
   std::string name;
   Candidate at;
@@ -75,10 +75,11 @@ class Writer {
       text_ += fmt::format("# {} {} … {}: {} readable, {} refused, {} not tried\n", to_string(table.table()),
                            table.window().start(), table.window().last(), table.count(Seen::readable),
                            table.count(Seen::refused), table.count(Seen::not_asked));
-    if (!findings_.is_complete) text_ += "# It was ended early: more may be readable.\n";
+    if (!findings_.is_complete) text_ += "# The scan was ended early: more may be readable.\n";
     text_ +=
-        "# Values in comments are those that were read. All points are read only: say `access: read_write` "
-        "of what you know.\n";
+        "# Comments show the values that were read. All points are read-only: set `access: read_write` for "
+        "those "
+        "that you know.\n";
   }
 
   void device(const Connection& connection) {
@@ -136,7 +137,7 @@ class Writer {
     line(table, named.at.range, named.name, options, value_text(named.at));
   }
 
-  /// The device's order says it already.
+  /// Whether the device's order gives it already.
   bool is_given(const Candidate& candidate) const {
     const std::vector<Candidate> alone{candidate};
     return choose(alone, order_) != nullptr;
@@ -175,13 +176,6 @@ class Writer {
 };
 
 }  // namespace
-
-std::optional<codec::Order> common_order(const std::vector<Match>& matches) {
-  std::vector<std::vector<Candidate>> found;
-  found.reserve(matches.size());
-  for (const Match& match : matches) found.push_back(match.candidates);
-  return common_order(found);
-}
 
 std::string point_text(const Candidate& candidate, bool with_order) {
   std::string text =

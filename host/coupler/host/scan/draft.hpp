@@ -4,20 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "coupler/host/scan/candidates.hpp"
+#include "coupler/host/scan/known_value.hpp"
 #include "coupler/host/scan/scan.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::scan {
-
-/// A known value and where it was found, best first.
-struct Match {
-  KnownValue known;
-  std::vector<Candidate> candidates;
-};
-
-/// The order of the whole device: see common_order().
-std::optional<codec::Order> common_order(const std::vector<Match>& matches);
 
 /// What to write behind its name in a map: "{address: 100, type: REAL, order: CDAB}".
 std::string point_text(const Candidate& candidate, bool with_order);
@@ -26,7 +17,7 @@ std::string point_text(const Candidate& candidate, bool with_order);
 std::string value_text(const Candidate& candidate);
 
 /// A map of all that can be read, in YAML, with comments: each known value is a point of its own, the rest
-/// arrays of UINT; all of them read only, since nobody knows yet what a write would do.
+/// arrays of UINT; all of them read-only, since a write may do anything.
 std::string draft_map(const Findings& findings, const Connection& connection,
                       const std::vector<Match>& matches);
 

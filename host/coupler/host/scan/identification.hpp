@@ -12,7 +12,7 @@
 
 namespace coupler::scan {
 
-/// Asks for one reply; nullopt: there is none.
+/// Requests one reply; nullopt: there is none.
 using AskIdentification = std::function<std::optional<IdentificationPage>(modbus::ReadDeviceIdentification)>;
 
 /// The objects of FC 43/14 by id, basic, regular and extended, as the device has them: any bytes. Empty if
@@ -23,7 +23,7 @@ std::map<std::uint8_t, std::string> read_identification(Prober& prober);
 /// "VendorName" … for those that MAP 6.21 names, "object 80" for others.
 std::string object_name(std::uint8_t id);
 
-/// What a node of this project says of itself; nullopt: a foreign device.
+/// The identity of a node of this project; nullopt: a foreign device.
 std::optional<identity::Head> read_node_identity(Prober& prober);
 
 }  // namespace coupler::scan

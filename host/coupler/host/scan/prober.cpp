@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// From here on a question without an answer is not asked again.
+/// So many requests that got no reply twice: from then on none is repeated.
 constexpr int certain = 3;
 constexpr int busy_tries = 5;
 constexpr milliseconds busy_pause{200};

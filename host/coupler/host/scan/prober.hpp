@@ -7,18 +7,17 @@
 #include <vector>
 
 #include "coupler/host/core/clock.hpp"
-#include "coupler/host/scan/client.hpp"
-#include "coupler/host/scan/scan_progress.hpp"
+#include "coupler/host/scan/ports.hpp"
 
 namespace coupler::scan {
 
-/// What became of a question.
+/// The reply to a request, or why there is none.
 struct Reply {
   enum class Kind {
     given,
     refused,  ///< an exception
-    none,     ///< silence, a closed connection or nonsense
-    over,     ///< not asked: the scan has to end
+    none,     ///< no reply, a closed connection or a malformed reply
+    over,     ///< not sent: the scan has to end
   };
   Kind kind = Kind::over;
   modbus::Exception exception{};  ///< if refused
@@ -27,9 +26,8 @@ struct Reply {
   bool is_given() const { return kind == Kind::given; }
 };
 
-/// Asks a device gently: never more than `rate` requests a second, and again when it is busy. What gets no
-/// answer is asked twice, over a new connection – until it is plain that no answer is this device's way to
-/// refuse.
+/// Makes requests gently: never more than `rate` a second, and again if the device is busy. A request without
+/// a reply is repeated once, over a new connection, until it is certain that this is how the device refuses.
 class Prober {
  public:
   /// `rate`: requests a second, above 0.
@@ -37,13 +35,13 @@ class Prober {
 
   Result<> connect();
   void select(std::uint8_t unit) { client_.select(unit); }
-  /// Asks but once.
+  /// Without repetition if there is no reply.
   Reply try_read(Table table, modbus::Range range, std::uint16_t* values);
   Reply read(Table table, modbus::Range range, std::uint16_t* values);
   Reply identify(modbus::ReadDeviceIdentification wanted, IdentificationPage& page);
 
   std::uint64_t requests() const { return requests_; }
-  /// Why the device could not be reached any more.
+  /// Why the device can no longer be reached.
   const std::optional<host::Error>& broke_off() const { return broke_off_; }
   /// Each failure other than an exception, and how often it came: "no reply within 1000 ms (3 times)".
   std::vector<std::string> failures() const;
@@ -63,7 +61,7 @@ class Prober {
   host::Duration gap_;
   host::Time ready_;
   bool connected_ = false;
-  int confirmed_ = 0;  ///< questions that got no answer twice, since one got it the second time
+  int confirmed_ = 0;  ///< requests in a row that got no reply twice
   std::uint64_t requests_ = 0;
   std::optional<host::Error> broke_off_;
   std::map<std::string, int> failures_;

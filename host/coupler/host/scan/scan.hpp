@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a foreign device answers to.
+// Finds out what a foreign device answers to.
 #pragma once
 
 #include <map>
@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "coupler/host/scan/table_scan.hpp"
-#include "coupler/host/scan/units.hpp"
 #include "coupler/map/identity.hpp"
 
 namespace coupler::scan {
 
 /// What to look for.
 struct Task {
-  std::vector<std::uint8_t> units{1, 255, 0};          ///< in this order; the first that answers is surveyed
+  std::vector<std::uint8_t> units{1, 255, 0};          ///< in this order; the first that answers is scanned
   modbus::Range window = modbus::Range::of(0, 10000);  ///< of each table
   std::uint32_t stride = 16;  ///< where blocks are refused, one address in so many is tried; 1: all
   double rate = 20;           ///< requests a second
@@ -34,7 +33,7 @@ struct Findings {
   bool is_complete = false;              ///< false: it was ended early
 };
 
-/// Connects, and asks until all is known or `progress` wants the end. It reads and does nothing else.
+/// Connects, and reads until all is known or `progress` wants the end. It never writes.
 Findings scan(const Task& task, Client& client, host::Clock& clock, ScanProgress& progress);
 
 }  // namespace coupler::scan

@@ -7,6 +7,45 @@
 
 namespace coupler::scan {
 
+TableFindings::TableFindings(Table table, modbus::Range window)
+    : table_(table), window_(window), seen_(window.count(), Seen::not_asked), values_(window.count()) {}
+
+void TableFindings::add_values(modbus::Range range, const std::uint16_t* values) {
+  const auto first = static_cast<std::ptrdiff_t>(range.start() - window_.start());
+  std::fill_n(seen_.begin() + first, range.count(), Seen::readable);
+  std::copy_n(values, range.count(), values_.begin() + first);
+}
+
+std::uint32_t TableFindings::count(Seen seen) const {
+  return static_cast<std::uint32_t>(std::count(seen_.begin(), seen_.end(), seen));
+}
+
+std::vector<modbus::Range> TableFindings::readable() const {
+  std::vector<modbus::Range> ranges;
+  for (std::uint32_t at = window_.start(); at < window_.end();) {
+    const std::uint32_t start = at++;
+    if (seen(start) != Seen::readable) continue;
+    while (at < window_.end() && seen(at) == Seen::readable && seams_.count(at) == 0) ++at;
+    ranges.push_back(modbus::Range::of(start, at - start));
+  }
+  return ranges;
+}
+
+std::vector<modbus::Range> TableFindings::holes() const {
+  std::vector<modbus::Range> ranges;
+  const std::vector<modbus::Range> known = readable();
+  for (std::size_t i = 1; i < known.size(); ++i) {
+    const std::uint32_t start = known[i - 1].end();
+    const auto all_refused = [this](std::uint32_t from, std::uint32_t to) {
+      while (from < to && seen(from) == Seen::refused) ++from;
+      return from == to;
+    };
+    if (start < known[i].start() && all_refused(start, known[i].start()))
+      ranges.push_back(modbus::Range::of(start, known[i].start() - start));
+  }
+  return ranges;
+}
+
 TableScan::TableScan(Prober& prober, ScanProgress& progress, LargestReads& largest, std::uint32_t stride,
                      TableFindings& findings)
     : prober_(prober),
@@ -27,7 +66,7 @@ bool TableScan::run() {
   return !over_;
 }
 
-/// Asks, and notes what the answer shows.
+/// Makes the request, and notes what the reply shows.
 bool TableScan::reads(modbus::Range range) {
   if (ended()) return false;
   const Reply reply = prober_.read(findings_.table(), range, values_.data());
@@ -59,7 +98,7 @@ void TableScan::look_at(modbus::Range block) {
   if (try_some(block)) walk(block);
 }
 
-/// Whether all that were tried can be read, if there are any.
+/// Whether addresses were tried, and all of them can be read.
 bool TableScan::try_some(modbus::Range block) {
   std::uint32_t tried = 0;
   std::uint32_t given = 0;
@@ -107,7 +146,8 @@ std::vector<modbus::Range> TableScan::surroundings() const {
   return ranges;
 }
 
-/// Asks for all of the range, one address at a time where they are refused, and more wherever one is given.
+/// Reads all of the range, one address at a time where they are refused, and more after each that can be
+/// read.
 void TableScan::walk(modbus::Range range) {
   for (std::uint32_t at = range.start(); at < range.end() && !ended();) {
     if (!is_readable(at)) {
@@ -136,7 +176,7 @@ std::uint32_t TableScan::extend(std::uint32_t start, std::uint32_t end) {
   return start + given;
 }
 
-/// Why are `count` given from `start` on and one more is not, though it can be read by itself?
+/// Finds out why `count` can be read from `start` on and one more cannot, though it can be read by itself.
 void TableScan::explain(std::uint32_t start, std::uint32_t count, std::uint32_t end) {
   const bool is_count =
       count > 1 ? reads(start + 1, count) : start + 2 < end && is_readable(start + 2) && !reads(start + 1, 2);

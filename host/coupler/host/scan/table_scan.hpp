@@ -2,12 +2,54 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <vector>
 
 #include "coupler/host/scan/prober.hpp"
-#include "coupler/host/scan/table_findings.hpp"
+#include "coupler/map/table.hpp"
 #include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/range.hpp"
 
 namespace coupler::scan {
+
+/// What was found in one table.
+class TableFindings {
+ public:
+  TableFindings(Table table, modbus::Range window);
+
+  Table table() const { return table_; }
+  /// The addresses that were to be looked at.
+  modbus::Range window() const { return window_; }
+
+  enum class Seen : std::uint8_t { not_asked, readable, refused };
+  Seen seen(std::uint32_t address) const { return seen_[address - window_.start()]; }
+  /// Of a readable address; a bit is 0 or 1.
+  std::uint16_t value(std::uint32_t address) const { return values_[address - window_.start()]; }
+
+  void add_values(modbus::Range range, const std::uint16_t* values);
+  void add_refused(std::uint32_t address) { seen_[address - window_.start()] = Seen::refused; }
+  /// Both sides of `address` can be read, but not in one request.
+  void add_seam(std::uint32_t address) { seams_.insert(address); }
+
+  std::uint32_t count(Seen seen) const;
+  /// What can be read: addresses that follow each other, cut at the seams.
+  std::vector<modbus::Range> readable() const;
+  /// Addresses between readable ones that were all refused.
+  std::vector<modbus::Range> holes() const;
+  const std::set<std::uint32_t>& seams() const { return seams_; }
+
+  bool absent = false;                      ///< the device has no function that reads it (exception 01)
+  std::optional<std::uint32_t> gave_up_at;  ///< too many requests had no reply
+
+ private:
+  Table table_;
+  modbus::Range window_;
+  std::vector<Seen> seen_;
+  std::vector<std::uint16_t> values_;
+  std::set<std::uint32_t> seams_;
+};
 
 /// What one read may ask for, of bits or of registers.
 struct Largest {
@@ -29,10 +71,11 @@ constexpr std::uint32_t neighbourhood = 16;
 constexpr int most_timeouts = 50;
 
 /// Finds out which addresses of a table can be read, with few requests:
-/// 1. Blocks, as large as a request may be. One that is given needs nothing more.
+/// 1. Blocks, as large as a request may be. One that can be read needs nothing more.
 /// 2. In a block that is refused: the first addresses of the window, then one address in `stride`, and each
-///    multiple of 100 and the address after it, where manuals let things begin.
-/// 3. Around each address that can be read: all, in the largest pieces that are given, until `neighbourhood`
+///    multiple of 100 and the address after it, where the tables of manuals tend to begin.
+/// 3. Around each address that can be read: all, in the largest pieces that can be read, until
+/// `neighbourhood`
 ///    addresses in a row are refused.
 /// A read that is refused though its addresses can be read one by one shows either the largest count that the
 /// device takes (the same count is given one address further) or a seam that no read may cross.

@@ -14,26 +14,25 @@
 
 namespace coupler::host {
 
-/// What reads one device: makes the requests of the polling cycle and hands on the values.
+/// Reads one device: makes the requests of the polling cycle and gives the values to the sink.
 ///
-/// A value that was asked for before a newer one was written is not handed on: the old one would flicker
-/// back.
-class Reader {
+/// A value that was requested before a newer one was written is not given on: the old one would flicker back.
+class Poller {
  public:
-  /// What `map` views, and everything given by reference, must outlive it.
-  Reader(const Map& map, Transport& transport, Clock& clock, Writer& writer, DeviceStatistics& statistics,
+  /// Everything given by reference must outlive it.
+  Poller(const Map& map, Transport& transport, Clock& clock, Writer& writer, DeviceStatistics& statistics,
          PointQualities& qualities, Sink& sink);
 
   /// A new connection.
   void start();
   /// When step() has something to do.
   Time due() const { return cycle_.due(); }
-  /// A cycle should have been over for a whole period of its rate, and has not begun, or not ended.
+  /// As PollCycle's.
   bool is_overdue(Time now) const { return cycle_.is_overdue(now); }
   /// Whether step() would make a request now.
   bool has_request(Time now) { return cycle_.select(now) != nullptr; }
   /// Makes the request that is due, if there is one and its turn comes before `until`. An error means that
-  /// the connection is of no more use, or that the unit is away; any other exception is none.
+  /// the connection can no longer be used, or that the unit is away; any other exception is not an error.
   Result<> step(Time until = Time::max());
 
   void want(std::uint32_t point, bool wanted) { cycle_.want(point, wanted); }
@@ -42,11 +41,11 @@ class Reader {
   Result<> request(const ReadSpan& span);
   void publish(const ReadSpan& span);
   const ReadSpan& without_hidden(const ReadSpan& span);
-  void refused(modbus::Exception code);
-  void report_refusals();
+  void on_exception(modbus::Exception code);
+  void report_rejected_ranges();
   std::string describe(const ReadSpan& span) const;
 
-  Map map_;
+  const Map& map_;
   Transport& transport_;
   Clock& clock_;
   Writer& writer_;

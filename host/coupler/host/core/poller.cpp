@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/core/reader.hpp"
+#include "coupler/host/core/poller.hpp"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 
 namespace coupler::host {
 
-Reader::Reader(const Map& map, Transport& transport, Clock& clock, Writer& writer,
+Poller::Poller(const Map& map, Transport& transport, Clock& clock, Writer& writer,
                DeviceStatistics& statistics, PointQualities& qualities, Sink& sink)
     : map_(map),
       transport_(transport),
@@ -18,17 +18,17 @@ Reader::Reader(const Map& map, Transport& transport, Clock& clock, Writer& write
       sink_(sink),
       cycle_(map) {}
 
-void Reader::start() {
+void Poller::start() {
   qualities_.connected();
   cycle_.start(clock_.now());
 }
 
-Result<> Reader::request(const ReadSpan& span) {
+Result<> Poller::request(const ReadSpan& span) {
   return holds_bits(span.table) ? transport_.read_bits(span.table, span.range, bits_.data())
                                 : transport_.read_registers(span.table, span.range, registers_.data());
 }
 
-Result<> Reader::step(Time until) {
+Result<> Poller::step(Time until) {
   if (!has_request(clock_.now()) || transport_.await_turn(until) != Transport::Turn::read) return {};
   const ReadSpan& span = cycle_.current();
   if (Result<> answer = request(span); !answer) {
@@ -38,7 +38,7 @@ Result<> Reader::step(Time until) {
       qualities_.exception(span.points, exception->code);
       return answer;
     }
-    refused(exception->code);
+    on_exception(exception->code);
   } else {
     publish(span);
     const std::string name = cycle_.failing() ? describe(span) : std::string();
@@ -47,11 +47,11 @@ Result<> Reader::step(Time until) {
   }
   if (const auto cycle_time = cycle_.take_cycle_time())
     statistics_.cycle_ended(*cycle_time, cycle_.overruns());
-  report_refusals();
+  report_rejected_ranges();
   return {};
 }
 
-void Reader::publish(const ReadSpan& span) {
+void Poller::publish(const ReadSpan& span) {
   const Time now = clock_.now();
   const ReadSpan& fresh = writer_.hides_any() ? without_hidden(span) : span;
   if (holds_bits(span.table))
@@ -62,7 +62,7 @@ void Reader::publish(const ReadSpan& span) {
   qualities_.good(span.points, now);  // last: nobody waits for it
 }
 
-const ReadSpan& Reader::without_hidden(const ReadSpan& span) {
+const ReadSpan& Poller::without_hidden(const ReadSpan& span) {
   rest_.table = span.table;
   rest_.range = span.range;
   rest_.points.clear();
@@ -71,7 +71,7 @@ const ReadSpan& Reader::without_hidden(const ReadSpan& span) {
   return rest_;
 }
 
-void Reader::refused(modbus::Exception code) {
+void Poller::on_exception(modbus::Exception code) {
   const ReadSpan span = cycle_.current();
   const std::string why = to_string(Error(ExceptionReply{code}));
   switch (code) {
@@ -82,8 +82,8 @@ void Reader::refused(modbus::Exception code) {
       for (const std::uint32_t point : cycle_.rejected(clock_.now())) {
         qualities_.rejected({&point, 1}, code);
         sink_.on_report(Level::warning,
-                        fmt::format("{} is not in the device: {}; it is not asked for again while "
-                                    "this connection lasts",
+                        fmt::format("{} is not in the device: {}; it is not read again while this "
+                                    "connection lasts",
                                     map_.points[point].name, why));
       }
       return;
@@ -92,8 +92,8 @@ void Reader::refused(modbus::Exception code) {
       qualities_.rejected(span.points, code);
       cycle_.give_up(clock_.now());
       sink_.on_report(Level::warning,
-                      fmt::format("{} cannot be read: {}; it is not asked for again while this "
-                                  "connection lasts",
+                      fmt::format("{} cannot be read: {}; it is not read again while this connection "
+                                  "lasts",
                                   describe(span), why));
       return;
     default:
@@ -103,11 +103,12 @@ void Reader::refused(modbus::Exception code) {
   }
 }
 
-void Reader::report_refusals() {
-  for (const Refusal& refusal : cycle_.take_refusals()) sink_.on_report(Level::warning, to_string(refusal));
+void Poller::report_rejected_ranges() {
+  for (const RejectedRange& range : cycle_.take_rejected_ranges())
+    sink_.on_report(Level::warning, to_string(range));
 }
 
-std::string Reader::describe(const ReadSpan& span) const {
+std::string Poller::describe(const ReadSpan& span) const {
   if (span.points.size() == 1) return std::string(map_.points[span.points.front()].name);
   return fmt::format("{} {} to {} ({} to {})", to_string(span.table), span.range.start(), span.range.last(),
                      map_.points[span.points.front()].name, map_.points[span.points.back()].name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/core/steady_clock.hpp"
+#include "coupler/host/core/clock.hpp"
 
 namespace coupler::host {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/modbus/turn_order.hpp"
+#include "coupler/host/modbus/turns.hpp"
 
 #include <gtest/gtest.h>
 

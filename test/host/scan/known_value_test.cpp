@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/scan/candidates.hpp"
+#include "coupler/host/scan/known_value.hpp"
 
 #include <gmock/gmock.h>
 
@@ -112,14 +112,14 @@ TEST(Candidates, Nothing_is_found_across_a_hole_or_a_seam) {
 TEST(Candidates, The_order_of_the_device_is_the_one_that_all_values_know) {
   const auto real = find_candidates(known("230.4"), registers_with(230.4F, Order::DCBA, 0));
   const auto count = find_candidates(known("70001"), registers_with(70001U, Order::DCBA, 8));
-  EXPECT_EQ(common_order(std::vector<std::vector<Candidate>>{real, count}), Order::DCBA);
+  EXPECT_EQ(common_order({Match{{}, real}, Match{{}, count}}), Order::DCBA);
   const auto other = find_candidates(known("70001"), registers_with(70001U, Order::ABCD, 8));
-  EXPECT_EQ(common_order(std::vector<std::vector<Candidate>>{real, other}), std::nullopt);
+  EXPECT_EQ(common_order({Match{{}, real}, Match{{}, other}}), std::nullopt);
 }
 
 TEST(Candidates, One_register_does_not_tell_the_order_of_words) {
   const auto word = find_candidates(known("513"), registers_with(std::uint16_t{513}, Order::ABCD, 0));
-  EXPECT_EQ(common_order(std::vector<std::vector<Candidate>>{word}), std::nullopt);
+  EXPECT_EQ(common_order({Match{{}, word}}), std::nullopt);
 }
 
 }  // namespace

@@ -1,11 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/modbus/wait_for.hpp"
+#include "coupler/host/modbus/wait.hpp"
 
 #include <poll.h>
+#include <sys/eventfd.h>
 
 #include <array>
 
 namespace coupler::host {
+namespace {
+
+int event_descriptor() { return ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK); }
+
+}  // namespace
+
+Event::Event() : fd_(event_descriptor()) {}
+
+void Event::set() {
+  set_.store(true, std::memory_order_release);
+  ::eventfd_write(fd_.get(), 1);
+}
+
+Wakeup::Wakeup() : fd_(event_descriptor()) {}
+
+void Wakeup::call() { ::eventfd_write(fd_.get(), 1); }
+
+void Wakeup::clear() {
+  eventfd_t calls = 0;
+  ::eventfd_read(fd_.get(), &calls);
+}
 
 Transport::Woken wait_for(Wakeup& wakeup, const Event& interrupted, int socket, Time time) {
   using Woken = Transport::Woken;

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// What poll() waits for: a deadline, an event, another thread's call.
+#pragma once
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <utility>
+
+#include "coupler/host/core/transport.hpp"
+
+namespace coupler::host {
+
+/// A point in time by which something must be done.
+class Deadline {
+ public:
+  explicit Deadline(std::chrono::milliseconds after) : at_(std::chrono::steady_clock::now() + after) {}
+  /// What poll() takes: milliseconds left, rounded up, 0 when it has passed.
+  int left() const {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(at_ - std::chrono::steady_clock::now());
+    return static_cast<int>(std::max<std::chrono::milliseconds::rep>(left.count(), 0));
+  }
+
+ private:
+  std::chrono::steady_clock::time_point at_;
+};
+
+/// Owns a file descriptor; -1 is none.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(other.release()) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const { return fd_; }
+  int release() { return std::exchange(fd_, -1); }
+
+ private:
+  int fd_;
+};
+
+/// Something that happens once. Any thread may set it.
+class Event {
+ public:
+  Event();
+  void set();
+  /// Whoever sees it set also sees what was done before.
+  bool is_set() const { return set_.load(std::memory_order_acquire); }
+  /// Readable from set() on.
+  int fd() const { return fd_.get(); }
+
+ private:
+  Descriptor fd_;
+  std::atomic<bool> set_{false};
+};
+
+/// Lets any thread end the poll() of another, now or the next time.
+class Wakeup {
+ public:
+  Wakeup();
+  void call();
+  /// Forgets the calls so far.
+  void clear();
+  /// Readable from call() to clear().
+  int fd() const { return fd_.get(); }
+
+ private:
+  Descriptor fd_;
+};
+
+/// Transport::wait_until() on real descriptors. `socket` may be -1: none.
+Transport::Woken wait_for(Wakeup& wakeup, const Event& interrupted, int socket, Time time);
+
+}  // namespace coupler::host
