@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The patterns are those of ECMAScript, which std::regex knows.
-#include "coupler/schema/pattern.hpp"
+#include "coupler/schema/value_schema.hpp"
 
 #include <gtest/gtest.h>
 
