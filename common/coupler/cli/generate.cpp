@@ -15,7 +15,7 @@
 #include "coupler/cli/map_argument.hpp"
 #include "coupler/cli/map_pages.hpp"
 #include "coupler/cli/report.hpp"
-#include "coupler/generate/identifier.hpp"
+#include "coupler/generate/code.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/test_vectors/json.hpp"
 

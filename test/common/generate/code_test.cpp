@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/generate/literal.hpp"
+#include "coupler/generate/code.hpp"
 
 #include <gtest/gtest.h>
-
-#include "coupler/generate/identifier.hpp"
 
 namespace coupler::generate {
 namespace {
