@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "coupler/docs/escape.hpp"
-#include "coupler/docs/html.hpp"
-#include "coupler/docs/markdown.hpp"
+#include "coupler/docs/document.hpp"
 #include "coupler/map/node_address.hpp"
 
 namespace coupler::cli {

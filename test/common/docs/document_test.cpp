@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/docs/facts.hpp"
+#include "coupler/docs/document.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,15 +8,14 @@
 
 namespace coupler::docs {
 
-/// What a reader is told of one point: texts as they are, not yet escaped for any format. Empty: nothing to
-/// say.
-struct Row {
+/// What the pages say of one point: texts that are not yet escaped for any format. Empty: nothing to say.
+struct PointDescription {
   std::string name;
   std::string description;
   Table table = Table::coils;
-  std::uint32_t first = 0;  ///< on the wire, from 0
+  std::uint32_t first = 0;  ///< zero-based address
   std::uint32_t last = 0;
-  std::string wire;     ///< "3", "3 – 4"
+  std::string address;  ///< "3", "3 – 4"
   std::string modicon;  ///< "40004", "40004 – 40005"
   std::string part;     ///< of a register: "bit 3", "high byte"
   std::string read_at;  ///< "512 (40513)", where an output reads back elsewhere
@@ -38,7 +37,7 @@ struct Row {
   int line = 0;         ///< of the map's file; 0: unknown
 };
 
-/// `line`: as Row::line.
-Row row_of(const Point& point, int line);
+/// `line`: as PointDescription::line.
+PointDescription describe(const Point& point, int line);
 
 }  // namespace coupler::docs

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/docs/row.hpp"
+#include "coupler/docs/point_description.hpp"
 
 #include <fmt/format.h>
 
 #include "coupler/codec/text.hpp"
-#include "coupler/docs/ros_message.hpp"
 #include "coupler/docs/words.hpp"
 #include "coupler/plan/explain.hpp"
 
@@ -33,22 +32,22 @@ std::string range_text(std::string first, std::string last) {
   return first == last ? first : std::move(first) + " – " + std::move(last);
 }
 
-void put_source(const Point& point, Row& row) {
+void put_source(const Point& point, PointDescription& out) {
   if (point.line.present()) {
-    row.source = words(point.line);
-    row.source_details = details(point.line);
+    out.source = words(point.line);
+    out.source_details = details(point.line);
   } else if (point.counter.present()) {
-    row.source = "counter";
-    row.source_details = words(point.counter);
+    out.source = "counter";
+    out.source_details = words(point.counter);
   } else if (point.latched.present()) {
-    row.source = "latch";
-    row.source_details = words(point.latched);
+    out.source = "latch";
+    out.source_details = words(point.latched);
   } else if (point.iio.present()) {
-    row.source = fmt::format("{} {}", point.iio.device, point.iio.channel);
-    row.source_details = "Industrial I/O";
+    out.source = fmt::format("{} {}", point.iio.device, point.iio.channel);
+    out.source_details = "Industrial I/O";
   } else if (point.pwm.present()) {
-    row.source = fmt::format("{} channel {}", point.pwm.chip, point.pwm.channel);
-    row.source_details = "PWM, period " + words(point.pwm.period);
+    out.source = fmt::format("{} channel {}", point.pwm.chip, point.pwm.channel);
+    out.source_details = "PWM, period " + words(point.pwm.period);
   }
 }
 
@@ -65,38 +64,38 @@ std::string safe_of(const Point& point) {
 
 }  // namespace
 
-Row row_of(const Point& point, int line) {
-  Row row;
-  row.name = point.name;
-  row.description = point.description;
-  row.table = point.table;
-  row.first = range(point).start();
-  row.last = range(point).last();
-  row.wire = range_text(fmt::to_string(row.first), fmt::to_string(row.last));
-  row.modicon = range_text(plan::modicon(point.table, row.first), plan::modicon(point.table, row.last));
-  row.part = part_of(point);
+PointDescription describe(const Point& point, int line) {
+  PointDescription out;
+  out.name = point.name;
+  out.description = point.description;
+  out.table = point.table;
+  out.first = range(point).start();
+  out.last = range(point).last();
+  out.address = range_text(fmt::to_string(out.first), fmt::to_string(out.last));
+  out.modicon = range_text(plan::modicon(point.table, out.first), plan::modicon(point.table, out.last));
+  out.part = part_of(point);
   if (point.read_address)
-    row.read_at =
+    out.read_at =
         fmt::format("{} ({})", *point.read_address, plan::modicon(point.table, *point.read_address));
-  row.type = codec::to_string(point.format.type);
-  row.text = text_of(point);
-  row.order = order_of(point);
-  if (point.count > 1) row.count = fmt::to_string(point.count);
-  row.scale = words(point.scale);
-  row.units = point.units;
-  row.range = range_words(point);
-  row.access = words(point.access);
-  put_source(point, row);
-  row.initial = value_words(point, point.initial);
-  row.safe = safe_of(point);
+  out.type = codec::to_string(point.format.type);
+  out.text = text_of(point);
+  out.order = order_of(point);
+  if (point.count > 1) out.count = fmt::to_string(point.count);
+  out.scale = words(point.scale);
+  out.units = point.units;
+  out.range = range_words(point);
+  out.access = words(point.access);
+  put_source(point, out);
+  out.initial = value_words(point, point.initial);
+  out.safe = safe_of(point);
   if (point.host.deadman.present()) {
     const std::string value = value_words(point, point.host.deadman.value);
-    row.deadman = fmt::format("{} after {}", value, words(point.host.deadman.timeout));
+    out.deadman = fmt::format("{} after {}", value, words(point.host.deadman.timeout));
   }
-  if (point.host.rate > 0 && is_readable(point)) row.rate = fmt::format("{} Hz", point.host.rate);
-  row.message = ros_message(point);
-  row.line = line;
-  return row;
+  if (point.host.rate > 0 && is_readable(point)) out.rate = fmt::format("{} Hz", point.host.rate);
+  out.message = ros_message(point);
+  out.line = line;
+  return out;
 }
 
 }  // namespace coupler::docs
