@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/formats/import.hpp"
+#include "coupler/formats/importers.hpp"
 
 #include <cerrno>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples are the origin's: test/maps/origin (its README and its example).
+// The samples are those of ros-modbus-device-driver: test/maps/origin (from its README, and its example).
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -20,14 +20,14 @@ std::string content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST(OriginImport, The_origins_files_keep_their_meaning) {
+TEST(RosModbusDeviceDriverImport, Its_files_keep_their_meaning) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test::in_tree("test/maps/origin"))) {
-    const LoadResult origin = load_map_file(entry.path().string());
-    ASSERT_NE(origin.map, nullptr) << entry.path();
+    const LoadResult loaded = load_map_file(entry.path().string());
+    ASSERT_NE(loaded.map, nullptr) << entry.path();
     const Imported imported("origin", content(entry.path()));
     ASSERT_EQ(imported.result.maps.size(), 1U) << imported.said;
-    const Map& before = origin.map->map();
+    const Map& before = loaded.map->map();
     const Map& after = imported.result.maps[0].map->map();
     EXPECT_EQ(after.fingerprint, before.fingerprint);
     EXPECT_EQ(after.name, before.name);
@@ -41,7 +41,7 @@ TEST(OriginImport, The_origins_files_keep_their_meaning) {
   EXPECT_EQ(files, 3);
 }
 
-TEST(OriginImport, Comments_and_keys_that_nobody_knows_are_told_with_their_lines) {
+TEST(RosModbusDeviceDriverImport, Comments_and_keys_that_nobody_knows_are_told_with_their_lines) {
   const Imported imported(
       "origin",
       "{\n  \"name\": \"a\", // a slave\n  \"colour\": \"red\",\n  \"register_read_separation_gap\": 5,\n"
@@ -52,13 +52,13 @@ TEST(OriginImport, Comments_and_keys_that_nobody_knows_are_told_with_their_lines
   EXPECT_THAT(imported.said, HasSubstr("given:5:32: warning: the comment is not carried over"));
 }
 
-TEST(OriginImport, Comments_of_YAML_are_told_too) {
+TEST(RosModbusDeviceDriverImport, Comments_of_YAML_are_told_too) {
   const Imported imported("origin", "name: a  # the name\nmapping:\n# all\n  coils: {\"x\": 1}\n");
   EXPECT_THAT(imported.said, HasSubstr("given:1:10: warning: the comment"));
   EXPECT_THAT(imported.said, HasSubstr("given:3:1: warning: the comment"));
 }
 
-TEST(OriginImport, A_file_with_a_unit_is_not_taken_for_another_one) {
+TEST(RosModbusDeviceDriverImport, A_file_with_a_unit_is_not_taken_for_another_one) {
   EXPECT_EQ(Imported("origin", "{name: a, unit: 4, mapping: {coils: {x: 1}}}", {"", 4}).result.maps.size(),
             1U);
   EXPECT_THAT(Imported("origin", "{name: a, unit: 4, mapping: {coils: {x: 1}}}", {"", 5}).said,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/formats/map_writer.hpp"
+#include "coupler/formats/map_tree.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "coupler/formats/entries.hpp"
 #include "coupler/map/loader/keys.hpp"
 #include "coupler/map/loader/letters.hpp"
 #include "coupler/map/loader/scalar.hpp"
@@ -15,6 +15,7 @@ namespace {
 
 using loader::Entry;
 using loader::Key;
+using loader::Position;
 using loader::Section;
 
 bool is_plain_character(char c) {
@@ -22,7 +23,7 @@ bool is_plain_character(char c) {
          std::string_view("_./+-").find(c) != std::string_view::npos;
 }
 
-/// Reads back as the same characters wherever it stands, and is not YAML's word for nothing.
+/// Reads back as the same characters wherever it stands, and is not YAML's null.
 bool is_plain(std::string_view text) {
   if (text.empty() || !std::all_of(text.begin(), text.end(), is_plain_character)) return false;
   const bool is_number = text.size() > 1 && loader::is_digit(text[1]);
@@ -97,6 +98,48 @@ std::string mapping_text(const Entry* mapping) {
 }
 
 }  // namespace
+
+Entry scalar(std::string_view key, std::string text, Position at, bool quoted) {
+  Entry entry;
+  entry.key = key;
+  entry.key_at = at;
+  entry.kind = Entry::Kind::scalar;
+  entry.at = at;
+  entry.text = std::move(text);
+  entry.quoted = quoted;
+  return entry;
+}
+
+Entry section(std::string_view key, Position at) {
+  Entry entry;
+  entry.key = key;
+  entry.key_at = at;
+  entry.kind = Entry::Kind::map;
+  entry.at = at;
+  return entry;
+}
+
+const Entry* find(const Entry& parent, std::string_view key) {
+  const auto found = std::find_if(parent.children.begin(), parent.children.end(),
+                                  [key](const Entry& child) { return child.key == key; });
+  return found == parent.children.end() ? nullptr : &*found;
+}
+
+Entry* find(Entry& parent, std::string_view key) {
+  return const_cast<Entry*>(find(std::as_const(parent), key));
+}
+
+Entry& make_section(Entry& parent, std::string_view key, Position at) {
+  if (Entry* found = find(parent, key)) return *found;
+  return parent.children.emplace_back(section(key, at));
+}
+
+void set(Entry& parent, Entry child) {
+  if (Entry* found = find(parent, child.key))
+    *found = std::move(child);
+  else
+    parent.children.push_back(std::move(child));
+}
 
 std::string flow(const Entry& value) {
   if (value.kind == Entry::Kind::null) return "null";

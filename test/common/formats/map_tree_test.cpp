@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/formats/map_writer.hpp"
+#include "coupler/formats/map_tree.hpp"
 
 #include <gtest/gtest.h>
 
-#include "coupler/formats/entries.hpp"
 #include "coupler/map/loader/document.hpp"
 
 namespace coupler::formats {

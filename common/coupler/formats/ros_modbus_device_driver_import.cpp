@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/formats/entries.hpp"
+#include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/json_comments.hpp"
 #include "coupler/map/loader/scalar.hpp"
@@ -16,8 +16,8 @@ namespace {
 using loader::Entry;
 using loader::Problems;
 
-/// The column at which a line of YAML has a comment, 0 if it has none. Quotes that go on over several lines
-/// are not followed: what is in them may be told as a comment, never lost.
+/// The column at which a line of YAML has a comment, 0 if it has none. Quotes over several lines are not
+/// followed, so text in them may be reported as a comment.
 int comment_column(std::string_view line) {
   char quote = '\0';
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -33,13 +33,13 @@ int comment_column(std::string_view line) {
   return 0;
 }
 
-void tell_comment(int line, int column, Problems& problems) {
+void warn_of_comment(int line, int column, Problems& problems) {
   problems.warning({line, column}, "the comment is not carried over",
-                   "copy it by hand, or say it in the point's 'description'");
+                   "copy it by hand, or put it into the point's 'description'");
 }
 
 /// Once a line.
-void tell_comments(std::string_view text, bool json, std::string_view blanked, Problems& problems) {
+void warn_of_comments(std::string_view text, bool json, std::string_view blanked, Problems& problems) {
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     if (json) {
@@ -47,10 +47,10 @@ void tell_comments(std::string_view text, bool json, std::string_view blanked, P
           std::mismatch(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), blanked.begin());
       const auto column = differs.first - text.begin();
       if (column < static_cast<std::ptrdiff_t>(end))
-        tell_comment(line, static_cast<int>(column) + 1, problems);
+        warn_of_comment(line, static_cast<int>(column) + 1, problems);
       blanked.remove_prefix(std::min(end + 1, blanked.size()));
     } else if (const int column = comment_column(text.substr(0, end)); column > 0) {
-      tell_comment(line, column, problems);
+      warn_of_comment(line, column, problems);
     }
     text.remove_prefix(std::min(end + 1, text.size()));
   }
@@ -58,14 +58,14 @@ void tell_comments(std::string_view text, bool json, std::string_view blanked, P
 
 }  // namespace
 
-std::vector<ForeignUnit> read_origin(std::string_view text, Problems& problems) {
+std::vector<ForeignUnit> read_ros_modbus_device_driver(std::string_view text, Problems& problems) {
   auto root = loader::parse_document(text, problems);
   if (!root) return {};
   std::string blanked(text);
-  Problems unheard("");  // parse_document has told them
+  Problems ignored("");  // parse_document() has reported them
   const bool json = loader::is_json(text);
-  if (json && !loader::blank_comments(blanked, unheard)) return {};
-  tell_comments(text, json, blanked, problems);
+  if (json && !loader::blank_comments(blanked, ignored)) return {};
+  warn_of_comments(text, json, blanked, problems);
   ForeignUnit unit;
   const Entry* number = find(*root, "unit");
   if (const auto value = number != nullptr ? loader::parse_unsigned(number->text) : std::nullopt;
