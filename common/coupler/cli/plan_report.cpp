@@ -6,21 +6,27 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "coupler/plan/explain.hpp"
+#include "coupler/plan/split.hpp"
 #include "coupler/plan/strategy.hpp"
 
 namespace coupler::cli {
 namespace {
 
-using plan::Strategy;
+using nlohmann::ordered_json;
+
+double milliseconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
 
 std::string counted(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-std::string milliseconds(std::chrono::nanoseconds time) {
-  return fmt::format("{:.4g} ms", std::chrono::duration<double, std::milli>(time).count());
+std::string milliseconds_text(std::chrono::nanoseconds time) {
+  return fmt::format("{:.4g} ms", milliseconds(time));
 }
 
 /// What is read: "12 registers and 3 bits".
@@ -35,7 +41,7 @@ std::string group_text(const plan::GroupPlan& group, const Map& map, const plan:
   const auto period = std::chrono::duration<double, std::milli>(1000 / group.rate).count();
   auto text = fmt::format("{:g} Hz: {}, {}, {} bytes; {} of {:.4g} ms ({})\n", group.rate,
                           counted(cost.requests, "request"), amount(cost), cost.bytes,
-                          milliseconds(cost.time), period, percent(plan::load(cost, group.rate)));
+                          milliseconds_text(cost.time), period, percent(plan::load(cost, group.rate)));
   if (group.spans.empty()) return text;
   const auto row = [&text](auto&&... cells) {
     text += fmt::format("  {:<17}  {:>14}  {:>15}  {:>6}  {}\n", cells...);
@@ -50,9 +56,9 @@ std::string group_text(const plan::GroupPlan& group, const Map& map, const plan:
 
 std::string_view text_of(plan::NotRead reason) {
   switch (reason) {
-    case plan::NotRead::write_only: return "can only be written";
-    case plan::NotRead::unreadable: return "lie in what the map calls unreadable";
-    case plan::NotRead::too_long: return "fit into no reply";
+    case plan::NotRead::write_only: return "write-only";
+    case plan::NotRead::unreadable: return "in an area that the map calls unreadable";
+    case plan::NotRead::too_long: return "longer than a reply";
   }
   return "";
 }
@@ -83,7 +89,7 @@ std::string keys_text(const Polling& polling, const Polling& map) {
 
 std::string strategies_text(const Map& map, const plan::Link& link) {
   const auto strategies = plan::compare_strategies(map, link);
-  if (std::all_of(strategies.begin(), strategies.end(), [&](const Strategy& strategy) {
+  if (std::all_of(strategies.begin(), strategies.end(), [&](const plan::Strategy& strategy) {
         return strategy.cost.requests == strategies.front().cost.requests;
       }))
     return {};
@@ -93,11 +99,65 @@ std::string strategies_text(const Map& map, const plan::Link& link) {
   for (std::size_t i = 0; i < strategies.size(); ++i)
     text += fmt::format("  {:<18}  {:>12}  {:>9}  {:>6}{}\n", names[i],
                         counted(strategies[i].cost.requests, "request"),
-                        milliseconds(strategies[i].cost.time), percent(strategies[i].load),
+                        milliseconds_text(strategies[i].cost.time), percent(strategies[i].load),
                         i == 2 && pays ? keys_text(strategies[i].polling, map.polling) : "");
   if (pays)
     text += "  The last is for a device that answers unmapped addresses. coupler-node refuses them.\n";
   return text;
+}
+
+ordered_json cost_json(const plan::Cost& cost) {
+  return {{"requests", cost.requests},
+          {"registers", cost.registers},
+          {"bits", cost.bits},
+          {"bytes", cost.bytes},
+          {"time_ms", milliseconds(cost.time)}};
+}
+
+ordered_json end_json(const plan::ReadSpan& span, const Map& map) {
+  const auto key = plan::key_of(span.end.reason, span.table);
+  ordered_json end{{"reason", plan::to_string(span.end.reason)},
+                   {"text", plan::explain_end(span, map)},
+                   {"next", nullptr},
+                   {"between", span.end.between},
+                   {"key", nullptr}};
+  if (span.end.next) end["next"] = map.points[*span.end.next].name;
+  if (!key.empty()) end["key"] = key;
+  return end;
+}
+
+ordered_json span_json(const plan::ReadSpan& span, const Map& map) {
+  ordered_json json{
+      {"table", to_string(span.table)},  {"from", span.range.start()},
+      {"to", span.range.last()},         {"modicon", plan::modicon(span.table, span.range.start())},
+      {"points", ordered_json::array()}, {"holes", ordered_json::array()},
+      {"end", end_json(span, map)}};
+  for (const std::uint32_t point : span.points) json["points"].push_back(map.points[point].name);
+  for (const modbus::Range hole : plan::holes(span, map))
+    json["holes"].push_back({{"from", hole.start()}, {"to", hole.last()}});
+  return json;
+}
+
+ordered_json group_json(const plan::GroupPlan& group, const Map& map, const plan::Link& link) {
+  const plan::Cost cost = cost_of(group, link);
+  ordered_json json{{"rate_hz", group.rate}, {"period_ms", 1000 / group.rate}};
+  json.update(cost_json(cost));
+  json["load"] = plan::load(cost, group.rate);
+  json["spans"] = ordered_json::array();
+  for (const plan::ReadSpan& span : group.spans) json["spans"].push_back(span_json(span, map));
+  return json;
+}
+
+ordered_json strategy_json(const plan::Strategy& strategy) {
+  const Polling& polling = strategy.polling;
+  ordered_json json{{"name", strategy.name}};
+  json.update(cost_json(strategy.cost));
+  json["load"] = strategy.load;
+  json["keys"] = {{"discrete_read_continuous", polling.discrete_continuous},
+                  {"discrete_read_separation_gap", polling.discrete_gap},
+                  {"registers_read_continuous", polling.register_continuous},
+                  {"registers_read_separation_gap", polling.register_gap}};
+  return json;
 }
 
 }  // namespace
@@ -112,10 +172,32 @@ std::string plan_text(const std::string& file, const Map& map, const plan::Link&
   for (const plan::GroupPlan& group : groups) requests += group.spans.size();
   auto text =
       fmt::format("{}: {}, {} in {}, round trip {}{}\n", file, map.name, counted(map.points.size(), "point"),
-                  counted(requests, "request"), milliseconds(link.round_trip),
-                  link.pause.count() > 0 ? " and a pause of " + milliseconds(link.pause) : "");
+                  counted(requests, "request"), milliseconds_text(link.round_trip),
+                  link.pause.count() > 0 ? " and a pause of " + milliseconds_text(link.pause) : "");
   for (const plan::GroupPlan& group : groups) text += "\n" + group_text(group, map, link);
   return text + not_read_text(map) + strategies_text(map, link);
+}
+
+std::string plan_json(const std::string& file, const Map& map, const plan::Link& link) {
+  const auto groups = plan::make_read_plan(map);
+  const double load = plan::load(groups, link);
+  ordered_json json{{"file", file},
+                    {"name", map.name},
+                    {"rtt_ms", milliseconds(link.round_trip)},
+                    {"request_gap_ms", milliseconds(link.pause)},
+                    {"load", load},
+                    {"fits", load <= 1},
+                    {"groups", ordered_json::array()},
+                    {"not_read", ordered_json::array()},
+                    {"strategies", ordered_json::array()}};
+  for (const plan::GroupPlan& group : groups) json["groups"].push_back(group_json(group, map, link));
+  for (const Point& point : map.points)
+    if (const auto reason = plan::why_not_read(map, point))
+      json["not_read"].push_back({{"point", point.name}, {"reason", plan::to_string(*reason)}});
+  for (const plan::Strategy& strategy : plan::compare_strategies(map, link))
+    json["strategies"].push_back(strategy_json(strategy));
+  // A file's name may have bytes that are not UTF-8.
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 }  // namespace coupler::cli
