@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "coupler/formats/exporters.hpp"
-#include "coupler/formats/import.hpp"
+#include "coupler/formats/importers.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "test/fuzz/require.hpp"
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "coupler/cli/commands.hpp"
-#include "coupler/cli/locked_map.hpp"
 #include "coupler/cli/map_argument.hpp"
 #include "coupler/cli/report.hpp"
 
@@ -53,7 +52,7 @@ void add_check(Program& program, Exit& exit) {
                    "Write nothing; a lock that is missing or not up to date is an error. For CI");
   command.footer(
       "Example:\n  coupler check device.yaml\nPoints without an address get one, which is kept in "
-      "device.yaml.lock beside the map.\nExits with 0 if every map is good, with 1 if one is not.");
+      "device.yaml.lock beside the map.\nExit status 0: every map is valid; 1: at least one is not.");
   command.callback([arguments, &exit] { exit = check(*arguments); });
 }
 

@@ -1,14 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subcommands of `coupler`, one file each. Each function adds one to the program; when the user calls it,
-// `exit` tells how it went.
+// The subcommands of `coupler`, one file each, and how all of them end. Each add_ function adds one to the
+// program; when the user calls it, it sets `exit`.
 #pragma once
 
-#include "coupler/cli/exit.hpp"
+#include <string_view>
+
+#include <fmt/format.h>
+
 #include "coupler/command_line/command_line.hpp"
+#include "coupler/map/printable.hpp"
 
 namespace coupler::cli {
 
 using command_line::Program;
+
+/// What the program's exit status means: a contract for scripts.
+enum Exit : int {
+  ok = 0,
+  bad_input = 1,  ///< the map is wrong
+  bad_call = 2,   ///< the command line is wrong
+  failed = 3,     ///< the network or the device failed
+};
+
+/// Says "coupler COMMAND: error: WHAT; REMEDY" on standard error; returns `exit`.
+inline Exit complain(std::string_view command, Exit exit, std::string_view what, std::string_view remedy) {
+  fmt::print(stderr, "coupler {}: error: {}; {}\n", command, printable_lines(what), printable_lines(remedy));
+  return exit;
+}
 
 void add_check(Program& program, Exit& exit);
 void add_diff(Program& program, Exit& exit);

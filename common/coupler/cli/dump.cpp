@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/cli/dump.hpp"
-
 #include <fnmatch.h>
 
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "coupler/cli/commands.hpp"
+#include "coupler/cli/live_device.hpp"
 #include "coupler/cli/map_argument.hpp"
 #include "coupler/map/loader/print.hpp"
 
@@ -26,11 +24,10 @@ struct Arguments {
 };
 
 Exit refuse(const std::string& what, const std::string& remedy) {
-  fmt::print(stderr, "coupler dump: error: {}; {}\n", what, remedy);
-  return bad_call;
+  return complain("dump", bad_call, what, remedy);
 }
 
-/// By point. Every pattern has to mean something: a misspelt one would hide what was asked for.
+/// By point. Every pattern must match: a misspelt one would leave points out without a word.
 tl::expected<std::vector<bool>, std::string> choose(const Map& map,
                                                     const std::vector<std::string>& patterns) {
   std::vector<bool> chosen(map.points.size(), patterns.empty());
@@ -59,17 +56,17 @@ Exit run(const Arguments& arguments) {
   if (map.connection.address.empty())
     return refuse(arguments.map + " does not say where the device is",
                   "give --at HOST[:PORT][/UNIT], or `address:` in the map");
-  DumpWish wish;
+  DumpOptions options;
   auto chosen = choose(map, arguments.points);
   if (!chosen)
-    return refuse(fmt::format("no point is called '{}'", chosen.error()),
+    return refuse(fmt::format("no point matches '{}'", chosen.error()),
                   fmt::format("`coupler export {} --to csv` lists their names", arguments.map));
-  wish.chosen = std::move(*chosen);
+  options.chosen = std::move(*chosen);
   if (arguments.watch)
-    wish.every =
+    options.every =
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(arguments.every));
-  wish.json = arguments.json;
-  return dump(map, wish);
+  options.json = arguments.json;
+  return dump(map, options);
 }
 
 }  // namespace
@@ -81,27 +78,25 @@ void add_dump(Program& program, Exit& exit) {
   command.add_option("MAP", arguments->map, map_help).required().type_name("");
   command
       .add_option("--at", arguments->at,
-                  "Where the device is, if not where the map says; what is not given is the map's")
+                  "Where the device is, if not at the map's address; parts that are not given are the map's")
       .type_name("HOST[:PORT][/UNIT]");
   command
       .add_option("--points", arguments->points, "Only points whose names match, as in 'pump_*'; repeatable")
       .delimiter(',')
       .no_extra_values()
       .type_name("GLOB");
-  auto watch =
-      command
-          .add_option("--watch", arguments->every,
-                      "Again every so many seconds, default 1, until Ctrl-C; on a terminal in place, "
-                      "else a line for each change")
-          .optional_value()
-          .in_range(0.05, 86400.0)
-          .type_name("SECONDS");
+  auto watch = command
+                   .add_option("--watch", arguments->every,
+                               "Repeat every so many seconds, default 1, until Ctrl-C: in place on a "
+                               "terminal, else with a line for each change")
+                   .optional_value()
+                   .in_range(0.05, 86400.0)
+                   .type_name("SECONDS");
   command.add_flag("--json", arguments->json,
-                   "One JSON object on standard output, for scripts; with --watch one a line");
+                   "One JSON object on standard output, for scripts; with --watch one per line");
   command.footer(
       "Example:\n  coupler dump tcp://raspberrypi\n  coupler dump device.yaml --at 10.0.0.7 --points "
-      "'pump_*' "
-      "--watch 0.5\n"
+      "'pump_*' --watch 0.5\n"
       "Exit status 3: the device cannot be reached, or a point cannot be read.");
   command.callback([arguments, watch, &exit] {
     arguments->watch = watch.given();

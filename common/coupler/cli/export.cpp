@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "coupler/cli/commands.hpp"
-#include "coupler/cli/complain.hpp"
 #include "coupler/cli/map_argument.hpp"
 #include "coupler/cli/report.hpp"
 #include "coupler/formats/exporters.hpp"
@@ -67,7 +66,7 @@ void add_export(Program& program, Exit& exit) {
   command.add_flag("--list", arguments->list, "Print the formats");
   command.footer(
       "Example:\n  coupler export device.yaml --to csv --out device.csv\n"
-      "What the format cannot say is on standard error.");
+      "Warnings on standard error say what the format cannot express.");
   command.callback([arguments, &exit] { exit = run(*arguments); });
 }
 

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/generate/generate.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "coupler/cli/commands.hpp"
-#include "coupler/cli/complain.hpp"
-#include "coupler/cli/locked_map.hpp"
 #include "coupler/cli/map_argument.hpp"
-#include "coupler/cli/map_pages.hpp"
 #include "coupler/cli/report.hpp"
-#include "coupler/generate/identifier.hpp"
+#include "coupler/docs/document.hpp"
+#include "coupler/docs/escape.hpp"
+#include "coupler/generate/code.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/test_vectors/json.hpp"
 
@@ -37,13 +38,46 @@ struct Arguments {
 
 fs::path folder_of(const Arguments& arguments) { return arguments.out.empty() ? "." : arguments.out; }
 
+/// Without slashes: maps may be called hall/press.
+std::string as_file_name(std::string name) {
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
+
+/// Nothing in it ends a URL in HTML or Markdown.
+bool is_url_part(std::string_view text) {
+  constexpr std::string_view refused = "<>\"\\^`{|}";
+  return std::none_of(text.begin(), text.end(), [&](char c) {
+    return (static_cast<unsigned char>(c) <= ' ') || refused.find(c) != std::string_view::npos;
+  });
+}
+
+/// Where the pages link to: relative to their folder, or on a forge. Standard input and a node have no links.
+std::string url_of_map(const Arguments& arguments) {
+  if (arguments.map == "-" || names_a_node(arguments.map)) return {};
+  const fs::path map = fs::absolute(arguments.map).lexically_normal();
+  if (arguments.source_url.empty())
+    return docs::url_path(
+        map.lexically_relative(fs::absolute(folder_of(arguments)).lexically_normal()).string());
+  const bool ended = arguments.source_url.back() == '/';
+  return arguments.source_url + (ended ? "" : "/") + docs::url_path(map.filename().string());
+}
+
+/// NAME.html and NAME.md. `lines`: of the points, as LoadResult::point_lines.
+std::vector<generate::File> map_pages(const Arguments& arguments, const std::string& name,
+                                      const std::string& source, const Map& map, Span<const int> lines) {
+  const auto document = docs::make_document(map, lines, {source, url_of_map(arguments), COUPLER_VERSION});
+  const std::string file = as_file_name(name);
+  return {{file + ".html", docs::html_page(document)}, {file + ".md", docs::markdown_page(document)}};
+}
+
 Exit write(const Arguments& arguments, const std::vector<generate::File>& files) {
   constexpr auto remedy = "give a folder that you may write to with --out";
   std::error_code failed;
   fs::create_directories(folder_of(arguments), failed);
   if (failed)
     return complain("generate", bad_call,
-                    fmt::format("cannot make the folder {}: {}", arguments.out, failed.message()), remedy);
+                    fmt::format("cannot create the folder {}: {}", arguments.out, failed.message()), remedy);
   for (const generate::File& file : files) {
     const fs::path path = (folder_of(arguments) / file.name).lexically_normal();
     const auto outcome = generate::write_if_changed(path, file.content);
@@ -56,8 +90,8 @@ Exit write(const Arguments& arguments, const std::vector<generate::File>& files)
 
 Exit run(const Arguments& arguments) {
   if (!is_url_part(arguments.source_url))
-    return complain("generate", bad_call, fmt::format("'{}' is not part of a URL", arguments.source_url),
-                    "write what a URL cannot hold as %XX");
+    return complain("generate", bad_call, fmt::format("'{}' cannot be part of a URL", arguments.source_url),
+                    "write characters that a URL cannot hold as %XX");
   const MapArgument argument = get_map(arguments.map, arguments.locked ? LockUse::exact : LockUse::renew);
   const LoadResult& loaded = argument.loaded;
   print(loaded.diagnostics);
@@ -67,20 +101,19 @@ Exit run(const Arguments& arguments) {
       arguments.map == "-" ? "standard input" : fs::path(arguments.map).filename().string();
   const Map map = argument.map();
   const std::string name = arguments.name.empty() ? std::string(map.name) : arguments.name;
-  if (arguments.docs)
-    return write(arguments,
-                 map_pages({arguments.map, folder_of(arguments), name, source, arguments.source_url}, map,
-                           loaded.point_lines));
+  if (arguments.docs) return write(arguments, map_pages(arguments, name, source, map, loaded.point_lines));
   if (arguments.vectors)
     return write(arguments,
                  {{as_file_name(name) + "_vectors.json", test_vectors::json(map, source, COUPLER_VERSION)}});
   const generate::Provenance provenance{name, source, COUPLER_VERSION};
-  if (generate::is_identifier(provenance.name)) return write(arguments, generate::generate(map, provenance));
-  const auto remedy = "give one with --name: letters, digits and underscores, a letter first, no word of C++";
-  if (!arguments.name.empty())
-    return complain("generate", bad_call, fmt::format("'{}' cannot name C++ code", provenance.name), remedy);
-  return complain("generate", bad_input,
-                  fmt::format("the map's name '{}' cannot name C++ code", provenance.name), remedy);
+  if (generate::is_identifier(name)) return write(arguments, generate::generate(map, provenance));
+  const auto remedy =
+      "give another one with --name: letters, digits and underscores, beginning with a letter, and not a "
+      "keyword of C++";
+  const bool given = !arguments.name.empty();
+  return complain("generate", given ? bad_call : bad_input,
+                  fmt::format("{}'{}' is not a valid name in C++", given ? "" : "the map's name ", name),
+                  remedy);
 }
 
 }  // namespace
@@ -91,31 +124,29 @@ void add_generate(Program& program, Exit& exit) {
       "Make C++ from a map: a constant table, a node, a driver, a typed client, hooks for a firmware.");
   const auto arguments = std::make_shared<Arguments>();
   command.add_option("MAP", arguments->map, map_help).required().type_name("");
-  auto out =
-      command
-          .add_option(
-              "--out", arguments->out,
-              "Folder for the files; made if it is not there. With --docs and --vectors, if not given: "
-              "this one")
-          .type_name("DIR");
+  auto out = command
+                 .add_option("--out", arguments->out,
+                             "Folder for the files, which is created if it does not exist; --docs and "
+                             "--vectors default to the current one")
+                 .type_name("DIR");
   command
       .add_option("--name", arguments->name,
-                  "What the files and the C++ namespace are called; default: the map's name")
+                  "Name of the files and of the C++ namespace; default: the map's name")
       .type_name("NAME");
   auto docs = command.add_flag("--docs", arguments->docs,
-                               "Instead: NAME.md and NAME.html, the register map for people");
+                               "In place of C++: NAME.md and NAME.html, the register map for people");
   command
       .add_option("--source-url", arguments->source_url,
-                  "With --docs: where the map is on a forge; links go to this, its name and #L12")
+                  "With --docs: the URL of the folder that the map is in; links go to PREFIX/MAP#L12")
       .needs(docs)
       .type_name("PREFIX");
   command
       .add_flag("--vectors", arguments->vectors,
-                "Instead: NAME_vectors.json, values of every point and how they stand on the wire")
+                "In place of C++: NAME_vectors.json, values of every point with their registers or bits")
       .excludes(docs);
   command.add_flag("--locked", arguments->locked,
                    "Do not write the map's lock; one that is missing or not up to date is an error");
-  command.add_flag("--quiet", arguments->quiet, "Say nothing of files when all is well");
+  command.add_flag("--quiet", arguments->quiet, "Do not list the files");
   command.footer(
       "Example:\n  coupler generate device.yaml --out generated\n"
       "makes device_map.hpp and .cpp, device_client.hpp and .cpp, device_hooks.hpp, device_core.hpp, "

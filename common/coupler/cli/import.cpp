@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/formats/import.hpp"
+#include "coupler/formats/importers.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -13,7 +13,6 @@
 #include <tl/expected.hpp>
 
 #include "coupler/cli/commands.hpp"
-#include "coupler/cli/complain.hpp"
 #include "coupler/cli/report.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/map/loader/source_text.hpp"
@@ -39,7 +38,7 @@ std::string names_of_formats() {
   return names;
 }
 
-/// No more than what is told to be too much for a map.
+/// At most one byte more than a map may have, which the loader then refuses.
 tl::expected<std::string, std::string> read(std::istream& in) {
   std::string text(loader::max_text_size + 1, '\0');
   try {
@@ -106,8 +105,8 @@ Exit run(const Arguments& arguments) {
   const std::string file = arguments.file == "-" ? "<stdin>" : arguments.file;
   const auto text = read_file(arguments.file);
   if (!text) {
-    fmt::print(stderr, "{}: error: the file cannot be read: {}; give the path of a file\n", file,
-               text.error());
+    fmt::print(stderr, "{}: error: the file cannot be read: {}; give the path of a file that you may read\n",
+               file, text.error());
     return bad_input;
   }
   const formats::ImportResult result = formats::import_text(*importer, *text, file, arguments.options);
@@ -120,12 +119,12 @@ Exit run(const Arguments& arguments) {
 void add_import(Program& program, Exit& exit) {
   auto command = program.add_command("import", "Make a map from another program's file.");
   const auto arguments = std::make_shared<Arguments>();
-  command.add_option("FORMAT", arguments->format, "What the file is: see --list").type_name("");
+  command.add_option("FORMAT", arguments->format, "Format of the file: see --list").type_name("");
   command.add_option("FILE", arguments->file, "The file; - is standard input").type_name("");
   command
-      .add_option(
-          "--out", arguments->out,
-          "Where to write the map; default: standard output. Of several units each gets a file: MAP_1.yaml …")
+      .add_option("--out", arguments->out,
+                  "Where to write the map; default: standard output. If the file has several units, each "
+                  "gets a map: MAP_1.yaml ...")
       .type_name("MAP");
   command.add_option("--name", arguments->options.name, "Name of the map; default: the file's")
       .type_name("NAME");
@@ -135,8 +134,8 @@ void add_import(Program& program, Exit& exit) {
   command.add_flag("--list", arguments->list, "Print the formats");
   command.footer(
       "Example:\n  coupler import csv points.csv --name press --out press.yaml\n"
-      "What was mended, and what could not be carried over, is on standard error, with its place in the "
-      "file.");
+      "Warnings on standard error say what was changed and what could not be carried over, with its place in "
+      "the file.");
   command.callback([arguments, unit, &exit] {
     if (unit.given()) arguments->options.unit = arguments->unit;
     exit = run(*arguments);

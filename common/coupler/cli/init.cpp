@@ -3,12 +3,13 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "coupler/cli/commands.hpp"
 #include "coupler/cli/report.hpp"
-#include "coupler/cli/starter_map.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "coupler/schema/schema.hpp"
@@ -18,23 +19,79 @@ namespace {
 
 constexpr auto schema_name = "map.schema.json";
 
+/// What a first map is to begin with.
+struct Starter {
+  std::string name;     ///< of the device
+  std::string address;  ///< of a coupler; a node has none in its map
+  std::string preset;   ///< the coupler's kind; empty: any
+  bool node = false;    ///< a board with GPIO lines that coupler-node serves
+  std::string schema;   ///< what an editor checks it with, as seen from the map's folder
+};
+
+constexpr std::string_view board_points = R"(mapping:
+  coils:                                   # outputs: <name>/lamp and <name>/lamp/write are std_msgs/Bool
+    lamp: {address: 0, line: GPIO17, safe: off, description: "on the cabinet"}
+  discrete_inputs:                         # inputs; `gpioinfo` shows the lines of your board
+    button: {address: 0, line: {chip: gpiochip0, offset: 27}, bias: pull_up, active_low: true, debounce: 5ms}
+  input_registers:
+    presses: {address: 0, type: UDINT, counter: {of: button, edge: rising}}   # counts between reads, too
+  holding_registers:
+    setpoint: {address: 0, type: REAL, units: bar}   # plain memory: keeps what a client wrote
+)";
+
+constexpr std::string_view board_head = R"(
+# Lines go to their safe state when the client that wrote them falls silent.
+watchdog: {timeout: 1s}
+
+)";
+
+constexpr std::string_view coupler_points = R"(mapping:
+  coils:                                   # outputs: <name>/valve and <name>/valve/write are std_msgs/Bool
+    valve: {address: 0, description: "Y1, clamp"}
+  discrete_inputs:                         # inputs
+    door: 0                                # an address alone is enough
+  input_registers:                         # values of the device
+    pressure: {address: 0, type: INT, scale: 0.01, units: bar}
+  holding_registers:                       # values that can be written, too
+    speed: {address: 0, type: UINT, units: rpm}
+)";
+
+constexpr std::string_view orders = R"(
+# How wide values stand in registers. If a value is absurd, try `order: ABCD`, CDAB, BADC or DCBA at its point.
+# Addresses are zero-based. For the numbers of a manual (40001 ...), write: addressing: modicon
+)";
+
+std::string explained(const std::string& line, std::string_view comment) {
+  return fmt::format("{:<40} # {}\n", line, comment);
+}
+
+/// A map with an example of what people need first, each line explained. It passes `coupler check`.
+std::string starter_map(const Starter& starter) {
+  std::string text = fmt::format("# yaml-language-server: $schema={}\n", starter.schema);
+  text +=
+      starter.node
+          ? "# A board with GPIO lines. `coupler-node` serves it; `coupler-node … --sim` without a board.\n"
+          : "# A Modbus/TCP coupler. `coupler_driver` makes each point a topic.\n";
+  text += fmt::format("name: {}\n", starter.name);
+  if (starter.node) return text + std::string(board_head) + std::string(board_points);
+  text += fmt::format("address: {}\n", starter.address);
+  text += explained("rate: 10", "polls a second");
+  if (!starter.preset.empty())
+    text += explained("preset: " + starter.preset, "what is true of all couplers of this kind");
+  return text + std::string(orders) + "\n" + std::string(coupler_points);
+}
+
 struct Arguments {
   Starter starter{"device", "192.168.1.17", {}, false, schema_name};
   std::string out;
   bool force = false;
 };
 
-Exit refuse(const std::string& what, Exit exit) {
-  fmt::print(stderr, "coupler init: error: {}\n", what);
-  return exit;
-}
-
 Exit init(const Arguments& arguments) {
   const std::filesystem::path map = arguments.out.empty() ? arguments.starter.name + ".yaml" : arguments.out;
   if (!arguments.force && std::filesystem::exists(map))
-    return refuse(fmt::format("{} is there already; name another file with --out, or replace it with --force",
-                              map.string()),
-                  bad_call);
+    return complain("init", bad_call, fmt::format("{} already exists", map.string()),
+                    "name another file with --out, or replace it with --force");
   const std::string text = starter_map(arguments.starter);
   const LoadResult loaded = load_map(text, map.string());
   if (!loaded.map) {  // the name, the address or the preset
@@ -44,7 +101,8 @@ Exit init(const Arguments& arguments) {
   for (const auto& [path, content] :
        {std::pair(map, text), std::pair(map.parent_path() / schema_name, schema::map_schema())}) {
     const auto outcome = generate::write_if_changed(path, content);
-    if (!outcome) return refuse(outcome.error() + "; name a file that you may write with --out", bad_call);
+    if (!outcome)
+      return complain("init", bad_call, outcome.error(), "name a file that you may write with --out");
     fmt::print("{}: {}\n", path.string(), *outcome == generate::Outcome::written ? "written" : "unchanged");
   }
   fmt::print("Next: change its points, then `coupler check {}`\n", map.string());
@@ -57,7 +115,7 @@ void add_init(Program& program, Exit& exit) {
   auto command = program.add_command(
       "init", "Write a first map, with comments, and beside it the schema that editors check it with.");
   const auto arguments = std::make_shared<Arguments>();
-  command.add_option("NAME", arguments->starter.name, "Of the device: its topics are NAME/POINT")
+  command.add_option("NAME", arguments->starter.name, "Name of the device: its topics are NAME/POINT")
       .type_name("");
   auto address = command.add_option("--address", arguments->starter.address, "Host name or IP address")
                      .type_name("HOST");
@@ -69,7 +127,7 @@ void add_init(Program& program, Exit& exit) {
       .excludes(address)
       .excludes(preset);
   command.add_option("--out", arguments->out, "The map's file (default: NAME.yaml)").type_name("FILE");
-  command.add_flag("--force", arguments->force, "Replace a map that is there");
+  command.add_flag("--force", arguments->force, "Replace an existing map");
   command.footer(
       "Example:\n  coupler init press --preset wago_750 --address 192.168.1.17\n  coupler init cell --node");
   command.callback([arguments, &exit] { exit = init(*arguments); });

@@ -13,8 +13,7 @@ int main(int argc, char** argv) {
   coupler::cli::Program program{"OpenCoupler: makes both sides of a Modbus/TCP coupler from one map.",
                                 "coupler"};
   program.version("coupler " COUPLER_VERSION);
-  program.footer(
-      "Example:\n  coupler check device.yaml\n`coupler COMMAND --help` tells more of one command.");
+  program.footer("Example:\n  coupler check device.yaml\n`coupler COMMAND --help` explains one command.");
   program.explain([](const std::string& command, const std::string& what) {
     return command + ": error: " + what + "; see `" + command + " --help`\n";
   });

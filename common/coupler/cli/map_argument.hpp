@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "coupler/cli/exit.hpp"
+#include "coupler/cli/commands.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "coupler/map/node_address.hpp"
 
@@ -24,11 +24,13 @@ struct MapArgument {
   Map map() const { return node ? found_at(loaded.map->map(), *node) : loaded.map->map(); }
 };
 
-/// Gets the map. Every problem is in the diagnostics. With `renew` the lock of a file is written if that
-/// changes (see load_and_lock()); a node's map has none. `argument` stays where it is.
+/// Every problem is in the diagnostics. With `renew` a command gives addresses to the new points of a file,
+/// and its lock is written if that changes; with `exact` nothing is written, and a lock that is not up to
+/// date is an error. A lock that cannot be written is an error, too. A node's map has no lock.
 MapArgument get_map(const std::string& argument, LockUse use = LockUse::read);
 
-/// The same, or REVISION:PATH of git, unless there is a file of that name.
+/// The same, or REVISION:PATH of git, unless there is a file of that name: `git show` is run, and what it
+/// says is a diagnostic.
 MapArgument get_version(const std::string& argument);
 
 }  // namespace coupler::cli

@@ -32,11 +32,11 @@ bool write_file(const std::string& path, const std::string& content) {
 void warn_if_too_much(const std::string& file, const Map& map, const plan::Link& link) {
   const double load = plan::load(plan::make_read_plan(map), link);
   if (load > 1)
-    fmt::print(
-        stderr,
-        "{}: warning: the reads need {} of the time, so cycles will be left out; lower `rate`, for the map "
-        "or for points that change slowly, or make the requests fewer\n",
-        file, percent(load));
+    fmt::print(stderr,
+               "{}: warning: the reads need {} of the time, so poll cycles will be skipped; lower `rate`, "
+               "for the map "
+               "or for points that change slowly, or reduce the number of requests\n",
+               file, percent(load));
 }
 
 Exit run(const Arguments& arguments) {
@@ -48,11 +48,9 @@ Exit run(const Arguments& arguments) {
   link.round_trip = std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double, std::milli>(arguments.rtt));
   link.pause = map.limits.request_gap;
-  if (!arguments.svg.empty() && !write_file(arguments.svg, plan::picture(map, plan::make_read_plan(map)))) {
-    fmt::print(stderr, "coupler plan: error: cannot write {}; give a file that you may write with --svg\n",
-               arguments.svg);
-    return bad_call;
-  }
+  if (!arguments.svg.empty() && !write_file(arguments.svg, plan::picture(map, plan::make_read_plan(map))))
+    return complain("plan", bad_call, "cannot write " + arguments.svg,
+                    "give a file that you may write with --svg");
   if (arguments.json)
     std::puts(plan_json(arguments.map, map, link).c_str());
   else

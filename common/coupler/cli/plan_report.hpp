@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `coupler plan` says. docs/driver.md holds the JSON's fields as a table.
+// The output of `coupler plan`. docs/driver.md lists the fields of the JSON.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ std::string plan_text(const std::string& file, const Map& map, const plan::Link&
 /// One line of JSON.
 std::string plan_json(const std::string& file, const Map& map, const plan::Link& link);
 
-/// "12 %": what a load is called; never "0 %" of something.
+/// A load as "12 %"; "< 0.1 %" if it would be rounded to zero.
 std::string percent(double load);
 
 }  // namespace coupler::cli

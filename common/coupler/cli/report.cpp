@@ -39,6 +39,14 @@ std::string by_table(const Map& map) {
   return out.empty() ? out : " (" + out + ")";
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 10;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
+    text += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
+  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
+}
+
 ordered_json to_json(const Diagnostic& diagnostic) {
   ordered_json notes = ordered_json::array();
   for (const Diagnostic::Note& note : diagnostic.notes)
@@ -58,6 +66,20 @@ std::string summary(const std::string& file, const Map& map) {
   return fmt::format("{}: ok: {}, {}{}, fingerprint {}", printable(file), map.name,
                      counted(static_cast<std::ptrdiff_t>(map.points.size()), "point"), by_table(map),
                      fingerprint_text(map.fingerprint));
+}
+
+std::string lock_report(const NewLock& lock) {
+  if (lock.text.empty()) return {};
+  std::string text = fmt::format("{}: written", lock.path);
+  if (!lock.allocated.empty()) text += fmt::format("; new addresses: {}", listed(lock.allocated));
+  if (!lock.retired.empty()) text += fmt::format("; retired: {}", listed(lock.retired));
+  text += '\n';
+  if (!lock.allocated.empty() && !lock.retired.empty())
+    text += fmt::format(
+        "{}: a point that was only renamed can keep its address: take the lock from version control again, "
+        "and write the new name over the old one\n",
+        lock.path);
+  return text;
 }
 
 std::string json_report(const std::string& file, const LoadResult& loaded) {

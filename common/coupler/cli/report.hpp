@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of a map that was read: texts for people, JSON for programs.
+// What commands print of a map that was read: text for people, JSON for programs.
 #pragma once
 
 #include <string>
@@ -11,6 +11,9 @@ namespace coupler::cli {
 
 /// "device.yaml: ok: device, 3 points (1 coil, 2 discrete inputs), fingerprint 0123456789abcdef"
 std::string summary(const std::string& file, const Map& map);
+
+/// What was written of a lock, as lines; empty if nothing was.
+std::string lock_report(const NewLock& lock);
 
 /// One line of JSON: {file, ok, name, points, fingerprint, lock, diagnostics: [{severity, file, line, column,
 /// what, remedy}]}. name, points and fingerprint are null if there is no map; lock is null unless it was

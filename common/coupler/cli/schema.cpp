@@ -5,8 +5,6 @@
 #include <memory>
 #include <string>
 
-#include <fmt/format.h>
-
 #include "coupler/cli/commands.hpp"
 #include "coupler/generate/output.hpp"
 
@@ -21,9 +19,7 @@ Exit run(const std::string& out) {
   }
   const auto outcome = generate::write_if_changed(out, text);
   if (outcome) return ok;
-  fmt::print(stderr, "coupler schema: error: {}; name a file that you may write with --out\n",
-             outcome.error());
-  return bad_call;
+  return complain("schema", bad_call, outcome.error(), "name a file that you may write with --out");
 }
 
 }  // namespace

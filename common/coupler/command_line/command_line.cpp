@@ -14,7 +14,7 @@ namespace {
 
 int exit_status(int of_cli11) { return of_cli11 == 0 ? 0 : 2; }
 
-/// Of an unknown command CLI11 would only say that one is required.
+/// CLI11 would only say that a command is required.
 void refuse_unknown_command(const CLI::App& program, int argc, const char* const* argv) {
   const std::string first = argc > 1 ? argv[1] : "-";
   const auto is_named = [&first](const CLI::App* command) { return command->get_name() == first; };

@@ -17,8 +17,7 @@ class Option;
 
 namespace coupler::command_line {
 
-/// An option, a flag or an argument without a name, so that more can be said of it. A copy is the same
-/// option.
+/// An option, a flag or a positional argument. A copy is the same option.
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
@@ -35,7 +34,7 @@ class Option {
   Option no_extra_values();     ///< the same, but the help text says "..." of a list
   Option delimiter(char sign);  ///< between the values of a list
 
-  // What a value has to be.
+  // What a value may be.
   Option in_range(int min, int max);
   Option in_range(double min, double max);
   Option one_of(std::vector<std::string> values);
@@ -44,14 +43,14 @@ class Option {
   /// Once the command line is parsed.
   bool given() const;
 
-  /// Within a callback: the call is wrong without it.
+  /// Within a callback: refuses the call, as required() would.
   [[noreturn]] void refuse_missing() const;
 
  private:
   CLI::Option* option_;
 };
 
-/// What options are added to. A copy is the same command.
+/// Has options. A copy is the same command.
 class Command {
  public:
   explicit Command(CLI::App* app) : app_(app) {}
@@ -68,14 +67,14 @@ class Command {
   void footer(const std::string& text);
   /// Takes whatever is given.
   void allow_extras();
-  /// Called if this command is.
+  /// Run if the user calls this command.
   void callback(std::function<void()> run);
 
  protected:
   CLI::App* app_;
 };
 
-/// Say what holds for every command, as footer() and explain(), before commands are added.
+/// footer() and explain() hold for every command that is added after them.
 class Program : public Command {
  public:
   Program(const std::string& description, const std::string& name);
@@ -84,15 +83,15 @@ class Program : public Command {
   Program& operator=(const Program&) = delete;
 
   void version(const std::string& text);
-  /// Of those that are added one has to be called.
+  /// The user has to call one of the commands that are added.
   Command add_command(const std::string& name, const std::string& description);
-  /// What is said of a wrong call; `command`: "coupler check".
+  /// The message after a wrong call; `command`: "coupler check".
   void explain(const std::function<std::string(const std::string& command, const std::string& what)>& how);
 
   /// The exit status if there is nothing more to do: 0 after --help and --version, 2 after a wrong call,
   /// which is explained on standard error.
   std::optional<int> parse(int argc, const char* const* argv);
-  /// `arguments`: without the program. What there is to say is added to `text`.
+  /// `arguments`: without the program. Help and messages are added to `text`.
   std::optional<int> parse(std::vector<std::string> arguments, std::string& text);
 
  private:

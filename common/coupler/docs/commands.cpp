@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/docs/commands.hpp"
+#include "coupler/docs/document.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "coupler/base/starts_with.hpp"
-#include "coupler/docs/ros_message.hpp"
 #include "coupler/docs/words.hpp"
 
 namespace coupler::docs {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map's texts are anybody's: whatever stands in them is shown, never obeyed.
+// Texts of a map are not trusted: pages show them and never interpret them.
 #pragma once
 
 #include <string>

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/docs/html.hpp"
+#include "coupler/docs/document.hpp"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
 
 #include <fmt/format.h>
 
 #include "coupler/docs/assets.hpp"
 #include "coupler/docs/escape.hpp"
-#include "coupler/docs/html_rows.hpp"
 #include "coupler/docs/words.hpp"
 
 namespace coupler::docs {
@@ -23,19 +26,19 @@ std::string head(const Document& document) {
       "<link rel=\"icon\" href=\"data:,\">\n"
       "<title>{}: register map</title>\n<style>\n{}</style>\n"
       "<script>\n{}</script>\n</head>\n",
-      html(document.origin.version), html(document.name), style_sheet(), head_script());
+      html(document.provenance.version), html(document.name), style_sheet(), head_script());
 }
 
 std::string made_from(const Document& document) {
-  const std::string file = html(document.origin.file);
+  const std::string file = html(document.provenance.file);
   return fmt::format("Made from {} by coupler {} · fingerprint <code>{}</code>",
-                     document.origin.url.empty()
+                     document.provenance.url.empty()
                          ? file
-                         : fmt::format("<a href=\"{}\">{}</a>", html(document.origin.url), file),
-                     html(document.origin.version), document.fingerprint);
+                         : fmt::format("<a href=\"{}\">{}</a>", html(document.provenance.url), file),
+                     html(document.provenance.version), document.fingerprint);
 }
 
-/// Hidden until the script is there to answer it.
+/// Hidden until the script runs, which does the search.
 std::string search(const Document& document) {
   std::string out =
       "<form id=\"search\" role=\"search\" hidden>\n"
@@ -47,6 +50,124 @@ std::string search(const Document& document) {
     out += fmt::format("<label><input type=\"radio\" name=\"table\" value=\"{}\">{} <b>{}</b></label>\n",
                        index(table), words(table), count(document, table));
   return out + "</fieldset>\n<output id=\"found\" for=\"query\"></output>\n</form>\n";
+}
+
+/// The text of a cell, and a smaller one below it; both are HTML.
+struct Cell {
+  std::string main;
+  std::string below{};
+};
+
+struct Column {
+  std::string_view key;  ///< CSS class
+  std::string_view title;
+  Cell (*cell)(const Document&, const PointDescription&);
+};
+
+/// The texts that are not empty, with a dot between.
+std::string joined(std::initializer_list<std::string> texts) {
+  std::string out;
+  for (const std::string& text : texts)
+    if (!text.empty()) out += (out.empty() ? "" : " · ") + text;
+  return out;
+}
+
+std::string prefixed(std::string_view before, const std::string& text) {
+  return text.empty() ? text : std::string(before) + text;
+}
+
+Cell name(const Document&, const PointDescription& point) {
+  return {fmt::format("<a href=\"#point-{0}\">{0}</a>", html(point.name)), html(point.description)};
+}
+
+Cell space(const Document&, const PointDescription& point) { return {words(point.table)}; }
+
+Cell wire(const Document&, const PointDescription& point) {
+  return {point.address, joined({point.part, prefixed("reads back at ", point.read_at)})};
+}
+
+Cell modicon(const Document&, const PointDescription& point) { return {point.modicon}; }
+
+Cell type(const Document&, const PointDescription& point) {
+  return {html(point.type) + prefixed(" × ", point.count),
+          joined({point.text, prefixed("order ", point.order)})};
+}
+
+Cell range(const Document&, const PointDescription& point) { return {point.range, point.scale}; }
+
+Cell units(const Document&, const PointDescription& point) { return {html(point.units)}; }
+
+Cell access(const Document&, const PointDescription& point) {
+  return {point.access, prefixed("at ", point.rate)};
+}
+
+Cell behind(const Document&, const PointDescription& point) {
+  return {html(point.source), html(point.source_details)};
+}
+
+Cell initial(const Document&, const PointDescription& point) {
+  return {html(point.initial),
+          joined({prefixed("safe: ", html(point.safe)), prefixed("deadman: ", html(point.deadman))})};
+}
+
+Cell message(const Document&, const PointDescription& point) {
+  const std::size_t slash = point.message.find('/') + 1;
+  return {html(point.message.substr(slash)), html(point.message.substr(0, slash - 1))};
+}
+
+Cell source(const Document& document, const PointDescription& point) {
+  const std::string link = source_link(document, point);
+  if (link.empty()) return {point.line != 0 ? fmt::format("L{}", point.line) : ""};
+  return {fmt::format("<a href=\"{}\">L{}</a>", html(link), point.line)};
+}
+
+constexpr std::array columns{
+    Column{"name", "Point", name},         Column{"space", "Table", space},
+    Column{"wire", "Wire", wire},          Column{"modicon", "Modicon", modicon},
+    Column{"type", "Type", type},          Column{"range", "Range", range},
+    Column{"units", "Units", units},       Column{"access", "Access", access},
+    Column{"behind", "Behind it", behind}, Column{"initial", "Initial", initial},
+    Column{"message", "Message", message}, Column{"source", "Map", source},
+};
+
+/// Columns that no point fills are left out.
+std::vector<const Column*> used_columns(const Document& document) {
+  std::vector<const Column*> used;
+  for (const Column& column : columns) {
+    const bool filled =
+        std::any_of(document.points.begin(), document.points.end(), [&](const PointDescription& point) {
+          const Cell cell = column.cell(document, point);
+          return !cell.main.empty() || !cell.below.empty();
+        });
+    if (filled) used.push_back(&column);
+  }
+  return used;
+}
+
+/// Empty cells are written, too. The data attributes are for search and sort.
+void put_point(const Document& document, const PointDescription& point,
+               const std::vector<const Column*>& used, std::string& out) {
+  out += fmt::format("<tr id=\"point-{}\" data-table=\"{}\" data-first=\"{}\" data-last=\"{}\">",
+                     html(point.name), index(point.table), point.first, point.last);
+  for (const Column* column : used) {
+    const Cell cell = column->cell(document, point);
+    out += fmt::format("<td class=\"{}\">{}", column->key, cell.main);
+    if (!cell.below.empty()) out += fmt::format("<small>{}</small>", cell.below);
+    out += "</td>";
+  }
+  out += "</tr>\n";
+}
+
+/// Sorted as the map's points are.
+std::string html_rows(const Document& document) {
+  const auto used = used_columns(document);
+  std::string out = "<table id=\"points\">\n<thead><tr>";
+  for (const Column* column : used)
+    out += fmt::format("<th scope=\"col\" class=\"{}\" data-key=\"{}\">{}</th>", column->key, column->key,
+                       column->title);
+  out += "</tr></thead>\n<tbody>\n";
+  for (const PointDescription& point : document.points) put_point(document, point, used, out);
+  return out + "</tbody>\n</table>\n";
 }
 
 std::string facts(const Document& document) {

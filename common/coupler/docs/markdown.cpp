@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/docs/markdown.hpp"
+#include "coupler/docs/document.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ namespace {
 struct Column {
   std::string_view title;
   bool right;  ///< numbers
-  std::string (*cell)(const Document&, const Row&);
+  std::string (*cell)(const Document&, const PointDescription&);
 };
 
 /// `a` and behind it, if there is any, `b`.
@@ -25,59 +25,60 @@ std::string both(const std::string& a, std::string_view between, const std::stri
 }
 
 /// The name, which is a ROS name and so safe in backticks, and where it stands in the map.
-std::string name_cell(const Document& document, const Row& row) {
-  const std::string link = source_link(document, row);
-  return link.empty() ? fmt::format("`{}`", row.name) : fmt::format("[`{}`](<{}>)", row.name, link);
+std::string name_cell(const Document& document, const PointDescription& point) {
+  const std::string link = source_link(document, point);
+  return link.empty() ? fmt::format("`{}`", point.name) : fmt::format("[`{}`](<{}>)", point.name, link);
 }
 
-std::string access_cell(const Document&, const Row& row) {
-  return row.read_at.empty() ? row.access : fmt::format("{}; reads back at {}", row.access, row.read_at);
+std::string access_cell(const Document&, const PointDescription& point) {
+  return point.read_at.empty() ? point.access
+                               : fmt::format("{}; reads back at {}", point.access, point.read_at);
 }
 
 constexpr std::array columns{
     Column{"point", false, name_cell},
-    Column{"wire", true, [](const Document&, const Row& row) { return both(row.wire, ", ", row.part); }},
-    Column{"Modicon", true, [](const Document&, const Row& row) { return row.modicon; }},
-    Column{"type", false, [](const Document&, const Row& row) { return both(row.type, ", ", row.text); }},
-    Column{"count", true, [](const Document&, const Row& row) { return row.count; }},
-    Column{"order", false, [](const Document&, const Row& row) { return row.order; }},
-    Column{"range", false, [](const Document&, const Row& row) { return row.range; }},
-    Column{"units", false, [](const Document&, const Row& row) { return markdown(row.units); }},
-    Column{"scale", false, [](const Document&, const Row& row) { return row.scale; }},
+    Column{"wire", true, [](auto&, auto& point) { return both(point.address, ", ", point.part); }},
+    Column{"Modicon", true, [](auto&, auto& point) { return point.modicon; }},
+    Column{"type", false, [](auto&, auto& point) { return both(point.type, ", ", point.text); }},
+    Column{"count", true, [](auto&, auto& point) { return point.count; }},
+    Column{"order", false, [](auto&, auto& point) { return point.order; }},
+    Column{"range", false, [](auto&, auto& point) { return point.range; }},
+    Column{"units", false, [](auto&, auto& point) { return markdown(point.units); }},
+    Column{"scale", false, [](auto&, auto& point) { return point.scale; }},
     Column{"access", false, access_cell},
     Column{"behind it", false,
-           [](const Document&, const Row& row) {
-             return both(markdown(row.source), ": ", markdown(row.source_details));
+           [](auto&, auto& point) {
+             return both(markdown(point.source), ": ", markdown(point.source_details));
            }},
-    Column{"initial", false, [](const Document&, const Row& row) { return markdown(row.initial); }},
-    Column{"safe", false, [](const Document&, const Row& row) { return markdown(row.safe); }},
-    Column{"deadman", false, [](const Document&, const Row& row) { return markdown(row.deadman); }},
-    Column{"polled", true, [](const Document&, const Row& row) { return row.rate; }},
-    Column{"message", false, [](const Document&, const Row& row) { return "`" + row.message + "`"; }},
-    Column{"description", false, [](const Document&, const Row& row) { return markdown(row.description); }},
+    Column{"initial", false, [](auto&, auto& point) { return markdown(point.initial); }},
+    Column{"safe", false, [](auto&, auto& point) { return markdown(point.safe); }},
+    Column{"deadman", false, [](auto&, auto& point) { return markdown(point.deadman); }},
+    Column{"polled", true, [](auto&, auto& point) { return point.rate; }},
+    Column{"message", false, [](auto&, auto& point) { return "`" + point.message + "`"; }},
+    Column{"description", false, [](auto&, auto& point) { return markdown(point.description); }},
 };
 
 /// One address space. Columns that no point of it fills are left out.
 void put_table(const Document& document, Table table, std::string& out) {
-  std::vector<const Row*> rows;
-  for (const Row& row : document.rows)
-    if (row.table == table) rows.push_back(&row);
+  std::vector<const PointDescription*> points;
+  for (const PointDescription& point : document.points)
+    if (point.table == table) points.push_back(&point);
   std::string title = words(table);
   title.front() = static_cast<char>(title.front() - 'a' + 'A');
-  out += fmt::format("\n## {} ({})\n", title, rows.size());
-  if (rows.empty()) return;
+  out += fmt::format("\n## {} ({})\n", title, points.size());
+  if (points.empty()) return;
   std::vector<const Column*> used;
   for (const Column& column : columns)
-    if (std::any_of(rows.begin(), rows.end(),
-                    [&](const Row* row) { return !column.cell(document, *row).empty(); }))
+    if (std::any_of(points.begin(), points.end(),
+                    [&](const PointDescription* point) { return !column.cell(document, *point).empty(); }))
       used.push_back(&column);
   out += '\n';
   for (const Column* column : used) out += fmt::format("| {} ", column->title);
   out += "|\n";
   for (const Column* column : used) out += column->right ? "|--:" : "|---";
   out += "|\n";
-  for (const Row* row : rows) {
-    for (const Column* column : used) out += fmt::format("| {} ", column->cell(document, *row));
+  for (const PointDescription* point : points) {
+    for (const Column* column : used) out += fmt::format("| {} ", column->cell(document, *point));
     out += "|\n";
   }
 }
@@ -91,11 +92,11 @@ void put_commands(std::string_view title, const std::vector<Command>& commands, 
 }
 
 std::string head(const Document& document) {
-  const std::string file = markdown(document.origin.file);
+  const std::string file = markdown(document.provenance.file);
   return fmt::format(
       "# {}: register map\n\nMade from {} by coupler {}. Fingerprint `{}`.\n", markdown(document.name),
-      document.origin.url.empty() ? file : fmt::format("[{}](<{}>)", file, document.origin.url),
-      markdown(document.origin.version), document.fingerprint);
+      document.provenance.url.empty() ? file : fmt::format("[{}](<{}>)", file, document.provenance.url),
+      markdown(document.provenance.version), document.fingerprint);
 }
 
 }  // namespace

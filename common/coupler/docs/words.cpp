@@ -36,6 +36,31 @@ std::string one_value(const Point& point, const std::uint16_t* registers) {
   return codec::to_string(codec::decode(registers, point.format));
 }
 
+/// In std_msgs; empty: bits, which have a message of this project.
+std::string_view value_name(codec::Type type) {
+  using codec::Type;
+  switch (type) {
+    case Type::BOOL: return "Bool";
+    case Type::BYTE:
+    case Type::WORD:
+    case Type::DWORD:
+    case Type::LWORD: return {};
+    case Type::SINT: return "Int8";
+    case Type::INT: return "Int16";
+    case Type::DINT: return "Int32";
+    case Type::LINT: return "Int64";
+    case Type::USINT: return "UInt8";
+    case Type::UINT: return "UInt16";
+    case Type::UDINT: return "UInt32";
+    case Type::ULINT: return "UInt64";
+    case Type::REAL: return "Float32";
+    case Type::LREAL: return "Float64";
+    case Type::CHAR: return "Char";
+    case Type::STRING: return "String";
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string words(Table table) {
@@ -120,6 +145,13 @@ std::string value_words(const Point& point, Span<const std::uint16_t> registers)
   std::string list;
   for (const std::string& value : values) add(list, value);
   return list;
+}
+
+std::string ros_message(const Point& point) {
+  const bool several = point.count > 1;
+  const std::string_view name = point.scale.present() ? "Float64" : value_name(point.format.type);
+  if (name.empty() || (several && name == "Bool")) return "coupler_driver/BoolArray";
+  return "std_msgs/" + std::string(name) + (several ? "MultiArray" : "");
 }
 
 }  // namespace coupler::docs

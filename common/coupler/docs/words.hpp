@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of the model in a reader's words.
+// Parts of the model as text for people.
 #pragma once
 
 #include <chrono>
@@ -25,10 +25,15 @@ std::string details(const Line& line);
 /// "rising edges of button"
 std::string words(const EdgeOf& edge);
 
-/// "-32768 … 32767" as it is published; empty where every value is one (texts, bits, floating point).
+/// "-32768 … 32767" as it is published; empty if the type has no limits to show (texts, bits, floating
+/// point).
 std::string range_words(const Point& point);
 
 /// What registers as Point::initial mean, as it is published: "on", "2.5", "1, 2, 3", "0 each".
 std::string value_words(const Point& point, Span<const std::uint16_t> registers);
+
+/// The message type of the point's topics, "std_msgs/Float32". coupler/host/ros/message.hpp chooses it for
+/// the driver; tests of the driver compare the two.
+std::string ros_message(const Point& point);
 
 }  // namespace coupler::docs

@@ -107,7 +107,7 @@ class CsvParser {
     ++at_;
     while (!ends_cell() && blanks.find(text_[at_]) != std::string_view::npos) ++at_;
     if (ends_cell()) return true;
-    problems_.error(here(), "text behind a closed quote", "write a quote inside quotes twice");
+    problems_.error(here(), "there is text after the closing quote", "inside quotes, write a quote twice");
     return false;
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables as spreadsheets and databases write them (RFC 4180), with what they disagree about: separators ';',
-// ',' or tab, lines that end with CR LF or LF.
+// Tables as spreadsheets and databases write them (RFC 4180). The separator may be ';', ',' or tab; lines end
+// with CR LF or LF.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct Cell {
 using Row = std::vector<Cell>;
 
 /// All rows that are not empty; empty with the first error in `problems` if a quote is never closed, or text
-/// follows a closed one. The separator is the one that the first line has most of, outside quotes.
+/// follows a closed one. The separator is the one that the first line has most often, outside quotes.
 std::vector<Row> parse_csv(std::string_view text, loader::Problems& problems);
 
 /// The text as a cell of a file whose separator is ',': in quotes where they are needed.

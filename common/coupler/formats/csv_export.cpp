@@ -10,8 +10,7 @@
 
 #include "coupler/codec/text.hpp"
 #include "coupler/formats/csv.hpp"
-#include "coupler/formats/entries.hpp"
-#include "coupler/formats/map_writer.hpp"
+#include "coupler/formats/map_tree.hpp"
 #include "coupler/map/fields.hpp"
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/keys.hpp"
@@ -23,7 +22,7 @@ namespace {
 using loader::Entry;
 using Cells = std::map<std::string, std::string, std::less<>>;  // by column
 
-/// Columns that every table has, and all that follow from what both sides must agree on.
+/// Columns of every table.
 constexpr std::string_view always[] = {"table", "name",   "address", "type",
                                        "order", "access", "units",   "description"};
 
@@ -120,8 +119,8 @@ std::vector<std::string> columns_of(const std::vector<Cells>& rows) {
   return columns;
 }
 
-/// Who imports the table says so again, for points with nothing behind them have a safe value.
-bool tells_on_shutdown(const Map& map, const EntriesByName& entries) {
+/// `coupler import csv` adds on_shutdown again, since a point without hardware has a safe value.
+bool implies_on_shutdown(const Map& map, const EntriesByName& entries) {
   return std::any_of(map.points.begin(), map.points.end(), [&](const Point& point) {
     const auto entry = entries.find(point.name);
     return !point.line.present() && !is_analogue(point) && entry != entries.end() &&
@@ -129,7 +128,7 @@ bool tells_on_shutdown(const Map& map, const EntriesByName& entries) {
   });
 }
 
-void add_losses(const Entry& root, bool with_on_shutdown, ConversionWarnings& warnings) {
+void warn_of_device_keys(const Entry& root, bool with_on_shutdown, ConversionWarnings& warnings) {
   std::set<std::string_view> worked_in{"mapping", "defaults", "addressing", "byteorder_reverse",
                                        "wordorder_reverse"};
   if (with_on_shutdown) worked_in.insert("on_shutdown");
@@ -144,8 +143,8 @@ void add_losses(const Entry& root, bool with_on_shutdown, ConversionWarnings& wa
 
 Export write_csv(const Map& map) {
   Export out;
-  loader::Problems unheard("");  // the loader has read the text before
-  const auto root = loader::parse_document(map.text, unheard);
+  loader::Problems ignored("");  // the loader has read the text before
+  const auto root = loader::parse_document(map.text, ignored);
   const EntriesByName entries = root ? entries_of(*root) : EntriesByName{};
   std::vector<Cells> rows;
   for (const Point& point : map.points) {
@@ -154,7 +153,7 @@ Export write_csv(const Map& map) {
     if (const auto entry = entries.find(point.name); entry != entries.end())
       add_file_keys(*entry->second, rows.back());
   }
-  if (root) add_losses(*root, tells_on_shutdown(map, entries), out.warnings);
+  if (root) warn_of_device_keys(*root, implies_on_shutdown(map, entries), out.warnings);
   const std::vector<std::string> columns = columns_of(rows);
   out.text = fmt::format("{}\r\n", fmt::join(columns, ","));
   for (const Cells& cells : rows) {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "coupler/formats/csv.hpp"
-#include "coupler/formats/entries.hpp"
+#include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/keys.hpp"
 #include "coupler/map/loader/letters.hpp"
@@ -59,7 +59,7 @@ std::vector<Column> read_header(const Row& header, Problems& problems) {
       problems.warning(
           cell.at,
           fmt::format("the column {} is not carried over: a point has no such key", shown(cell.text)),
-          near.empty() ? "leave it, or see docs/import-export.md for the columns"
+          near.empty() ? "see docs/import-export.md for the columns"
                        : fmt::format("did you mean '{}'?", near));
       column.key.clear();
     }
@@ -116,9 +116,10 @@ class RowReader {
 
   void read(const Row& row, std::vector<ForeignUnit>& units) {
     if (row.size() > columns_.size()) {
-      problems_.error(row[columns_.size()].at,
-                      fmt::format("the row has {} cells, the headings are {}", row.size(), columns_.size()),
-                      "put text that contains the separator in quotes");
+      problems_.error(
+          row[columns_.size()].at,
+          fmt::format("the row has {} cells, but there are {} headings", row.size(), columns_.size()),
+          "put text that contains the separator in quotes");
       return;
     }
     const Cell* name = cell(row, "name");
@@ -219,11 +220,10 @@ void add_on_shutdown(Entry& map, Problems& problems) {
   if (safe == nullptr) return;
   const loader::Position at = safe->at;
   set(map, scalar("on_shutdown", "safe", at));
-  problems.warning(
-      at,
-      "'safe' of a point without a line, 'iio' or 'pwm' is what the driver leaves behind, so the "
-      "map says 'on_shutdown: safe'",
-      "empty such cells if the driver is to leave outputs as they are");
+  problems.warning(at,
+                   "'safe' of a point without a line, 'iio' or 'pwm' is the value that the driver writes "
+                   "when it ends, so the map has 'on_shutdown: safe'",
+                   "empty these cells if the driver should leave outputs as they are");
 }
 
 }  // namespace
@@ -233,7 +233,7 @@ std::vector<ForeignUnit> read_csv(std::string_view text, Problems& problems) {
   if (problems.has_errors()) return {};
   if (rows.size() < 2) {
     problems.error({1, 1}, "there are no points in the file",
-                   "write a line of headings and one line a point");
+                   "write a line of headings and one line for each point");
     return {};
   }
   const std::vector<Column> columns = read_header(rows.front(), problems);

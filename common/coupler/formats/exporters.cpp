@@ -4,24 +4,94 @@
 #include <algorithm>
 #include <iterator>
 
+#include <fmt/format.h>
+
 namespace coupler::formats {
 namespace {
 
-constexpr Exporter table[] = {
+constexpr Exporter formats[] = {
     {"csv", "a table of points, for spreadsheets and for `coupler import csv`", write_csv},
     {"home-assistant", "the modbus integration's part of configuration.yaml", write_home_assistant},
     {"telegraf", "a section [[inputs.modbus]] of telegraf.conf", write_telegraf},
     {"wireshark", "a dissector (Lua) that names the points in captures", write_wireshark},
 };
 
+std::string list_of(const std::vector<std::string>& points) {
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(points.size(), most); ++i)
+    text += fmt::format("{}{}", i == 0 ? ": " : ", ", points[i]);
+  if (points.size() > most) text += fmt::format(" and {} more", points.size() - most);
+  return text;
+}
+
+bool is_of_the_node(const Point& point) {
+  return point.line.present() || is_analogue(point) || point.counter.present() || point.latched.present() ||
+         !point.initial.empty() || point.safe != Safe::off;
+}
+
+bool is_of_the_driver(const Point& point) {
+  const HostOptions& host = point.host;
+  return host.publish != HostOptions::Publish::always || host.latch || host.verify_write ||
+         host.deadman.present() || host.max_interval.count() > 0 ||
+         host.write_function != HostOptions::WriteFunction::automatic ||
+         host.write_queue != HostOptions::WriteQueue::latest;
+}
+
 }  // namespace
 
-Span<const Exporter> exporters() { return table; }
+void ConversionWarnings::add(std::string_view what, std::string_view remedy, std::string_view point) {
+  auto found = std::find_if(warnings_.begin(), warnings_.end(),
+                            [what](const ConversionWarning& warning) { return warning.what == what; });
+  if (found == warnings_.end()) found = warnings_.insert(found, {std::string(what), std::string(remedy), {}});
+  if (point.empty() || (!found->points.empty() && found->points.back() == point)) return;
+  found->points.emplace_back(point);
+}
+
+Diagnostics ConversionWarnings::diagnostics(std::string_view file) const {
+  Diagnostics out;
+  for (const ConversionWarning& warning : warnings_) {
+    Diagnostic diagnostic;
+    diagnostic.severity = Diagnostic::Severity::warning;
+    diagnostic.file = file;
+    diagnostic.what = warning.what + list_of(warning.points);
+    diagnostic.remedy = warning.remedy;
+    out.push_back(std::move(diagnostic));
+  }
+  return out;
+}
+
+Span<const Exporter> exporters() { return formats; }
 
 const Exporter* find_exporter(std::string_view name) {
-  const auto* found = std::find_if(std::begin(table), std::end(table),
+  const auto* found = std::find_if(std::begin(formats), std::end(formats),
                                    [name](const Exporter& exporter) { return exporter.name == name; });
-  return found == std::end(table) ? nullptr : found;
+  return found == std::end(formats) ? nullptr : found;
+}
+
+void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) {
+  for (const Point& point : map.points) {
+    if (is_of_the_node(point))
+      warnings.add("lines, channels, counters, initial and safe values belong to the node and are left out",
+                   "no action is needed: the node has the map", point.name);
+    if (is_of_the_driver(point))
+      warnings.add("the driver's options of points are left out",
+                   "look for similar options in the other program", point.name);
+  }
+}
+
+std::string double_quoted(std::string_view text, std::string_view control) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      out += {'\\', c};
+    else if (byte < 0x20 || byte == 0x7F)
+      out += fmt::format(fmt::runtime(control), byte);
+    else
+      out += c;
+  }
+  return out + '"';
 }
 
 }  // namespace coupler::formats

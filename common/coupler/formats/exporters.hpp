@@ -1,15 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a foreign format must bring to be exported to: one function, and its row in exporters.cpp.
+// Exports a map as another program's file. A format is one function and its row in exporters.cpp.
 #pragma once
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "coupler/base/span.hpp"
-#include "coupler/formats/conversion_warnings.hpp"
+#include "coupler/map/diagnostic.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::formats {
+
+/// What an export leaves out, and of which points.
+class ConversionWarnings {
+ public:
+  /// Warnings with the same `what` become one that lists their points.
+  void add(std::string_view what, std::string_view remedy, std::string_view point = {});
+
+  /// One warning each, about `file`: "units are comments only: speed, level".
+  Diagnostics diagnostics(std::string_view file) const;
+
+ private:
+  struct ConversionWarning {
+    std::string what;
+    std::string remedy;
+    std::vector<std::string> points;
+  };
+  std::vector<ConversionWarning> warnings_;
+};
 
 struct Export {
   std::string text;
@@ -24,8 +43,8 @@ struct Exporter {
 
 // A function for each format.
 
-/// The table that `coupler import csv` reads: all that the map says of its points, with addresses as on the
-/// wire and orders written out, so that the map made from it has the same fingerprint.
+/// The table that `coupler import csv` reads: all that the map says of its points, with zero-based addresses
+/// and explicit orders, so that the map made from it has the same fingerprint.
 Export write_csv(const Map& map);
 
 /// `modbus:` of Home Assistant's configuration.yaml: coils are switches, discrete inputs and bits binary
@@ -33,11 +52,11 @@ Export write_csv(const Map& map);
 Export write_home_assistant(const Map& map);
 
 /// A section [[inputs.modbus]] for Telegraf, in the plugin's "request" style: one request for each table and
-/// byte order, which Telegraf parts into as many reads as it needs.
+/// byte order, which Telegraf splits into as many reads as it needs.
 Export write_telegraf(const Map& map);
 
-/// A dissector in Lua for Wireshark and tshark: below what they say of Modbus/TCP it names the map's points
-/// and their values, in requests and, matched by connection and transaction id, in replies.
+/// A dissector in Lua for Wireshark and tshark: below their own lines for Modbus/TCP it names the map's
+/// points and values, in requests and, matched by connection and transaction id, in replies.
 Export write_wireshark(const Map& map);
 
 /// wireshark.lua: the part of the dissector that no map changes.
@@ -47,5 +66,15 @@ Span<const Exporter> exporters();
 
 /// The exporter of that name, or nullptr.
 const Exporter* find_exporter(std::string_view name);
+
+// What several of those functions need.
+
+/// Warns of what only a node or this project's driver uses: other programs that read a device have no word
+/// for it.
+void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings);
+
+/// The text in double quotes, with a backslash before quotes and backslashes. `control` is a format of fmt
+/// for the number of a control character, "\\u{:04X}".
+std::string double_quoted(std::string_view text, std::string_view control);
 
 }  // namespace coupler::formats

@@ -6,8 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/formats/entries.hpp"
-#include "coupler/formats/map_writer.hpp"
+#include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/letters.hpp"
 
 namespace coupler::formats {
@@ -108,9 +107,10 @@ class EntityWriter {
   Entities write() {
     for (const Point& point : map_.points) {
       if (point.count > 1)
-        warnings_.add("arrays are entities that end in 0, 1 …", "nothing is to be done", point.name);
+        warnings_.add("arrays become several entities, whose names end in 0, 1, ...", "no action is needed",
+                      point.name);
       for (std::uint16_t element = 0; element < point.count; ++element) add(point, element);
-      tell_losses(point);
+      add_warnings(point);
     }
     return std::move(entities_);
   }
@@ -130,8 +130,8 @@ class EntityWriter {
     if (point.table == Table::coils && is_writable(point))
       add_switch(point, element);
     else if (!is_readable(point))
-      warnings_.add("registers that are only written are left out",
-                    "write them with the action modbus.write_register", point.name);
+      warnings_.add("write-only registers are left out", "write them with the action modbus.write_register",
+                    point.name);
     else if (holds_bits(point.table))
       entities_.binary_sensors +=
           head(point, element, read_range(point)) +
@@ -154,7 +154,7 @@ class EntityWriter {
                                         point.table == Table::input_registers ? "input" : "holding");
     if (point.format.type == Type::BOOL) {
       if (codec::mask(point.format) != 1)
-        warnings_.add("of a register's bits only the lowest can be a binary sensor, the others are left out",
+        warnings_.add("only the lowest bit of a register can be a binary sensor, so other bits are left out",
                       "make template binary sensors of the whole register", point.name);
       else
         entities_.binary_sensors += head(point, element, read_range(point)) + input_type;
@@ -167,25 +167,25 @@ class EntityWriter {
     if (!point.units.empty()) out += fmt::format("{}unit_of_measurement: {}\n", indent, text(point.units));
   }
 
-  void tell_losses(const Point& point) {
+  void add_warnings(const Point& point) {
     if (is_readable(point) &&
         (point.host.rate > 0 ? point.host.rate : map_.polling.rate) > 1.0 / shortest_interval)
-      warnings_.add("entities are read every 5 s, faster makes Home Assistant unstable",
-                    "nothing is to be done", point.name);
+      warnings_.add("entities are read every 5 s, since shorter intervals make Home Assistant unstable",
+                    "no action is needed", point.name);
     if (!point.description.empty())
       warnings_.add("descriptions are left out", "rename the entities", point.name);
     if (holds_bits(point.table)) {
       if (!point.units.empty())
-        warnings_.add("switches and binary sensors have no units", "nothing is to be done", point.name);
+        warnings_.add("switches and binary sensors have no units", "no action is needed", point.name);
       return;
     }
     if (is_writable(point) && is_readable(point))
-      warnings_.add("holding registers are sensors, writing them is left out",
+      warnings_.add("holding registers become sensors, which cannot be written",
                     "use the action modbus.write_register", point.name);
     if (point.format.type == Type::REAL || point.format.type == Type::LREAL)
       warnings_.add("floats are rounded to 6 decimals", "change 'precision' if that is too few", point.name);
     if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
-      warnings_.add("texts are taken for UTF-8", "nothing can be done but to keep to ASCII", point.name);
+      warnings_.add("texts are read as UTF-8", "keep to ASCII in these points", point.name);
   }
 
   const Map& map_;
@@ -213,10 +213,10 @@ std::string hub_of(const Map& map) {
 Export write_home_assistant(const Map& map) {
   Export out;
   if (map.connection.address.empty())
-    out.warnings.add("the map does not say where the device is: localhost is written",
-                     "write its address behind 'host:'");
+    out.warnings.add("the map does not have the device's address, so localhost is written",
+                     "write the address after 'host:'");
   const Entities entities = EntityWriter(map, out.warnings).write();
-  add_sides(map, out.warnings);
+  warn_of_node_and_driver_keys(map, out.warnings);
   out.text = "# Made by `coupler export --to home-assistant`.\n" + hub_of(map);
   if (!entities.binary_sensors.empty()) out.text += "    binary_sensors:\n" + entities.binary_sensors;
   if (!entities.switches.empty()) out.text += "    switches:\n" + entities.switches;

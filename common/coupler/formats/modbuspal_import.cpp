@@ -8,8 +8,7 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
-#include "coupler/formats/entries.hpp"
-#include "coupler/formats/modbuspal_values.hpp"
+#include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::formats {
@@ -20,7 +19,7 @@ using loader::Position;
 using loader::Problems;
 using loader::shown;
 
-/// Where nodes stand, quickly, however many there are.
+/// Line and column of an offset, by binary search: there may be many.
 class Lines {
  public:
   explicit Lines(std::string_view text) {
@@ -38,6 +37,88 @@ class Lines {
   std::vector<std::size_t> starts_{0};
 };
 
+/// One register or coil of a ModbusPal project.
+struct Value {
+  Position at;
+  unsigned address = 0;
+  std::string name;  ///< may be empty
+  std::string value;
+  std::string binding;  ///< the class that feeds it, "Binding_SINT32"; empty: none
+  unsigned rank = 0;    ///< which register of the fed value it is: 0 the least significant
+};
+
+/// The type of a value that the binding's class feeds, and how many registers it has. ModbusPal's classes:
+/// Binding_SINT16, Binding_SINT32, Binding_FLOAT32.
+struct Fed {
+  std::string_view type = "UINT";
+  unsigned registers = 1;
+};
+Fed fed_by(std::string_view binding) {
+  if (binding == "Binding_SINT16") return {"INT", 1};
+  if (binding == "Binding_SINT32") return {"DINT", 2};
+  if (binding == "Binding_FLOAT32") return {"REAL", 2};
+  return {};
+}
+
+/// The two are the registers of one value, in one order or the other.
+bool belong_together(const Value& a, const Value& b) {
+  return a.binding == b.binding && a.address + 1 == b.address && a.rank + b.rank == 1;
+}
+
+Entry point_at(const Value& value, Table table) {
+  const auto name = value.name.empty()
+                        ? fmt::format("{}_{}", table == Table::coils ? "coil" : "hr", value.address)
+                        : value.name;
+  Entry point = section(name, value.at);
+  point.children.push_back(scalar("address", fmt::to_string(value.address), value.at));
+  return point;
+}
+
+/// What stands in the file is written unless it is the default; ModbusPal takes -32768 to 65535.
+void add_initial(const Value& value, Table table, std::string_view type, Entry& point, Problems& problems) {
+  const auto number = loader::parse_integer(value.value);
+  const bool fits = number && *number >= -32768 && *number <= 65535;
+  if (!fits)
+    problems.error(value.at, fmt::format("the value {} is not a register value", shown(value.value)),
+                   "write a number from -32768 to 65535");
+  else if (*number != 0 && table == Table::coils)
+    point.children.push_back(scalar("initial", "on", value.at));
+  else if (*number != 0 && type == "UINT")
+    point.children.push_back(scalar("initial", fmt::to_string(*number & 0xFFFF), value.at));
+}
+
+/// The points of one table, in the order of their addresses. Neighbours that are the two registers of one fed
+/// value become one point.
+Entry points_of(std::vector<Value> values, Table table, Problems& problems) {
+  std::stable_sort(values.begin(), values.end(),
+                   [](const Value& a, const Value& b) { return a.address < b.address; });
+  Entry points = section(to_string(table), values.empty() ? Position{} : values.front().at);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Value& value = values[i];
+    Entry point = point_at(value, table);
+    if (table == Table::coils) {
+      add_initial(value, table, "BOOL", point, problems);
+    } else {
+      Fed fed = fed_by(value.binding);
+      const bool pair = fed.registers == 2 && i + 1 < values.size() && belong_together(value, values[i + 1]);
+      if (fed.registers == 2 && !pair) {
+        problems.warning(
+            value.at,
+            fmt::format("the other register of a {} is not next to this one, so this one is a UINT",
+                        fed.type),
+            "check what the two registers hold");
+        fed = {};
+      }
+      point.children.push_back(scalar("type", std::string(fed.type), value.at));
+      if (pair) point.children.push_back(scalar("order", value.rank == 0 ? "CDAB" : "ABCD", value.at));
+      add_initial(value, table, fed.type, point, problems);
+      if (pair) ++i;
+    }
+    points.children.push_back(std::move(point));
+  }
+  return points;
+}
+
 class ProjectReader {
  public:
   ProjectReader(const Lines& lines, Problems& problems) : lines_(lines), problems_(problems) {}
@@ -52,7 +133,8 @@ class ProjectReader {
         left_out(node, fmt::format("'{}' of the simulation", node.name()));
     }
     if (units.empty())
-      problems_.error(at(project), "there are no slaves in the project", "give a project that has some");
+      problems_.error(at(project), "there is no slave in the project",
+                      "give a project with at least one slave");
     return units;
   }
 
@@ -60,9 +142,8 @@ class ProjectReader {
   Position at(const pugi::xml_node& node) const { return lines_.at(node.offset_debug()); }
 
   void left_out(const pugi::xml_node& node, const std::string& what) {
-    problems_.warning(at(node),
-                      what + " is not carried over: a map describes what there is, not how it moves",
-                      "nothing is to be done");
+    problems_.warning(at(node), what + " is not carried over: a map does not simulate values",
+                      "no action is needed");
   }
 
   /// "5", or "192.168.0.7(5)".
@@ -90,8 +171,8 @@ class ProjectReader {
     if (const auto port = project.child("links").child("tcpip").attribute("port"))
       unit.map.children.push_back(scalar("port", port.value(), at(project.child("links").child("tcpip"))));
     if (slave.attribute("enabled").value() == std::string_view("false"))
-      problems_.warning(at(slave), "that the slave is switched off is not carried over",
-                        "leave its map out if it is not there");
+      problems_.warning(at(slave), "the slave is switched off in the project, which a map cannot express",
+                        "delete its map if the device does not exist");
     if (const std::string_view name = slave.attribute("name").value(); !name.empty())
       problems_.warning(at(slave), fmt::format("the slave's name {} is not carried over", shown(name)),
                         "give the map a name with --name");
@@ -113,7 +194,7 @@ class ProjectReader {
   }
 
   void read_table(const pugi::xml_node& part, const char* element, Table table, Entry& mapping) {
-    std::vector<ModbusPalValue> values;
+    std::vector<Value> values;
     std::set<unsigned> seen;
     for (const pugi::xml_node& node : part.children(element)) {
       const auto address = loader::parse_unsigned(node.attribute("address").value());
@@ -123,18 +204,18 @@ class ProjectReader {
                         "write a number from 0 to 65535");
       } else if (!seen.insert(static_cast<unsigned>(*address)).second) {
         problems_.warning(at(node),
-                          fmt::format("{} {} is there twice, this one is left out", element, *address),
+                          fmt::format("{} {} is there twice, so this one is left out", element, *address),
                           "keep one of the two");
       } else {
         values.push_back(read_value(node, static_cast<unsigned>(*address)));
       }
     }
-    Entry points = modbuspal_points(std::move(values), table, problems_);
+    Entry points = points_of(std::move(values), table, problems_);
     if (!points.children.empty()) mapping.children.push_back(std::move(points));
   }
 
-  ModbusPalValue read_value(const pugi::xml_node& node, unsigned address) {
-    ModbusPalValue value;
+  Value read_value(const pugi::xml_node& node, unsigned address) {
+    Value value;
     value.at = at(node);
     value.address = address;
     value.name = node.attribute("name").value();
@@ -151,13 +232,13 @@ class ProjectReader {
   Problems& problems_;
 };
 
-/// Of a declaration only its name is taken; what it declares is never read.
+/// Refuses a DOCTYPE that declares entities. None is ever read.
 bool check_declaration(const pugi::xml_document& document, const Lines& lines, Problems& problems) {
   for (const pugi::xml_node& node : document) {
     if (node.type() != pugi::node_doctype || std::strchr(node.value(), '[') == nullptr) continue;
     problems.error(lines.at(node.offset_debug()),
                    "the file declares entities of its own, which ModbusPal never writes",
-                   "remove what stands between '[' and ']' behind DOCTYPE");
+                   "remove what stands between '[' and ']' after DOCTYPE");
     return false;
   }
   return true;

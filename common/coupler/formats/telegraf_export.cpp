@@ -15,19 +15,7 @@ namespace {
 using codec::Type;
 
 /// A basic string of TOML, quotes included.
-std::string literal(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      out += fmt::format("\\{}", c);
-    else if (byte < 0x20 || byte == 0x7F)
-      out += fmt::format("\\u{:04X}", byte);
-    else
-      out += c;
-  }
-  return out + '"';
-}
+std::string literal(std::string_view text) { return double_quoted(text, "\\u{:04X}"); }
 
 /// A float of TOML, even if it is whole.
 std::string number(double value) {
@@ -45,8 +33,7 @@ std::string_view register_of(Table table) {
   return {};
 }
 
-/// Of values of one register Telegraf takes only ABCD and DCBA where they are bytes, so they are called that
-/// whatever they are.
+/// For values of one register Telegraf has only ABCD and DCBA, whatever their type.
 std::string_view byte_order_of(const Point& point) {
   if (holds_bits(point.table)) return "ABCD";
   if (codec::width(point.format.type) <= 16)
@@ -103,32 +90,32 @@ std::string comment_of(const Point& point) {
   return text.empty() ? text : "  # " + text;
 }
 
-/// Telegraf counts the address behind a field, too.
+/// Telegraf refuses a field if the address after it is past 65535.
 bool is_at_the_end(const Point& point) { return read_range(point).end() > 0xFFFF; }
 
-void tell_losses(const Point& point, ConversionWarnings& warnings) {
+void add_warnings(const Point& point, ConversionWarnings& warnings) {
   if (point.scale.offset != 0)
     warnings.add("the offset of a scale is left out", "add it with [[processors.scale]]", point.name);
   if (!point.units.empty() || !point.description.empty())
-    warnings.add("units and descriptions are comments", "nothing is to be done", point.name);
+    warnings.add("units and descriptions are comments", "no action is needed", point.name);
   if (point.host.rate > 0)
-    warnings.add("points are read as often as the map says, not at rates of their own",
+    warnings.add("all points are read at the map's rate, not at rates of their own",
                  "put them into a second [[inputs.modbus]] with its own interval", point.name);
   if (is_writable(point))
-    warnings.add("Telegraf only reads, writing is left out", "nothing is to be done", point.name);
+    warnings.add("Telegraf only reads, so writing is left out", "no action is needed", point.name);
   if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
-    warnings.add("texts are taken for UTF-8", "convert the field where it is shown", point.name);
+    warnings.add("texts are read as UTF-8", "convert the field where it is shown", point.name);
   if (point.count > 1)
-    warnings.add("arrays are fields that end in _0, _1 …", "nothing is to be done", point.name);
+    warnings.add("arrays become several fields, whose names end in _0, _1, ...", "no action is needed",
+                 point.name);
 }
 
-/// Whether the point can be a field; if not, it is told.
+/// Whether the point can be a field; warns if it cannot.
 bool is_field(const Point& point, ConversionWarnings& warnings) {
   if (!is_readable(point))
-    warnings.add("points that are only written are left out", "nothing is to be done: Telegraf only reads",
-                 point.name);
+    warnings.add("write-only points are left out", "no action is needed: Telegraf only reads", point.name);
   else if (is_at_the_end(point))
-    warnings.add("Telegraf refuses fields that end at address 65535, they are left out", "move the point",
+    warnings.add("Telegraf refuses fields that end at address 65535, so they are left out", "move the point",
                  point.name);
   else
     return true;
@@ -173,26 +160,26 @@ std::string connection_of(const Map& map) {
   return text;
 }
 
-void tell_losses(const Map& map, ConversionWarnings& warnings) {
+void add_warnings(const Map& map, ConversionWarnings& warnings) {
   if (map.connection.address.empty())
-    warnings.add("the map does not say where the device is: localhost is written",
-                 "write its address behind tcp://");
+    warnings.add("the map does not have the device's address, so localhost is written",
+                 "write the address after tcp://");
   const Limits usual;
   if (map.limits.read_registers < usual.read_registers || map.limits.read_bits < usual.read_bits)
-    warnings.add("Telegraf has no limit to what one read asks for but Modbus' own",
-                 "see its workaround one_request_per_field if the device refuses");
-  add_sides(map, warnings);
+    warnings.add("Telegraf limits the size of a read as Modbus does, not as the map does",
+                 "use Telegraf's workaround one_request_per_field if the device refuses reads");
+  warn_of_node_and_driver_keys(map, warnings);
 }
 
 }  // namespace
 
 Export write_telegraf(const Map& map) {
   Export out;
-  tell_losses(map, out.warnings);
+  add_warnings(map, out.warnings);
   Requests requests;
   for (const Point& point : map.points) {
     if (!is_field(point, out.warnings)) continue;
-    tell_losses(point, out.warnings);
+    add_warnings(point, out.warnings);
     std::string& fields = requests[{point.table, byte_order_of(point)}];
     for (std::uint16_t element = 0; element < point.count; ++element)
       fields +=

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/formats/entries.hpp"
+#include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/letters.hpp"
 #include "coupler/map/loader/scalar.hpp"
@@ -47,7 +47,8 @@ class RegisterReader {
   void read(const Entry& given) {
     const Kind* kind = kind_of(given.key);
     if (kind == nullptr) {
-      problems_.warning(given.key_at, fmt::format("{} is not a register, it is left out", shown(given.key)),
+      problems_.warning(given.key_at,
+                        fmt::format("{} is not a register, so it is left out", shown(given.key)),
                         "write HR, IR, C or DI and the address");
       return;
     }
@@ -55,7 +56,7 @@ class RegisterReader {
     const std::string name = loader::lower(kind->letters) + "_" + number;
     if (!seen_.insert(name).second) {
       problems_.warning(given.key_at,
-                        fmt::format("{} is given twice, this one is left out", shown(given.key)),
+                        fmt::format("{} is given twice, so this one is left out", shown(given.key)),
                         "keep one of the two");
       return;
     }
@@ -76,7 +77,7 @@ class RegisterReader {
   void read_value(const Entry& given, Table table, Entry& point) {
     if (given.kind == Entry::Kind::map) {
       problems_.warning(
-          given.at, fmt::format("what {} answers with an exception is not carried over", shown(given.key)),
+          given.at, fmt::format("the exception that {} answers with is not carried over", shown(given.key)),
           "list addresses that a device refuses under 'unreadable'");
       return;
     }
@@ -119,21 +120,21 @@ std::optional<ForeignUnit> read_slave(const Entry& slave, Problems& problems) {
       for (const Entry& given : entry.children) reader.read(given);
     else if (entry.key != "isOnline" || !loader::parse_boolean(entry.text).value_or(false))
       problems.warning(entry.key_at,
-                       fmt::format("{} is not carried over: a map has no such thing", shown(entry.key)),
-                       "nothing is to be done if the device itself does it");
+                       fmt::format("{} is not carried over: a map has no key for it", shown(entry.key)),
+                       "no action is needed if the device itself does it");
   }
   unit.map.children.push_back(std::move(mapping));
   return unit;
 }
 
-/// The connection; what belongs to the simulator and has no place in a map is told.
+/// The connection. Warns of keys that belong to the simulator.
 std::vector<Entry> read_device(const Entry& root, Problems& problems) {
   std::vector<Entry> keys;
   const Entry* mode = find(root, "mode");
   const bool tcp = mode != nullptr && loader::lower(mode->text) == "tcp";
   if (!tcp)
     problems.warning(mode != nullptr ? mode->at : root.at,
-                     "the device is on a serial line, a map is for Modbus/TCP",
+                     "the device is on a serial line, but a map is for Modbus/TCP",
                      "give the address of a gateway to it in the map");
   for (const Entry& entry : root.children) {
     if (entry.key == "tcpPort")
@@ -141,8 +142,8 @@ std::vector<Entry> read_device(const Entry& root, Problems& problems) {
     else if (entry.key != "slaves" && entry.key != "mode" && entry.key != "version" &&
              (entry.key != "port" || tcp))
       problems.warning(entry.key_at,
-                       fmt::format("{} is not carried over: it is the simulator's", shown(entry.key)),
-                       "nothing is to be done");
+                       fmt::format("{} is not carried over: it belongs to the simulator", shown(entry.key)),
+                       "no action is needed");
   }
   return keys;
 }
@@ -166,10 +167,10 @@ std::vector<ForeignUnit> read_unslave(std::string_view text, Problems& problems)
     unit->map.children.insert(unit->map.children.begin(), device.begin(), device.end());
     units.push_back(std::move(*unit));
   }
-  problems.warning(
-      slaves->key_at,
-      "Unslave knows no types and no names: registers are UINT, points are called after their place",
-      "join registers of wide values and rename points in the map");
+  problems.warning(slaves->key_at,
+                   "Unslave has no types and no names: registers become UINT, and points are named after "
+                   "their table and address",
+                   "join registers of wide values and rename points in the map");
   return units;
 }
 

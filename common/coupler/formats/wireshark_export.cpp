@@ -7,22 +7,11 @@
 #include "coupler/map/loader/letters.hpp"
 
 namespace coupler::formats {
+
 namespace {
 
 /// A string of Lua, quotes included, that stands for exactly these bytes.
-std::string literal(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      out += fmt::format("\\{}", c);
-    else if (byte < 0x20 || byte == 0x7F)
-      out += fmt::format("\\{:03}", byte);
-    else
-      out += c;
-  }
-  return out + '"';
-}
+std::string literal(std::string_view text) { return double_quoted(text, "\\{:03}"); }
 
 /// Names of protocols and of their fields: lower case, digits, '_'.
 std::string protocol_of(std::string_view name) {
@@ -78,7 +67,7 @@ Export write_wireshark(const Map& map) {
   for (const Point& point : map.points) out.text += row_of(point);
   out.text += "  },\n}\n\n";
   out.text += wireshark_body();
-  add_sides(map, out.warnings);
+  warn_of_node_and_driver_keys(map, out.warnings);
   return out;
 }
 

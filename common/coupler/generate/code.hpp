@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of the map as C++ writes them.
+// The map in the words of C++: literals, comments, names and values.
 #pragma once
 
 #include <chrono>
@@ -11,10 +11,23 @@
 
 #include "coupler/base/enumeration.hpp"
 #include "coupler/codec/decimal.hpp"
-#include "coupler/generate/literal.hpp"
 #include "coupler/map/fields.hpp"
 
 namespace coupler::generate {
+
+/// A C++ string literal, quotes included, that stands for exactly these bytes, whatever they are.
+std::string literal(std::string_view text);
+
+/// The same as adjacent literals, one per line of the text, each on its own line after `indent`; no newline
+/// at the end.
+std::string literal_lines(std::string_view text, std::string_view indent);
+
+/// One line for a `//` comment: control characters become blanks, characters that turn the writing direction
+/// (the compiler warns of them) go.
+std::string comment(std::string_view text);
+
+/// It can name a namespace in generated code: letters, digits and underscores, a letter first, no keyword.
+bool is_identifier(std::string_view name);
 
 /// "Table::coils"
 template <class E>
@@ -36,9 +49,9 @@ std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>, std::string> code
     return fmt::to_string(value);
 }
 
-/// "true, 3000ms, Poll::all": the members of fields_of(), in their order.
+/// "true, 3000ms, Poll::all": the values of its fields, in the order of fields_of().
 template <class Struct>
-std::string members(const Struct& object) {
+std::string values_of(const Struct& object) {
   std::string out;
   for_each_field(object, [&](const auto&, const auto& value) {
     if (!out.empty()) out += ", ";
@@ -50,10 +63,10 @@ std::string members(const Struct& object) {
 /// "{true, 3000ms}", or "{}" if all have their defaults.
 template <class Struct>
 std::string aggregate(const Struct& object) {
-  return has_defaults(object) ? "{}" : '{' + members(object) + '}';
+  return has_defaults(object) ? "{}" : '{' + values_of(object) + '}';
 }
 
-/// "publish, deadband": their keys.
+/// "publish, deadband": the keys of its fields, in the same order.
 template <class Struct>
 std::string keys_of() {
   std::string out;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/generate/hooks.hpp"
+#include "coupler/generate/generate.hpp"
 
 #include <fmt/format.h>
 
-#include "coupler/generate/literal.hpp"
+#include "coupler/generate/code.hpp"
 #include "coupler/generate/member.hpp"
 
 namespace coupler::generate {

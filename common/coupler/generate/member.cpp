@@ -9,16 +9,14 @@
 
 #include "coupler/codec/number.hpp"
 #include "coupler/codec/text.hpp"
-#include "coupler/generate/identifier.hpp"
-#include "coupler/generate/literal.hpp"
-#include "coupler/generate/rows.hpp"
+#include "coupler/generate/code.hpp"
 
 namespace coupler::generate {
 namespace {
 
 using codec::Type;
 
-// What a client has beside its points, and macros of the C library's headers.
+// Other members of a client, and macros of the C library's headers.
 constexpr std::string_view taken[] = {
     "Client",     "EOF",    "NULL",  "Session", "assert", "connect", "disconnect",
     "each_point", "errno",  "linux", "major",   "map",    "minor",   "online",
@@ -90,6 +88,14 @@ std::vector<std::string> members(const Map& map) {
 std::string cpp_type(const Point& point) {
   const std::string one(point.scale.present() ? "double" : cpp_number(point.format.type));
   return point.count == 1 ? one : fmt::format("::std::array<{}, {}>", one, point.count);
+}
+
+std::string place(const Point& point) {
+  std::string out = fmt::format("{} {}", to_string(point.table), point.address);
+  if (range(point).count() > 1) out += fmt::format("-{}", range(point).last());
+  if (!is_partial(point)) return out;
+  if (point.format.type == Type::BOOL) return out + fmt::format(", bit {}", point.format.bit);
+  return out + (point.format.half == codec::Half::high ? ", high byte" : ", low byte");
 }
 
 std::string documentation(const Point& point) {

@@ -16,6 +16,9 @@ std::vector<std::string> members(const Map& map);
 /// The C++ type of its value: "bool", "::std::array<float, 4>" …
 std::string cpp_type(const Point& point);
 
+/// Where it is: "holding_registers 3-4", "coils 0", "holding_registers 7, bit 3".
+std::string place(const Point& point);
+
 /// What it is, in what units and range, and where, for a documentation comment: one line.
 std::string documentation(const Point& point);
 

@@ -2,7 +2,6 @@
 #include "coupler/schema/schema.hpp"
 
 #include "coupler/base/version.hpp"
-#include "coupler/schema/pattern.hpp"
 #include "coupler/schema/value_schema.hpp"
 
 namespace coupler::schema {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/loader/letters.hpp"
 #include "coupler/map/loader/presets.hpp"
-#include "coupler/schema/pattern.hpp"
 
 namespace coupler::schema {
 namespace {
@@ -113,6 +113,22 @@ Json fallback_value(const Key& key) {
     case ValueKind::boolean: return Json::parse(key.fallback);
     default: return key.fallback;
   }
+}
+
+std::string any_case(const std::vector<std::string_view>& words) {
+  std::string pattern;
+  for (const std::string_view word : words) {
+    pattern += pattern.empty() ? "^(" : "|";
+    for (const char c : word) {
+      if (c == '-')
+        pattern += "[-_]?";
+      else if (loader::is_letter(c))
+        pattern += {'[', c, static_cast<char>(c ^ ' '), ']'};  // both cases
+      else
+        pattern += c;
+    }
+  }
+  return pattern + ")$";
 }
 
 }  // namespace coupler::schema

@@ -3,11 +3,154 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
 
-#include "coupler/test_vectors/elements.hpp"
+#include "coupler/codec/number.hpp"
+#include "coupler/codec/text.hpp"
 
 namespace coupler::test_vectors {
 namespace {
+
+using codec::Encoding;
+
+/// One value of a point as codec::registers(point.format) registers.
+using Element = std::vector<std::uint16_t>;
+
+/// All bytes differ, and no byte stays where it is when the bytes are reversed.
+template <class T>
+constexpr auto pattern() {
+  using U = typename codec::detail::Unsigned<sizeof(T)>::type;
+  if constexpr (sizeof(T) == 1)
+    return U{0x5A};
+  else
+    return static_cast<U>(0x0123456789ABCDEFU >> (64 - 8 * sizeof(T)));
+}
+
+/// Zero, one, negative values, the ends of the type, and patterns that show where each byte stands.
+template <class T>
+std::vector<T> samples() {
+  using Ends = std::numeric_limits<T>;
+  const auto shown = codec::detail::bit_cast<T>(pattern<T>());
+  const auto inverse = codec::detail::bit_cast<T>(static_cast<decltype(pattern<T>())>(~pattern<T>()));
+  if constexpr (std::is_floating_point_v<T>)
+    return {T{0},
+            T{1},
+            T{-1.5},
+            shown,
+            inverse,
+            Ends::lowest(),
+            Ends::max(),
+            Ends::min(),
+            Ends::denorm_min(),
+            -Ends::denorm_min(),
+            -T{0},
+            Ends::infinity(),
+            -Ends::infinity(),
+            Ends::quiet_NaN()};
+  else if constexpr (std::is_signed_v<T>)
+    return {T{0}, T{1}, T{-1}, shown, inverse, Ends::min(), Ends::max()};
+  else
+    return {T{0}, T{1}, shown, inverse, Ends::max()};
+}
+
+/// Values next to the ends of the type that it cannot hold.
+template <class T>
+std::vector<codec::Value> outside() {
+  using Ends = std::numeric_limits<T>;
+  if constexpr (std::is_same_v<T, double>)
+    return {};
+  else if constexpr (std::is_same_v<T, float>)
+    return {1e39, -1e39};
+  else if constexpr (std::is_same_v<T, std::uint64_t>)
+    return {std::int64_t{-1}};
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return {static_cast<std::uint64_t>(Ends::max()) + 1};
+  else
+    return {std::int64_t{Ends::min()} - 1, std::int64_t{Ends::max()} + 1};
+}
+
+std::vector<Element> number_elements(const codec::Format& format) {
+  if (format.type == codec::Type::BOOL) return {{0}, {codec::mask(format)}};
+  return codec::with_number(format.type, [&](auto zero) {
+    std::vector<Element> elements;
+    for (const auto value : samples<decltype(zero)>()) {
+      elements.emplace_back(codec::registers(format));
+      codec::put(value, format, elements.back().data());
+    }
+    return elements;
+  });
+}
+
+std::vector<codec::Value> refused_numbers(codec::Type type) {
+  if (type == codec::Type::BOOL) return {};
+  return codec::with_number(type, [](auto zero) { return outside<decltype(zero)>(); });
+}
+
+/// Numbers beyond the ends of a scale.
+std::vector<codec::Value> refused_scaled(codec::Type type, const codec::Scale& scale) {
+  using Double = std::numeric_limits<double>;
+  std::vector<codec::Value> values{Double::quiet_NaN(), Double::infinity(), -Double::infinity()};
+  const auto [least, most] = codec::published_range(type, scale);
+  const double width = most - least;
+  if (most + width <= Double::max() && least - width >= Double::lowest()) {
+    values.emplace_back(most + width);
+    values.emplace_back(least - width);
+  }
+  return values;
+}
+
+std::string alphabet(std::size_t length) {
+  std::string text;
+  for (std::size_t i = 0; i < length; ++i) text += static_cast<char>('A' + i % 26);
+  return text;
+}
+
+std::string repeated(std::string_view character, std::size_t count) {
+  std::string text;
+  while (count-- > 0) text += character;
+  return text;
+}
+
+/// Some do not fit.
+std::vector<std::string> texts(const codec::Format& format) {
+  const std::size_t length = format.length;
+  std::vector<std::string> some{"", "A", "Ab1", alphabet(length - 1), alphabet(length)};
+  switch (format.encoding) {
+    case Encoding::utf8:
+      some.insert(some.end(), {"é", "Größe 7 µm", "€ 𝄞", repeated("ü", length / 2) + alphabet(length % 2)});
+      break;
+    case Encoding::latin1: some.insert(some.end(), {"é", "Größe 7 µm", repeated("ÿ", length)}); break;
+    case Encoding::ascii: some.push_back(repeated("~", length)); break;
+  }
+  return some;
+}
+
+std::vector<Element> text_elements(const codec::Format& format) {
+  std::vector<Element> elements;
+  const auto add = [&](std::string_view text, const codec::Format& as) {
+    Element element(codec::registers(format));
+    if (codec::encode_text(text, as, element.data()) == codec::TextError::none) elements.push_back(element);
+  };
+  for (const std::string& text : texts(format)) add(text, format);
+  codec::Format bytes = format;  // Latin-1 has all of them, each as itself
+  bytes.encoding = Encoding::latin1;
+  add(std::string_view("a\0z", 3), bytes);
+  if (format.encoding == Encoding::ascii) add("é", bytes);
+  return elements;
+}
+
+/// Texts that are too long, or have a character that the encoding does not have.
+std::vector<codec::Value> refused_texts(const codec::Format& format) {
+  std::vector<codec::Value> refused{alphabet(format.length + 1U)};
+  switch (format.encoding) {
+    case Encoding::utf8: refused.emplace_back(alphabet(format.length - 1U) + "é"); break;
+    case Encoding::latin1: refused.emplace_back("€"); break;
+    case Encoding::ascii: refused.emplace_back("é"); break;
+  }
+  return refused;
+}
 
 std::vector<Element> elements_of(const Point& point) {
   if (holds_bits(point.table)) return {{0}, {1}};
@@ -15,7 +158,7 @@ std::vector<Element> elements_of(const Point& point) {
                                                   : number_elements(point.format);
 }
 
-/// No driver and no client writes others.
+/// Neither the driver nor a generated client writes other numbers.
 bool is_finite(const codec::Value& value) {
   if (const auto* single = std::get_if<float>(&value)) return std::isfinite(*single);
   if (const auto* real = std::get_if<double>(&value)) return std::isfinite(*real);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of a point and how they stand on the wire: what every side of a coupler must agree on.
+// Values of a point and their registers or bits: what both sides of a coupler must agree on.
 #pragma once
 
 #include <cstdint>
@@ -23,20 +23,20 @@ struct Case {
 
 struct Cases {
   std::vector<Case> cases;
-  /// Of one element each: values that are none of the point.
+  /// One element each: values that the point cannot hold, so that writing one is refused.
   std::vector<codec::Value> refused;
 };
 
-/// The same on every machine: zero, one, the ends of the type, negative ones, patterns that show where each
-/// byte stands; of floats also subnormal ones, infinities, NaN; of texts empty, full and foreign ones.
-/// Arrays hold other values in each element.
+/// The same on every machine: zero, one, the ends of the type, negative values, patterns that show where each
+/// byte stands; for floats also subnormal values, infinities and NaN; for texts the empty one, full ones and
+/// characters beyond ASCII. The elements of an array differ.
 Cases cases_of(const Point& point);
 
 /// One element at `registers`; a double if the point has a scale.
 codec::Value decode(const Point& point, const std::uint16_t* registers);
 
-/// Writes one element, and leaves other bits of a shared register alone. False: it is none of the point, and
-/// nothing was written.
+/// Writes one element, and leaves other bits of a shared register alone. False: the point cannot hold the
+/// value, and nothing was written.
 bool encode(const codec::Value& value, const Point& point, std::uint16_t* registers);
 
 }  // namespace coupler::test_vectors

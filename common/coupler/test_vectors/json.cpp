@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/test_vectors/json.hpp"
 
+#include <cmath>
+#include <type_traits>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "coupler/codec/decimal.hpp"
 #include "coupler/codec/text.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/test_vectors/cases.hpp"
@@ -18,7 +22,7 @@ std::string field(std::string_view key, std::string_view value) {
   return fmt::format(", \"{}\": {}", key, value);
 }
 
-/// What a value is and where it stands: all that a reader of registers needs.
+/// Name, table, address, size and access.
 std::string place(const Point& point) {
   std::string text = fmt::format("\"name\": {}, \"table\": \"{}\", \"address\": {}, \"{}\": {}",
                                  json_text(point.name), to_string(point.table), point.address,
@@ -60,7 +64,7 @@ std::string line(const Point& point, const Case& one) {
   const auto raw = list(one.raw, [&](std::uint16_t word) {
     return fmt::format(holds_bits(point.table) ? "{}" : "\"{:04X}\"", word);
   });
-  // What has a scale is a float, whatever its registers hold.
+  // A scaled value is a floating-point number, whatever its type.
   const auto write = [&](const codec::Value& value) { return json(value, point.format.type); };
   const std::string value = point.count > 1 ? list(one.values, write) : write(one.values[0]);
   return fmt::format("      {{\"raw\": {}, \"value\": {}{}}}", raw, value,
@@ -78,6 +82,13 @@ std::string object(const Point& point) {
   return text + "}";
 }
 
+template <class T>
+std::string number(T value) {
+  if (std::isnan(value)) return "\"nan\"";
+  if (std::isinf(value)) return value < 0 ? "\"-inf\"" : "\"inf\"";
+  return codec::decimal(value);
+}
+
 }  // namespace
 
 std::string json(const Map& map, std::string_view source, std::string_view version) {
@@ -89,6 +100,20 @@ std::string json(const Map& map, std::string_view source, std::string_view versi
       "  \"points\": [{}{}]\n}}\n",
       json_text(fmt::format("coupler {}", version)), json_text(source), json_text(map.name),
       fingerprint_text(map.fingerprint), points.empty() ? "" : "\n", points);
+}
+
+std::string json(const codec::Value& value, codec::Type type) {
+  return std::visit(
+      [&](const auto& v) -> std::string {
+        using T = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<T, std::string>)
+          return nlohmann::json(v).dump();
+        else if constexpr (std::is_floating_point_v<T>)
+          return number(v);
+        else
+          return fmt::format(codec::width(type) == 64 ? "\"{}\"" : "{}", v);
+      },
+      value);
 }
 
 }  // namespace coupler::test_vectors

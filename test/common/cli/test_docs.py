@@ -61,7 +61,7 @@ class Docs(Cli):
     def test_refuses_what_is_no_url(self):
         done = self.docs("--source-url", "a b")
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("'a b' is not part of a URL; ", done.stderr)
+        self.assertIn("'a b' cannot be part of a URL; ", done.stderr)
 
     def test_of_standard_input_has_no_links_to_it(self):
         done = self.coupler("generate", "-", "--docs", stdin=GOOD)

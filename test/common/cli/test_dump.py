@@ -39,7 +39,7 @@ class Dump(unittest.TestCase):
         self.refused(2, "--at: the unit id '256'", "cell.yaml", "--at", "tcp://cell/256")
 
     def test_a_pattern_has_to_match_a_point(self):
-        self.refused(2, "no point is called 'lmap'; `coupler export cell.yaml --to csv` lists their names",
+        self.refused(2, "no point matches 'lmap'; `coupler export cell.yaml --to csv` lists their names",
                      "cell.yaml", "--at", "localhost", "--points", "la*,lmap")
 
     def test_a_period_is_a_number_of_seconds(self):

@@ -32,7 +32,7 @@ class Import(Formats):
         self.assertEqual(done.returncode, 0)
         self.assertEqual(done.stdout, "# Imported from <stdin> by `coupler import csv`.\nname: press\nmapping:\n"
                                       "  coils:\n    lamp_one: 0\n")
-        self.assertIn("<stdin>:2:7: warning: 'lamp one' cannot name a point", done.stderr)
+        self.assertIn("<stdin>:2:7: warning: 'lamp one' is not a valid name of a point", done.stderr)
 
     def test_writes_a_file_that_check_takes(self):
         done = self.coupler("import", "csv", self.file("a.csv", ONE), "--out", "a.yaml")

@@ -70,7 +70,7 @@ class Plan(Cli):
     def test_lists_what_is_not_read(self):
         text = SPREAD.replace("INT}", "INT, access: write}")
         self.assertEqual(self.json(text=text)["not_read"], [{"point": "speed", "reason": "write_only"}])
-        self.assertIn("Not read, can only be written: speed\n", self.plan(text=text).stdout)
+        self.assertIn("Not read, write-only: speed\n", self.plan(text=text).stdout)
 
     def test_does_not_cross_what_is_unreadable(self):
         text = SPREAD.replace("mapping:", "registers_read_continuous: true\n"

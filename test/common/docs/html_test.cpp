@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/docs/html.hpp"
+#include "coupler/docs/document.hpp"
 
 #include <gmock/gmock.h>
 

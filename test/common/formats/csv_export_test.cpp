@@ -83,9 +83,9 @@ TEST(CsvExport, What_the_driver_leaves_behind_goes_through_a_table_and_back) {
   const Imported back("csv", out.text, {"m", {}});
   ASSERT_EQ(back.result.maps.size(), 1U) << back.said << out.text;
   EXPECT_EQ(back.said,
-            "given:2:18: warning: 'safe' of a point without a line, 'iio' or 'pwm' is what the driver leaves "
-            "behind, so the map says 'on_shutdown: safe'; empty such cells if the driver is to leave outputs "
-            "as they are\n");
+            "given:2:18: warning: 'safe' of a point without a line, 'iio' or 'pwm' is the value that the "
+            "driver writes when it ends, so the map has 'on_shutdown: safe'; empty these cells if the driver "
+            "should leave outputs as they are\n");
   const Map& again = back.result.maps[0].map->map();
   EXPECT_EQ(again.fingerprint, loaded.map->map().fingerprint);
   EXPECT_EQ(again.on_shutdown, OnShutdown::safe);

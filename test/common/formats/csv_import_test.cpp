@@ -82,12 +82,10 @@ TEST(CsvImport, Names_that_are_no_ROS_names_or_taken_are_mended_and_told) {
   EXPECT_THAT(
       csv.text(),
       HasSubstr("    point_1st_lamp: 0\n    lamp: 1\n    lamp_2: 2\n    status_point: 3\n    point: 4\n"));
-  EXPECT_THAT(csv.said,
-              HasSubstr("given:2:7: warning: '1st lamp' cannot name a point, it is now 'point_1st_lamp'"));
-  EXPECT_THAT(
-      csv.said,
-      HasSubstr(
-          "given:4:7: warning: 'lamp' is already the name of a point, in line 3; this one is now 'lamp_2'"));
+  EXPECT_THAT(csv.said, HasSubstr("given:2:7: warning: '1st lamp' is not a valid name of a point and was "
+                                  "changed to 'point_1st_lamp'"));
+  EXPECT_THAT(csv.said, HasSubstr("given:4:7: warning: 'lamp' is already the name of the point in line 3, so "
+                                  "this point is called 'lamp_2'"));
 }
 
 TEST(CsvImport, Two_points_at_one_place_are_told_with_both_lines) {

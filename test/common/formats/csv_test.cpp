@@ -60,7 +60,7 @@ TEST(Csv, An_open_quote_and_text_behind_a_closed_one_are_told_where_they_are) {
   EXPECT_EQ(refused("a,b\nc,\"d\n\n"),
             "file:2:3: error: the quote is never closed; close it where the cell ends");
   EXPECT_EQ(refused("a,\"b\"c\n"),
-            "file:1:6: error: text behind a closed quote; write a quote inside quotes twice");
+            "file:1:6: error: there is text after the closing quote; inside quotes, write a quote twice");
 }
 
 TEST(Csv, What_is_written_as_a_cell_reads_back) {

@@ -55,11 +55,11 @@ TEST(TelegrafExport, What_it_cannot_say_is_told_with_the_points) {
       "coils: {c: {address: 0, access: write}}, holding_registers: {a: {address: 1, type: INT, scale: {gain: "
       "2, offset: 5}, rate: 1},"
       "last: {address: 65535, type: INT}, text: {address: 3, type: STRING, length: 4, encoding: latin-1}}";
-  EXPECT_THAT(told("telegraf", points), AllOf(HasSubstr("points that are only written are left out: c;"),
+  EXPECT_THAT(told("telegraf", points), AllOf(HasSubstr("write-only points are left out: c;"),
                                               HasSubstr("the offset of a scale is left out: a;"),
                                               HasSubstr("not at rates of their own: a;"),
-                                              HasSubstr("end at address 65535, they are left out: last;"),
-                                              HasSubstr("texts are taken for UTF-8: text;")));
+                                              HasSubstr("end at address 65535, so they are left out: last;"),
+                                              HasSubstr("texts are read as UTF-8: text;")));
   EXPECT_THAT(exported("telegraf", points).text, AllOf(Not(HasSubstr("\"last\"")), Not(HasSubstr("\"c\""))));
 }
 
@@ -95,10 +95,11 @@ TEST(HomeAssistantExport, What_it_cannot_say_is_told_with_the_points) {
            "holding_registers: {w: {address: 0, type: INT, access: write}, bit: {address: 1, type: BOOL, "
            "bit: 8},"
            "low: {address: 1, type: BOOL, bit: 0, description: hello}, r: {address: 2, type: REAL}}"),
-      AllOf(HasSubstr("registers that are only written are left out: w;"),
-            HasSubstr("only the lowest can be a binary sensor, the others are left out: bit;"),
+      AllOf(HasSubstr("write-only registers are left out: w;"),
+            HasSubstr(
+                "only the lowest bit of a register can be a binary sensor, so other bits are left out: bit;"),
             HasSubstr("descriptions are left out: low;"), HasSubstr("floats are rounded to 6 decimals: r;"),
-            HasSubstr("writing them is left out: low, bit, r;")));
+            HasSubstr("which cannot be written: low, bit, r;")));
 }
 
 TEST(HomeAssistantExport, A_swapped_bit_8_is_the_lowest_on_the_wire) {

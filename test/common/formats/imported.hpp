@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "coupler/formats/import.hpp"
+#include "coupler/formats/importers.hpp"
 
 namespace coupler::test {
 

@@ -51,8 +51,10 @@ TEST(ModbusPalImport, A_saved_project_becomes_a_map) {
             "    hr_100: {address: 100, type: UINT, initial: 123}\n"
             "    set_point: {address: 101, type: UINT, initial: 65534}\n"
             "    hr_102: {address: 102, type: INT}\n");
-  EXPECT_THAT(imported.said,
-              HasSubstr("given:11:2: warning: 'set point' cannot name a point, it is now 'set_point'"));
+  EXPECT_THAT(
+      imported.said,
+      HasSubstr(
+          "given:11:2: warning: 'set point' is not a valid name of a point and was changed to 'set_point'"));
   EXPECT_THAT(imported.said, HasSubstr("given:13:2: warning: the automation 'ramp' is not carried over"));
   EXPECT_THAT(imported.said, HasSubstr("warning: 'tuning' of the slave is not carried over"));
 }
@@ -70,7 +72,7 @@ TEST(ModbusPalImport, Two_registers_of_one_fed_value_are_one_point_in_their_orde
                                          "    r2: {address: 2, type: REAL, order: ABCD}\n"
                                          "    r8: {address: 8, type: UINT}\n"
                                          "    r10: {address: 10, type: UINT}\n"));
-  EXPECT_THAT(imported.said, HasSubstr("the other register of a REAL is not beside it"));
+  EXPECT_THAT(imported.said, HasSubstr("the other register of a REAL is not next to this one"));
 }
 
 TEST(ModbusPalImport, Doubles_and_wrong_numbers_are_told) {
@@ -81,8 +83,7 @@ TEST(ModbusPalImport, Doubles_and_wrong_numbers_are_told) {
   EXPECT_THAT(Imported("modbuspal", registers("<register address=\"1\" value=\"70000\"/>")).said,
               HasSubstr("error: the value '70000' is not a register value"));
   EXPECT_THAT(Imported("modbuspal", slave("", "seven")).said, HasSubstr("error: 'seven' is not a unit id"));
-  EXPECT_THAT(Imported("modbuspal", project("")).said,
-              HasSubstr("error: there are no slaves in the project"));
+  EXPECT_THAT(Imported("modbuspal", project("")).said, HasSubstr("error: there is no slave in the project"));
 }
 
 TEST(ModbusPalImport, Several_slaves_are_several_maps) {
@@ -92,7 +93,7 @@ TEST(ModbusPalImport, Several_slaves_are_several_maps) {
           "<slave id=\"1\"><coils><coil address=\"0\"/></coils></slave><slave id=\"2\" enabled=\"false\"/>"));
   ASSERT_EQ(both.result.maps.size(), 2U);
   EXPECT_EQ(both.text(0), "name: given_1\nport: 503\nunit: 1\nmapping:\n  coils:\n    coil_0: 0\n");
-  EXPECT_THAT(both.said, HasSubstr("that the slave is switched off is not carried over"));
+  EXPECT_THAT(both.said, HasSubstr("the slave is switched off in the project"));
 }
 
 TEST(ModbusPalImport, Entities_are_never_read) {

@@ -30,7 +30,7 @@ TEST(UnslaveImport, The_manuals_serial_slave_is_a_skeleton_of_a_map) {
             "    hr_0: {address: 0, type: UINT, initial: 1}\n"
             "    hr_10: {address: 10, type: UINT, initial: 10}\n");
   EXPECT_THAT(imported.said, HasSubstr("given:1:1: warning: the device is on a serial line"));
-  EXPECT_THAT(imported.said, HasSubstr("given:3:3: warning: Unslave knows no types and no names"));
+  EXPECT_THAT(imported.said, HasSubstr("given:3:3: warning: Unslave has no types and no names"));
 }
 
 TEST(UnslaveImport, An_exception_is_told_and_the_register_stays) {
@@ -44,7 +44,7 @@ TEST(UnslaveImport, An_exception_is_told_and_the_register_stays) {
             "name: given\nport: 9002\nunit: 1\nmapping:\n  holding_registers:\n"
             "    hr_0: {address: 0, type: UINT, initial: 1}\n    hr_1: {address: 1, type: UINT}\n");
   EXPECT_THAT(imported.said,
-              HasSubstr("given:5:27: warning: what 'HR1' answers with an exception is not carried over"));
+              HasSubstr("given:5:27: warning: the exception that 'HR1' answers with is not carried over"));
 }
 
 TEST(UnslaveImport, Every_slave_is_a_map_of_its_own) {

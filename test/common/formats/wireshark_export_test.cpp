@@ -41,7 +41,7 @@ TEST(WiresharkExport, Texts_cannot_leave_their_quotes) {
 TEST(WiresharkExport, What_only_the_node_knows_is_told) {
   EXPECT_THAT(lines_of(exported("{name: m, mapping: {coils: {a: {address: 0, line: GPIO4}, b: 1}}}")
                            .warnings.diagnostics("m")),
-              HasSubstr("are the node's, and left out: a;"));
+              HasSubstr("belong to the node and are left out: a;"));
 }
 
 }  // namespace

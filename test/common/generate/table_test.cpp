@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/generate/table.hpp"
+#include "coupler/generate/generate.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "coupler/docs/ros_message.hpp"
+#include "coupler/docs/words.hpp"
 
 namespace coupler::host {
 namespace {

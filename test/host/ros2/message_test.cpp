@@ -3,7 +3,7 @@
 
 #include <rosidl_runtime_cpp/traits.hpp>
 
-#include "coupler/docs/ros_message.hpp"
+#include "coupler/docs/words.hpp"
 #include "coupler/host/ros2/messages.hpp"
 
 namespace coupler::host {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/cli/dump.hpp"
+#include "coupler/cli/live_device.hpp"
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -58,15 +58,15 @@ void show_changes(const Map& map, const Snapshot* before, const Snapshot& now) {
   for (const std::string& line : change_lines(map, before, now)) put(line);
 }
 
-Exit once(const Map& map, const DumpWish& wish) {
+Exit once(const Map& map, const DumpOptions& options) {
   host::ModbusTransport transport(map.connection);
   host::SteadyClock clock;
-  DeviceReader reader(map, wish.chosen, transport, clock, load_served_map);
+  DeviceReader reader(map, options.chosen, transport, clock, load_served_map);
   const Snapshot now = reader.look();
   const bool nothing = std::none_of(now.readings.begin(), now.readings.end(), [](const Reading& reading) {
     return reading.state == Reading::State::good;
   });
-  if (wish.json) {
+  if (options.json) {
     put(dump_json(map, now));
   } else if (now.online() || !nothing) {
     for (const std::string& line : table_lines(map, now, Colour::no)) put(line);
@@ -79,7 +79,7 @@ Exit once(const Map& map, const DumpWish& wish) {
   return now.online() && now.failed() == 0 ? ok : failed;
 }
 
-Exit again_and_again(const Map& map, const DumpWish& wish) {
+Exit again_and_again(const Map& map, const DumpOptions& options) {
   host::ModbusTransport transport(map.connection);
   host::SteadyClock clock;
   std::atomic<bool> stopped{false};
@@ -88,15 +88,15 @@ Exit again_and_again(const Map& map, const DumpWish& wish) {
     transport.interrupt();
     clock.stop();
   });
-  DeviceReader reader(map, wish.chosen, transport, clock, load_served_map);
+  DeviceReader reader(map, options.chosen, transport, clock, load_served_map);
   host::Backoff backoff;
-  const bool terminal = !wish.json && is_screen();
-  const auto show = wish.json ? show_json : terminal ? show_frame : show_changes;
+  const bool terminal = !options.json && is_screen();
+  const auto show = options.json ? show_json : terminal ? show_frame : show_changes;
   if (terminal) std::fputs(begin_frames, stdout);
   Snapshot before;
   Snapshot online;  // the last that was
   for (bool first = true; !stopped; first = false) {
-    host::Time next = clock.now() + *wish.every;
+    host::Time next = clock.now() + *options.every;
     Snapshot now = reader.look();
     if (stopped) break;
     if (now.online()) {
@@ -116,8 +116,8 @@ Exit again_and_again(const Map& map, const DumpWish& wish) {
 
 }  // namespace
 
-Exit dump(const Map& map, const DumpWish& wish) {
-  return wish.every ? again_and_again(map, wish) : once(map, wish);
+Exit dump(const Map& map, const DumpOptions& options) {
+  return options.every ? again_and_again(map, options) : once(map, options);
 }
 
 }  // namespace coupler::cli

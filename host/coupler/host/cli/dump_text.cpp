@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/docs/row.hpp"
+#include "coupler/docs/point_description.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
@@ -42,13 +42,13 @@ std::string good_value(const Point& point, const Reading& reading) {
 Cells cells_of(const Map& map, const Reading& reading) {
   Point point = map.points[reading.point];
   point.address = read_range(point).start();
-  const docs::Row row = docs::row_of(point, 0);
-  return {row.name,
+  const docs::PointDescription text = docs::describe(point, 0);
+  return {text.name,
           reading.state == State::good ? good_value(point, reading) : "-",
-          row.count.empty() ? row.type : fmt::format("{}[{}]", row.type, row.count),
+          text.count.empty() ? text.type : fmt::format("{}[{}]", text.type, text.count),
           std::string(to_string(point.table)),
-          row.part.empty() ? row.wire : fmt::format("{}, {}", row.wire, row.part),
-          row.modicon};
+          text.part.empty() ? text.address : fmt::format("{}, {}", text.address, text.part),
+          text.modicon};
 }
 
 std::string head(const Map& map, const Snapshot& now) {

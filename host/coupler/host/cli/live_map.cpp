@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/cli/live_map.hpp"
+#include "coupler/cli/live_device.hpp"
 
 #include <string>
 

@@ -10,7 +10,6 @@
 #include <tl/expected.hpp>
 
 #include "coupler/cli/commands.hpp"
-#include "coupler/cli/complain.hpp"
 #include "coupler/cli/report.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/host/cli/interruption.hpp"

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "coupler/cli/commands.hpp"
-#include "coupler/cli/complain.hpp"
 #include "coupler/host/cli/modbus_client.hpp"
 #include "coupler/host/cli/node_status.hpp"
 #include "coupler/map/node_address.hpp"
