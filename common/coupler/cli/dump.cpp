@@ -11,7 +11,7 @@
 
 #include "coupler/cli/commands.hpp"
 #include "coupler/cli/map_argument.hpp"
-#include "coupler/map/loader/print.hpp"
+#include "coupler/map/diagnostic.hpp"
 
 namespace coupler::cli {
 namespace {

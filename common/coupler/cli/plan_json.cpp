@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "coupler/plan/cost.hpp"
 #include "coupler/plan/explain.hpp"
-#include "coupler/plan/split.hpp"
-#include "coupler/plan/strategy.hpp"
+#include "coupler/plan/read_span.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -48,8 +48,8 @@ ordered_json span_json(const plan::ReadSpan& span, const Map& map) {
   return json;
 }
 
-ordered_json group_json(const plan::GroupPlan& group, const Map& map, const plan::Link& link) {
-  const plan::Cost cost = cost_of(group, link);
+ordered_json group_json(const plan::GroupPlan& group, const Map& map, const plan::NetworkTiming& timing) {
+  const plan::Cost cost = cost_of(group, timing);
   ordered_json json{{"rate_hz", group.rate}, {"period_ms", 1000 / group.rate}};
   json.update(cost_json(cost));
   json["load"] = plan::load(cost, group.rate);
@@ -72,23 +72,23 @@ ordered_json strategy_json(const plan::Strategy& strategy) {
 
 }  // namespace
 
-std::string plan_json(const std::string& file, const Map& map, const plan::Link& link) {
+std::string plan_json(const std::string& file, const Map& map, const plan::NetworkTiming& timing) {
   const auto groups = plan::make_read_plan(map);
-  const double load = plan::load(groups, link);
+  const double load = plan::load(groups, timing);
   ordered_json json{{"file", file},
                     {"name", map.name},
-                    {"rtt_ms", milliseconds(link.round_trip)},
-                    {"request_gap_ms", milliseconds(link.pause)},
+                    {"rtt_ms", milliseconds(timing.round_trip)},
+                    {"request_gap_ms", milliseconds(timing.pause)},
                     {"load", load},
                     {"fits", load <= 1},
                     {"groups", ordered_json::array()},
                     {"not_read", ordered_json::array()},
                     {"strategies", ordered_json::array()}};
-  for (const plan::GroupPlan& group : groups) json["groups"].push_back(group_json(group, map, link));
+  for (const plan::GroupPlan& group : groups) json["groups"].push_back(group_json(group, map, timing));
   for (const Point& point : map.points)
     if (const auto reason = plan::why_not_read(map, point))
       json["not_read"].push_back({{"point", point.name}, {"reason", plan::to_string(*reason)}});
-  for (const plan::Strategy& strategy : plan::compare_strategies(map, link))
+  for (const plan::Strategy& strategy : plan::compare_strategies(map, timing))
     json["strategies"].push_back(strategy_json(strategy));
   // A file's name may have bytes that are not UTF-8.
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);

@@ -9,10 +9,10 @@
 namespace coupler::cli {
 
 /// Tables for people.
-std::string plan_text(const std::string& file, const Map& map, const plan::Link& link);
+std::string plan_text(const std::string& file, const Map& map, const plan::NetworkTiming& timing);
 
 /// One line of JSON.
-std::string plan_json(const std::string& file, const Map& map, const plan::Link& link);
+std::string plan_json(const std::string& file, const Map& map, const plan::NetworkTiming& timing);
 
 /// "12 %": what a load is called; never "0 %" of something.
 std::string percent(double load);

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/plan/cost.hpp"
 #include "coupler/plan/explain.hpp"
-#include "coupler/plan/strategy.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -30,8 +30,8 @@ std::string amount(const plan::Cost& cost) {
   return counted(cost.registers, "register") + " and " + counted(cost.bits, "bit");
 }
 
-std::string group_text(const plan::GroupPlan& group, const Map& map, const plan::Link& link) {
-  const plan::Cost cost = cost_of(group, link);
+std::string group_text(const plan::GroupPlan& group, const Map& map, const plan::NetworkTiming& timing) {
+  const plan::Cost cost = cost_of(group, timing);
   const auto period = std::chrono::duration<double, std::milli>(1000 / group.rate).count();
   auto text = fmt::format("{:g} Hz: {}, {}, {} bytes; {} of {:.4g} ms ({})\n", group.rate,
                           counted(cost.requests, "request"), amount(cost), cost.bytes,
@@ -81,8 +81,8 @@ std::string keys_text(const Polling& polling, const Polling& map) {
   return keys.empty() ? "" : fmt::format("  {}", fmt::join(keys, ", "));
 }
 
-std::string strategies_text(const Map& map, const plan::Link& link) {
-  const auto strategies = plan::compare_strategies(map, link);
+std::string strategies_text(const Map& map, const plan::NetworkTiming& timing) {
+  const auto strategies = plan::compare_strategies(map, timing);
   if (std::all_of(strategies.begin(), strategies.end(), [&](const Strategy& strategy) {
         return strategy.cost.requests == strategies.front().cost.requests;
       }))
@@ -106,16 +106,16 @@ std::string percent(double load) {
   return load > 0 && load < 0.001 ? "< 0.1 %" : fmt::format("{:.3g} %", 100 * load);
 }
 
-std::string plan_text(const std::string& file, const Map& map, const plan::Link& link) {
+std::string plan_text(const std::string& file, const Map& map, const plan::NetworkTiming& timing) {
   const auto groups = plan::make_read_plan(map);
   std::size_t requests = 0;
   for (const plan::GroupPlan& group : groups) requests += group.spans.size();
   auto text =
       fmt::format("{}: {}, {} in {}, round trip {}{}\n", file, map.name, counted(map.points.size(), "point"),
-                  counted(requests, "request"), milliseconds(link.round_trip),
-                  link.pause.count() > 0 ? " and a pause of " + milliseconds(link.pause) : "");
-  for (const plan::GroupPlan& group : groups) text += "\n" + group_text(group, map, link);
-  return text + not_read_text(map) + strategies_text(map, link);
+                  counted(requests, "request"), milliseconds(timing.round_trip),
+                  timing.pause.count() > 0 ? " and a pause of " + milliseconds(timing.pause) : "");
+  for (const plan::GroupPlan& group : groups) text += "\n" + group_text(group, map, timing);
+  return text + not_read_text(map) + strategies_text(map, timing);
 }
 
 }  // namespace coupler::cli

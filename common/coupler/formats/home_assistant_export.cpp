@@ -8,7 +8,7 @@
 
 #include "coupler/formats/entries.hpp"
 #include "coupler/formats/map_writer.hpp"
-#include "coupler/map/loader/letters.hpp"
+#include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::formats {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "coupler/base/span.hpp"
-#include "coupler/map/loader/entry.hpp"
+#include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/problems.hpp"
 
 namespace coupler::formats {

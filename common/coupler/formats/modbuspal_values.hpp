@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "coupler/map/loader/entry.hpp"
+#include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/problems.hpp"
 #include "coupler/map/table.hpp"
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "coupler/formats/entries.hpp"
-#include "coupler/map/loader/letters.hpp"
 #include "coupler/map/loader/names.hpp"
+#include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/table.hpp"
 
 namespace coupler::formats {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "coupler/map/loader/entry.hpp"
+#include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/problems.hpp"
 
 namespace coupler::formats {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/presets.hpp"
+#include "coupler/map/loader/preset.hpp"
 #include "coupler/schema/pattern.hpp"
 
 namespace coupler::schema {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "coupler/codec/decimal.hpp"
+#include "coupler/codec/value.hpp"
 #include "coupler/test_vectors/json.hpp"
 
 namespace coupler::test_vectors {

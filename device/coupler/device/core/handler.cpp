@@ -8,7 +8,7 @@
 #include "coupler/device/core/identity_area.hpp"
 #include "coupler/device/core/map_file.hpp"
 #include "coupler/map/identity.hpp"
-#include "coupler/modbus/reply.hpp"
+#include "coupler/modbus/server.hpp"
 
 namespace coupler::device {
 namespace {

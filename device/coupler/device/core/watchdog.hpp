@@ -7,7 +7,7 @@
 
 #include "coupler/device/core/client_session.hpp"
 #include "coupler/device/core/time.hpp"
-#include "coupler/map/service.hpp"
+#include "coupler/map/watchdog.hpp"
 
 namespace coupler::device {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "coupler/device/core/edges.hpp"
-#include "coupler/map/edge.hpp"
+#include "coupler/map/hardware.hpp"
 
 namespace coupler::device {
 

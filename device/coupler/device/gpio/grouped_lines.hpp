@@ -12,7 +12,7 @@
 #include "coupler/device/gpio/line_group.hpp"
 #include "coupler/device/gpio/lost_edges.hpp"
 #include "coupler/device/supervisor/shared_array.hpp"
-#include "coupler/map/line.hpp"
+#include "coupler/map/hardware.hpp"
 
 namespace coupler::device {
 

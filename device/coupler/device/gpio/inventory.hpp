@@ -6,7 +6,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "coupler/map/line.hpp"
+#include "coupler/map/hardware.hpp"
 
 namespace coupler::device {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "coupler/device/gpio/inventory.hpp"
-#include "coupler/map/edge.hpp"
+#include "coupler/map/hardware.hpp"
 #include "coupler/map/point.hpp"
 
 namespace coupler::device {

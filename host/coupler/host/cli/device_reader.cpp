@@ -9,7 +9,7 @@
 
 #include "coupler/host/cli/identity_findings.hpp"
 #include "coupler/host/core/refusal.hpp"
-#include "coupler/plan/split.hpp"
+#include "coupler/plan/read_span.hpp"
 
 namespace coupler::cli {
 namespace {

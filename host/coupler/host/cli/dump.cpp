@@ -20,7 +20,7 @@
 #include "coupler/host/core/backoff.hpp"
 #include "coupler/host/core/steady_clock.hpp"
 #include "coupler/host/modbus/modbus_transport.hpp"
-#include "coupler/map/loader/print.hpp"
+#include "coupler/map/diagnostic.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
 

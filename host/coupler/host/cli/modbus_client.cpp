@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "coupler/modbus/identification_reply.hpp"
+#include "coupler/modbus/device_identification.hpp"
 
 namespace coupler::cli {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "coupler/plan/split.hpp"
+#include "coupler/plan/read_span.hpp"
 
 namespace coupler::host {
 

@@ -7,8 +7,8 @@
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/error.hpp"
 #include "coupler/map/table.hpp"
+#include "coupler/modbus/client.hpp"
 #include "coupler/modbus/range.hpp"
-#include "coupler/modbus/write_request.hpp"
 
 namespace coupler::host {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "coupler/host/core/transport.hpp"
-#include "coupler/map/watchdog_sequences.hpp"
+#include "coupler/map/watchdog.hpp"
 
 namespace coupler::host {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "coupler/host/core/write.hpp"
+#include "coupler/modbus/client.hpp"
 #include "coupler/modbus/range.hpp"
-#include "coupler/modbus/write_request.hpp"
 
 namespace coupler::host {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "coupler/base/span.hpp"
-#include "coupler/modbus/exception.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::host {
 

@@ -11,8 +11,8 @@
 #include "coupler/host/modbus/event.hpp"
 #include "coupler/host/modbus/wakeup.hpp"
 #include "coupler/map/map.hpp"
+#include "coupler/modbus/client.hpp"
 #include "coupler/modbus/frame.hpp"
-#include "coupler/modbus/read_request.hpp"
 
 struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for its context
 
