@@ -5,6 +5,7 @@
 
 #include "coupler/formats/entries.hpp"
 #include "coupler/map/loader/document.hpp"
+#include "coupler/map/loader/problems.hpp"
 
 namespace coupler::formats {
 namespace {
