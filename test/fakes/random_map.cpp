@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/codec/type.hpp"
+#include "coupler/codec/format.hpp"
 
 namespace coupler::fakes {
 namespace {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "coupler/map/diff.hpp"
+#include "coupler/map/fingerprint.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "test/device/core/node_under_test.hpp"

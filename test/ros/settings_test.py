@@ -88,7 +88,7 @@ class Settings(testing.RosTest):
         self.assert_ends(2, "--speed", "--speed", 5)
         self.assert_ends(2, "rate: 'fast' is not a number from 0.001 to 10000 Hz", f"_map:={self.map()}", "_rate:=fast")
         self.assert_ends(2, "port: '70000' is not a whole number from 1 to 65535", "_port:=70000")
-        self.assert_ends(2, "address: '10.0.0.7:502' has a port; say 'port: 502' beside it", "_address:=10.0.0.7:502")
+        self.assert_ends(2, "address: '10.0.0.7:502' has a port; write 'port: 502' beside it", "_address:=10.0.0.7:502")
         self.assert_ends(2, "verify: 'maybe' is not require, warn or off", "_verify:=maybe")
 
     def test_a_wrong_map_ends_with_1_and_says_where(self):

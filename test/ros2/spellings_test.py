@@ -111,7 +111,7 @@ class Spellings(testing.RosTest):
         self.assert_refused("verify", "maybe", "verify: 'maybe' is not require, warn or off")
         self.assert_refused("verify", "on", "verify")
         self.assert_refused("poll", "some", "poll: 'some' is not all or subscribed")
-        self.assert_refused("address", "10.0.0.7:502", "address: '10.0.0.7:502' has a port; say 'port: 502' beside it")
+        self.assert_refused("address", "10.0.0.7:502", "address: '10.0.0.7:502' has a port; write 'port: 502' beside it")
 
     def test_a_setting_of_one_device_is_spelt_alike(self):
         other = process.write_map(MAP.format(address="127.0.0.1", port=free_port()).replace("spelt", "other"))

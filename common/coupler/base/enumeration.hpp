@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the values of an enumeration are called, written once, beside it: a function `enumeration(E)` that
-// returns an Enumeration. The key table, the reader, the generated code and all that shows a map take the
-// words from there.
+// The names of an enumeration's values, written once, beside it: a function `enumeration(E)` returns an
+// Enumeration. The key table, the reader, the generated code and all that shows a map take the names from
+// there.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ template <class E>
 struct Word {
   E value;
   std::string_view name;         ///< in C++
-  std::string_view word = name;  ///< in a map; empty: a map cannot say it, it holds where nothing is said
+  std::string_view word = name;  ///< in a map; empty: the default, which a map cannot write
 };
 
 /// `words` are in the order in which messages list them.
@@ -35,7 +35,7 @@ constexpr const Word<E>* find_word(E value) {
   return nullptr;
 }
 
-/// As a map writes it; what a map cannot say by its name in C++.
+/// As a map writes it; otherwise its name in C++.
 template <class E, class = decltype(enumeration(E{}))>
 constexpr std::string_view to_string(E value) {
   const Word<E>* found = find_word(value);

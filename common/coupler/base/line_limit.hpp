@@ -12,26 +12,26 @@
 
 namespace coupler {
 
-/// Of lines of one kind, one a second: at once where there was none, else the newest when the second is over,
-/// and how many came before it. Any thread may call.
+/// Limits log lines of one kind to one a second. The first is logged at once; of those that follow within the
+/// second only the newest when it is over, with the number of those left out. Any thread may call.
 class LineLimit {
  public:
   using Time = std::chrono::steady_clock::time_point;
   static constexpr auto interval = std::chrono::seconds(1);
 
-  /// What is to be said now.
+  /// The line to log now, if any.
   std::optional<std::string> say(std::string text, Time now) {
     const std::lock_guard lock(mutex_);
     left_out_ += waiting_ ? 1 : 0;
     waiting_ = std::move(text);
     return take(now);
   }
-  /// What waits, where its time has come.
+  /// The waiting line, if its time has come.
   std::optional<std::string> due(Time now) {
     const std::lock_guard lock(mutex_);
     return take(now);
   }
-  /// When due() has something to say; nullopt: nothing waits.
+  /// When due() returns a line; nullopt: none waits.
   std::optional<Time> due_at() {
     const std::lock_guard lock(mutex_);
     return waiting_ ? std::optional(said_.value_or(Time()) + interval) : std::nullopt;

@@ -12,7 +12,7 @@
 #include "coupler/changes/changes.hpp"
 #include "coupler/cli/commands.hpp"
 #include "coupler/cli/map_argument.hpp"
-#include "coupler/map/loader/print.hpp"
+#include "coupler/map/diagnostic.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::cli {

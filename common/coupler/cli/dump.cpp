@@ -9,7 +9,7 @@
 #include "coupler/cli/commands.hpp"
 #include "coupler/cli/live_device.hpp"
 #include "coupler/cli/map_argument.hpp"
-#include "coupler/map/loader/print.hpp"
+#include "coupler/map/diagnostic.hpp"
 
 namespace coupler::cli {
 namespace {

@@ -29,8 +29,8 @@ bool write_file(const std::string& path, const std::string& content) {
   return !file.fail();
 }
 
-void warn_if_too_much(const std::string& file, const Map& map, const plan::Link& link) {
-  const double load = plan::load(plan::make_read_plan(map), link);
+void warn_if_too_much(const std::string& file, const Map& map, const plan::NetworkTiming& timing) {
+  const double load = plan::load(plan::make_read_plan(map), timing);
   if (load > 1)
     fmt::print(stderr,
                "{}: warning: the reads need {} of the time, so poll cycles will be skipped; lower `rate`, "
@@ -44,18 +44,18 @@ Exit run(const Arguments& arguments) {
   print(argument.loaded.diagnostics);
   if (!argument.loaded.map) return argument.exit;
   const Map map = argument.map();
-  plan::Link link;
-  link.round_trip = std::chrono::duration_cast<std::chrono::nanoseconds>(
+  plan::NetworkTiming timing;
+  timing.round_trip = std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double, std::milli>(arguments.rtt));
-  link.pause = map.limits.request_gap;
+  timing.pause = map.limits.request_gap;
   if (!arguments.svg.empty() && !write_file(arguments.svg, plan::picture(map, plan::make_read_plan(map))))
     return complain("plan", bad_call, "cannot write " + arguments.svg,
                     "give a file that you may write with --svg");
   if (arguments.json)
-    std::puts(plan_json(arguments.map, map, link).c_str());
+    std::puts(plan_json(arguments.map, map, timing).c_str());
   else
-    std::fputs(plan_text(arguments.map, map, link).c_str(), stdout);
-  warn_if_too_much(arguments.map, map, link);
+    std::fputs(plan_text(arguments.map, map, timing).c_str(), stdout);
+  warn_if_too_much(arguments.map, map, timing);
   return ok;
 }
 

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "coupler/plan/cost.hpp"
 #include "coupler/plan/explain.hpp"
-#include "coupler/plan/split.hpp"
-#include "coupler/plan/strategy.hpp"
+#include "coupler/plan/read_span.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -36,8 +36,8 @@ std::string amount(const plan::Cost& cost) {
   return counted(cost.registers, "register") + " and " + counted(cost.bits, "bit");
 }
 
-std::string group_text(const plan::GroupPlan& group, const Map& map, const plan::Link& link) {
-  const plan::Cost cost = cost_of(group, link);
+std::string group_text(const plan::GroupPlan& group, const Map& map, const plan::NetworkTiming& timing) {
+  const plan::Cost cost = cost_of(group, timing);
   const auto period = std::chrono::duration<double, std::milli>(1000 / group.rate).count();
   auto text = fmt::format("{:g} Hz: {}, {}, {} bytes; {} of {:.4g} ms ({})\n", group.rate,
                           counted(cost.requests, "request"), amount(cost), cost.bytes,
@@ -87,8 +87,8 @@ std::string keys_text(const Polling& polling, const Polling& map) {
   return keys.empty() ? "" : fmt::format("  {}", fmt::join(keys, ", "));
 }
 
-std::string strategies_text(const Map& map, const plan::Link& link) {
-  const auto strategies = plan::compare_strategies(map, link);
+std::string strategies_text(const Map& map, const plan::NetworkTiming& timing) {
+  const auto strategies = plan::compare_strategies(map, timing);
   if (std::all_of(strategies.begin(), strategies.end(), [&](const plan::Strategy& strategy) {
         return strategy.cost.requests == strategies.front().cost.requests;
       }))
@@ -138,8 +138,8 @@ ordered_json span_json(const plan::ReadSpan& span, const Map& map) {
   return json;
 }
 
-ordered_json group_json(const plan::GroupPlan& group, const Map& map, const plan::Link& link) {
-  const plan::Cost cost = cost_of(group, link);
+ordered_json group_json(const plan::GroupPlan& group, const Map& map, const plan::NetworkTiming& timing) {
+  const plan::Cost cost = cost_of(group, timing);
   ordered_json json{{"rate_hz", group.rate}, {"period_ms", 1000 / group.rate}};
   json.update(cost_json(cost));
   json["load"] = plan::load(cost, group.rate);
@@ -166,35 +166,35 @@ std::string percent(double load) {
   return load > 0 && load < 0.001 ? "< 0.1 %" : fmt::format("{:.3g} %", 100 * load);
 }
 
-std::string plan_text(const std::string& file, const Map& map, const plan::Link& link) {
+std::string plan_text(const std::string& file, const Map& map, const plan::NetworkTiming& timing) {
   const auto groups = plan::make_read_plan(map);
   std::size_t requests = 0;
   for (const plan::GroupPlan& group : groups) requests += group.spans.size();
   auto text =
       fmt::format("{}: {}, {} in {}, round trip {}{}\n", file, map.name, counted(map.points.size(), "point"),
-                  counted(requests, "request"), milliseconds_text(link.round_trip),
-                  link.pause.count() > 0 ? " and a pause of " + milliseconds_text(link.pause) : "");
-  for (const plan::GroupPlan& group : groups) text += "\n" + group_text(group, map, link);
-  return text + not_read_text(map) + strategies_text(map, link);
+                  counted(requests, "request"), milliseconds_text(timing.round_trip),
+                  timing.pause.count() > 0 ? " and a pause of " + milliseconds_text(timing.pause) : "");
+  for (const plan::GroupPlan& group : groups) text += "\n" + group_text(group, map, timing);
+  return text + not_read_text(map) + strategies_text(map, timing);
 }
 
-std::string plan_json(const std::string& file, const Map& map, const plan::Link& link) {
+std::string plan_json(const std::string& file, const Map& map, const plan::NetworkTiming& timing) {
   const auto groups = plan::make_read_plan(map);
-  const double load = plan::load(groups, link);
+  const double load = plan::load(groups, timing);
   ordered_json json{{"file", file},
                     {"name", map.name},
-                    {"rtt_ms", milliseconds(link.round_trip)},
-                    {"request_gap_ms", milliseconds(link.pause)},
+                    {"rtt_ms", milliseconds(timing.round_trip)},
+                    {"request_gap_ms", milliseconds(timing.pause)},
                     {"load", load},
                     {"fits", load <= 1},
                     {"groups", ordered_json::array()},
                     {"not_read", ordered_json::array()},
                     {"strategies", ordered_json::array()}};
-  for (const plan::GroupPlan& group : groups) json["groups"].push_back(group_json(group, map, link));
+  for (const plan::GroupPlan& group : groups) json["groups"].push_back(group_json(group, map, timing));
   for (const Point& point : map.points)
     if (const auto reason = plan::why_not_read(map, point))
       json["not_read"].push_back({{"point", point.name}, {"reason", plan::to_string(*reason)}});
-  for (const plan::Strategy& strategy : plan::compare_strategies(map, link))
+  for (const plan::Strategy& strategy : plan::compare_strategies(map, timing))
     json["strategies"].push_back(strategy_json(strategy));
   // A file's name may have bytes that are not UTF-8.
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);

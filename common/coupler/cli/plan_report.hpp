@@ -9,10 +9,10 @@
 namespace coupler::cli {
 
 /// Tables for people.
-std::string plan_text(const std::string& file, const Map& map, const plan::Link& link);
+std::string plan_text(const std::string& file, const Map& map, const plan::NetworkTiming& timing);
 
 /// One line of JSON.
-std::string plan_json(const std::string& file, const Map& map, const plan::Link& link);
+std::string plan_json(const std::string& file, const Map& map, const plan::NetworkTiming& timing);
 
 /// A load as "12 %"; "< 0.1 %" if it would be rounded to zero.
 std::string percent(double load);

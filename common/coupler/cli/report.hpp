@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "coupler/map/diagnostic.hpp"
 #include "coupler/map/loader/load.hpp"
-#include "coupler/map/loader/print.hpp"
 
 namespace coupler::cli {
 

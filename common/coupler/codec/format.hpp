@@ -2,13 +2,128 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "coupler/base/enumeration.hpp"
-#include "coupler/codec/order.hpp"
-#include "coupler/codec/type.hpp"
 
 namespace coupler::codec {
+
+/// Data types of IEC 61131-3 (2013), table 10, as far as they fit into registers.
+/// BOOL is a coil, a discrete input, or one bit of a register.
+enum class Type : std::uint8_t {
+  BOOL,
+  BYTE,
+  WORD,
+  DWORD,
+  LWORD,
+  SINT,
+  INT,
+  DINT,
+  LINT,
+  USINT,
+  UINT,
+  UDINT,
+  ULINT,
+  REAL,
+  LREAL,
+  CHAR,
+  STRING,
+};
+constexpr Enumeration<Type, 17> enumeration(Type) {
+  return {"Type",
+          {{Type::BOOL, "BOOL"},
+           {Type::BYTE, "BYTE"},
+           {Type::WORD, "WORD"},
+           {Type::DWORD, "DWORD"},
+           {Type::LWORD, "LWORD"},
+           {Type::SINT, "SINT"},
+           {Type::INT, "INT"},
+           {Type::DINT, "DINT"},
+           {Type::LINT, "LINT"},
+           {Type::USINT, "USINT"},
+           {Type::UINT, "UINT"},
+           {Type::UDINT, "UDINT"},
+           {Type::ULINT, "ULINT"},
+           {Type::REAL, "REAL"},
+           {Type::LREAL, "LREAL"},
+           {Type::CHAR, "CHAR"},
+           {Type::STRING, "STRING"}}};
+}
+using coupler::to_string;
+
+/// Width of one value in bits; 0 for STRING, whose width is its length.
+constexpr unsigned width(Type type) {
+  switch (type) {
+    case Type::BOOL: return 1;
+    case Type::BYTE:
+    case Type::SINT:
+    case Type::USINT:
+    case Type::CHAR: return 8;
+    case Type::WORD:
+    case Type::INT:
+    case Type::UINT: return 16;
+    case Type::DWORD:
+    case Type::DINT:
+    case Type::UDINT:
+    case Type::REAL: return 32;
+    case Type::LWORD:
+    case Type::LINT:
+    case Type::ULINT:
+    case Type::LREAL: return 64;
+    case Type::STRING: return 0;
+  }
+  return 0;
+}
+
+/// The type of that name, in any case ("uint", "UINT").
+constexpr std::optional<Type> parse_type(std::string_view name) {
+  const auto is = [name](std::string_view upper) {
+    bool same = name.size() == upper.size();
+    for (std::size_t i = 0; same && i < name.size(); ++i)
+      same = name[i] == upper[i] || (upper[i] >= 'A' && upper[i] <= 'Z' && name[i] == upper[i] - 'A' + 'a');
+    return same;
+  };
+  for (const Word<Type>& each : enumeration_of<Type>.words)
+    if (is(each.word)) return each.value;
+  return std::nullopt;
+}
+
+/// Where the bytes of a value stand in its registers. A is the most significant byte.
+/// Values of one register know ABCD ("AB") and BADC ("BA") only.
+enum class Order : std::uint8_t {
+  ABCD,  ///< big endian throughout
+  CDAB,  ///< registers reversed: the least significant register first
+  BADC,  ///< the two bytes of each register swapped
+  DCBA,  ///< both: little endian throughout
+};
+/// "AB" and "BA" are for values of one register.
+constexpr Enumeration<Order, 6> enumeration(Order) {
+  return {"Order",
+          {{Order::ABCD, "ABCD"},
+           {Order::CDAB, "CDAB"},
+           {Order::BADC, "BADC"},
+           {Order::DCBA, "DCBA"},
+           {Order::ABCD, "ABCD", "AB"},
+           {Order::BADC, "BADC", "BA"}}};
+}
+
+constexpr Order make_order(bool words_reversed, bool bytes_swapped) {
+  if (words_reversed) return bytes_swapped ? Order::DCBA : Order::CDAB;
+  return bytes_swapped ? Order::BADC : Order::ABCD;
+}
+constexpr bool words_reversed(Order order) { return order == Order::CDAB || order == Order::DCBA; }
+constexpr bool bytes_swapped(Order order) { return order == Order::BADC || order == Order::DCBA; }
+
+constexpr std::uint16_t swap_bytes(std::uint16_t word) {
+  return static_cast<std::uint16_t>((word >> 8) | (word << 8));
+}
+
+/// "ABCD" …; for a value of one register "AB" or "BA".
+constexpr std::string_view to_string(Order order, bool one_register) {
+  if (one_register) return bytes_swapped(order) ? "BA" : "AB";
+  return to_string(order);
+}
 
 /// The half of a register that holds an 8-bit value. `high` is the first byte on the wire in
 /// big-endian order; with swapped bytes (Order::BADC) it is the second.
@@ -53,7 +168,7 @@ constexpr std::uint16_t registers(const Format& format) {
   return static_cast<std::uint16_t>(bits <= 16 ? 1 : bits / 16);
 }
 
-/// The bits of its (only) register that the value occupies, as they stand on the wire; 0xFFFF for whole
+/// The bits that the value occupies in its (only) register, as the register is sent; 0xFFFF for whole
 /// registers.
 constexpr std::uint16_t mask(const Format& format) {
   const bool swapped = bytes_swapped(format.order);

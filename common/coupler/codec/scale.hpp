@@ -31,7 +31,7 @@ enum class ScaleError : std::uint8_t { none, not_a_number, out_of_range };
 /// register alone. If there are none, the registers are unchanged.
 ScaleError encode_published(double value, const Format& format, const Scale& scale, std::uint16_t* registers);
 
-/// The same for a measurement: beyond an end of the type's range it becomes that end. `value` is no NaN.
+/// The same for a measurement: a value out of range becomes the nearest end of the range. `value` is not NaN.
 void encode_nearest(double value, const Format& format, const Scale& scale, std::uint16_t* registers);
 
 struct PublishedRange {

@@ -14,7 +14,6 @@
 #include "coupler/map/fields.hpp"
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/keys.hpp"
-#include "coupler/map/written.hpp"
 
 namespace coupler::formats {
 namespace {

@@ -9,7 +9,6 @@
 #include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/keys.hpp"
-#include "coupler/map/loader/letters.hpp"
 #include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/table.hpp"

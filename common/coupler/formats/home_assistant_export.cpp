@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "coupler/formats/map_tree.hpp"
-#include "coupler/map/loader/letters.hpp"
+#include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::formats {
 namespace {

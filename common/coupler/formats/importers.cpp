@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "coupler/formats/map_tree.hpp"
-#include "coupler/map/loader/letters.hpp"
+#include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/loader/map_reader.hpp"
 #include "coupler/map/loader/names.hpp"
 #include "coupler/map/loader/source_text.hpp"
@@ -123,10 +123,9 @@ void check_units(const std::vector<ForeignUnit>& units, Problems& problems) {
 
 ImportedMap finish(const ForeignUnit& foreign, std::string_view comment, Problems& problems) {
   const auto map = std::make_shared<OwnedMap>();
-  loader::Context context{problems, *map};
   std::string text = write_map(foreign.map, comment);
   loader::Placement no_lock{"", {}, {}};
-  loader::read_map(foreign.map, text, no_lock, context);
+  loader::read_map(foreign.map, {text}, no_lock, problems, *map);
   for (const Diagnostic& diagnostic : no_lock.problems)
     problems.error({diagnostic.line, diagnostic.column}, diagnostic.what, diagnostic.remedy);
   return {foreign.unit, std::move(text), map};

@@ -9,7 +9,7 @@
 
 #include "coupler/base/span.hpp"
 #include "coupler/map/diagnostic.hpp"
-#include "coupler/map/loader/entry.hpp"
+#include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/problems.hpp"
 #include "coupler/map/owned_map.hpp"
 

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "coupler/map/loader/keys.hpp"
-#include "coupler/map/loader/letters.hpp"
 #include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::formats {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "coupler/map/loader/entry.hpp"
+#include "coupler/map/loader/document.hpp"
 
 namespace coupler::formats {
 

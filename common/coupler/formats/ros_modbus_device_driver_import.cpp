@@ -7,8 +7,8 @@
 
 #include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/document.hpp"
-#include "coupler/map/loader/json_comments.hpp"
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/loader/source_text.hpp"
 
 namespace coupler::formats {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/document.hpp"
-#include "coupler/map/loader/letters.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/table.hpp"
 

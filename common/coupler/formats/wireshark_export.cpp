@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "coupler/codec/text.hpp"
-#include "coupler/map/loader/letters.hpp"
+#include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::formats {
 

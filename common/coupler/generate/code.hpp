@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "coupler/base/enumeration.hpp"
-#include "coupler/codec/decimal.hpp"
+#include "coupler/codec/value.hpp"
 #include "coupler/map/fields.hpp"
 
 namespace coupler::generate {

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "coupler/map/source_snippet.hpp"
-
 namespace coupler {
+
+/// A line of a file, safe to show: valid UTF-8, no control characters but tabs, none that turn the direction
+/// of writing. Of a long line only what is around the caret.
+struct SourceSnippet {
+  std::string text;
+  std::size_t caret = 0;  ///< the byte of `text` that is meant; its size: the end of the line
+};
 
 /// One thing that is wrong with a map, where, and what to do about it.
 struct Diagnostic {
@@ -37,7 +43,7 @@ std::string to_string(const Diagnostic& diagnostic);
 
 bool has_errors(const Diagnostics& diagnostics);
 
-/// Gives the diagnostics and their notes the lines of `text`, the file that they are about.
+/// Copies the lines that they are about from `text`, the file, into the diagnostics and their notes.
 void quote(Diagnostics& diagnostics, std::string_view text);
 
 enum class Colour { no, yes };
@@ -45,5 +51,11 @@ enum class Colour { no, yes };
 /// For people: to_string(), the source line and a caret below its place, then the notes in the same way. Ends
 /// with a newline. Colours are those of ANSI terminals.
 std::string render(const Diagnostic& diagnostic, Colour colour);
+
+/// Yes for a terminal, unless NO_COLOR (no-color.org) is set.
+Colour colour_of(int descriptor);
+
+/// Renders all of them to standard error.
+void print(const Diagnostics& diagnostics);
 
 }  // namespace coupler

@@ -4,13 +4,34 @@
 // be set to, its example and its explanation stand in loader/key_table.cpp.
 #pragma once
 
+#include <chrono>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
 
+#include <fmt/format.h>
+
+#include "coupler/base/enumeration.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler {
+
+/// A value as a map writes it.
+inline std::string written(std::string_view text) { return std::string(text); }
+inline std::string written(std::chrono::milliseconds duration) {
+  return fmt::format("{}ms", duration.count());
+}
+inline std::string written(std::chrono::microseconds duration) {
+  return fmt::format("{}us", duration.count());
+}
+template <class T>
+std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>, std::string> written(T value) {
+  if constexpr (std::is_enum_v<T>)
+    return std::string(to_string(value));
+  else
+    return fmt::to_string(value);
+}
 
 /// What a key of a point is about.
 enum class About { point, reading, writing };
@@ -19,7 +40,7 @@ template <class Struct, class Value>
 struct Field {
   std::string_view key;
   Value Struct::*member;
-  std::string_view change{};  ///< what `coupler diff` calls a change of it; several keys may be told as one
+  std::string_view change{};  ///< what `coupler diff` calls a change of it; several keys may share a name
   About about = About::point;
   std::string_view unit{};  ///< of a number
 };

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,17 @@
 
 namespace coupler {
 namespace {
+
+/// Whole registers first, then halves, then bits.
+unsigned rank_of_part(const Point& point) {
+  if (!is_partial(point)) return 0;
+  if (point.format.type == codec::Type::BOOL) return 3U + point.format.bit;
+  return point.format.half == codec::Half::high ? 1 : 2;
+}
+
+auto sort_key(const Point& point) {
+  return std::make_tuple(index(point.table), point.address, rank_of_part(point), point.name);
+}
 
 std::string part(const Point& point) {
   if (!is_partial(point)) return "-";
@@ -43,6 +55,8 @@ std::uint64_t hash64(std::string_view text) {
   for (std::size_t i = 0; i < sizeof first; ++i) first = first << 8 | digest[i];
   return first;
 }
+
+bool canonical_less(const Point& a, const Point& b) { return sort_key(a) < sort_key(b); }
 
 std::string canonical_line(const Point& point) {
   const bool text = point.format.type == codec::Type::STRING;

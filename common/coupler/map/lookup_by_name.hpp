@@ -8,9 +8,9 @@
 
 namespace coupler {
 
-/// Finds elements by name, one after the other in an order that is mostly theirs, as when two versions of a
-/// map are compared: the element behind the last one found is looked at first, and an index is only made when
-/// that fails. `name_of(element)` is its name.
+/// Finds elements by name, mostly in their own order, as when two versions of a map are compared: the element
+/// after the last one found is tried first, and an index is only built when that fails. `name_of(element)` is
+/// its name.
 template <class T, class NameOf>
 class LookupByName {
  public:

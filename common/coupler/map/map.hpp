@@ -8,8 +8,7 @@
 #include "coupler/base/enumeration.hpp"
 #include "coupler/base/span.hpp"
 #include "coupler/map/point.hpp"
-#include "coupler/map/service.hpp"
-#include "coupler/map/watchdog_sequences.hpp"
+#include "coupler/map/watchdog.hpp"
 #include "coupler/modbus/limits.hpp"
 
 namespace coupler {
@@ -54,6 +53,14 @@ struct Unreadable {
   modbus::Range range;
 };
 
+/// How a node serves the map.
+struct Service {
+  std::string_view listen;  ///< address to listen on; empty: every interface (loopback if simulated)
+  Span<const std::string_view> allow{};  ///< addresses and CIDR ranges that may connect; empty: everyone
+  Watchdog watchdog;
+  bool readback = false;  ///< compare an output's level after driving it
+};
+
 /// What the host does when the link comes and goes.
 enum class OnReconnect : std::uint8_t {
   drop,    ///< writes that found no link are lost
@@ -73,7 +80,7 @@ constexpr Enumeration<OnShutdown, 2> enumeration(OnShutdown) {
 /// Which points the driver reads.
 enum class Poll : std::uint8_t {
   all,
-  subscribed  ///< those that somebody listens to
+  subscribed  ///< those with subscribers
 };
 constexpr Enumeration<Poll, 2> enumeration(Poll) {
   return {"Poll", {{Poll::all, "all"}, {Poll::subscribed, "subscribed"}}};
@@ -94,7 +101,7 @@ struct Map {
   Connection connection;
   Polling polling;
   Limits limits;
-  Span<const Point> points;  ///< sorted as canonical_less() says
+  Span<const Point> points;  ///< sorted as canonical_less() (fingerprint.hpp) says
   Span<const SimWire> sim;
   std::uint64_t fingerprint = 0;
   std::string_view text;       ///< the file as it was read, UTF-8: what a node serves by FC 20
@@ -108,10 +115,10 @@ struct Map {
 };
 
 /// The point of that name, or nullptr.
-const Point* find(const Map& map, std::string_view name);
-
-/// The order of the fingerprint: table, wire address, part of the register (whole, high, low, bit 0 … 15),
-/// name.
-bool canonical_less(const Point& a, const Point& b);
+constexpr const Point* find(const Map& map, std::string_view name) {
+  for (const Point& point : map.points)
+    if (point.name == name) return &point;
+  return nullptr;
+}
 
 }  // namespace coupler

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Hosts and networks as a map writes them: names, IP addresses, ranges of addresses.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
 #include <tl/expected.hpp>
 
 namespace coupler {
@@ -27,7 +29,7 @@ struct Network {
 };
 
 struct NetworkError {
-  std::string what;  ///< "is …", to follow the text
+  std::string what;  ///< "is not an IP address", "has a port": a predicate for the text
   std::string remedy;
 };
 
@@ -37,5 +39,9 @@ tl::expected<Network, NetworkError> parse_network(std::string_view text);
 
 /// One address: "10.0.0.7", "fd00::7", or with the interface that a link-local one is of, "fe80::7%eth0".
 bool is_ip_address(std::string_view text);
+
+/// A host name (RFC 1123, and '_') or an IP address, as a map's `address` is. The result is a part of the
+/// text: without the brackets that an IPv6 address may have.
+tl::expected<std::string_view, NetworkError> parse_host(std::string_view text);
 
 }  // namespace coupler

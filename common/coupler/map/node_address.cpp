@@ -7,15 +7,15 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/host.hpp"
+#include "coupler/map/network.hpp"
 
 namespace coupler {
 namespace {
 
 constexpr std::string_view scheme = "tcp://";
 
-tl::unexpected<NodeAddressError> wrong(std::string what) {
-  return tl::unexpected<NodeAddressError>(
+tl::unexpected<NetworkError> wrong(std::string what) {
+  return tl::unexpected<NetworkError>(
       {std::move(what), "write tcp://HOST[:PORT][/UNIT], as in tcp://192.168.1.17:502/1"});
 }
 
@@ -50,9 +50,9 @@ std::string node_argument(const std::string& argument) {
   return names_a_node(argument) ? argument : "tcp://" + argument;
 }
 
-tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view argument,
-                                                               const Connection& otherwise) {
-  if (!names_a_node(argument)) return wrong("a node begins with tcp://");
+tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argument,
+                                                           const Connection& otherwise) {
+  if (!names_a_node(argument)) return wrong("the address of a node begins with tcp://");
   NodeAddress node{{}, otherwise.port, otherwise.unit};
   std::string_view rest = argument.substr(scheme.size());
   if (const auto unit = take_behind(rest, '/'); unit && !unit->empty()) {
@@ -67,14 +67,14 @@ tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view 
     node.port = static_cast<std::uint16_t>(*value);
   }
   if (!bracketed) node.host = rest;
-  if (bracketed && !rest.empty()) return wrong("behind ']' a port follows, or nothing");
+  if (bracketed && !rest.empty()) return wrong("after ']' only a port may follow");
   if (!bracketed && node.host.find(':') != std::string_view::npos)
-    return wrong("an IPv6 address stands in brackets: tcp://[fe80::1]:502");
+    return wrong("an IPv6 address must be in brackets: tcp://[fe80::1]:502");
   if (node.host.empty()) return wrong("there is no host");
   const std::string_view written =
       bracketed ? std::string_view(node.host.data() - 1, node.host.size() + 2) : node.host;
   if (const auto host = parse_host(written); !host)
-    return tl::unexpected<NodeAddressError>(
+    return tl::unexpected<NetworkError>(
         {fmt::format("the host '{}' {}", written, host.error().what), host.error().remedy});
   return node;
 }

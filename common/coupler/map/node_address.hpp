@@ -9,6 +9,7 @@
 #include <tl/expected.hpp>
 
 #include "coupler/map/map.hpp"
+#include "coupler/map/network.hpp"
 
 namespace coupler {
 
@@ -19,11 +20,6 @@ struct NodeAddress {
   std::uint8_t unit = Connection{}.unit;
 };
 
-struct NodeAddressError {
-  std::string what;
-  std::string remedy;
-};
-
 /// The argument means a node, well written or not.
 constexpr bool names_a_node(std::string_view argument) { return argument.substr(0, 6) == "tcp://"; }
 
@@ -32,8 +28,8 @@ std::string node_argument(const std::string& argument);
 
 /// "tcp://10.0.0.7", "tcp://cell:1502/3", "tcp://[fe80::1]:502". A port or unit that is not given is
 /// `otherwise`'s.
-tl::expected<NodeAddress, NodeAddressError> parse_node_address(std::string_view argument,
-                                                               const Connection& otherwise = {});
+tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argument,
+                                                           const Connection& otherwise = {});
 
 /// The other way round, everything given: "tcp://cell:1502/3".
 std::string node_address_text(const Connection& connection);

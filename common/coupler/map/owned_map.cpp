@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "coupler/map/crc32.hpp"
 #include "coupler/map/fingerprint.hpp"
 
 namespace coupler {

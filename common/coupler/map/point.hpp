@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -9,14 +10,62 @@
 #include "coupler/base/span.hpp"
 #include "coupler/codec/format.hpp"
 #include "coupler/codec/scale.hpp"
-#include "coupler/map/channel.hpp"
-#include "coupler/map/edge.hpp"
-#include "coupler/map/host_options.hpp"
-#include "coupler/map/line.hpp"
+#include "coupler/map/hardware.hpp"
 #include "coupler/map/table.hpp"
 #include "coupler/modbus/range.hpp"
 
 namespace coupler {
+
+/// How the host treats one point. It does not concern the coupler, so it is not in the fingerprint.
+struct HostOptions {
+  enum class Publish : std::uint8_t { always, on_change };
+  /// Which function codes write it.
+  enum class WriteFunction : std::uint8_t {
+    automatic,  ///< 5 or 6 for one address, 15 or 16 for several
+    single,     ///< 5 or 6 only: never merged with its neighbours
+    multiple    ///< 15 or 16, also for one address
+  };
+  /// What a new value does to values of the same point that still wait to be sent.
+  enum class WriteQueue : std::uint8_t {
+    latest,  ///< replaces one that is last in the queue
+    every    ///< every value is sent, by itself
+  };
+  /// After so long without a message the value is written.
+  struct Deadman {
+    std::chrono::milliseconds timeout{0};  ///< 0: none
+    Span<const std::uint16_t> value{};     ///< as Point::initial
+
+    constexpr bool present() const { return timeout.count() > 0; }
+  };
+
+  double rate = 0;  ///< Hz; 0: the map's
+  Publish publish = Publish::always;
+  double deadband = 0;  ///< with on_change: published when it differs from the last by more
+  std::chrono::milliseconds max_interval{
+      0};  ///< with on_change: published at least so often; 0: never for that
+  bool latch = false;
+  std::uint32_t queue_size = 10;  ///< of the topic; its subscription to writes holds ten times as many
+  WriteFunction write_function = WriteFunction::automatic;
+  WriteQueue write_queue = WriteQueue::latest;
+  bool verify_write = false;  ///< read back after a write
+  Deadman deadman{};
+};
+
+constexpr Enumeration<HostOptions::Publish, 2> enumeration(HostOptions::Publish) {
+  using Publish = HostOptions::Publish;
+  return {"HostOptions::Publish", {{Publish::always, "always"}, {Publish::on_change, "on_change"}}};
+}
+constexpr Enumeration<HostOptions::WriteFunction, 3> enumeration(HostOptions::WriteFunction) {
+  using Function = HostOptions::WriteFunction;
+  return {"HostOptions::WriteFunction",
+          {{Function::automatic, "automatic", ""},
+           {Function::single, "single"},
+           {Function::multiple, "multiple"}}};
+}
+constexpr Enumeration<HostOptions::WriteQueue, 2> enumeration(HostOptions::WriteQueue) {
+  using Queue = HostOptions::WriteQueue;
+  return {"HostOptions::WriteQueue", {{Queue::latest, "latest"}, {Queue::every, "every"}}};
+}
 
 /// What the client may do with a point.
 enum class Access : std::uint8_t { read, write, read_write };
@@ -28,7 +77,7 @@ constexpr Enumeration<Access, 3> enumeration(Access) {
 struct Point {
   std::string_view name;  ///< a valid ROS name, unique in the map
   Table table = Table::coils;
-  std::uint16_t address = 0;  ///< on the wire
+  std::uint16_t address = 0;  ///< zero-based
   codec::Format format;
   Access access = Access::read;
   /// The value at start: range(point).count() registers as they stand on the wire, the bits of other points
@@ -69,15 +118,15 @@ constexpr bool is_analogue(const Point& point) { return point.iio.present() || p
 constexpr bool is_readable(const Point& point) { return point.access != Access::write; }
 constexpr bool is_writable(const Point& point) { return point.access != Access::read; }
 
-/// The node has something behind it: a line, a channel, or an input whose edges it shows.
+/// The node has hardware behind it: a line, a channel, or an input whose edges it shows.
 constexpr bool has_hardware(const Point& point) {
   return point.line.present() || is_analogue(point) || point.counter.present() || point.latched.present();
 }
 
-/// What a client writes goes to the code of the firmware, where there is some; otherwise it is memory.
+/// What a client writes goes to the firmware's code if there is any, otherwise into memory.
 constexpr bool is_hooked_output(const Point& point) { return is_writable(point) && !has_hardware(point); }
 
-/// Its value may come from there.
+/// The firmware's code may set its value.
 constexpr bool is_set_by_firmware(const Point& point) { return is_readable(point) && !has_hardware(point); }
 
 /// Shares its register with others. Bits of the bit tables share nothing.

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "coupler/modbus/function.hpp"
 #include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::modbus {
 namespace {
@@ -13,6 +13,7 @@ namespace {
 using Access = ReadDeviceIdentification::Access;
 using Objects = Span<const IdentificationObject>;
 
+constexpr auto function = static_cast<std::uint8_t>(Function::encapsulated_interface);
 constexpr std::size_t header_size = 7;
 constexpr std::uint8_t last_basic = 2;
 constexpr std::uint8_t last_regular = 0x7F;
@@ -69,7 +70,7 @@ tl::expected<std::size_t, Exception> reply_device_identification(ReadDeviceIdent
     rest = rest.from(1);
     ++count;
   }
-  pdu[0] = static_cast<std::uint8_t>(Function::encapsulated_interface);
+  pdu[0] = function;
   pdu[1] = mei_device_identification;
   pdu[2] = static_cast<std::uint8_t>(wanted.access);
   pdu[3] = objects.back().id > last_regular ? is_extended : is_regular;
@@ -77,6 +78,28 @@ tl::expected<std::size_t, Exception> reply_device_identification(ReadDeviceIdent
   pdu[5] = rest.empty() ? 0x00 : rest.front().id;
   pdu[6] = count;
   return static_cast<std::size_t>(at - pdu.data());
+}
+
+std::array<std::uint8_t, 4> build_device_identification(ReadDeviceIdentification wanted) {
+  return {function, mei_device_identification, static_cast<std::uint8_t>(wanted.access), wanted.object};
+}
+
+tl::expected<IdentificationReply, ReplyError> take_device_identification(Bytes reply,
+                                                                         Span<IdentificationObject> objects) {
+  if (reply.size() < header_size || reply[0] != function || reply[1] != mei_device_identification)
+    return tl::unexpected(reply_error(function, reply));
+  IdentificationReply taken;
+  taken.count = std::min<std::size_t>(reply[6], objects.size());
+  taken.more = reply[4] != 0;
+  taken.next = reply[5];
+  Bytes rest = reply.from(header_size);
+  for (std::size_t i = 0; i < taken.count; ++i) {
+    if (rest.size() < 2 || rest.size() < 2U + rest[1]) return tl::unexpected(ReplyError{});
+    const std::size_t size = rest[1];
+    objects[i] = {rest[0], {reinterpret_cast<const char*>(rest.data()) + 2, size}};
+    rest = rest.from(2 + size);
+  }
+  return taken;
 }
 
 }  // namespace coupler::modbus

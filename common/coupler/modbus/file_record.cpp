@@ -3,8 +3,8 @@
 
 #include <cassert>
 
-#include "coupler/modbus/function.hpp"
 #include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::modbus {
 namespace {
@@ -30,15 +30,12 @@ std::size_t build_file_request(FileRecord wanted, Span<std::uint8_t> pdu) {
   return file_request_size;
 }
 
-tl::expected<void, Refused> parse_file_reply(Bytes pdu, Span<std::uint16_t> registers) {
-  if (pdu.size() == 2 && pdu[0] == (function | exception_bit))
-    return tl::unexpected(Refused{static_cast<Exception>(pdu[1])});
-
+tl::expected<void, ReplyError> parse_file_reply(Bytes pdu, Span<std::uint16_t> registers) {
   // function, data length, then the group: its length, reference type, registers
   const std::size_t data = 2 * registers.size();
   if (pdu.size() != 4 + data || pdu[0] != function || pdu[1] != 2 + data || pdu[2] != 1 + data ||
       pdu[3] != reference_type)
-    return tl::unexpected(Refused{});
+    return tl::unexpected(reply_error(function, pdu));
   for (std::size_t i = 0; i < registers.size(); ++i) registers[i] = get_u16(&pdu[4 + 2 * i]);
   return {};
 }

@@ -8,8 +8,7 @@
 #include <tl/expected.hpp>
 
 #include "coupler/base/span.hpp"
-#include "coupler/modbus/bytes.hpp"
-#include "coupler/modbus/exception.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::modbus {
 
@@ -29,7 +28,7 @@ constexpr std::size_t file_request_size = 9;
 std::size_t build_file_request(FileRecord wanted, Span<std::uint8_t> pdu);
 
 /// Takes the registers of the one group out of a reply PDU; it must hold exactly `registers.size()` of them.
-tl::expected<void, Refused> parse_file_reply(Bytes pdu, Span<std::uint16_t> registers);
+tl::expected<void, ReplyError> parse_file_reply(Bytes pdu, Span<std::uint16_t> registers);
 
 // The server's side.
 

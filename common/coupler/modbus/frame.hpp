@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "coupler/base/span.hpp"
-#include "coupler/modbus/bytes.hpp"
 #include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::modbus {
 

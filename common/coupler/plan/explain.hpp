@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan in the words of the field and of the map's keys.
+// The plan in words: those of Modbus and of the map's keys.
 #pragma once
 
 #include <string>

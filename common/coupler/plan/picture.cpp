@@ -9,7 +9,7 @@
 
 #include "coupler/plan/explain.hpp"
 #include "coupler/plan/picture_layout.hpp"
-#include "coupler/plan/split.hpp"
+#include "coupler/plan/read_span.hpp"
 
 namespace coupler::plan {
 namespace {

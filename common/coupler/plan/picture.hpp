@@ -10,7 +10,7 @@ namespace coupler::plan {
 
 struct PictureOptions {
   bool every_table = false;  ///< those without points too
-  std::string_view link{};   ///< "#point-": each point is a link to this and its name; empty: none is
+  std::string_view link{};   ///< "#point-": each point links to this and its name; empty: no links
 };
 
 /// The address spaces as an SVG image that needs nothing else: points, the requests that read them, the holes

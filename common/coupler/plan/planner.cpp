@@ -133,7 +133,8 @@ std::optional<Reason> Planner::why_not_across(Table table, Range hole) const {
   return std::nullopt;
 }
 
-/// Nothing more of the table is wanted: is it that the next point would have been joined, but for its rate?
+/// The span is the last one wanted of its table. Would the next point have been joined if its rate were the
+/// same?
 Cut Planner::last_cut(const ReadSpan& span, Span<const Unreadable> refused) const {
   const auto next =
       std::lower_bound(order_.begin(), order_.end(), span, [&](std::uint32_t i, const ReadSpan& s) {
@@ -152,6 +153,32 @@ std::vector<GroupPlan> make_read_plan(const Map& map) {
   std::vector<GroupPlan> plan;
   for (const RateGroup& group : planner.groups()) plan.push_back({group.rate, planner.plan(group.points)});
   return plan;
+}
+
+using modbus::Range;
+
+Intervals::Intervals(std::vector<Range> ranges) {
+  std::sort(ranges.begin(), ranges.end(), [](Range a, Range b) { return a.start() < b.start(); });
+  for (const Range range : ranges) {
+    if (!merged_.empty() && range.start() <= merged_.back().end()) {
+      const std::uint32_t start = merged_.back().start();
+      merged_.back() = Range::of(start, std::max(merged_.back().end(), range.end()) - start);
+    } else {
+      merged_.push_back(range);
+    }
+  }
+}
+
+bool Intervals::covers(Range range) const {
+  const auto next = std::upper_bound(merged_.begin(), merged_.end(), range.start(),
+                                     [](std::uint32_t start, Range r) { return start < r.start(); });
+  return next != merged_.begin() && std::prev(next)->contains(range);
+}
+
+bool Intervals::overlaps(Range range) const {
+  const auto first = std::upper_bound(merged_.begin(), merged_.end(), range.start(),
+                                      [](std::uint32_t start, Range r) { return start < r.end(); });
+  return first != merged_.end() && first->overlaps(range);
 }
 
 }  // namespace coupler::plan

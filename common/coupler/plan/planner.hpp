@@ -7,10 +7,25 @@
 #include <vector>
 
 #include "coupler/map/map.hpp"
-#include "coupler/plan/intervals.hpp"
+#include "coupler/modbus/range.hpp"
 #include "coupler/plan/read_span.hpp"
 
 namespace coupler::plan {
+
+/// A set of addresses of one table.
+class Intervals {
+ public:
+  Intervals() = default;
+  explicit Intervals(std::vector<modbus::Range> ranges);
+
+  /// Every address of `range` is in the set.
+  bool covers(modbus::Range range) const;
+  /// At least one is.
+  bool overlaps(modbus::Range range) const;
+
+ private:
+  std::vector<modbus::Range> merged_;  ///< sorted; none touches the next
+};
 
 /// Points that are read at the same rate.
 struct RateGroup {
@@ -34,7 +49,7 @@ std::optional<NotRead> why_not_read(const Map& map, const Point& point);
 /// Makes the read requests of a map, for all points or for some, few of them: points are joined while they
 /// touch or overlap, or, where unmapped addresses may be read, while fewer than the table's gap lie between
 /// them, and as long as the device's limit allows. Addresses of points that are read at another rate, or not
-/// asked for at the moment, are no unmapped ones. A point is never split. What Map::unreadable names, and
+/// wanted at the moment, do not count as unmapped. A point is never split. What Map::unreadable names, and
 /// points that can only be written, are not read even between others.
 class Planner {
  public:
@@ -48,7 +63,7 @@ class Planner {
   /// not joined to a request that contains one of `refused`.
   std::vector<ReadSpan> plan(Span<const std::uint32_t> points, Span<const Unreadable> refused = {}) const;
 
-  /// Some of the addresses are those of a point that can be read.
+  /// A point that can be read has some of the addresses.
   bool has_points(Table table, modbus::Range range) const { return readable_[index(table)].overlaps(range); }
 
   const Map& map() const { return map_; }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "coupler/map/table.hpp"
+#include "coupler/map/map.hpp"
 #include "coupler/modbus/range.hpp"
 
 namespace coupler::plan {
@@ -22,7 +22,7 @@ struct Cut {
     limit          ///< the request would be longer than the device takes
   };
   Reason reason = Reason::end_of_table;
-  std::optional<std::uint32_t> next{};  ///< index of the point that is not in the request any more
+  std::optional<std::uint32_t> next{};  ///< index of the first point that is not in the request
   std::uint32_t between = 0;            ///< addresses between the request and `next`
 };
 
@@ -33,5 +33,18 @@ struct ReadSpan {
   std::vector<std::uint32_t> points;  ///< indices into Map::points, by address; each lies inside `range`
   Cut end{};
 };
+
+/// The addresses inside a request that no point of it needs.
+std::vector<modbus::Range> holes(const ReadSpan& span, const Map& map);
+
+/// What to try in place of a request that the device rejects.
+struct Split {
+  std::vector<ReadSpan> pieces;         ///< two, or none if the request holds one point only
+  std::optional<modbus::Range> hole{};  ///< the addresses between the pieces, which neither asks for
+};
+
+/// Parts the points of `span` where addresses lie between them that no point of it needs, at the place
+/// nearest to the middle; if there is none, as near to the middle as points that overlap stay together.
+Split split(const ReadSpan& span, const Map& map);
 
 }  // namespace coupler::plan

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/letters.hpp"
-#include "coupler/map/loader/presets.hpp"
+#include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/loader/preset.hpp"
 
 namespace coupler::schema {
 namespace {

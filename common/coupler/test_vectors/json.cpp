@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "coupler/codec/decimal.hpp"
+#include "coupler/codec/value.hpp"
 #include "coupler/codec/text.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/test_vectors/cases.hpp"

@@ -73,14 +73,14 @@ int main(int argc, char** argv) {
     cycles.push_back(cycle);
     small.push_back(reader.read(first.table, modbus::Range::of(first.range.start(), 1)));
   }
-  plan::Link link;
-  link.round_trip = median(small);
-  link.byte_time = Nanoseconds(0);
-  const plan::Cost cost = cost_of(group, link);
+  plan::NetworkTiming timing;
+  timing.round_trip = median(small);
+  timing.byte_time = Nanoseconds(0);
+  const plan::Cost cost = cost_of(group, timing);
   const Nanoseconds measured = median(cycles);
   fmt::print(
       "{} requests, {} registers, {} bits; round trip {:.1f} µs: predicted {:.0f} µs, measured {:.0f} µs, "
       "ratio {:.2f}\n",
-      cost.requests, cost.registers, cost.bits, microseconds(link.round_trip), microseconds(cost.time),
+      cost.requests, cost.registers, cost.bits, microseconds(timing.round_trip), microseconds(cost.time),
       microseconds(measured), microseconds(measured) / microseconds(cost.time));
 }

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "coupler/map/owned_map.hpp"
-#include "coupler/plan/strategy.hpp"
+#include "coupler/plan/cost.hpp"
 
 namespace {
 

@@ -228,7 +228,7 @@ class Lock(Cli):
         self.file("cell.yaml.lock", "coupler lock 1\ncoils 0 lamp\n=======\ncoils 0 horn\n")
         done = self.coupler("check", self.file("cell.yaml", OPEN))
         self.assertEqual((done.returncode, done.stdout), (1, ""))
-        self.assertRegex(done.stderr, r"(?m)^cell\.yaml\.lock:3:1: error: a merge left its marker")
+        self.assertRegex(done.stderr, r"(?m)^cell\.yaml\.lock:3:1: error: '<<<<<<<' is the marker of a merge conflict\")
         self.assertRegex(done.stderr, r"(?m)^cell\.yaml\.lock:4:1: error: .*'horn' overlaps .*'lamp' \(line 2\)")
 
     def test_that_cannot_be_read_is_told(self):

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "coupler/map/loader/document.hpp"
+#include "coupler/map/loader/problems.hpp"
 
 namespace coupler::formats {
 namespace {

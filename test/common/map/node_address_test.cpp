@@ -58,7 +58,7 @@ TEST(NodeAddress, What_is_wrong_is_said_with_a_remedy) {
       {"tcp://", "there is no host"},       {"tcp://:502", "there is no host"},
       {"tcp://cell:0", "the port '0'"},     {"tcp://cell:65536", "the port '65536'"},
       {"tcp://cell:", "the port ''"},       {"tcp://cell/256", "the unit id '256'"},
-      {"tcp://cell/x", "the unit id 'x'"},  {"tcp://[::1]502", "behind ']'"},
+      {"tcp://cell/x", "the unit id 'x'"},  {"tcp://[::1]502", "after ']'"},
       {"udp://cell", "begins with tcp://"}, {"tcp://cell:5 02", "the port '5 02'"},
   };
   for (const auto& [argument, what] : cases) {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "coupler/map/crc32.hpp"
+#include "coupler/map/fingerprint.hpp"
 #include "test/common/map/sample_points.hpp"
 
 namespace coupler {

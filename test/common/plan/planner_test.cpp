@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/plan/planner.hpp"
-
-#include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <string>
 
+#include <fmt/format.h>
+
+#include "coupler/plan/planner.hpp"
 #include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 
@@ -241,6 +242,35 @@ TEST(Planner, A_refused_range_keeps_points_apart_but_leaves_none_out) {
   const auto spans = planner.plan(planner.groups().front().points, refused);
   ASSERT_EQ(spans.size(), 3U);
   EXPECT_EQ(spans[1].range, modbus::Range::of(1, 1));
+}
+
+}  // namespace
+
+namespace {
+
+using modbus::Range;
+
+const Intervals set({Range::of(10, 5), Range::of(15, 5), Range::of(12, 1), Range::of(30, 1)});
+
+TEST(Intervals, What_touches_or_overlaps_is_one) { EXPECT_TRUE(set.covers(Range::of(10, 10))); }
+
+TEST(Intervals, A_range_is_covered_only_as_a_whole) {
+  EXPECT_FALSE(set.covers(Range::of(9, 2)));
+  EXPECT_FALSE(set.covers(Range::of(19, 2)));
+  EXPECT_FALSE(set.covers(Range::of(18, 13)));
+  EXPECT_TRUE(set.covers(Range::of(30, 1)));
+}
+
+TEST(Intervals, One_common_address_is_an_overlap) {
+  EXPECT_TRUE(set.overlaps(Range::of(0, 11)));
+  EXPECT_TRUE(set.overlaps(Range::of(19, 5)));
+  EXPECT_FALSE(set.overlaps(Range::of(20, 10)));
+  EXPECT_FALSE(set.overlaps(Range::of(31, 100)));
+}
+
+TEST(Intervals, The_empty_set_has_nothing) {
+  EXPECT_FALSE(Intervals().covers(Range::of(0, 1)));
+  EXPECT_FALSE(Intervals().overlaps(Range::of(0, 65536)));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "coupler/map/identity.hpp"
-#include "coupler/modbus/request.hpp"
+#include "coupler/modbus/server.hpp"
 
 namespace coupler::host::test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "coupler/modbus/request.hpp"
+#include "coupler/modbus/server.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_device.hpp"
 

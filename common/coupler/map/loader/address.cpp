@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/letters.hpp"
 #include "coupler/map/loader/problems.hpp"
 #include "coupler/map/loader/scalar.hpp"
 
@@ -33,9 +32,9 @@ tl::expected<std::uint16_t, AddressError> parse_zero_based(std::string_view text
   const auto number = parse_unsigned(text);
   if (number && *number < addresses) return static_cast<std::uint16_t>(*number);
   return wrong(
-      fmt::format("the address is a number from 0 to 65535, not {}", shown(text)),
-      number ? "write the address on the wire, or 'addressing: modicon' at the top if it is Modicon's number"
-             : "write the address on the wire");
+      fmt::format("the address must be a number from 0 to 65535, not {}", shown(text)),
+      number ? "write the zero-based address, or 'addressing: modicon' at the top if it is a Modicon address"
+             : "write the zero-based address");
 }
 
 tl::expected<std::uint16_t, AddressError> parse_modicon(std::string_view text, Table table) {
@@ -50,7 +49,7 @@ tl::expected<std::uint16_t, AddressError> parse_modicon(std::string_view text, T
         fmt::format("write it in six digits, '{}' and the number from 00001", prefix_of(table)));
   const auto number = parse_unsigned(text.substr(prefixed ? 1 : 0));
   if (*number >= 1 && *number <= addresses) return static_cast<std::uint16_t>(*number - 1);
-  return wrong(fmt::format("Modicon's numbers go from 1 to 65536, not {}", *number),
+  return wrong(fmt::format("a Modicon number must be from 1 to 65536, not {}", *number),
                "write 1 for the first address, or 'addressing: zero_based' at the top");
 }
 

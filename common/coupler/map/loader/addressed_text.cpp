@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/map/loader/addressed_text.hpp"
-
 #include <algorithm>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/json_comments.hpp"
+#include "coupler/map/loader/placement.hpp"
 #include "coupler/map/loader/source_text.hpp"
-#include "coupler/map/loader/syntax.hpp"
 
 namespace coupler::loader {
 namespace {

@@ -2,16 +2,40 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
-
-#include "coupler/map/loader/entry.hpp"
-#include "coupler/map/loader/problems.hpp"
+#include <vector>
 
 namespace coupler::loader {
 
+/// A place in the file. Lines and columns count from 1, columns in bytes.
+struct Position {
+  int line = 0;
+  int column = 0;
+};
+
+/// One value of the file, with its key and everything below it. Duplicate keys are kept.
+struct Entry {
+  enum class Kind { null, scalar, list, map };
+
+  std::string key;  ///< if it stands in a map
+  Position key_at;
+  Kind kind = Kind::null;
+  /// Of the value. The key's for a block below the key, and for nothing that is not written as '~' or 'null'.
+  Position at;
+  std::string text;     ///< scalar
+  bool quoted = false;  ///< a scalar that can only be text
+  std::vector<Entry> children;
+};
+
+/// The child of that key, or nullptr.
+const Entry* child(const Entry& entry, std::string_view key);
+
+class Problems;
+
 /// The tree of a YAML or JSON text; nullopt, with the first syntax error in `problems`, if it is neither.
-/// What YAML allows and a map has no use for is a syntax error too: several documents, tags, aliases, merge
-/// keys, keys that are not text.
+/// Several documents, tags, aliases, merge keys and keys that are not text are syntax errors, too: YAML
+/// allows them, a map does not need them.
 std::optional<Entry> parse_document(std::string_view text, Problems& problems);
 
 }  // namespace coupler::loader

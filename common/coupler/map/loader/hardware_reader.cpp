@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/map/loader/point_keys.hpp"
+#include "coupler/map/loader/point_reader.hpp"
 
 #include <array>
 
@@ -10,21 +10,21 @@
 namespace coupler::loader {
 namespace {
 
-/// The options of a line that its table has; beside `line` and inside it they are the same.
+/// The options of a line in this table. They may stand beside `line` or inside it.
 std::vector<std::string_view> option_keys(Table table) {
   return {"active_low", "bias", table == Table::coils ? "drive" : "debounce"};
 }
 
-void refuse_without_line(const Reader& point, Table table, Context& context) {
+void refuse_without_line(const Reader& point, Table table, const Context& context) {
   for (const std::string_view key : option_keys(table))
     if (const Entry* entry = point.find(key))
       context.problems.error(entry->key_at,
-                             fmt::format("'{}' is for a point with a GPIO line, this one has none", key),
+                             fmt::format("'{}' is for a point with a GPIO line, but this one has none", key),
                              "add 'line: {chip: gpiochip0, offset: 17}', or remove it");
 }
 
 /// One word for all of an array's coils, or a list.
-void read_safe_bits(const Reader& reader, DraftPoint& draft, Context& context) {
+void read_safe_bits(const Reader& reader, DraftPoint& draft, const Context& context) {
   Point& point = draft.point;
   const Entry* entry = reader.find("safe");
   if (entry == nullptr || entry->kind != Entry::Kind::list || point.count == 1)
@@ -34,10 +34,10 @@ void read_safe_bits(const Reader& reader, DraftPoint& draft, Context& context) {
   point.safe_value = read_value("safe", *entry, point, context);
 }
 
-bool check_place(const Reader& reader, const Entry& entry, Context& context) {
+bool check_place(const Reader& reader, const Entry& entry, const Context& context) {
   const bool by_offset = reader.has("chip") && reader.has("offset");
   if (by_offset == reader.has("name") || reader.has("chip") != reader.has("offset")) {
-    context.problems.error(entry.key_at, "'line' has either 'chip' and 'offset' or 'name'",
+    context.problems.error(entry.key_at, "'line' needs either 'chip' and 'offset' or 'name'",
                            "write it as in 'line: {chip: gpiochip0, offset: 17}' or 'line: GPIO17'");
     return false;
   }
@@ -48,9 +48,9 @@ bool check_place(const Reader& reader, const Entry& entry, Context& context) {
   return true;
 }
 
-/// The reader of a channel that has all keys which it must have.
+/// The reader of a channel. Nothing if it lacks a required key, which is a problem.
 std::optional<Reader> channel(const Reader& point, std::string_view key, std::string_view expected,
-                              DraftPoint& draft, Context& context) {
+                              DraftPoint& draft, const Context& context) {
   const Entry* entry = point.find(key);
   if (entry == nullptr) return std::nullopt;
   draft.line_at = entry->at;
@@ -65,7 +65,7 @@ void check_name(const Reader& reader, std::string_view key, std::string_view nam
   if (name.empty()) reader.wrong(key, "a name");
 }
 
-void read_iio(const Reader& point, DraftPoint& draft, Context& context) {
+void read_iio(const Reader& point, DraftPoint& draft, const Context& context) {
   const auto reader = channel(point, "iio", "a map of 'device' and 'channel'", draft, context);
   if (!reader) return;
   Iio& iio = draft.point.iio;
@@ -74,7 +74,7 @@ void read_iio(const Reader& point, DraftPoint& draft, Context& context) {
   check_name(*reader, "channel", iio.channel);
 }
 
-void read_pwm(const Reader& point, DraftPoint& draft, Context& context) {
+void read_pwm(const Reader& point, DraftPoint& draft, const Context& context) {
   const auto reader = channel(point, "pwm", "a map of 'chip', 'channel' and 'period'", draft, context);
   if (!reader) return;
   Pwm& pwm = draft.point.pwm;
@@ -82,14 +82,14 @@ void read_pwm(const Reader& point, DraftPoint& draft, Context& context) {
   check_name(*reader, "chip", pwm.chip);
 }
 
-void check_type(const Entry& channel, const Point& point, Context& context) {
+void check_type(const Entry& channel, const Point& point, const Context& context) {
   if (codec::is_scalable(point.format.type) && !codec::is_partial(point.format)) return;
   context.problems.error(channel.key_at,
                          fmt::format("'{}' does not apply to {}", channel.key, to_string(point.format.type)),
                          "use a type that is a number in registers of its own: INT to ULINT, REAL or LREAL");
 }
 
-void read_safe_value(const Reader& reader, DraftPoint& draft, Context& context) {
+void read_safe_value(const Reader& reader, DraftPoint& draft, const Context& context) {
   const Entry* entry = reader.find("safe");
   if (entry == nullptr) return;
   Point& point = draft.point;
@@ -104,7 +104,7 @@ void read_safe_value(const Reader& reader, DraftPoint& draft, Context& context) 
 
 }  // namespace
 
-void read_line(const Reader& point, DraftPoint& draft, Context& context) {
+void read_line(const Reader& point, DraftPoint& draft, const Context& context) {
   const Table table = draft.point.table;
   const Entry* entry = point.find("line");
   if (table == Table::coils) read_safe_bits(point, draft, context);
@@ -129,7 +129,7 @@ void read_line(const Reader& point, DraftPoint& draft, Context& context) {
   }
 }
 
-void read_channel(const Reader& reader, DraftPoint& draft, Context& context) {
+void read_channel(const Reader& reader, DraftPoint& draft, const Context& context) {
   const bool holding = draft.point.table == Table::holding_registers;
   read_iio(reader, draft, context);
   if (holding) read_pwm(reader, draft, context);

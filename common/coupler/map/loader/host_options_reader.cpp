@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/map/loader/host_options_reader.hpp"
+#include "coupler/map/loader/point_reader.hpp"
 
 #include <fmt/format.h>
-
-#include "coupler/map/loader/point_keys.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -18,12 +16,12 @@ struct Complaint {
   std::string remedy;
 };
 
-Deadman read_deadman(const Entry& entry, const Point& point, Context& context) {
+Deadman read_deadman(const Entry& entry, const Point& point, const Context& context) {
   Deadman deadman;
   const Reader reader(entry, Section::deadman, context);
   const Entry* value = reader.find("value");
   if (!reader.missing().empty()) {
-    context.problems.error(entry.key_at, "'deadman' has a 'timeout' and a 'value'",
+    context.problems.error(entry.key_at, "'deadman' needs a 'timeout' and a 'value'",
                            "write it as in 'deadman: {timeout: 1s, value: 0}'");
     return deadman;
   }
@@ -42,7 +40,7 @@ std::vector<Complaint> complaints(const Reader& reader, const Point& point) {
   };
   const auto refuse_about = [&](About about, std::string_view done, std::string_view access) {
     const auto what = [&](std::string_view key) {
-      return fmt::format("'{}' is for a point that is {}, this one has 'access: {}'", key, done, access);
+      return fmt::format("'{}' is for a point that is {}, but this one has 'access: {}'", key, done, access);
     };
     for_each_field(point.host, [&](const auto& field, const auto&) {
       const bool known = find_key(field.key, section_of(point.table)) != nullptr;
@@ -52,15 +50,15 @@ std::vector<Complaint> complaints(const Reader& reader, const Point& point) {
   };
   if (!is_readable(point)) refuse_about(About::reading, "read", "write");
   if (!is_readable(point) && point.host.verify_write)
-    refuse("verify_write", "'verify_write' reads the point back, this one has 'access: write'",
+    refuse("verify_write", "'verify_write' reads the point back, but this one has 'access: write'",
            "remove one of the two");
   if (!on_change)
-    refuse("max_interval", "'max_interval' is for 'publish: on_change'", "add it, or remove this");
+    refuse("max_interval", "'max_interval' needs 'publish: on_change'", "add that, or remove 'max_interval'");
   if (is_writable(point.table) && !is_writable(point)) refuse_about(About::writing, "written", "read");
   return found;
 }
 
-void check_deadband(const Reader& reader, const Point& point, Context& context) {
+void check_deadband(const Reader& reader, const Point& point, const Context& context) {
   const Entry* deadband = holds_bits(point.table) ? nullptr : reader.find("deadband");
   if (deadband == nullptr || !is_readable(point)) return;
   if (!codec::is_scalable(point.format.type))
@@ -68,12 +66,12 @@ void check_deadband(const Reader& reader, const Point& point, Context& context) 
                            fmt::format("'deadband' does not apply to {}", to_string(point.format.type)),
                            "remove it; it is for numbers: SINT to ULINT, REAL and LREAL");
   else if (point.host.publish != HostOptions::Publish::on_change)
-    context.problems.error(deadband->key_at, "'deadband' is for 'publish: on_change'",
-                           "add it, or remove this");
+    context.problems.error(deadband->key_at, "'deadband' needs 'publish: on_change'",
+                           "add that, or remove 'deadband'");
 }
 
 /// Function codes 5 and 6 write one address.
-void check_write_function(const Reader& reader, Point& point, Context& context) {
+void check_write_function(const Reader& reader, Point& point, const Context& context) {
   if (point.host.write_function != WriteFunction::single || fits_one_request(point)) return;
   if (const Entry* own = reader.find("write_function"))
     context.problems.error(own->at,
@@ -95,7 +93,7 @@ HostDefaults read_host_defaults(const Reader& top) {
 }
 
 void read_host_options(const Reader& reader, const HostDefaults& defaults, DraftPoint& draft,
-                       Context& context) {
+                       const Context& context) {
   Point& point = draft.point;
   HostOptions& options = point.host;
   options = defaults.options;

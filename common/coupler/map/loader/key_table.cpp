@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "coupler/base/enumeration.hpp"
 #include "coupler/map/loader/address.hpp"
-#include "coupler/map/loader/key_row.hpp"
+#include "coupler/map/loader/keys.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/modbus/limits.hpp"
 
@@ -9,6 +10,42 @@ namespace {
 
 using K = ValueKind;
 using S = Section;
+
+/// A row of the table.
+struct KeyRow : Key {
+  constexpr explicit KeyRow(Key essentials) : Key(essentials) {}
+
+  template <class T>
+  constexpr KeyRow with(T Key::*member, T value) const {
+    KeyRow row = *this;
+    row.*member = value;
+    return row;
+  }
+  constexpr KeyRow within(double from, double to) const {
+    return with(&Key::least, from).with(&Key::most, to);
+  }
+  template <class E>
+  constexpr KeyRow one_of() const {
+    return with(&Key::choices, JoinedWords<E>::text());
+  }
+  constexpr KeyRow or_bits() const { return with(&Key::bits, true); }
+  constexpr KeyRow spells(std::string_view other) const { return with(&Key::same_as, other); }
+  constexpr KeyRow holds(Section section) const { return with(&Key::inside, section); }
+  constexpr KeyRow lists(Section section) const { return holds(section).with(&Key::several, true); }
+  constexpr KeyRow needed() const { return with(&Key::required, true); }
+  constexpr KeyRow needed_with(std::string_view other) const { return with(&Key::required_with, other); }
+  constexpr KeyRow only_for(std::string_view point_types) const { return with(&Key::types, point_types); }
+  constexpr KeyRow otherwise(std::string_view value) const { return with(&Key::fallback, value); }
+};
+
+constexpr KeyRow inherited(std::string_view name, S sections, K kind, std::string_view example,
+                           std::string_view summary) {
+  return KeyRow({name, sections, kind, Owner::inherited, example, summary});
+}
+constexpr KeyRow project(std::string_view name, S sections, K kind, std::string_view example,
+                         std::string_view summary) {
+  return KeyRow({name, sections, kind, Owner::project, example, summary});
+}
 
 constexpr S bits = S::coil | S::discrete_input;
 constexpr S registers = S::input_register | S::holding_register;
@@ -24,36 +61,36 @@ constexpr double most_double = std::numeric_limits<double>::max();
 
 constexpr Key keys[] = {
     // The map: the keys of ros-modbus-device-driver.
-    origin("name", S::map, K::ros_name, "press", "namespace of the topics").needed(),
-    origin("address", S::map, K::host, "192.168.0.10", "host name or IP address of the coupler"),
-    origin("port", S::map, K::integer, "502", "TCP port").otherwise("502").within(1, 65535),
-    origin("unit", S::map, K::integer, "1", "unit id").otherwise("1").within(0, 255),
-    origin("timeout", S::map, K::seconds, "3", "longest wait for a reply")
+    inherited("name", S::map, K::ros_name, "press", "namespace of the topics").needed(),
+    inherited("address", S::map, K::host, "192.168.0.10", "host name or IP address of the coupler"),
+    inherited("port", S::map, K::integer, "502", "TCP port").otherwise("502").within(1, 65535),
+    inherited("unit", S::map, K::integer, "1", "unit id").otherwise("1").within(0, 255),
+    inherited("timeout", S::map, K::seconds, "3", "longest wait for a reply")
         .otherwise("3")
         .within(0.001, most_seconds),
-    origin("rate", S::map, K::number, "10", "polling rate in Hz").otherwise("10").within(0.001, 10000),
-    origin("byteorder_reverse", S::map, K::boolean, "false", "the low byte of a register comes first")
+    inherited("rate", S::map, K::number, "10", "polling rate in Hz").otherwise("10").within(0.001, 10000),
+    inherited("byteorder_reverse", S::map, K::boolean, "false", "the low byte of a register comes first")
         .otherwise("false"),
-    origin("wordorder_reverse", S::map, K::boolean, "false",
-           "the most significant register of a value comes first")
+    inherited("wordorder_reverse", S::map, K::boolean, "false",
+              "the most significant register of a value comes first")
         .otherwise("false"),
-    origin("discrete_read_continuous", S::map, K::boolean, "false",
-           "unmapped bits between points may be read")
+    inherited("discrete_read_continuous", S::map, K::boolean, "false",
+              "unmapped bits between points may be read")
         .otherwise("false"),
-    origin("discrete_read_separation_gap", S::map, K::integer, "64", "gap from which bits are read apart")
+    inherited("discrete_read_separation_gap", S::map, K::integer, "64", "gap from which bits are read apart")
         .otherwise("64")
         .within(0, most_address),
-    origin("registers_read_continuous", S::map, K::boolean, "false",
-           "unmapped registers between points may be read")
+    inherited("registers_read_continuous", S::map, K::boolean, "false",
+              "unmapped registers between points may be read")
         .otherwise("false"),
-    origin("registers_read_separation_gap", S::map, K::integer, "12",
-           "gap from which registers are read apart")
+    inherited("registers_read_separation_gap", S::map, K::integer, "12",
+              "gap from which registers are read apart")
         .otherwise("12")
         .within(0, most_address),
-    origin("register_read_separation_gap", S::map, K::integer, "12", "another spelling")
+    inherited("register_read_separation_gap", S::map, K::integer, "12", "another spelling")
         .spells("registers_read_separation_gap")
         .within(0, most_address),
-    origin("mapping", S::map, K::section, "{coils: {valve: 0}}", "the points, by table")
+    inherited("mapping", S::map, K::section, "{coils: {valve: 0}}", "the points, by table")
         .holds(S::mapping)
         .needed(),
     // The map: this project's keys.
@@ -74,32 +111,32 @@ constexpr Key keys[] = {
     project("readback", S::map, K::boolean, "true", "compare a line's level after driving it")
         .otherwise("false"),
     // The tables.
-    origin("coils", S::mapping, K::points, "{valve: 0}", "bits that can be written").holds(S::coil),
-    origin("discrete_inputs", S::mapping, K::points, "{button: 0}", "bits that can be read")
+    inherited("coils", S::mapping, K::points, "{valve: 0}", "bits that can be written").holds(S::coil),
+    inherited("discrete_inputs", S::mapping, K::points, "{button: 0}", "bits that can be read")
         .holds(S::discrete_input),
-    origin("input_registers", S::mapping, K::points, "{weight: {address: 0, type: INT}}",
-           "registers that can be read")
+    inherited("input_registers", S::mapping, K::points, "{weight: {address: 0, type: INT}}",
+              "registers that can be read")
         .holds(S::input_register),
-    origin("holding_registers", S::mapping, K::points, "{speed: {address: 0, type: INT}}",
-           "registers that can be written")
+    inherited("holding_registers", S::mapping, K::points, "{speed: {address: 0, type: INT}}",
+              "registers that can be written")
         .holds(S::holding_register),
     // Points.
-    origin("address", point, K::address, "0", "where the point is in its table"),
-    origin("type", registers, K::choice, "INT", "data type of IEC 61131-3").needed().one_of<codec::Type>(),
-    origin("offset", registers, K::choice, "high", "which byte of the register an 8-bit value is")
+    inherited("address", point, K::address, "0", "where the point is in its table"),
+    inherited("type", registers, K::choice, "INT", "data type of IEC 61131-3").needed().one_of<codec::Type>(),
+    inherited("offset", registers, K::choice, "high", "which byte of the register an 8-bit value is")
         .only_for(byte_types)
         .needed_with("address")
         .one_of<codec::Half>(),
-    origin("length", registers, K::integer, "12", "bytes of a STRING")
+    inherited("length", registers, K::integer, "12", "bytes of a STRING")
         .only_for("STRING")
         .needed()
         .within(1, 2 * modbus::max_read_registers),
-    origin("encoding", registers, K::choice, "utf-8", "how a STRING is encoded")
+    inherited("encoding", registers, K::choice, "utf-8", "how a STRING is encoded")
         .only_for("STRING")
         .otherwise("utf-8")
         .one_of<codec::Encoding>(),
-    origin("ignore_byteorder", registers, K::boolean, "true",
-           "a STRING's first character is in the high byte")
+    inherited("ignore_byteorder", registers, K::boolean, "true",
+              "a STRING's first character is in the high byte")
         .only_for("STRING")
         .otherwise("false"),
     project("order", registers, K::choice, "ABCD",

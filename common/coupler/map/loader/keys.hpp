@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every key that a map may have, as data: the loader checks maps against it, and it describes the format to
-// others.
+// Every key that a map may have, as data: the loader checks maps against it, importers, exporters and the
+// schema take their keys from it.
 #pragma once
 
 #include <cstdint>
@@ -65,10 +65,13 @@ enum class ValueKind : std::uint8_t {
   value,     ///< of the point's type
   list,      ///< of texts
   section,   ///< only what Key::inside says
-  points,    ///< name -> point: a map as Key::inside says; for bits just an address will do
+  points,    ///< name -> point: a map as Key::inside says; for bits just an address is good
 };
 
-enum class Owner : std::uint8_t { origin, project };
+enum class Owner : std::uint8_t {
+  inherited,  ///< a key of ros-modbus-device-driver
+  project
+};
 
 /// A value is of `kind`. If `inside` is not none, it may also be a map with that section's keys, or with
 /// `several` a list of such maps.
@@ -85,7 +88,7 @@ struct Key {
   std::string_view same_as = {};  ///< another spelling of that key
   Section inside = Section::none;
   bool several = false;
-  bool bits = false;                    ///< besides its choices, a list of on and off will do
+  bool bits = false;                    ///< besides its choices, a list of on and off is good
   bool required = false;                ///< where it applies
   std::string_view required_with = {};  ///< not required by itself, but beside that key
   std::string_view types = {};          ///< if not empty, only for points of these types, separated by "|"

@@ -38,19 +38,19 @@ tl::expected<std::string, int> read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return tl::make_unexpected(errno);
   auto text = read_all(in);
-  if (in.bad()) return tl::make_unexpected(EISDIR);  // or another failed read, of which no number is left
+  if (in.bad()) return tl::make_unexpected(EISDIR);  // or another failed read, whose number is lost
   return text;
 }
 
 LoadResult unreadable(const std::string& path, int error, std::string remedy) {
   const std::string what =
-      error == EFBIG ? fmt::format("the file has more than {} MiB, and no map has", max_file_size >> 20)
+      error == EFBIG ? fmt::format("the file has more than {} MiB, but a map may not", max_file_size >> 20)
                      : fmt::format("the file cannot be read: {}", std::strerror(error));
   return {nullptr, {{Diagnostic::Severity::error, path, 0, 0, what, std::move(remedy)}}};
 }
 
-/// The text that a node serves is the same map. Where addresses go is known for texts that somebody would
-/// write; another reading tells about the others.
+/// The text with the addresses, which a node serves, is the same map. It is read again to make sure:
+/// addresses cannot be written into every text.
 void check_filled_in(const Map& map, loader::Position first, loader::Problems& problems) {
   const LoadResult served = load_map_with_lock(map.text, "", LockFile{}, map.name);
   if (served.map != nullptr && served.map->map().fingerprint == map.fingerprint) return;
@@ -68,25 +68,23 @@ LoadResult load(std::string_view text, std::string_view file, LockFile lock, std
   lock::Parsed known;
   const std::string lock_text = lock.text.value_or("");
   if (lock.text) known = lock::parse(*lock.text, lock.path);
-  // The map's own problems are told too; what its points would get beside a broken lock does not matter.
+  // The map's own problems are reported too; which addresses points get beside a broken lock does not matter.
   if (!known.diagnostics.empty()) lock.use = LockUse::renew;
   loader::Placement placement{std::string(file), std::move(lock), std::move(known.lock), {}, {}};
   placement.problems = std::move(known.diagnostics);
 
   loader::Problems problems(file);
   const auto map = OwnedMap::make();
-  loader::Context context{problems, *map};
-  context.name = name;
-  context.served = served;
+  std::optional<loader::MapLayout> layout;
   if (const auto root = loader::parse_document(text, problems))
-    loader::read_map(*root, text, placement, context);
-  if (!problems.has_errors() && context.filled_in.line > 0)
-    check_filled_in(map->map(), context.filled_in, problems);
+    layout = loader::read_map(*root, {text, name, served}, placement, problems, *map);
+  if (layout && layout->first_addressless.line > 0)
+    check_filled_in(map->map(), layout->first_addressless, problems);
   LoadResult result{nullptr, std::move(placement.problems)};
   quote(result.diagnostics, lock_text);
   if (!problems.has_errors() && !has_errors(result.diagnostics)) {
     result.map = map;
-    result.point_lines = std::move(context.point_lines);
+    result.point_lines = std::move(layout->point_lines);
     result.lock = std::move(placement.renewed);
   }
   Diagnostics of_map = std::move(problems).sorted();

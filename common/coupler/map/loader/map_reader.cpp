@@ -7,10 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/addressed_text.hpp"
-#include "coupler/map/loader/map_keys.hpp"
 #include "coupler/map/loader/names.hpp"
-#include "coupler/map/loader/point_keys.hpp"
 #include "coupler/map/loader/point_reader.hpp"
 #include "coupler/map/loader/preset.hpp"
 #include "coupler/map/loader/rules.hpp"
@@ -18,19 +15,32 @@
 namespace coupler::loader {
 namespace {
 
-std::string_view read_name(const Reader& top, const Entry& root, Context& context) {
+std::string_view read_name(const Reader& top, const Entry& root, std::string_view otherwise,
+                           const Context& context) {
   std::string_view name;
   const std::size_t errors = context.problems.errors();
   top.text("name", name);
   if (const Entry* entry = top.find("name")) {
     if (context.problems.errors() == errors) check_map_name(name, entry->at, context);
-  } else if (!context.name.empty()) {
-    name = context.map.keep(std::string(context.name));
+  } else if (!otherwise.empty()) {
+    name = context.map.keep(std::string(otherwise));
     check_map_name(name, root.at, context);
   } else {
     context.problems.error(root.at, "the map has no 'name'", "add 'name: NAME', the namespace of its topics");
   }
   return name;
+}
+
+/// Everything but the points and what depends on them.
+Map read_head(const Reader& top, const Entry& root, std::string_view name, const Context& context) {
+  Map head;
+  head.name = read_name(top, root, name, context);
+  head.connection = read_connection(top, context);
+  head.polling = read_polling(top);
+  head.limits = read_limits(top);
+  head.service = read_service(top, context);
+  top.fields(head);
+  return head;
 }
 
 PointDefaults read_point_defaults(const Reader& top) {
@@ -45,25 +55,19 @@ PointDefaults read_point_defaults(const Reader& top) {
   return defaults;
 }
 
-/// The points of the file and the readers of their options, side by side.
-struct OpenPoints {
-  DraftPoints drafts;
-  std::vector<Reader> options;
-};
-
 struct TableEntry {
   const Entry* entry;
   Table table;
 };
 
-void find_points(const Entry& entry, Table table, std::vector<TableEntry>& found, Context& context) {
+void find_points(const Entry& entry, Table table, std::vector<TableEntry>& found, const Context& context) {
   const std::string expected = fmt::format("'{}' holds points", to_string(table));
   if (!check_map(entry, expected, "write one 'name: ...' a point below it", context)) return;
   for (const Entry& point : entry.children) found.push_back({&point, table});
 }
 
 /// In the order of the file.
-std::vector<TableEntry> find_points(const Reader& top, const Entry& root, Context& context) {
+std::vector<TableEntry> find_points(const Reader& top, const Entry& root, const Context& context) {
   std::vector<TableEntry> found;
   const Entry* mapping = top.find("mapping");
   if (mapping == nullptr) {
@@ -84,20 +88,17 @@ std::vector<TableEntry> find_points(const Reader& top, const Entry& root, Contex
   return found;
 }
 
-/// Points without an address are not placed yet.
-OpenPoints read_places(const std::vector<TableEntry>& entries, const PointDefaults& defaults,
-                       Context& context) {
-  OpenPoints points;
-  points.drafts.reserve(entries.size());
-  points.options.reserve(entries.size());
-  for (const auto& [entry, table] : entries) {
-    points.options.emplace_back(*entry, section_of(table), context);
-    points.drafts.push_back(read_place(*entry, table, points.options.back(), defaults, context));
-  }
+/// Those without an address are not placed yet.
+DraftPoints read_places(const Reader& top, const Entry& root, const PointDefaults& defaults,
+                        const Context& context) {
+  DraftPoints points;
+  for (const auto& [entry, table] : find_points(top, root, context))
+    points.push_back(read_place(*entry, table, defaults, context));
   return points;
 }
 
-void check_points(const DraftPoints& points, const Limits& limits, bool addressing_given, Context& context) {
+void check_points(const DraftPoints& points, const Limits& limits, bool addressing_given,
+                  const Context& context) {
   check_point_names(points, context);
   check_overlaps(points, context);
   check_lines(points, context);
@@ -115,53 +116,51 @@ std::vector<int> lines_of(Span<const Point> points, const DraftPoints& drafts) {
   return lines;
 }
 
-}  // namespace
-
-void read_map(const Entry& file, std::string_view text, Placement& placement, Context& context) {
-  if (file.kind != Entry::Kind::map) {
-    context.problems.error(file.at, fmt::format("a map of a coupler has keys, this is {}", shown(file)),
-                           "begin with 'name: NAME'");
-    return;
-  }
-  context.origin = may_be_of_the_origin(file);
-  const auto preset = read_preset(file, context);
-  const Entry root = preset ? completed(file, *preset) : file;
-  const Reader top(root, Section::map, context);
-  Map head;
-  head.name = read_name(top, root, context);
-  head.connection = read_connection(top, context);
-  head.polling = read_polling(top);
-  head.limits = read_limits(top);
-  head.service = read_service(top, context);
-  top.fields(head);
-  const PointDefaults defaults = read_point_defaults(top);
-  const Areas unreadable = read_areas(top, "unreadable", defaults.addressing, context);
-  const Areas reserved = read_areas(top, "reserve", defaults.addressing, context);
-  OpenPoints points = read_places(find_points(top, root, context), defaults, context);
-  DraftPoints& drafts = points.drafts;
-  place_points(drafts, free_space_of(drafts, reserved, unreadable, preset), placement, context);
-  for (std::size_t i = 0; i < drafts.size(); ++i) read_rest(points.options[i], defaults, drafts[i], context);
-  if (preset) apply(*preset, drafts, context);
-  check_points(drafts, head.limits, top.has("addressing"), context);
-  read_coupler_watchdog(top, preset, drafts, defaults.addressing, head, context);
-  std::vector<SimWire> sim = read_sim(top, drafts, context);
-  check_edges(drafts, sim, context);
-  check_unreadable(unreadable, drafts, context);
-  check_reserved(reserved, drafts, context);
-  head.unreadable = context.map.keep(sorted_unreadable(unreadable));
-  if (context.problems.has_errors()) return;
-
+MapLayout finish(Map head, const DraftPoints& drafts, const std::vector<SimWire>& sim, std::string_view text,
+                 Addressing addressing, OwnedMap& map) {
   const auto left_out =
       std::find_if(drafts.begin(), drafts.end(), [](const DraftPoint& d) { return d.addressless; });
   const bool complete = left_out == drafts.end();
-  if (!complete) context.filled_in = left_out->name_at;
-  head.text =
-      context.map.keep(complete ? std::string(text) : addressed_text(text, drafts, defaults.addressing));
-  std::vector<Point> finished;
-  finished.reserve(drafts.size());
-  for (const DraftPoint& draft : drafts) finished.push_back(draft.point);
-  context.map.finish(head, finished, sim);
-  context.point_lines = lines_of(context.map.map().points, drafts);
+  head.text = map.keep(complete ? std::string(text) : addressed_text(text, drafts, addressing));
+  std::vector<Point> points;
+  points.reserve(drafts.size());
+  for (const DraftPoint& draft : drafts) points.push_back(draft.point);
+  map.finish(head, points, sim);
+  return {lines_of(map.map().points, drafts), complete ? Position{} : left_out->name_at};
+}
+
+}  // namespace
+
+std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Placement& placement,
+                                  Problems& problems, OwnedMap& map) {
+  const Context context{problems, map, source.served || has_only_inherited_keys(file)};
+  if (file.kind != Entry::Kind::map) {
+    problems.error(file.at, fmt::format("a map consists of keys, but this is {}", shown(file)),
+                   "begin with 'name: NAME'");
+    return std::nullopt;
+  }
+  const auto preset = read_preset(file, context);
+  const Entry root = preset ? completed(file, *preset) : file;
+  const Reader top(root, Section::map, context);
+  Map head = read_head(top, root, source.name, context);
+  const PointDefaults defaults = read_point_defaults(top);
+  const Areas unreadable = read_areas(top, "unreadable", defaults.addressing, context);
+  const Areas reserved = read_areas(top, "reserve", defaults.addressing, context);
+
+  DraftPoints points = read_places(top, root, defaults, context);
+  place_points(points, free_space_of(points, reserved, unreadable, preset), placement, context);
+  for (DraftPoint& draft : points) read_rest(defaults, draft, context);
+  if (preset) apply(*preset, points, context);
+
+  check_points(points, head.limits, top.has("addressing"), context);
+  read_coupler_watchdog(top, preset, points, defaults.addressing, head, context);
+  const std::vector<SimWire> sim = read_sim(top, points, context);
+  check_edges(points, sim, context);
+  check_unreadable(unreadable, points, context);
+  check_reserved(reserved, points, context);
+  if (problems.has_errors()) return std::nullopt;
+  head.unreadable = map.keep(sorted_unreadable(unreadable));
+  return finish(head, points, sim, source.text, defaults.addressing, map);
 }
 
 }  // namespace coupler::loader

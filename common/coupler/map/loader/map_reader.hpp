@@ -1,16 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string_view>
+#include <vector>
 
-#include "coupler/map/loader/context.hpp"
-#include "coupler/map/loader/entry.hpp"
+#include "coupler/map/loader/address.hpp"
+#include "coupler/map/loader/draft_point.hpp"
 #include "coupler/map/loader/placement.hpp"
+#include "coupler/map/loader/preset.hpp"
+#include "coupler/map/loader/reader.hpp"
+#include "coupler/map/map.hpp"
+#include "coupler/map/watchdog.hpp"
 
 namespace coupler::loader {
 
-/// Reads the whole map and finishes context.map, unless there were errors. `text` is the file; points without
-/// an address get theirs from `placement`.
-void read_map(const Entry& root, std::string_view text, Placement& placement, Context& context);
+// The keys at the top of a map.
+
+/// The areas below `key`, in the order of the file.
+Areas read_areas(const Reader& top, std::string_view key, Addressing addressing, const Context& context);
+
+/// As the model has them, sorted by table and address.
+std::vector<Unreadable> sorted_unreadable(const Areas& areas);
+
+/// What the top of the file says about the coupler, not about its points.
+Connection read_connection(const Reader& top, const Context& context);
+Polling read_polling(const Reader& top);
+Limits read_limits(const Reader& top);
+
+/// What the top of the file says about a node that serves the map.
+Service read_service(const Reader& top, const Context& context);
+
+/// `sim:`, the wires of the simulated chip: each from a coil, or with a square wave, to a discrete input of
+/// its own.
+std::vector<SimWire> read_sim(const Reader& top, const DraftPoints& points, const Context& context);
+
+/// `watchdog:` of a map with `preset`: there it is the coupler's own, and leaves `head.service`. Without a
+/// preset it is the node's, and stays.
+void read_coupler_watchdog(const Reader& top, const std::optional<Preset>& preset, const DraftPoints& points,
+                           Addressing addressing, Map& head, const Context& context);
+
+/// Where a map comes from.
+struct MapSource {
+  std::string_view text;    ///< of the file
+  std::string_view name{};  ///< of a map that gives none; empty: it has to
+  bool served = false;      ///< by a node, which may be newer than this program
+};
+
+/// Where the finished map stands in its file.
+struct MapLayout {
+  std::vector<int> point_lines;  ///< LoadResult::point_lines
+  Position first_addressless;    ///< the first point whose address the file leaves out
+};
+
+/// Reads the whole map and finishes `map`; nullopt if there are errors. Points without an address get theirs
+/// from `placement`.
+std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Placement& placement,
+                                  Problems& problems, OwnedMap& map);
 
 }  // namespace coupler::loader

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/letters.hpp"
+#include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -31,13 +31,13 @@ bool is_ros2_name(std::string_view name) {
   return true;
 }
 
-void warn_of_ros1_name(std::string_view name, Position at, Context& context) {
+void warn_of_ros1_name(std::string_view name, Position at, const Context& context) {
   if (!is_ros2_name(name))
-    context.problems.warning(at, fmt::format("{} is a name in ROS 1 only", shown(name)),
-                             "for ROS 2 begin each part behind a '/' with a letter");
+    context.problems.warning(at, fmt::format("{} is a valid name only in ROS 1", shown(name)),
+                             "for ROS 2 begin each part after a '/' with a letter");
 }
 
-void check_topic(const DraftPoint& draft, const FirstOfName& first, Context& context) {
+void check_topic(const DraftPoint& draft, const FirstOfName& first, const Context& context) {
   const std::string_view name = draft.point.name;
   if (!is_relative_ros_name(name)) {
     context.problems.error(draft.name_at, fmt::format("{} is not a valid ROS name", shown(name)),
@@ -64,14 +64,14 @@ bool is_relative_ros_name(std::string_view name) {
   return characters && name.find("//") == std::string_view::npos;
 }
 
-void check_map_name(std::string_view name, Position at, Context& context) {
+void check_map_name(std::string_view name, Position at, const Context& context) {
   if (!is_relative_ros_name(name))
     context.problems.error(at, fmt::format("{} is not a valid ROS name", shown(name)), std::string(rule));
   else
     warn_of_ros1_name(name, at, context);
 }
 
-void check_point_names(const DraftPoints& points, Context& context) {
+void check_point_names(const DraftPoints& points, const Context& context) {
   FirstOfName first;
   for (const DraftPoint& draft : points) {
     const auto [found, is_new] = first.emplace(draft.point.name, &draft);

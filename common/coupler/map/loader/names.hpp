@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "coupler/map/loader/context.hpp"
 #include "coupler/map/loader/draft_point.hpp"
+#include "coupler/map/loader/reader.hpp"
 
 namespace coupler::loader {
 
@@ -12,9 +12,9 @@ namespace coupler::loader {
 bool is_relative_ros_name(std::string_view name);
 
 /// The map's name is a namespace.
-void check_map_name(std::string_view name, Position at, Context& context);
+void check_map_name(std::string_view name, Position at, const Context& context);
 
-/// Points' names are ROS names, unique across the tables, and leave the driver's own topics alone.
-void check_point_names(const DraftPoints& points, Context& context);
+/// Points' names are ROS names, unique across the tables, and do not clash with the driver's own topics.
+void check_point_names(const DraftPoints& points, const Context& context);
 
 }  // namespace coupler::loader

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/letters.hpp"
+#include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::loader {
 unsigned edit_distance(std::string_view a, std::string_view b) {

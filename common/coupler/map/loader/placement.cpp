@@ -13,8 +13,7 @@ namespace {
 using lock::Answer;
 using lock::Place;
 
-/// Where the point of the file stands, or may stand: once for each half or bit that it leaves open, the best
-/// first.
+/// The formats that the point may have: one for each half or bit that the file leaves open, the best first.
 std::vector<codec::Format> formats_of(const DraftPoint& draft) {
   codec::Format format = draft.point.format;
   std::vector<codec::Format> formats;
@@ -79,8 +78,8 @@ lock::Place place_of(const Point& point) {
   return {point.table, range(point), is_partial(point) ? codec::mask(point.format) : lock::whole};
 }
 
-void tell_misfit(const DraftPoint& draft, const lock::Request& request, const lock::Entry& entry,
-                 const Placement& placement, Context& context) {
+void report_misfit(const DraftPoint& draft, const lock::Request& request, const lock::Entry& entry,
+                   const Placement& placement, const Context& context) {
   context.problems.error(
       draft.name_at,
       fmt::format("{} needs {} and does not fit its place any more, {} ({}, line {})",
@@ -90,7 +89,7 @@ void tell_misfit(const DraftPoint& draft, const lock::Request& request, const lo
       "address");
 }
 
-void tell_full(const DraftPoint& draft, const lock::Request& request, Context& context) {
+void report_full(const DraftPoint& draft, const lock::Request& request, const Context& context) {
   context.problems.error(
       draft.name_at,
       fmt::format("no place is left in {} for {}, which needs {}", to_string(draft.point.table),
@@ -98,8 +97,8 @@ void tell_full(const DraftPoint& draft, const lock::Request& request, Context& c
       "make reserved areas smaller, or remove points");
 }
 
-void tell_unknown(const std::vector<const DraftPoint*>& points, const lock::Lock& renewed,
-                  const Placement& placement, Context& context) {
+void report_unknown(const std::vector<const DraftPoint*>& points, const lock::Lock& renewed,
+                    const Placement& placement, const Context& context) {
   if (points.empty()) return;
   const Position at = points.front()->name_at;
   const std::string who = subject(points);
@@ -125,8 +124,8 @@ void tell_unknown(const std::vector<const DraftPoint*>& points, const lock::Lock
   context.problems.error(at, fmt::format("{} no address in {}", who, file.path), std::move(remedy));
 }
 
-void tell_reused(const DraftPoints& points, const lock::Lock& renewed, const Placement& placement,
-                 Context& context) {
+void report_reused(const DraftPoints& points, const lock::Lock& renewed, const Placement& placement,
+                   const Context& context) {
   lock::Occupancy retired;
   for (const lock::Entry& entry : renewed)
     if (entry.retired) retired.take(entry.place);
@@ -142,12 +141,12 @@ void tell_reused(const DraftPoints& points, const lock::Lock& renewed, const Pla
         draft.address_at,
         fmt::format("{} is at {}, where {} was ({}, line {})", shown(draft.point.name), to_string(place),
                     shown(entry->name), placement.file.path, entry->line),
-        fmt::format("give it another address; or delete that line, if nobody asks for {} any more",
+        fmt::format("give it another address; or delete that line, if no client uses {} any more",
                     shown(entry->name)));
   }
 }
 
-void tell_stale(const lock::Entry& entry, Placement& placement) {
+void report_stale(const lock::Entry& entry, Placement& placement) {
   placement.problems.push_back(
       {Diagnostic::Severity::error, placement.file.path, entry.line, 1,
        entry.retired ? fmt::format("the map has no {} without an address any more", shown(entry.name))
@@ -161,7 +160,7 @@ void renew(const lock::Lock& lock, Placement& placement) {
   for (const lock::Entry& entry : lock) {
     const lock::Entry* before = known.find(entry.place.table, entry.name);
     if (before == nullptr || before->retired == entry.retired) continue;
-    if (placement.file.use == LockUse::exact) tell_stale(entry, placement);
+    if (placement.file.use == LockUse::exact) report_stale(entry, placement);
     if (entry.retired) placement.renewed.retired.push_back(entry.name);
   }
   placement.renewed.path = placement.file.path;
@@ -191,7 +190,7 @@ lock::FreeSpace free_space_of(const DraftPoints& points, const Areas& reserved, 
 }
 
 void place_points(DraftPoints& points, const lock::FreeSpace& free_space, Placement& placement,
-                  Context& context) {
+                  const Context& context) {
   std::vector<DraftPoint*> drafts;
   std::vector<lock::Request> requests;
   for (DraftPoint& draft : points) {
@@ -212,13 +211,13 @@ void place_points(DraftPoints& points, const lock::FreeSpace& free_space, Placem
         placement.renewed.allocated.emplace_back(draft.point.name);
         [[fallthrough]];
       case Answer::Kind::recalled: settle(draft, answer.place); break;
-      case Answer::Kind::misfit: tell_misfit(draft, requests[i], *answer.entry, placement, context); break;
+      case Answer::Kind::misfit: report_misfit(draft, requests[i], *answer.entry, placement, context); break;
       case Answer::Kind::unknown: unknown.push_back(&draft); break;
-      case Answer::Kind::full: tell_full(draft, requests[i], context); break;
+      case Answer::Kind::full: report_full(draft, requests[i], context); break;
     }
   }
-  tell_unknown(unknown, allocation.lock, placement, context);
-  tell_reused(points, allocation.lock, placement, context);
+  report_unknown(unknown, allocation.lock, placement, context);
+  report_reused(points, allocation.lock, placement, context);
   renew(allocation.lock, placement);
 }
 

@@ -3,15 +3,25 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "coupler/map/loader/areas.hpp"
-#include "coupler/map/loader/context.hpp"
+#include "coupler/map/loader/address.hpp"
 #include "coupler/map/loader/draft_point.hpp"
-#include "coupler/map/loader/lock_file.hpp"
+#include "coupler/map/loader/load.hpp"
 #include "coupler/map/loader/preset.hpp"
+#include "coupler/map/loader/reader.hpp"
 #include "coupler/map/lock/allocate.hpp"
 
 namespace coupler::loader {
+
+/// Addresses that the file says something about.
+struct Area {
+  Table table;
+  modbus::Range range;
+  Position at;
+};
+using Areas = std::vector<Area>;
 
 /// A map's lock while the map is read.
 struct Placement {
@@ -22,13 +32,17 @@ struct Placement {
   Diagnostics problems{};  ///< about the lock
 };
 
-/// What is closed to points without an address: the node's own registers, what the map keeps free or the
-/// device refuses, what the preset has no modules for, and where the points with an address are.
+/// Where points without an address cannot be: the node's own registers, areas that the map reserves or the
+/// device refuses, areas outside those of the preset, and the points with an address.
 lock::FreeSpace free_space_of(const DraftPoints& points, const Areas& reserved, const Areas& unreadable,
                               const std::optional<Preset>& preset);
 
-/// Gives points without an address theirs: they are `placed` then.
+/// Gives points without an address theirs. They are `placed` then.
 void place_points(DraftPoints& points, const lock::FreeSpace& free_space, Placement& placement,
-                  Context& context);
+                  const Context& context);
+
+/// The text of a map, with the addresses written into it that its points got from the lock: the same map for
+/// a reader without a lock.
+std::string addressed_text(std::string_view text, const DraftPoints& points, Addressing addressing);
 
 }  // namespace coupler::loader

@@ -3,18 +3,17 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/point_keys.hpp"
 #include "coupler/map/loader/reader.hpp"
 
 namespace coupler::loader {
 namespace {
 
-void read_address(const Entry* entry, Addressing addressing, DraftPoint& draft, Context& context) {
+void read_address(const Entry* entry, Addressing addressing, DraftPoint& draft, const Context& context) {
   draft.addressless = entry == nullptr;
   if (draft.addressless) return;
   draft.address_at = entry->at;
   if (entry->kind != Entry::Kind::scalar || entry->quoted) {
-    context.problems.error(entry->at, fmt::format("the address is a number, not {}", shown(*entry)),
+    context.problems.error(entry->at, fmt::format("the address must be a number, not {}", shown(*entry)),
                            "write the number, without quotes");
     return;
   }
@@ -25,7 +24,7 @@ void read_address(const Entry* entry, Addressing addressing, DraftPoint& draft, 
     context.problems.error(entry->at, address.error().what, address.error().remedy);
 }
 
-void check_range(const DraftPoint& draft, Context& context) {
+void check_range(const DraftPoint& draft, const Context& context) {
   const Point& point = draft.point;
   const std::uint32_t size = std::uint32_t{point.count} * codec::registers(point.format);
   if (modbus::Range::make(point.address, size)) return;
@@ -36,7 +35,7 @@ void check_range(const DraftPoint& draft, Context& context) {
 }
 
 /// An array's elements stand one behind the other, so they must fill whole registers.
-void read_count(const Reader& reader, Point& point, Context& context) {
+void read_count(const Reader& reader, Point& point, const Context& context) {
   const Entry* entry = reader.find("count");
   if (entry == nullptr) return;
   reader.integer("count", point.count);
@@ -50,7 +49,7 @@ void read_count(const Reader& reader, Point& point, Context& context) {
 }
 
 /// Hardware is behind single values.
-void check_array(const Reader& reader, const Point& point, Context& context) {
+void check_array(const Reader& reader, const Point& point, const Context& context) {
   if (point.count == 1) return;
   for (const std::string_view key : {"line", "counter", "latched", "iio", "pwm"}) {
     if (find_key(key, section_of(point.table)) == nullptr) continue;
@@ -60,7 +59,7 @@ void check_array(const Reader& reader, const Point& point, Context& context) {
   }
 }
 
-void read_read_address(const Reader& reader, Addressing addressing, Point& point, Context& context) {
+void read_read_address(const Reader& reader, Addressing addressing, Point& point, const Context& context) {
   const Entry* entry = is_writable(point.table) ? reader.find("read_address") : nullptr;
   if (entry == nullptr) return;
   const auto address =
@@ -69,7 +68,7 @@ void read_read_address(const Reader& reader, Addressing addressing, Point& point
     context.problems.error(entry->at, address.error().what, address.error().remedy);
   else if (!is_readable(point))
     context.problems.error(entry->key_at,
-                           "'read_address' is for a point that is read, this one has 'access: write'",
+                           "'read_address' is for a point that is read, but this one has 'access: write'",
                            "remove one of the two");
   else if (!modbus::Range::make(*address, range(point).count()))
     context.problems.error(entry->at,
@@ -79,7 +78,7 @@ void read_read_address(const Reader& reader, Addressing addressing, Point& point
     point.read_address = *address;
 }
 
-void read_access(const Reader& reader, Point& point, Context& context) {
+void read_access(const Reader& reader, Point& point, const Context& context) {
   const Entry* entry = reader.find("access");
   if (entry == nullptr) return;
   Access access = point.access;
@@ -91,7 +90,7 @@ void read_access(const Reader& reader, Point& point, Context& context) {
                            "remove 'access'");
 }
 
-void check_has_options(const Entry& entry, Context& context) {
+void check_has_options(const Entry& entry, const Context& context) {
   if (entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null) return;
   const std::string given = entry.kind == Entry::Kind::scalar ? entry.text.substr(0, 10) : "0";
   context.problems.error(
@@ -101,10 +100,10 @@ void check_has_options(const Entry& entry, Context& context) {
 
 }  // namespace
 
-DraftPoint read_place(const Entry& entry, Table table, const Reader& options, const PointDefaults& defaults,
-                      Context& context) {
-  DraftPoint draft;
-  draft.entry = &entry;
+DraftPoint read_place(const Entry& entry, Table table, const PointDefaults& defaults,
+                      const Context& context) {
+  DraftPoint draft{&entry, Reader(entry, section_of(table), context)};
+  const Reader& options = draft.options;
   draft.name_at = entry.key_at;
   draft.address_at = entry.key_at;
   Point& point = draft.point;
@@ -128,7 +127,8 @@ DraftPoint read_place(const Entry& entry, Table table, const Reader& options, co
   return draft;
 }
 
-void read_rest(const Reader& options, const PointDefaults& defaults, DraftPoint& draft, Context& context) {
+void read_rest(const PointDefaults& defaults, DraftPoint& draft, const Context& context) {
+  const Reader& options = draft.options;
   Point& point = draft.point;
   if (draft.placed && !holds_bits(point.table)) read_scale(options, point, context);
   if (const Entry* initial = options.find("initial"); draft.placed && initial != nullptr)

@@ -1,32 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "coupler/codec/order.hpp"
+#include "coupler/codec/format.hpp"
 #include "coupler/map/loader/address.hpp"
-#include "coupler/map/loader/context.hpp"
 #include "coupler/map/loader/draft_point.hpp"
-#include "coupler/map/loader/entry.hpp"
-#include "coupler/map/loader/host_options_reader.hpp"
 #include "coupler/map/loader/reader.hpp"
+#include "coupler/map/map.hpp"
+#include "coupler/map/point.hpp"
 
 namespace coupler::loader {
+
+/// `defaults:` of the map, as far as it does not depend on a point.
+struct HostDefaults {
+  HostOptions options;
+  const Entry* deadman = nullptr;  ///< its value is of each point's type
+};
+HostDefaults read_host_defaults(const Reader& top);
 
 /// What the top of the file says about all points.
 struct PointDefaults {
   Addressing addressing = Addressing::zero_based;
-  codec::Order order =
-      codec::Order::CDAB;  ///< of values of two and four registers; fewer keep the bytes' part
+  /// Of values of two and four registers; of one register only the order of the bytes holds.
+  codec::Order order = codec::Order::CDAB;
   HostDefaults host{};
 };
 
 // One entry of a table, `name: address` (coils and discrete inputs) or `name: {options}`, is read in two
-// steps, for in between those without an address get theirs. `options` is its reader in both.
+// steps: points without an address get theirs in between.
 
 /// What decides where the point may stand.
-DraftPoint read_place(const Entry& entry, Table table, const Reader& options, const PointDefaults& defaults,
-                      Context& context);
+DraftPoint read_place(const Entry& entry, Table table, const PointDefaults& defaults, const Context& context);
 
-/// Everything else; values are as they stand in their registers, so this needs the place.
-void read_rest(const Reader& options, const PointDefaults& defaults, DraftPoint& draft, Context& context);
+/// Everything else. Values are read as they stand in their registers, so the place must be known.
+void read_rest(const PointDefaults& defaults, DraftPoint& draft, const Context& context);
+
+// The keys of a point, as read_place() and read_rest() read them.
+
+/// How the host treats the point: its own keys, and the defaults that apply to it. Its access, and if it is
+/// placed its format, count and scale must be known.
+void read_host_options(const Reader& reader, const HostDefaults& defaults, DraftPoint& draft,
+                       const Context& context);
+
+/// The type of a register point and the keys that go with it. `order` is the map's; the point's own overrides
+/// it.
+void read_format(const Reader& reader, const Entry& point, codec::Order order, codec::Format& format,
+                 const Context& context);
+
+/// `scale:`, a number or a map of gain and offset.
+void read_scale(const Reader& reader, Point& point, const Context& context);
+
+/// The GPIO line of a coil or discrete input: `line: GPIO17`, `line: {chip: gpiochip0, offset: 17}` or
+/// `line: {name: GPIO17}`. The properties of the line (active_low, bias, drive, debounce) stand beside `line`
+/// or inside it, not in both; what the node does with it (safe, initial) stands beside it.
+void read_line(const Reader& point, DraftPoint& draft, const Context& context);
+
+/// `iio:`, `pwm:` and the `safe:` of registers. The point's format, count and scale must be known.
+void read_channel(const Reader& reader, DraftPoint& draft, const Context& context);
+
+/// `counter:` of a register that holds a whole number of 16, 32 or 64 bits; `latched:` of a coil without a
+/// line or a bit of a holding register. Comes after type, access and line.
+void read_edges(const Reader& point, DraftPoint& draft, const Context& context);
+
+/// `counter` and `latched` name a discrete input that has a line or is at the end of a simulated wire.
+void check_edges(const DraftPoints& points, Span<const SimWire> sim, const Context& context);
+
+/// A value of the point, given by `key` (`initial`, `safe`, …), as range(point).count() registers as they
+/// stand on the wire. A scaled point's is written as it is published. An array takes a list, or one value for
+/// all of its elements. Empty if it is wrong. The point's format, count and scale must be known.
+Span<const std::uint16_t> read_value(std::string_view key, const Entry& entry, const Point& point,
+                                     const Context& context);
 
 }  // namespace coupler::loader

@@ -7,7 +7,6 @@
 
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/nearest.hpp"
-#include "coupler/map/loader/preset_watchdog.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -31,7 +30,7 @@ std::string areas_of(const Preset& preset, Table table) {
   return text;
 }
 
-void check_area(const Preset& preset, const DraftPoint& draft, Context& context) {
+void check_area(const Preset& preset, const DraftPoint& draft, const Context& context) {
   const Point& point = draft.point;
   const std::string there = areas_of(preset, point.table);
   const bool inside = std::any_of(preset.areas.begin(), preset.areas.end(), [&](const Preset::Area& area) {
@@ -39,9 +38,9 @@ void check_area(const Preset& preset, const DraftPoint& draft, Context& context)
   });
   if (there.empty() || inside) return;
   context.problems.warning(draft.address_at,
-                           fmt::format("{} is where a {} has nothing: its {} are {} on the wire",
+                           fmt::format("{} is at an address that a {} does not have: its {} are {}",
                                        shown(point.name), preset.name, to_string(point.table), there),
-                           "look into its manual, or remove 'preset'");
+                           "see its manual, or remove 'preset'");
 }
 
 std::string no_element(const PresetFile& file, Position at, std::string_view of) {
@@ -83,7 +82,7 @@ tl::expected<Preset, std::string> parse_preset(const PresetFile& file) {
   return preset;
 }
 
-std::optional<Preset> read_preset(const Entry& root, Context& context) {
+std::optional<Preset> read_preset(const Entry& root, const Context& context) {
   const Entry* entry = child(root, "preset");
   if (entry == nullptr) return std::nullopt;
   std::vector<std::string_view> names;
@@ -109,7 +108,7 @@ Entry completed(Entry root, const Preset& preset) {
   return root;
 }
 
-void apply(const Preset& preset, DraftPoints& points, Context& context) {
+void apply(const Preset& preset, DraftPoints& points, const Context& context) {
   for (DraftPoint& draft : points) {
     if (!draft.placed) continue;
     Point& point = draft.point;

@@ -1,17 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
-#include <tl/expected.hpp>
+#include <string_view>
 #include <vector>
 
+#include <tl/expected.hpp>
+
+#include "coupler/base/span.hpp"
 #include "coupler/map/loader/draft_point.hpp"
-#include "coupler/map/loader/preset_watchdog.hpp"
-#include "coupler/map/loader/presets.hpp"
 #include "coupler/map/loader/reader.hpp"
+#include "coupler/map/watchdog.hpp"
 
 namespace coupler::loader {
+
+/// A file of config/presets, built in.
+struct PresetFile {
+  std::string_view name;
+  std::string_view text;
+};
+Span<const PresetFile> preset_files();
+
+/// What a preset knows of the coupler's own watchdog (config/presets/README.md); the map says the rest.
+struct PresetWatchdog {
+  struct Write {
+    WatchdogSequences::Write write;     ///< as far as it is known
+    bool at_heartbeat = false;          ///< the map says where
+    std::chrono::microseconds unit{0};  ///< not 0: the value is the map's timeout, counted in this
+  };
+
+  std::vector<Write> arm;
+  std::vector<Write> feed;
+  std::vector<Write> reset;
+  std::optional<modbus::Exception> refusal;
+  std::optional<WatchdogSequences::Write> alarm;
+};
+
+/// `watchdog:` of a preset file. The error is the place of what makes no sense.
+tl::expected<PresetWatchdog, Position> parse_preset_watchdog(const Entry& entry);
+
+/// An address or the value of a register, in a preset file; nullopt: it is neither, or not there.
+std::optional<std::uint16_t> word(const Entry& entry);
+std::optional<std::uint16_t> word(const Entry& entry, std::string_view key);
 
 /// What is true of every coupler of a kind (config/presets/README.md).
 struct Preset {
@@ -35,12 +68,12 @@ struct Preset {
 tl::expected<Preset, std::string> parse_preset(const PresetFile& file);
 
 /// `preset:` of the map; nothing if it has none, or no known one.
-std::optional<Preset> read_preset(const Entry& root, Context& context);
+std::optional<Preset> read_preset(const Entry& root, const Context& context);
 
 /// The map with the preset's keys where it has none of its own, in `limits` and `defaults` key by key.
 Entry completed(Entry root, const Preset& preset);
 
 /// Where outputs read back, and a warning for each point where the coupler has nothing.
-void apply(const Preset& preset, DraftPoints& points, Context& context);
+void apply(const Preset& preset, DraftPoints& points, const Context& context);
 
 }  // namespace coupler::loader

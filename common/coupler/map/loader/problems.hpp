@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "coupler/map/diagnostic.hpp"
-#include "coupler/map/loader/entry.hpp"
+#include "coupler/map/loader/document.hpp"
 
 namespace coupler::loader {
 

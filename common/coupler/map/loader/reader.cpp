@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/letters.hpp"
 #include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/loader/scalar.hpp"
 
@@ -26,7 +25,7 @@ std::string folded(std::string_view word, Owner owner) {
   return lower(result);
 }
 
-/// A word that is good elsewhere may still be another one with a letter wrong.
+/// The key is known elsewhere, but may still be a typing mistake for one that is known here.
 std::string slip(std::string_view word, const std::vector<std::string_view>& candidates) {
   const std::string_view near = nearest(word, candidates);
   const bool one_letter = !near.empty() && edit_distance(lower(word), near) == 1;
@@ -40,7 +39,8 @@ std::string range_text(const Key& key, std::string_view unit) {
 
 }  // namespace
 
-Reader::Reader(const Entry& map, Section section, Context& context) : section_(section), context_(context) {
+Reader::Reader(const Entry& map, Section section, const Context& context)
+    : section_(section), context_(context) {
   if (map.kind != Entry::Kind::map) return;
   for (const Entry& entry : map.children) check_key(entry);
 }
@@ -101,7 +101,7 @@ std::optional<Reader> Reader::inside(std::string_view key, std::string_view expe
 void Reader::wrong(std::string_view key, std::string_view expected) const {
   const Field& f = *field(key);
   context_.problems.error(f.value->at,
-                          fmt::format("'{}' is {}, not {}", f.key->name, expected, shown(*f.value)),
+                          fmt::format("'{}' must be {}, not {}", f.key->name, expected, shown(*f.value)),
                           fmt::format("write it as in '{}: {}'", f.key->name, f.key->example));
 }
 
@@ -178,7 +178,7 @@ std::string_view Reader::chosen_word(std::string_view key) const {
     if (given == folded(choice, known.owner)) return choice;
   context_.problems.error(
       entry->at,
-      fmt::format("'{}' is one of {}, not {}", known.name, fmt::join(choices, ", "), shown(*entry)),
+      fmt::format("'{}' must be one of {}, not {}", known.name, fmt::join(choices, ", "), shown(*entry)),
       nearest_or(given, choices, fmt::format("write it as in '{}: {}'", known.name, known.example)));
   return {};
 }
@@ -195,29 +195,30 @@ std::string shown(const Entry& value) {
   return (value.quoted ? "the text " : "") + shown(std::string_view(value.text));
 }
 
-bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy, Context& context) {
+bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy,
+               const Context& context) {
   if (entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null) return true;
   context.problems.error(entry.at, fmt::format("{}, not {}", expected, shown(entry)), std::string(remedy));
   return false;
 }
 
-bool may_be_of_the_origin(const Entry& root) {
+bool has_only_inherited_keys(const Entry& root) {
   const auto named = [](const Entry& map, Section section, const auto& is) {
     return std::any_of(map.children.begin(), map.children.end(), [&](const Entry& entry) {
       const Key* key = find_key(entry.key, section);
       return key != nullptr && is(*key);
     });
   };
-  const auto ours = [](const Key& key) { return key.owner == Owner::project; };
+  const auto own = [](const Key& key) { return key.owner == Owner::project; };
   const auto address = [](const Key& key) { return key.name == "address"; };
-  if (named(root, Section::map, ours)) return false;
+  if (named(root, Section::map, own)) return false;
   for (const Entry& mapping : root.children) {
     if (mapping.key != "mapping") continue;
     for (const Entry& table : mapping.children)
       for (const Table which : tables) {
         if (table.key != to_string(which)) continue;
         for (const Entry& point : table.children)
-          if (named(point, section_of(which), ours) ||
+          if (named(point, section_of(which), own) ||
               (point.kind != Entry::Kind::scalar && !named(point, section_of(which), address)))
             return false;
       }

@@ -11,18 +11,35 @@
 
 #include "coupler/base/enumeration.hpp"
 #include "coupler/map/fields.hpp"
-#include "coupler/map/loader/context.hpp"
-#include "coupler/map/loader/entry.hpp"
+#include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/keys.hpp"
+#include "coupler/map/loader/problems.hpp"
+#include "coupler/map/owned_map.hpp"
 
 namespace coupler::loader {
 
-/// One map of the file, read by the table of keys. Whatever is wrong becomes a problem; the getters then
-/// leave `out` as it was, as they do when the key is absent.
+/// What all readers of one file share.
+struct Context {
+  Problems& problems;
+  OwnedMap& map;  ///< keeps the texts that points refer to
+  /// What is not known here is a warning: ros-modbus-device-driver would ignore it, or the node that serves
+  /// the map may be newer than this program.
+  bool tolerant = false;
+
+  void ignored(Position at, std::string what, std::string remedy) const {
+    if (tolerant)
+      problems.warning(at, what + ", ignored", std::move(remedy));
+    else
+      problems.error(at, std::move(what), std::move(remedy));
+  }
+};
+
+/// One map of the file, read by the table of keys. Whatever is wrong becomes a problem. The getters leave
+/// `out` as it was then, and when the key is absent.
 class Reader {
  public:
   /// Checks the keys: known in this section, given once. `map` must be a map, or nothing.
-  Reader(const Entry& map, Section section, Context& context);
+  Reader(const Entry& map, Section section, const Context& context);
 
   /// The value of the key, or nullptr.
   const Entry* find(std::string_view key) const;
@@ -79,12 +96,12 @@ class Reader {
     if (const auto value = parse_word<E>(chosen_word(key))) out = *value;
   }
 
-  /// The map below a key. Nothing if the key is absent, or, which is a problem, not a map as `expected` says.
+  /// The map below a key. Nothing if the key is absent, or if its value is not a map, which is a problem.
   std::optional<Reader> inside(std::string_view key, std::string_view expected) const;
 
   /// "'key' is …, not …", with the key's example as the remedy.
   void wrong(std::string_view key, std::string_view expected) const;
-  /// The key says something that cannot be used here.
+  /// The value of the key cannot be used here.
   void ignored(std::string_view key, std::string what, std::string remedy) const;
 
  private:
@@ -103,18 +120,19 @@ class Reader {
   void too_fine(std::string_view key) const;
 
   Section section_;
-  Context& context_;
+  const Context& context_;
   std::vector<Field> fields_;
 };
 
-/// The scalar's text as a message shows it; what else the value is ("a list") if it is no scalar.
+/// The value as a message shows it: the text of a scalar, or "a list", "a map", "nothing".
 std::string shown(const Entry& value);
 
-/// The entry is a map, or nothing at all; otherwise a problem that says what `expected` is.
-bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy, Context& context);
+/// The entry is a map or empty. Otherwise it is a problem, which begins with `expected`.
+bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy,
+               const Context& context);
 
-/// Nothing in the file is this project's alone, as far as that can be seen without reading it: neither a key
-/// nor a point that leaves its address out.
-bool may_be_of_the_origin(const Entry& root);
+/// The file may be one of ros-modbus-device-driver: all its keys are known there, and every point has an
+/// address.
+bool has_only_inherited_keys(const Entry& root);
 
 }  // namespace coupler::loader

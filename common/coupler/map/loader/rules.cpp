@@ -11,7 +11,7 @@
 namespace coupler::loader {
 namespace {
 
-/// The same text for the same line or channel, as far as the file tells. Empty: there is none.
+/// The same text for the same line or channel, as far as the file shows. Empty: there is none.
 std::string hardware(const Point& point) {
   // An ADC and a DAC of one device may number their channels alike.
   if (point.iio.present())
@@ -25,7 +25,7 @@ std::string hardware(const Point& point) {
   return fmt::format("{} {}", device_file ? line.chip.substr(folder.size()) : line.chip, line.offset);
 }
 
-void check_size(const DraftPoint& draft, std::string_view key, std::uint16_t limit, Context& context) {
+void check_size(const DraftPoint& draft, std::string_view key, std::uint16_t limit, const Context& context) {
   const std::uint32_t size = range(draft.point).count();
   if (size > limit)
     context.problems.error(draft.name_at,
@@ -54,7 +54,7 @@ std::string place(const Point& point) {
   return fmt::format("{} {} to {}", to_string(point.table), taken.start(), taken.last());
 }
 
-void report(const DraftPoint& draft, const DraftPoint& other, Context& context) {
+void report(const DraftPoint& draft, const DraftPoint& other, const Context& context) {
   std::string what =
       fmt::format("{} ({}) overlaps {} ({}, line {})", shown(draft.point.name), place(draft.point),
                   shown(other.point.name), place(other.point), other.address_at.line);
@@ -66,12 +66,13 @@ void report(const DraftPoint& draft, const DraftPoint& other, Context& context) 
     context.problems.error(draft.address_at, std::move(what), "give one of the two another address", notes);
 }
 
-/// The claims on every address so far, those of writers once more: a reader may have been there before them.
-/// In either list those of one address share no bits, so there are at most sixteen of them and the whole
-/// check stays linear in the number of registers.
+/// Who has which bits of each address so far. Writers are listed a second time on their own: a reader may
+/// have taken their bits before them. In either list the claims on one address share no bits, so there are at
+/// most sixteen, and the whole check stays linear in the number of registers.
 class Claims {
  public:
-  /// Takes what is free and returns who had the rest: one with whom sharing is an error, if there is any.
+  /// Takes the bits that are free. Returns an owner of the others: one with which sharing is an error, if
+  /// there is such an owner.
   const DraftPoint* take(const DraftPoint& draft) {
     const DraftPoint* found = take(draft, everyone_);
     const DraftPoint* writer = is_writable(draft.point) ? take(draft, writers_) : nullptr;
@@ -104,7 +105,7 @@ class Claims {
 
 }  // namespace
 
-void check_lines(const DraftPoints& points, Context& context) {
+void check_lines(const DraftPoints& points, const Context& context) {
   std::unordered_map<std::string, const DraftPoint*> first;
   for (const DraftPoint& draft : points) {
     std::string key = hardware(draft.point);
@@ -121,7 +122,7 @@ void check_lines(const DraftPoints& points, Context& context) {
   }
 }
 
-void check_sizes(const DraftPoints& points, const Limits& limits, Context& context) {
+void check_sizes(const DraftPoints& points, const Limits& limits, const Context& context) {
   for (const DraftPoint& draft : points) {
     if (!draft.placed) continue;
     const bool bits = holds_bits(draft.point.table);
@@ -134,7 +135,7 @@ void check_sizes(const DraftPoints& points, const Limits& limits, Context& conte
   }
 }
 
-void warn_of_modicon_numbers(const DraftPoints& points, Context& context) {
+void warn_of_modicon_numbers(const DraftPoints& points, const Context& context) {
   const DraftPoint* first = nullptr;
   std::size_t alike = 0;
   std::size_t others = 0;
@@ -148,17 +149,49 @@ void warn_of_modicon_numbers(const DraftPoints& points, Context& context) {
   const unsigned number = first->point.address;
   context.problems.warning(
       first->address_at,
-      fmt::format(
-          "{} is read as address {} on the wire, not as number {} of {} in Modicon's count (address {})",
-          number, number, number % 10000, to_string(first->point.table), number % 10000 - 1),
+      fmt::format("{} is read as the zero-based address {}, not as Modicon number {} of {} (address {})",
+                  number, number, number % 10000, to_string(first->point.table), number % 10000 - 1),
       "write 'addressing: zero_based' at the top if that is meant, otherwise 'addressing: modicon'");
 }
 
-void check_overlaps(const DraftPoints& points, Context& context) {
+void check_overlaps(const DraftPoints& points, const Context& context) {
   Claims claims;
   for (const DraftPoint& draft : points) {
     if (!draft.placed) continue;
     if (const DraftPoint* other = claims.take(draft)) report(draft, *other, context);
+  }
+}
+
+void check_unreadable(const Areas& areas, const DraftPoints& points, const Context& context) {
+  for (const Area& area : areas) {
+    for (const DraftPoint& draft : points) {
+      const Point& point = draft.point;
+      if (!draft.placed || !is_readable(point) || point.table != area.table ||
+          !read_range(point).overlaps(area.range))
+        continue;
+      context.problems.error(draft.address_at,
+                             fmt::format("{} is read from an area that is 'unreadable' (line {})",
+                                         shown(point.name), area.at.line),
+                             "give it 'access: write', or make the area smaller",
+                             {{area.at, "the area is here"}});
+    }
+  }
+}
+
+void check_reserved(const Areas& areas, const DraftPoints& points, const Context& context) {
+  for (const Area& area : areas) {
+    for (const DraftPoint& draft : points) {
+      const Point& point = draft.point;
+      if (!draft.placed || point.table != area.table || !range(point).overlaps(area.range)) continue;
+      context.problems.error(draft.address_at,
+                             fmt::format("{} ({} {}) is in the reserved area {} to {} (line {})",
+                                         shown(point.name), to_string(point.table), point.address,
+                                         area.range.start(), area.range.last(), area.at.line),
+                             draft.addressless
+                                 ? "make the area smaller: the lock has given the address before"
+                                 : "give it an address outside, or make the area smaller",
+                             {{area.at, "the area is here"}});
+    }
   }
 }
 

@@ -2,23 +2,30 @@
 // What a map must keep beyond each key by itself. Names have a file of their own.
 #pragma once
 
-#include "coupler/map/loader/context.hpp"
 #include "coupler/map/loader/draft_point.hpp"
+#include "coupler/map/loader/placement.hpp"
+#include "coupler/map/loader/reader.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::loader {
 
 /// A GPIO line belongs to one point.
-void check_lines(const DraftPoints& points, Context& context);
+void check_lines(const DraftPoints& points, const Context& context);
 
 /// A point is read and written in one request, so it fits into the device's limits.
-void check_sizes(const DraftPoints& points, const Limits& limits, Context& context);
+void check_sizes(const DraftPoints& points, const Limits& limits, const Context& context);
 
-/// One warning for a map that counts from zero by default although most of its numbers look like Modicon's.
-void warn_of_modicon_numbers(const DraftPoints& points, Context& context);
+/// One warning for a map without `addressing` whose addresses mostly look like Modicon numbers.
+void warn_of_modicon_numbers(const DraftPoints& points, const Context& context);
 
 /// Points that share a bit. That is a warning when at most one of the two is writable and neither has a line,
 /// otherwise an error; each point is reported once, against one that stands before it in the file.
-void check_overlaps(const DraftPoints& points, Context& context);
+void check_overlaps(const DraftPoints& points, const Context& context);
+
+/// No point is read from an unreadable area.
+void check_unreadable(const Areas& areas, const DraftPoints& points, const Context& context);
+
+/// No point stands in a reserved area.
+void check_reserved(const Areas& areas, const DraftPoints& points, const Context& context);
 
 }  // namespace coupler::loader

@@ -8,8 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "coupler/map/loader/letters.hpp"
-
 namespace coupler::loader {
 namespace {
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/map/loader/map_keys.hpp"
+#include "coupler/map/loader/map_reader.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "coupler/map/host.hpp"
 #include "coupler/map/network.hpp"
 
 namespace coupler::loader {
 namespace {
 
-Watchdog read_watchdog(const Reader& top, Context& context) {
+Watchdog read_watchdog(const Reader& top, const Context& context) {
   Watchdog watchdog;
   const auto reader = top.inside("watchdog", "a map with 'timeout'");
   if (!reader) return watchdog;
@@ -24,8 +24,8 @@ Watchdog read_watchdog(const Reader& top, Context& context) {
   return watchdog;
 }
 
-/// Who lists all of one family means everybody, perhaps, but nobody of the other may connect.
-void warn_of_half(const std::vector<std::pair<Network, const Entry*>>& allowed, Context& context) {
+/// A list with every address of one family lets nobody of the other connect, which is probably a mistake.
+void warn_of_half(const std::vector<std::pair<Network, const Entry*>>& allowed, const Context& context) {
   const auto lists = [&](bool ipv4) {
     return std::any_of(allowed.begin(), allowed.end(),
                        [&](const auto& one) { return is_ipv4(one.first.address) == ipv4; });
@@ -41,7 +41,7 @@ void warn_of_half(const std::vector<std::pair<Network, const Entry*>>& allowed, 
   }
 }
 
-Span<const std::string_view> read_allow(const Reader& top, Context& context) {
+Span<const std::string_view> read_allow(const Reader& top, const Context& context) {
   const Entry* entry = top.find("allow");
   if (entry == nullptr) return {};
   if (entry->kind != Entry::Kind::list) {
@@ -69,9 +69,39 @@ Span<const std::string_view> read_allow(const Reader& top, Context& context) {
   return context.map.keep(networks);
 }
 
+std::optional<std::uint16_t> read_end(const Reader& area, std::string_view key, Table table,
+                                      Addressing addressing, const Context& context) {
+  const Entry& entry = *area.find(key);
+  const auto address = parse_address(entry.kind == Entry::Kind::scalar ? entry.text : "", table, addressing);
+  if (address) return *address;
+  context.problems.error(entry.at, address.error().what, address.error().remedy);
+  return std::nullopt;
+}
+
+std::optional<Area> read_area(const Entry& entry, std::string_view key, Addressing addressing,
+                              const Context& context) {
+  const Reader area(entry, Section::area, context);
+  if (entry.kind != Entry::Kind::map || !area.missing().empty()) {
+    context.problems.error(entry.at, fmt::format("an area of '{}' needs 'table', 'from' and 'to'", key),
+                           fmt::format("write it as in '{}: [{{table: coils, from: 8, to: 15}}]'", key));
+    return std::nullopt;
+  }
+  const std::size_t errors = context.problems.errors();
+  Table table = Table::coils;
+  area.choice("table", table);
+  if (context.problems.errors() != errors) return std::nullopt;
+  const auto from = read_end(area, "from", table, addressing, context);
+  const auto to = read_end(area, "to", table, addressing, context);
+  if (!from || !to) return std::nullopt;
+  if (*to >= *from) return Area{table, modbus::Range::of(*from, *to - *from + 1U), entry.at};
+  context.problems.error(area.find("to")->at, "the area ends before it begins",
+                         "write the smaller one as 'from'");
+  return std::nullopt;
+}
+
 }  // namespace
 
-Connection read_connection(const Reader& top, Context& context) {
+Connection read_connection(const Reader& top, const Context& context) {
   Connection connection;
   top.fields(connection);
   if (!connection.address.empty()) {
@@ -97,7 +127,7 @@ Limits read_limits(const Reader& top) {
   return limits;
 }
 
-Service read_service(const Reader& top, Context& context) {
+Service read_service(const Reader& top, const Context& context) {
   Service service;
   top.fields(service);
   if (const Entry* entry = top.find("listen");
@@ -106,6 +136,28 @@ Service read_service(const Reader& top, Context& context) {
   service.allow = read_allow(top, context);
   service.watchdog = read_watchdog(top, context);
   return service;
+}
+
+Areas read_areas(const Reader& top, std::string_view key, Addressing addressing, const Context& context) {
+  Areas areas;
+  const Entry* entry = top.find(key);
+  if (entry == nullptr) return areas;
+  if (entry->kind != Entry::Kind::list) {
+    top.wrong(key, "a list of areas");
+    return areas;
+  }
+  for (const Entry& child : entry->children)
+    if (const auto area = read_area(child, key, addressing, context)) areas.push_back(*area);
+  return areas;
+}
+
+std::vector<Unreadable> sorted_unreadable(const Areas& areas) {
+  std::vector<Unreadable> sorted;
+  for (const Area& area : areas) sorted.push_back({area.table, area.range});
+  std::sort(sorted.begin(), sorted.end(), [](const Unreadable& a, const Unreadable& b) {
+    return std::tuple(index(a.table), a.range.start()) < std::tuple(index(b.table), b.range.start());
+  });
+  return sorted;
 }
 
 }  // namespace coupler::loader

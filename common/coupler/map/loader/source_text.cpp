@@ -2,35 +2,101 @@
 #include "coupler/map/loader/source_text.hpp"
 
 #include <algorithm>
-#include <cstdint>
+#include <vector>
 
 #include <fmt/format.h>
+
+#include "coupler/map/printable.hpp"
 
 namespace coupler::loader {
 namespace {
 
-std::uint8_t byte_at(std::string_view text, std::size_t i) {
-  return i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0};
+bool is_refused(char32_t code) {
+  return (code < 0x20 && code != '\t' && code != '\n' && code != '\r') || code == 0x7F;
 }
 
-/// Bytes of the UTF-8 character at `i` (RFC 3629, section 4), 0 if it is none.
-std::size_t character_size(std::string_view text, std::size_t i) {
-  const std::uint8_t first = byte_at(text, i);
-  if (first < 0x80) return 1;
-  if (first < 0xC2 || first > 0xF4) return 0;
-  const std::size_t size = first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-  for (std::size_t k = 1; k < size; ++k)
-    if ((byte_at(text, i + k) & 0xC0U) != 0x80U) return 0;
-  const std::uint8_t second = byte_at(text, i + 1);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool surrogate = first == 0xED && second > 0x9F;
-  const bool beyond = first == 0xF4 && second > 0x8F;
-  return overlong || surrogate || beyond ? 0 : size;
+constexpr std::string_view blanks = " \t\r\n";
+
+bool starts_with(std::string_view text, std::size_t at, std::string_view what) {
+  return text.substr(at, what.size()) == what;
 }
 
-bool is_control(char c) {
-  return (static_cast<std::uint8_t>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == '\x7F';
+/// One past the comment that begins at `at`: "//" and "#" reach to the end of the line. `at` if there is
+/// none, npos if it has no end.
+std::size_t comment_end(std::string_view text, std::size_t at) {
+  if (starts_with(text, at, "/*")) {
+    const std::size_t end = text.find("*/", at + 2);
+    return end == std::string_view::npos ? end : end + 2;
+  }
+  const bool hash = text[at] == '#' && (at == 0 || blanks.find(text[at - 1]) != std::string_view::npos);
+  if (hash || starts_with(text, at, "//")) return std::min(text.find('\n', at), text.size());
+  return at;
 }
+
+/// A quote opens a string only where a value or key can begin; elsewhere it is an apostrophe.
+bool opens_string(char c, char previous) {
+  return (c == '"' || c == '\'') && std::string_view("{[,:").find(previous) != std::string_view::npos;
+}
+
+/// One past the closing quote, or npos if the line ends before it.
+std::size_t string_end(std::string_view text, std::size_t at) {
+  return quoted_end(text.substr(0, std::min(text.find('\n', at), text.size())), at);
+}
+
+class CommentBlanker {
+ public:
+  CommentBlanker(std::string& text, Problems& problems) : text_(text), problems_(problems) {}
+
+  bool run() {
+    for (at_ = 0; at_ < text_.size(); ++at_) {
+      if (!skip_comment()) return false;
+      if (at_ == text_.size()) break;
+      if (!skip_string()) return false;
+      count_bracket();
+      if (blanks.find(text_[at_]) == std::string_view::npos) previous_ = text_[at_];
+    }
+    return open_.empty() || fail(open_.back(), fmt::format("the '{}' is never closed", text_[open_.back()]),
+                                 "check the brackets that follow");
+  }
+
+ private:
+  bool fail(std::size_t at, std::string what, std::string remedy) {
+    problems_.error(position_of(text_, at), std::move(what), std::move(remedy));
+    return false;
+  }
+
+  /// To the character behind the comments that begin here.
+  bool skip_comment() {
+    while (at_ < text_.size()) {
+      const std::size_t end = comment_end(text_, at_);
+      if (end == std::string::npos) return fail(at_, "the comment '/*' is never closed", "end it with '*/'");
+      if (end == at_) return true;
+      for (; at_ < end; ++at_)
+        if (text_[at_] != '\n' && text_[at_] != '\r') text_[at_] = ' ';
+    }
+    return true;
+  }
+
+  /// To the closing quote of the string that begins here.
+  bool skip_string() {
+    if (!opens_string(text_[at_], previous_)) return true;
+    const std::size_t end = string_end(text_, at_);
+    if (end == std::string::npos) return fail(at_, "the quote is never closed", "close it in the same line");
+    at_ = end - 1;
+    return true;
+  }
+
+  void count_bracket() {
+    if (text_[at_] == '{' || text_[at_] == '[') open_.push_back(at_);
+    if ((text_[at_] == '}' || text_[at_] == ']') && !open_.empty()) open_.pop_back();
+  }
+
+  std::string& text_;
+  Problems& problems_;
+  std::size_t at_ = 0;
+  char previous_ = '\0';           ///< the last character that is neither blank nor comment
+  std::vector<std::size_t> open_;  ///< brackets
+};
 
 }  // namespace
 
@@ -41,23 +107,24 @@ std::string_view without_byte_order_mark(std::string_view text) {
 
 bool check_text(std::string_view text, Problems& problems) {
   if (text.size() > max_text_size) {
-    problems.error({}, fmt::format("the file has {} bytes, a map at most {}", text.size(), max_text_size),
-                   "give the map's file");
+    problems.error(
+        {}, fmt::format("the file has {} bytes, but a map may have at most {}", text.size(), max_text_size),
+        "give the file of a map");
     return false;
   }
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t size = character_size(text, i);
-    if (size == 0) {
-      problems.error(position_of(text, i), fmt::format("byte 0x{:02X} is not UTF-8", byte_at(text, i)),
+    const Character c = character_at(text, i);
+    const auto code = static_cast<unsigned>(c.code);
+    if (!c.valid) {
+      problems.error(position_of(text, i), fmt::format("byte 0x{:02X} is not UTF-8", code),
                      "save the file as UTF-8");
       return false;
     }
-    if (is_control(text[i])) {
-      problems.error(position_of(text, i), fmt::format("control character 0x{:02X}", byte_at(text, i)),
-                     "remove it");
+    if (is_refused(c.code)) {
+      problems.error(position_of(text, i), fmt::format("control character 0x{:02X}", code), "remove it");
       return false;
     }
-    i += size;
+    i += c.size;
   }
   return true;
 }
@@ -83,5 +150,31 @@ Position position_of(std::string_view text, std::size_t offset) {
   return {static_cast<int>(1 + std::count(before.begin(), before.end(), '\n')),
           static_cast<int>(1 + before.size() - line_start)};
 }
+
+std::size_t quoted_end(std::string_view text, std::size_t at) {
+  const char quote = at < text.size() ? text[at] : '\0';
+  if (quote != '"' && quote != '\'') return at;
+  for (std::size_t i = at + 1; i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (text[i] == quote) {
+      if (quote == '"' || text.substr(i + 1, 1) != "'") return i + 1;
+      ++i;  // '' is an apostrophe
+    }
+  }
+  return std::string_view::npos;
+}
+
+bool is_json(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t end = comment_end(text, i);
+    if (end == std::string_view::npos) return false;
+    if (end == i && blanks.find(text[i]) == std::string_view::npos) return text[i] == '{';
+    i = std::max(end, i + 1);
+  }
+  return false;
+}
+
+bool blank_comments(std::string& text, Problems& problems) { return CommentBlanker(text, problems).run(); }
 
 }  // namespace coupler::loader

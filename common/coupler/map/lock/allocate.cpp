@@ -15,7 +15,8 @@ const std::vector<std::uint16_t>& masks_of(const Request& request) {
   return request.masks.empty() ? just_whole : request.masks;
 }
 
-/// At the beginning of the room, whatever its alignment: that was right when the room was given.
+/// At the beginning of the place in the lock, whatever the alignment: that was right when the place was
+/// given.
 std::optional<Place> within(const Place& room, const Request& request) {
   if (request.size > room.range.count()) return std::nullopt;
   for (const std::uint16_t mask : masks_of(request))
@@ -44,8 +45,8 @@ class FirstFit {
   }
 
  private:
-  /// What requests of one kind have in common. What has no room for one has none for those that follow:
-  /// places are only ever taken.
+  /// What requests of one kind have in common. An address without room for one of them has none for the next:
+  /// places are never given back.
   using Kind = std::tuple<Table, std::uint32_t, std::uint16_t, std::vector<std::uint16_t>>;
 
   std::optional<Place> place_at(std::uint32_t address, const Request& request) const {

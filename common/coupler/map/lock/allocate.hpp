@@ -16,10 +16,10 @@ struct Request {
   std::vector<std::uint16_t> masks{};  ///< the bits of a register that would do, the best first; none: whole
 };
 
-/// What is fixed.
+/// Where points may be put.
 struct FreeSpace {
   std::vector<Place> closed;  ///< nothing is put there
-  std::vector<Place> open;    ///< if a table has any, every point stands within one of them
+  std::vector<Place> open;    ///< if a table has any, points are put within one of them only
 };
 
 enum class Unknown { refused, allocated };
@@ -44,8 +44,8 @@ struct Allocation {
 };
 
 /// Gives each request the place that `lock` has for it. The others, in their order and if they may be
-/// `allocated`, get the first that is neither closed nor anybody's in the lock. Every entry of the old lock
-/// is in the new one: retired when nobody asked for it, and in use again when somebody did.
+/// `allocated`, get the first place that is neither closed nor taken in the lock. Every entry of the old lock
+/// is in the new one: retired if no request asked for it, in use again if one did.
 Allocation allocate(const std::vector<Request>& requests, const FreeSpace& free_space, const Lock& lock,
                     Unknown unknown);
 

@@ -105,13 +105,13 @@ class Parser {
 
   void no_lock(int line, int column) {
     error(line, column, fmt::format("a lock begins with '{}'", first_line),
-          "take the file from version control again");
+          "restore the file from version control");
     begun_ = true;
   }
 
   void read_line(std::string_view line) {
     if (is_conflict_marker(line))
-      return error(line_, 1, fmt::format("a merge left its marker {}", shown(line.substr(0, 7))),
+      return error(line_, 1, fmt::format("{} is the marker of a merge conflict", shown(line.substr(0, 7))),
                    "delete the markers and keep the lines of both sides; of two that give one place away, "
                    "delete that of the younger point");
     const std::vector<Word> words = words_of(line);
@@ -121,13 +121,15 @@ class Parser {
     if (!good) return no_lock(line_, words[0].column);
     begun_ = true;
     if (words[2].text != "1")
-      error(line_, words[2].column, fmt::format("a lock of version {}, known is 1", shown(words[2].text)),
-            "use a newer coupler");
+      error(
+          line_, words[2].column,
+          fmt::format("the lock has version {}, but this program knows only version 1", shown(words[2].text)),
+          "use a newer coupler");
   }
 
   void read_entry(const std::vector<Word>& words) {
     constexpr auto example =
-        "write it as in 'holding_registers 5-8 total', or take the file from version control again";
+        "write it as in 'holding_registers 5-8 total', or restore the file from version control";
     if (words.size() < 3)
       return error(line_, words[0].column, "a line of a lock is TABLE PLACE NAME", example);
     const auto table = table_of(words[0].text);

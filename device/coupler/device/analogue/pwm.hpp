@@ -8,7 +8,7 @@
 #include <tl/expected.hpp>
 
 #include "coupler/device/analogue/attribute.hpp"
-#include "coupler/map/channel.hpp"
+#include "coupler/map/hardware.hpp"
 
 namespace coupler::device {
 

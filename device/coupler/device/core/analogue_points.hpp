@@ -5,7 +5,7 @@
 
 #include "coupler/device/core/channels.hpp"
 #include "coupler/device/core/image.hpp"
-#include "coupler/modbus/exception.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::device {
 

@@ -6,7 +6,7 @@
 #include "coupler/device/core/each_point.hpp"
 #include "coupler/device/core/identity.hpp"
 #include "coupler/map/identity.hpp"
-#include "coupler/modbus/reply.hpp"
+#include "coupler/modbus/server.hpp"
 
 namespace coupler::device {
 namespace {

@@ -14,7 +14,7 @@
 #include "coupler/device/core/watchdog.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/modbus/limits.hpp"
-#include "coupler/modbus/request.hpp"
+#include "coupler/modbus/server.hpp"
 
 namespace coupler::device {
 

@@ -6,7 +6,7 @@
 #include "coupler/device/core/analogue_points.hpp"
 #include "coupler/device/core/hooks.hpp"
 #include "coupler/device/core/lines.hpp"
-#include "coupler/modbus/exception.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::device {
 

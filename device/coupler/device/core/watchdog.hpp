@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "coupler/device/core/time.hpp"
-#include "coupler/map/service.hpp"
+#include "coupler/map/watchdog.hpp"
 
 namespace coupler::device {
 

@@ -8,8 +8,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "coupler/map/edge.hpp"
-#include "coupler/map/line.hpp"
+#include "coupler/map/hardware.hpp"
 #include "coupler/map/point.hpp"
 
 namespace coupler::device {

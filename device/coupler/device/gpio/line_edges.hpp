@@ -8,7 +8,7 @@
 
 #include "coupler/device/core/edges.hpp"
 #include "coupler/device/core/time.hpp"
-#include "coupler/map/edge.hpp"
+#include "coupler/map/hardware.hpp"
 
 namespace coupler::device {
 

@@ -9,7 +9,7 @@
 
 #include "coupler/host/core/poll_cycle.hpp"
 #include "coupler/map/node_address.hpp"
-#include "coupler/plan/split.hpp"
+#include "coupler/plan/read_span.hpp"
 
 namespace coupler::cli {
 namespace {

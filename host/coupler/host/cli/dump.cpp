@@ -18,7 +18,7 @@
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/schedule.hpp"
 #include "coupler/host/modbus/modbus_transport.hpp"
-#include "coupler/map/loader/print.hpp"
+#include "coupler/map/diagnostic.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
 

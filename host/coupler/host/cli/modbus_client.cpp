@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "coupler/modbus/identification_reply.hpp"
+#include "coupler/modbus/device_identification.hpp"
 
 namespace coupler::cli {
 

@@ -9,7 +9,7 @@
 #include "coupler/host/core/paced_transport.hpp"
 #include "coupler/host/core/sink.hpp"
 #include "coupler/map/map.hpp"
-#include "coupler/map/watchdog_sequences.hpp"
+#include "coupler/map/watchdog.hpp"
 
 namespace coupler::host {
 

@@ -7,7 +7,7 @@
 
 #include <tl/expected.hpp>
 
-#include "coupler/modbus/exception.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::host {
 

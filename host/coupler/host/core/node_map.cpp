@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/crc32.hpp"
-#include "coupler/modbus/bytes.hpp"
+#include "coupler/map/fingerprint.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::host {
 namespace {

@@ -13,7 +13,7 @@
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/write.hpp"
 #include "coupler/map/map.hpp"
-#include "coupler/modbus/exception.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::host {
 

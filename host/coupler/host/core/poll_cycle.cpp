@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/plan/split.hpp"
+#include "coupler/plan/read_span.hpp"
 
 namespace coupler::host {
 

@@ -11,7 +11,6 @@
 #include "coupler/map/table.hpp"
 #include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/range.hpp"
-#include "coupler/modbus/write_request.hpp"
 
 namespace coupler::host {
 

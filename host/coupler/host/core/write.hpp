@@ -13,7 +13,7 @@
 
 #include "coupler/base/span.hpp"
 #include "coupler/map/map.hpp"
-#include "coupler/modbus/exception.hpp"
+#include "coupler/modbus/pdu.hpp"
 #include "coupler/modbus/limits.hpp"
 
 namespace coupler::host {

@@ -9,7 +9,6 @@
 #include "coupler/host/core/write.hpp"
 #include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/range.hpp"
-#include "coupler/modbus/write_request.hpp"
 
 namespace coupler::host {
 

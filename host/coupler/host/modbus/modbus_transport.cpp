@@ -46,7 +46,7 @@ Result<> check_adu(Span<const std::uint8_t> adu, const modbus::Frame& request) {
   return check_header(header, request);
 }
 
-Result<> result(const tl::expected<void, modbus::Refused>& taken) {
+Result<> result(const tl::expected<void, modbus::ReplyError>& taken) {
   if (taken) return {};
   if (taken.error().exception) return fail(ExceptionReply{*taken.error().exception});
   return fail(BadFrame{"not the reply to this request"});

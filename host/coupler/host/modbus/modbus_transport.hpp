@@ -9,8 +9,8 @@
 #include "coupler/host/core/transport.hpp"
 #include "coupler/host/modbus/wait.hpp"
 #include "coupler/map/map.hpp"
+#include "coupler/modbus/client.hpp"
 #include "coupler/modbus/frame.hpp"
-#include "coupler/modbus/read_request.hpp"
 
 struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for its context
 

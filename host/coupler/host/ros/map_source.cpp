@@ -14,8 +14,8 @@
 #include "coupler/host/modbus/modbus_transport.hpp"
 #include "coupler/host/ros/ending.hpp"
 #include "coupler/host/ros/program.hpp"
+#include "coupler/map/diagnostic.hpp"
 #include "coupler/map/loader/load.hpp"
-#include "coupler/map/loader/print.hpp"
 #include "coupler/map/node_address.hpp"
 
 namespace coupler::host {

@@ -10,9 +10,9 @@
 #include <fmt/ranges.h>
 
 #include "coupler/base/enumeration.hpp"
-#include "coupler/map/host.hpp"
 #include "coupler/map/loader/names.hpp"
 #include "coupler/map/loader/nearest.hpp"
+#include "coupler/map/network.hpp"
 
 namespace coupler::host {
 namespace {

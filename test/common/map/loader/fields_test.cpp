@@ -10,7 +10,6 @@
 #include <gmock/gmock.h>
 
 #include "coupler/map/loader/keys.hpp"
-#include "coupler/map/written.hpp"
 
 namespace coupler::loader {
 namespace {

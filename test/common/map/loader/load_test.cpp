@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "coupler/map/crc32.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "test/common/map/loader/loaded.hpp"
 #include "test/support/paths.hpp"
@@ -104,7 +103,7 @@ TEST(Load, A_file_that_cannot_be_read_is_a_diagnostic) {
 
 TEST(Load, A_file_without_end_is_refused) {
   EXPECT_EQ(to_string(load_map_file("/dev/zero").diagnostics.at(0)),
-            "/dev/zero: error: the file has more than 16 MiB, and no map has; give the path of a map");
+            "/dev/zero: error: the file has more than 16 MiB, but a map may not; give the path of a map");
 }
 
 TEST(Load, A_json_map_may_name_its_schema) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The origin's files load unchanged, with the origin's meaning.
+// Files of ros-modbus-device-driver load unchanged, with the same meaning.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -190,7 +190,7 @@ TEST(Placement, Whoever_takes_the_address_of_a_retired_point_is_warned) {
   const auto result = load(map_of("coils", "b: 1, c: 0"), LockUse::read, lock);
   EXPECT_EQ(text_of(result.diagnostics),
             "m.yaml:3:28: warning: 'c' is at coils 0, where 'a' was (m.yaml.lock, line 2); give it another "
-            "address; or delete that line, if nobody asks for 'a' any more\n");
+            "address; or delete that line, if no client uses 'a' any more\n");
   EXPECT_NE(result.map, nullptr);
 }
 

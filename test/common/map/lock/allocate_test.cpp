@@ -18,6 +18,12 @@ Place place(std::uint32_t start, std::uint32_t count = 1, std::uint16_t mask = w
   return {table, modbus::Range::of(start, count), mask};
 }
 
+/// "1.high": without the table.
+std::string text_of(const Place& place) {
+  const std::string text = to_string(place);
+  return text.substr(text.find(' ') + 1);
+}
+
 /// "0 1.high - 4-5": the places of the answers, - where there is none.
 std::string places(const Allocation& allocation) {
   std::string text;

@@ -62,7 +62,8 @@ TEST(Lock, An_empty_file_is_no_lock_as_it_would_move_every_point) {
 }
 
 TEST(Lock, Another_version_is_refused) {
-  EXPECT_EQ(problems_of("coupler lock 2\n"), "1:14: a lock of version '2', known is 1\n");
+  EXPECT_EQ(problems_of("coupler lock 2\n"),
+            "1:14: the lock has version '2', but this program knows only version 1\n");
 }
 
 TEST(Lock, Every_bad_line_is_told_with_its_place) {
@@ -105,9 +106,10 @@ TEST(Lock, A_name_is_once_in_a_table) {
 }
 
 TEST(Lock, What_a_merge_left_is_called_that) {
-  EXPECT_EQ(problems_of(head + "<<<<<<< HEAD\ncoils 1 a\n||||||| base\n=======\ncoils 2 b\n>>>>>>> topic\n"),
-            "4:1: a merge left its marker '<<<<<<<'\n6:1: a merge left its marker '|||||||'\n"
-            "7:1: a merge left its marker '======='\n9:1: a merge left its marker '>>>>>>>'\n");
+  EXPECT_EQ(
+      problems_of(head + "<<<<<<< HEAD\ncoils 1 a\n||||||| base\n=======\ncoils 2 b\n>>>>>>> topic\n"),
+      "4:1: '<<<<<<<' is the marker of a merge conflict\n6:1: '|||||||' is the marker of a merge conflict\n"
+      "7:1: '=======' is the marker of a merge conflict\n9:1: '>>>>>>>' is the marker of a merge conflict\n");
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <optional>
 #include <vector>
 
-#include "coupler/modbus/request.hpp"
+#include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/server.hpp"
 
 namespace coupler::modbus {
 namespace {
@@ -13,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using Pdu = std::vector<std::uint8_t>;
 
-Pdu copy(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
+Pdu bytes_of(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 
 constexpr auto bad_function = Exception::illegal_function;
 constexpr auto bad_address = Exception::illegal_data_address;
@@ -79,25 +81,25 @@ TEST(Request, A_write_carries_its_values) {
   const auto coil = parse_request(pdu(5, {9, 0xFF00}));
   ASSERT_TRUE(coil.has_value());
   EXPECT_EQ(std::get<WriteBits>(*coil).range, Range::of(9, 1));
-  EXPECT_THAT(copy(std::get<WriteBits>(*coil).packed), ElementsAre(1));
-  EXPECT_THAT(copy(std::get<WriteBits>(*parse_request(pdu(5, {9, 0}))).packed), ElementsAre(0));
+  EXPECT_THAT(bytes_of(std::get<WriteBits>(*coil).packed), ElementsAre(1));
+  EXPECT_THAT(bytes_of(std::get<WriteBits>(*parse_request(pdu(5, {9, 0}))).packed), ElementsAre(0));
 
   const Pdu single_bytes = pdu(6, {9, 0xABCD});
   const auto single = parse_request(single_bytes);
   ASSERT_TRUE(single.has_value());
-  EXPECT_THAT(copy(std::get<WriteRegisters>(*single).values), ElementsAre(0xAB, 0xCD));
+  EXPECT_THAT(bytes_of(std::get<WriteRegisters>(*single).values), ElementsAre(0xAB, 0xCD));
 
   const Pdu coils_bytes = pdu(15, {19, 10}, {2, 0xCD, 0x01});
   const auto coils = parse_request(coils_bytes);
   ASSERT_TRUE(coils.has_value());
   EXPECT_EQ(std::get<WriteBits>(*coils).range, Range::of(19, 10));
-  EXPECT_THAT(copy(std::get<WriteBits>(*coils).packed), ElementsAre(0xCD, 0x01));
+  EXPECT_THAT(bytes_of(std::get<WriteBits>(*coils).packed), ElementsAre(0xCD, 0x01));
 
   const Pdu registers_bytes = pdu(16, {1, 2}, {4, 0, 10, 1, 2});
   const auto registers = parse_request(registers_bytes);
   ASSERT_TRUE(registers.has_value());
   EXPECT_EQ(std::get<WriteRegisters>(*registers).range, Range::of(1, 2));
-  EXPECT_THAT(copy(std::get<WriteRegisters>(*registers).values), ElementsAre(0, 10, 1, 2));
+  EXPECT_THAT(bytes_of(std::get<WriteRegisters>(*registers).values), ElementsAre(0, 10, 1, 2));
 }
 
 TEST(Request, A_mask_write_carries_both_masks) {
@@ -114,7 +116,7 @@ TEST(Request, A_read_write_carries_both_ranges) {
   ASSERT_TRUE(request.has_value());
   EXPECT_EQ(std::get<ReadWriteRegisters>(*request).read, Range::of(3, 6));
   EXPECT_EQ(std::get<ReadWriteRegisters>(*request).write.range, Range::of(14, 2));
-  EXPECT_THAT(copy(std::get<ReadWriteRegisters>(*request).write.values), ElementsAre(0, 255, 0, 254));
+  EXPECT_THAT(bytes_of(std::get<ReadWriteRegisters>(*request).write.values), ElementsAre(0, 255, 0, 254));
 }
 
 TEST(Request, A_function_that_is_not_spoken_here_is_illegal_whatever_follows) {
@@ -195,6 +197,54 @@ TEST(Request, A_range_that_runs_past_65535_is_an_illegal_address) {
   EXPECT_EQ(refusal(pdu(16, {0xFFFF, 2}, counted(4))), bad_address);
   EXPECT_EQ(refusal(pdu(23, {0xFFFF, 2, 0, 1}, counted(2))), bad_address);
   EXPECT_EQ(refusal(pdu(23, {0, 1, 0xFFFF, 2}, counted(4))), bad_address);
+}
+
+}  // namespace
+
+namespace {
+
+using testing::ElementsAreArray;
+
+class Reply : public testing::Test {
+ protected:
+  Pdu built(std::size_t size) const {
+    return Pdu(buffer_.begin(), buffer_.begin() + static_cast<long>(size));
+  }
+  std::array<std::uint8_t, max_pdu_size> buffer_{};
+};
+
+TEST_F(Reply, An_exception_sets_the_top_bit_of_the_function_code) {
+  EXPECT_THAT(built(reply_exception(3, Exception::illegal_data_address, buffer_)), ElementsAre(0x83, 2));
+  EXPECT_THAT(built(reply_exception(0, Exception::illegal_function, buffer_)), ElementsAre(0x80, 1));
+  EXPECT_THAT(built(reply_exception(0xFF, Exception::illegal_function, buffer_)), ElementsAre(0xFF, 1));
+}
+
+TEST_F(Reply, The_first_bit_is_the_lowest_of_the_first_byte_and_spare_bits_are_0) {
+  buffer_.fill(0xEE);
+  const std::array<std::uint16_t, 10> bits{1, 0, 1, 1, 0, 0, 0, 0, 0, 1};
+  EXPECT_THAT(built(reply_bits(Function::read_coils, bits, buffer_)), ElementsAre(1, 2, 0x0D, 0x02));
+}
+
+TEST_F(Reply, Registers_are_big_endian) {
+  const std::array<std::uint16_t, 2> registers{0x1234, 0xFEDC};
+  EXPECT_THAT(built(reply_registers(Function::read_input_registers, registers, buffer_)),
+              ElementsAre(4, 4, 0x12, 0x34, 0xFE, 0xDC));
+}
+
+TEST_F(Reply, The_longest_replies_fit_the_pdu) {
+  EXPECT_EQ(reply_bits(Function::read_coils, std::vector<std::uint16_t>(max_read_bits, 1), buffer_), 252U);
+  EXPECT_EQ(reply_registers(Function::read_holding_registers, std::vector<std::uint16_t>(max_read_registers),
+                            buffer_),
+            252U);
+}
+
+TEST_F(Reply, A_written_value_is_acknowledged_by_repeating_it_or_its_place) {
+  for (const Pdu& request :
+       {Pdu{5, 0, 1, 0xFF, 0}, Pdu{6, 0, 1, 0x12, 0x34}, Pdu{22, 0, 1, 0, 0xF2, 0, 0x25}})
+    EXPECT_THAT(built(reply_written(request, buffer_)), ElementsAreArray(request));
+  EXPECT_THAT(built(reply_written(Pdu{15, 0, 19, 0, 10, 2, 0xCD, 1}, buffer_)),
+              ElementsAre(15, 0, 19, 0, 10));
+  EXPECT_THAT(built(reply_written(Pdu{16, 0, 1, 0, 1, 2, 0, 10}, buffer_)), ElementsAre(16, 0, 1, 0, 1));
 }
 
 }  // namespace

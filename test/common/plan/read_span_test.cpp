@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/plan/split.hpp"
-
 #include <gtest/gtest.h>
 
 #include "coupler/plan/planner.hpp"
+#include "coupler/plan/read_span.hpp"
 #include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 

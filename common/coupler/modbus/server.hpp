@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// The server's side: request PDUs are parsed, reply PDUs are built.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <tl/expected.hpp>
 #include <variant>
 
-#include "coupler/modbus/bytes.hpp"
+#include <tl/expected.hpp>
+
+#include "coupler/base/span.hpp"
 #include "coupler/modbus/device_identification.hpp"
-#include "coupler/modbus/exception.hpp"
 #include "coupler/modbus/file_record.hpp"
-#include "coupler/modbus/function.hpp"
+#include "coupler/modbus/pdu.hpp"
 #include "coupler/modbus/range.hpp"
 
 namespace coupler::modbus {
@@ -54,10 +56,22 @@ using Request = std::variant<Echo, FileGroups, Read, ReadDeviceIdentification, W
                              MaskWrite, ReadWriteRegisters>;
 
 /// Reads a request PDU of at least one byte and checks all that can be checked without knowing the device, in
-/// the order of MAP's state diagrams. Errors: 01 a function or one of its sub-functions that is not spoken
-/// here, or a code of 128 and above; 03 a PDU longer or shorter than it must be, a quantity outside its
-/// limits, a byte count that does not match it, a coil value other than 0x0000 and 0xFF00; 02 a range that
-/// runs past address 65535.
+/// the order of MAP's state diagrams. Errors: 01 a function or sub-function that is not supported, or a code
+/// of 128 and above; 03 a PDU longer or shorter than it must be, a quantity outside its limits, a byte count
+/// that does not match it, a coil value other than 0x0000 and 0xFF00; 02 a range that runs past address
+/// 65535.
 tl::expected<Request, Exception> parse_request(Bytes pdu);
+
+/// `function` is the request's code as it came; 128 and above stay as they are.
+std::size_t reply_exception(std::uint8_t function, Exception code, Span<std::uint8_t> pdu);
+
+/// FC 1 and 2. A bit is on if its element is not 0; the bits that fill the last byte are 0 (MAP 6.1).
+std::size_t reply_bits(Function function, Span<const std::uint16_t> bits, Span<std::uint8_t> pdu);
+
+/// FC 3, 4 and 23.
+std::size_t reply_registers(Function function, Span<const std::uint16_t> registers, Span<std::uint8_t> pdu);
+
+/// What acknowledges a write: FC 5, 6 and 22 repeat the whole request, FC 15 and 16 its address and quantity.
+std::size_t reply_written(Bytes request, Span<std::uint8_t> pdu);
 
 }  // namespace coupler::modbus

@@ -1,18 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests that write (FC 5, 6, 15, 16, 22), the client's side.
+// The client's side: PDUs that read (FC 1 to 4) and write (FC 5, 6, 15, 16, 22), and what their replies say.
 #pragma once
 
 #include <array>
 #include <cstdint>
+
 #include <tl/expected.hpp>
 
 #include "coupler/base/span.hpp"
-#include "coupler/modbus/bytes.hpp"
-#include "coupler/modbus/exception.hpp"
-#include "coupler/modbus/function.hpp"
 #include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/pdu.hpp"
+#include "coupler/modbus/range.hpp"
 
 namespace coupler::modbus {
+
+/// The PDU of a request that reads.
+class ReadRequest {
+ public:
+  /// At most max_read_bits or max_read_registers.
+  ReadRequest(Function function, Range range);
+
+  Bytes pdu() const { return {bytes_.data(), bytes_.size()}; }
+  std::uint8_t function() const { return bytes_[0]; }
+  std::uint16_t count() const { return get_u16(&bytes_[3]); }
+
+ private:
+  std::array<std::uint8_t, 5> bytes_{};
+};
+
+/// What was read with FC 1 or 2: one element a bit, 0 or 1. `bits` has room for all that was asked for.
+tl::expected<void, ReplyError> take_bits(const ReadRequest& request, Bytes reply, std::uint8_t* bits);
+
+/// What was read with FC 3 or 4.
+tl::expected<void, ReplyError> take_registers(const ReadRequest& request, Bytes reply,
+                                              std::uint16_t* registers);
 
 /// The PDU of a request that writes.
 class WriteRequest {
@@ -37,8 +58,8 @@ class WriteRequest {
   std::size_t size_ = 5;
 };
 
-/// The value that a reply to FC 5, 6 or 22 repeats is not compared: some devices answer with what they made
-/// of it.
-tl::expected<void, Refused> check_reply(const WriteRequest& request, Bytes reply);
+/// The value that a reply to FC 5, 6 or 22 repeats is not compared: some devices answer with the value that
+/// they stored instead.
+tl::expected<void, ReplyError> check_reply(const WriteRequest& request, Bytes reply);
 
 }  // namespace coupler::modbus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/plan/split.hpp"
+#include "coupler/plan/read_span.hpp"
 
 #include <algorithm>
 #include <optional>

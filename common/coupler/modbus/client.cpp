@@ -1,10 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/modbus/write_request.hpp"
+#include "coupler/modbus/client.hpp"
 
 #include <algorithm>
 #include <cassert>
 
 namespace coupler::modbus {
+namespace {
+
+/// The `size` bytes of the values.
+tl::expected<const std::uint8_t*, ReplyError> values_in(const ReadRequest& request, Bytes reply,
+                                                        std::size_t size) {
+  if (reply.size() != 2 + size || reply[0] != request.function() || reply[1] != size)
+    return tl::unexpected(reply_error(request.function(), reply));
+  return reply.data() + 2;
+}
+
+}  // namespace
+
+ReadRequest::ReadRequest(Function function, Range range) {
+  bytes_[0] = static_cast<std::uint8_t>(function);
+  put_u16(&bytes_[1], range.start());
+  put_u16(&bytes_[3], static_cast<std::uint16_t>(range.count()));
+  assert(range.count() <= (function <= Function::read_discrete_inputs ? max_read_bits : max_read_registers));
+}
+
+tl::expected<void, ReplyError> take_bits(const ReadRequest& request, Bytes reply, std::uint8_t* bits) {
+  const auto values = values_in(request, reply, (request.count() + 7U) / 8U);
+  if (!values) return tl::unexpected(values.error());
+  for (std::size_t i = 0; i < request.count(); ++i) bits[i] = (*values)[i / 8] >> i % 8 & 1;
+  return {};
+}
+
+tl::expected<void, ReplyError> take_registers(const ReadRequest& request, Bytes reply,
+                                              std::uint16_t* registers) {
+  const auto values = values_in(request, reply, std::size_t{2} * request.count());
+  if (!values) return tl::unexpected(values.error());
+  for (std::size_t i = 0; i < request.count(); ++i) registers[i] = get_u16(*values + 2 * i);
+  return {};
+}
 
 WriteRequest::WriteRequest(Function function, std::uint16_t address, std::uint16_t value) {
   bytes_[0] = static_cast<std::uint8_t>(function);
@@ -49,15 +82,13 @@ WriteRequest WriteRequest::mask(std::uint16_t address, std::uint16_t and_mask, s
   return request;
 }
 
-tl::expected<void, Refused> check_reply(const WriteRequest& request, Bytes reply) {
+tl::expected<void, ReplyError> check_reply(const WriteRequest& request, Bytes reply) {
   const Bytes asked = request.pdu();
-  if (reply.size() == 2 && reply[0] == (asked[0] | exception_bit))
-    return tl::unexpected(Refused{static_cast<Exception>(reply[1])});
   const bool several = request.function() == Function::write_multiple_coils ||
                        request.function() == Function::write_multiple_registers;
   const std::size_t same = several ? 5 : 3;
   if (reply.size() != (several ? 5 : asked.size()) || !std::equal(&reply[0], &reply[0] + same, asked.begin()))
-    return tl::unexpected(Refused{});
+    return tl::unexpected(reply_error(asked[0], reply));
   return {};
 }
 
