@@ -110,8 +110,8 @@ class Settings(testing.RosTest):
         with process.Driver(f"_map:={self.map()}") as one:
             one.wait_for("connected")
             with process.Driver(f"_map:={self.map()}", "__name:=other") as other:
-                one.wait_for("/other publishes /settings/online, too: two drivers of one device")
-                other.wait_for("/settings_driver publishes /settings/online, too: two drivers of one device")
+                one.wait_for("/other also publishes /settings/online: two drivers write to the same device")
+                other.wait_for("/settings_driver also publishes /settings/online: two drivers write to the same device")
 
     def test_an_ipv6_address_may_stand_in_brackets(self):
         with socket.create_server(("::1", 0), family=socket.AF_INET6) as server:

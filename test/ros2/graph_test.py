@@ -133,20 +133,20 @@ class Rivals(GraphTest):
         one = self.driver("--map", self.map(port=peer.port))
         one.wait_for("connected")
         other = self.driver("--map", self.map(port=peer.port), "--ros-args", "-r", "__node:=other")
-        one.wait_for("/other publishes /shown/online, too: two drivers of one device")
-        other.wait_for("/shown_driver publishes /shown/online, too: two drivers of one device")
+        one.wait_for("/other also publishes /shown/online: two drivers write to the same device")
+        other.wait_for("/shown_driver also publishes /shown/online: two drivers write to the same device")
         wait_until(lambda: "/other" in nodes(), "both")
-        self.assertEqual(one.output.count("/other publishes /shown/online"), 1)
+        self.assertEqual(one.output.count("/other also publishes /shown/online"), 1)
 
     def test_two_drivers_of_one_name_notice_each_other(self):
         peer = Peer().start()
         self.addCleanup(peer.stop)
         for driver in [self.driver("--map", self.map(port=peer.port)) for _ in range(2)]:
-            driver.wait_for("publishes /shown/online, too: two drivers of one device")
+            driver.wait_for("also publishes /shown/online: two drivers write to the same device")
 
     def test_drivers_of_other_names_do_not(self):
         drivers = [self.driver("--map", self.map(name)) for name in ("left", "right", "rival")]
-        self.driver("--map", self.map("rival"), "--ros-args", "-r", "__node:=second").wait_for("publishes /rival/online, too")
+        self.driver("--map", self.map("rival"), "--ros-args", "-r", "__node:=second").wait_for("also publishes /rival/online")
         for driver in drivers[:2]:
             self.assertNotIn("publishes", driver.output)
 

@@ -46,7 +46,7 @@ TEST(Arguments, ROS_1s_spelling_is_a_wrong_call_told_with_that_of_ROS_2) {
 }
 
 TEST(Arguments, ROSs_own_without_ros_args_are_told_where_they_belong) {
-  EXPECT_THAT(parse({"-p", "rate:=5"}).text, HasSubstr("stand behind --ros-args"));
+  EXPECT_THAT(parse({"-p", "rate:=5"}).text, HasSubstr("come after --ros-args"));
 }
 
 TEST(Arguments, A_misspelt_option_is_a_wrong_call) {

@@ -3,12 +3,204 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
+#include <future>
 #include <set>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "coupler/host/core/node_map.hpp"
+#include "coupler/host/core/schedule.hpp"
+#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/ros/program.hpp"
+#include "coupler/map/diagnostic.hpp"
+#include "coupler/map/loader/load.hpp"
+#include "coupler/map/node_address.hpp"
+
 namespace coupler::host {
+namespace {
+
+constexpr auto shutdown_check_interval = std::chrono::milliseconds(50);
+
+using Source = tl::expected<MapSource, int>;
+using LogFunction = std::function<void(Level, const std::string&)>;
+
+/// Finds one map at a time. The settings must outlive what it finds.
+class MapFinder {
+ public:
+  MapFinder(const Dialect& dialect, const LogFunction& log) : dialect_(dialect), log_(log) {}
+
+  /// PATH, or NAME=PATH for a device that is not to have its map's name. The result views `entry`.
+  Source from_entry(std::string_view entry) {
+    const std::size_t equals = entry.find('=');
+    const bool is_named = equals < entry.find('/');  // a folder may have '=' in its name
+    const std::string_view name = is_named ? entry.substr(0, equals) : std::string_view();
+    auto source = from_file(std::string(is_named ? entry.substr(equals + 1) : entry), name);
+    if (source && !name.empty()) source->map.name = name;
+    return source;
+  }
+
+  Source from_settings(const Map* built_in, const Settings& settings) {
+    if (built_in != nullptr) {
+      if (settings.map)
+        return fail(
+            wrong_call,
+            "this driver has its map built in and takes no other; use coupler_driver for another map");
+      return MapSource{nullptr, *built_in};
+    }
+    if (settings.map && names_a_node(*settings.map)) return from_node_address(*settings.map, settings);
+    if (settings.map)
+      return from_file(*settings.map, settings.name ? std::string_view(*settings.name) : std::string_view());
+    if (settings.address) return from_node(settings, *settings.address);
+    return fail(
+        wrong_call,
+        "no map; give one by --map MAP, or --address HOST of a node that serves its map (--help shows "
+        "examples)");
+  }
+
+  tl::unexpected<int> fail(int exit_code, const std::string& why) {
+    log_(Level::error, why);
+    return tl::make_unexpected(exit_code);
+  }
+
+ private:
+  /// `name` is for a map that has none.
+  Source from_file(const std::string& path, std::string_view name) {
+    const LoadResult loaded = load_map_file(path, LockUse::read, name);
+    coupler::print(loaded.diagnostics);
+    if (loaded.map) return MapSource{loaded.map, loaded.map->map()};
+    explain_relative_path(path);
+    return tl::make_unexpected(wrong_input);
+  }
+
+  /// Programs of a launch file start in another folder than its own, where a relative path is not found.
+  void explain_relative_path(const std::string& path) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    if (fs::path(path).is_absolute() || fs::exists(path, ignored)) return;
+    log_(Level::error,
+         fmt::format("a relative path counts from {}; {}", fs::current_path(ignored).string(),
+                     fmt::format(fmt::runtime(dialect_.relative_path), fmt::arg("path", path))));
+  }
+
+  /// The map that the node serves, if any; an error after a shutdown.
+  tl::expected<std::optional<ServedMap>, int> wait_for_map(Transport& transport, const std::string& where) {
+    Backoff backoff;
+    std::string logged;
+    while (!Shutdown::requested) {
+      // A device that hangs must not hold up the shutdown for its timeout.
+      auto attempt = std::async(std::launch::async, [&transport] { return fetch_served_map(transport); });
+      while (attempt.wait_for(shutdown_check_interval) != std::future_status::ready)
+        if (Shutdown::requested) transport.interrupt();
+      auto served = attempt.get();
+      if (served) return std::move(*served);
+      if (Shutdown::requested) break;
+      const std::string why = to_string(served.error());
+      if (why != logged)
+        log_(Level::warning, fmt::format("waiting for the map of {}: {}; trying again", where, why));
+      logged = why;
+      const Time again = std::chrono::steady_clock::now() + backoff.next();
+      while (!Shutdown::requested && std::chrono::steady_clock::now() < again)
+        std::this_thread::sleep_for(shutdown_check_interval);
+    }
+    return tl::make_unexpected(0);
+  }
+
+  /// The map will view `address`.
+  Source from_node(const Settings& settings, std::string_view address) {
+    Map asked;
+    apply(settings, asked);
+    asked.connection.address = address;
+    const std::string where = fmt::format("{} port {}", asked.connection.address, asked.connection.port);
+    ModbusTransport transport(asked.connection);
+    const auto served = wait_for_map(transport, where);
+    if (!served) return tl::make_unexpected(served.error());
+    if (!*served)
+      return fail(wrong_input, where + " serves no map: it is a foreign coupler; give its map by --map MAP");
+    const auto owner = load_node_map((*served)->text, (*served)->head, load_served_map);
+    if (!owner)
+      return fail(wrong_input, fmt::format("the map of {} cannot be used: {}", where, owner.error()));
+    // The address where the node was found counts, not the one in its map.
+    Map map = (*owner)->map();
+    map.connection.address = address;
+    map.connection.port = asked.connection.port;
+    map.connection.unit = asked.connection.unit;
+    return MapSource{*owner, map};
+  }
+
+  /// tcp://HOST:PORT/UNIT in place of a file. The settings address, port and unit override it.
+  Source from_node_address(const std::string& argument, const Settings& settings) {
+    const auto node = parse_node_address(argument);
+    if (!node)
+      return fail(wrong_call, fmt::format("{}: {}; {}", argument, node.error().what, node.error().remedy));
+    Settings named;
+    named.port = node->port;
+    named.unit = node->unit;
+    return from_node(overlay(named, settings), settings.address ? *settings.address : node->host);
+  }
+
+  const Dialect& dialect_;
+  const LogFunction& log_;
+};
+
+/// What is wrong with settings that name several maps, or an empty text.
+std::string find_conflict(const Map* built_in, const Settings& settings, const Dialect& dialect) {
+  if (built_in != nullptr)
+    return "this driver has its map built in and takes no other; use coupler_driver for other maps";
+  if (settings.map) return "both map and maps are given; give one of them";
+  if (settings.name || settings.address || settings.port || settings.unit)
+    return fmt::format(
+        "name, address, port and unit are for one device; with several maps write them into the maps, or "
+        "give "
+        "them for each device {}",
+        dialect.device_setting);
+  return {};
+}
+
+/// What is wrong with the devices, or an empty text.
+std::string find_error(const Devices& devices) {
+  std::set<std::string_view> names;
+  for (const auto& [settings, source] : devices) {
+    if (source.map.connection.address.empty())
+      return fmt::format("the map{} has no address; add 'address: HOST' or give --address HOST",
+                         devices.size() > 1 ? fmt::format(" of {}", source.map.name) : "");
+    if (!names.insert(source.map.name).second)
+      return fmt::format(
+          "two devices have the name {}; give one of them another, as in --maps left=a.yaml,right=a.yaml",
+          source.map.name);
+  }
+  return {};
+}
+
+}  // namespace
+
+tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const Settings& settings,
+                                                    const Dialect& dialect, const LogFunction& log) {
+  MapFinder finder(dialect, log);
+  std::vector<MapSource> sources;
+  if (settings.maps.empty()) {
+    auto source = finder.from_settings(built_in, settings);
+    if (!source) return tl::make_unexpected(source.error());
+    sources.push_back(std::move(*source));
+    return sources;
+  }
+  if (const auto wrong = find_conflict(built_in, settings, dialect); !wrong.empty())
+    return finder.fail(wrong_call, wrong);
+  for (const std::string& entry : settings.maps) {
+    auto source = finder.from_entry(entry);
+    if (!source) return tl::make_unexpected(source.error());
+    sources.push_back(std::move(*source));
+  }
+  return sources;
+}
+
+bool is_map_of_a_node(const Map* built_in, const Settings& settings) {
+  if (built_in != nullptr || !settings.maps.empty()) return false;
+  return settings.map ? names_a_node(*settings.map) : settings.address.has_value();
+}
 
 std::vector<std::string_view> names_of(const std::vector<MapSource>& sources) {
   std::vector<std::string_view> names;
@@ -24,24 +216,11 @@ tl::expected<Devices, std::string> configure(
   for (MapSource& source : sources) {
     auto settings = settings_of(source.map.name);
     if (!settings) return tl::make_unexpected(settings.error());
-    Configured& device = devices.emplace_back(Configured{std::move(*settings), std::move(source)});
+    DeviceConfig& device = devices.emplace_back(DeviceConfig{std::move(*settings), std::move(source)});
     apply(device.settings, device.source.map);
   }
+  if (std::string wrong = find_error(devices); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
   return devices;
-}
-
-std::string why_not(const Devices& devices) {
-  std::set<std::string_view> names;
-  for (const auto& [settings, source] : devices) {
-    if (source.map.connection.address.empty())
-      return fmt::format("the map has no address; add 'address: HOST' or give --address HOST{}",
-                         devices.size() > 1 ? fmt::format(" (map of {})", source.map.name) : "");
-    if (!names.insert(source.map.name).second)
-      return fmt::format(
-          "two devices have the name {}; give one of them another, as in --maps left=a.yaml,right=a.yaml",
-          source.map.name);
-  }
-  return {};
 }
 
 std::string node_name(std::string_view map_name) {

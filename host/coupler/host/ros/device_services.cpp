@@ -17,7 +17,7 @@ using Outcome = WriteResult::Outcome;
 
 bool is_bit(const Point& point) { return point.format.type == codec::Type::BOOL && point.count == 1; }
 
-/// A value that is read at all comes within this.
+/// A point that is read has a new value within this time.
 Duration answer_timeout(const Map& map, const Point& point) {
   const std::chrono::duration<double> cycles(2 / plan::rate_of(map, point));
   return std::chrono::duration_cast<Duration>(cycles) + 2 * map.connection.timeout;
@@ -25,8 +25,8 @@ Duration answer_timeout(const Map& map, const Point& point) {
 
 }  // namespace
 
-void DeviceServices::offer(Node& node, Driver driver) {
-  driver_ = std::move(driver);
+void DeviceServices::start(Node& node, Device device) {
+  device_ = std::move(device);
   calls_ = node.make_service_thread();
   urgent_calls_ = node.make_service_thread();
   const auto name = [this](std::string_view service) { return fmt::format("{}/{}", map_.name, service); };
@@ -35,8 +35,8 @@ void DeviceServices::offer(Node& node, Driver driver) {
   });
   calls_->offer_read(name("read"), [this](const std::string& point) { return answer_read(point); });
   if (map_.coupler_watchdog.present())
-    calls_->offer_trigger(name("reset_watchdog"), [this] { return answer_call(&Driver::reset); });
-  urgent_calls_->offer_trigger(name("safe"), [this] { return answer_call(&Driver::make_safe); });
+    calls_->offer_trigger(name("reset_watchdog"), [this] { return answer_call(&Device::reset); });
+  urgent_calls_->offer_trigger(name("safe"), [this] { return answer_call(&Device::make_safe); });
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)
     if (is_writable(map_.points[i]) && is_bit(map_.points[i]))
       calls_->offer_set(name(fmt::format("{}/set", map_.points[i].name)),
@@ -45,15 +45,15 @@ void DeviceServices::offer(Node& node, Driver driver) {
   urgent_calls_->start();
 }
 
-void DeviceServices::withdraw() {
+void DeviceServices::stop() {
   for (ServiceThread* thread : {calls_.get(), urgent_calls_.get()})
-    if (thread != nullptr) thread->end();
-  value_waiter_.end();
+    if (thread != nullptr) thread->stop();
+  value_waiter_.cancel();
   const std::lock_guard lock(mutex_);
-  driver_.reset();
+  device_.reset();
 }
 
-DeviceServices::~DeviceServices() { withdraw(); }
+DeviceServices::~DeviceServices() { stop(); }
 
 const Point* DeviceServices::find_point(const std::string& name, std::string& message) const {
   const Point* point = find(map_, name);
@@ -68,8 +68,8 @@ WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::
   write.ordered = true;
   {
     const std::lock_guard lock(mutex_);
-    if (!driver_) return {Outcome::dropped, {}, "dropped: the driver ends"};
-    driver_->writes.accept(write);
+    if (!device_) return {Outcome::dropped, {}, "dropped: the driver ends"};
+    device_->writes.accept(write);
   }
   return ticket.wait();
 }
@@ -77,8 +77,8 @@ WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::
 WriteTicket::Outcome DeviceServices::refuse(const std::string& name, const Point* point,
                                             const std::string& why) {
   const std::lock_guard lock(mutex_);
-  if (driver_)
-    driver_->writes.refuse(point != nullptr ? std::optional(index_of(*point)) : std::nullopt,
+  if (device_)
+    device_->writes.refuse(point != nullptr ? std::optional(index_of(*point)) : std::nullopt,
                            fmt::format("{} by the service {}/write: {}", name, map_.name, why));
   return {Outcome::refused, {}, "refused: " + why};
 }
@@ -104,11 +104,11 @@ Calls::Answer DeviceServices::answer_set(std::uint32_t index, bool on) {
   return {outcome.outcome == Outcome::ok, outcome.text};
 }
 
-Calls::Answer DeviceServices::answer_call(std::function<std::future<Calls::Answer>()> Driver::*call) {
+Calls::Answer DeviceServices::answer_call(std::function<std::future<Calls::Answer>()> Device::*call) {
   std::future<Calls::Answer> asked;
   {
     const std::lock_guard lock(mutex_);
-    if (driver_) asked = ((*driver_).*call)();
+    if (device_) asked = ((*device_).*call)();
   }
   return asked.valid() ? asked.get() : Calls::Answer{false, "the driver ends"};
 }
@@ -123,9 +123,9 @@ ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
   }
   const std::uint32_t index = index_of(*point);
   const auto deadline = std::chrono::steady_clock::now() + answer_timeout(map_, *point);
-  listeners_.came(index);
+  subscribers_.add(index);
   const auto value = value_waiter_.wait(index, deadline);
-  listeners_.left(index);
+  subscribers_.remove(index);
   answer.success = value.has_value();
   if (value)
     answer.value = format_value(value->data(), *point);
@@ -136,10 +136,10 @@ ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
 
 std::string DeviceServices::why_no_value(const Point& point) {
   const std::lock_guard lock(mutex_);
-  const DeviceSnapshot device = driver_ ? driver_->statistics() : DeviceSnapshot{};
-  if (driver_ && !device.online)
+  const DeviceSnapshot device = device_ ? device_->statistics() : DeviceSnapshot{};
+  if (device_ && !device.online)
     return fmt::format("no value of {}: the device is {}", point.name, connection_health(device).text);
-  return fmt::format("no value of {} came; {}/status says why", point.name, map_.name);
+  return fmt::format("no value of {} came in time; {}/status says why", point.name, map_.name);
 }
 
 }  // namespace coupler::host

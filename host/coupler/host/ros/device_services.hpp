@@ -14,31 +14,31 @@
 namespace coupler::host {
 
 /// The services of a device: `<name>/write`, `<name>/read`, `<name>/<point>/set` for each writable bit,
-/// `<name>/reset_watchdog` where the driver makes use of the coupler's own, and `<name>/safe`. They answer
-/// when the result is known, and therefore have a thread of their own; `safe` has another, so that it waits
-/// for none of them.
+/// `<name>/reset_watchdog` if the driver uses the coupler's own watchdog, and `<name>/safe`. They answer when
+/// the result is known, in a thread of their own. `safe` has another thread: it does not wait for the others.
 class DeviceServices {
  public:
-  /// Nothing is offered yet. What `map` views, and the listeners, must outlive it.
-  DeviceServices(const Map& map, Listeners& listeners) : map_(map), listeners_(listeners) {}
-  /// Waits for the call in progress; the write that it waits for must have got its result by then.
+  /// What `map` views, and the counts, must outlive it.
+  DeviceServices(const Map& map, SubscriberCounts& subscribers) : map_(map), subscribers_(subscribers) {}
+  /// Waits for the call in progress. The write that this one waits for must have its result by then.
   ~DeviceServices();
   DeviceServices(const DeviceServices&) = delete;
   DeviceServices& operator=(const DeviceServices&) = delete;
 
-  /// What they call. None of it waits for anything.
-  struct Driver {
+  /// What the services call. None of it waits for anything.
+  struct Device {
     WriteHandler writes;
     std::function<std::future<Calls::Answer>()> reset;      ///< of the coupler's own watchdog
     std::function<std::future<Calls::Answer>()> make_safe;  ///< all outputs
     std::function<DeviceSnapshot()> statistics;
   };
 
-  void offer(Node& node, Driver driver);
-  /// Calls them no more: what they need may end.
-  void withdraw();
+  /// Offers the services.
+  void start(Node& node, Device device);
+  /// The device is not called any more.
+  void stop();
 
-  /// Who waits for a value that is read. It must be told when the device is online.
+  /// What a call of `read` waits with. It needs to know whether the device is online, and the values.
   ValueWaiter& value_waiter() { return value_waiter_; }
 
  private:
@@ -47,7 +47,7 @@ class DeviceServices {
   WriteTicket::Outcome answer_write(const std::string& name, const std::string& text);
   ServiceThread::ReadAnswer answer_read(const std::string& name);
   Calls::Answer answer_set(std::uint32_t index, bool on);
-  Calls::Answer answer_call(std::function<std::future<Calls::Answer>()> Driver::*call);
+  Calls::Answer answer_call(std::function<std::future<Calls::Answer>()> Device::*call);
   std::uint32_t index_of(const Point& point) const {
     return static_cast<std::uint32_t>(&point - map_.points.data());
   }
@@ -55,9 +55,9 @@ class DeviceServices {
   std::string why_no_value(const Point& point);
 
   Map map_;
-  Listeners& listeners_;
+  SubscriberCounts& subscribers_;
   std::mutex mutex_;
-  std::optional<Driver> driver_;  ///< none after withdraw()
+  std::optional<Device> device_;  ///< none after stop()
   ValueWaiter value_waiter_;
   std::unique_ptr<ServiceThread> calls_;  // last: they use the others
   std::unique_ptr<ServiceThread> urgent_calls_;

@@ -8,12 +8,12 @@
 namespace coupler::host {
 namespace {
 
-/// The figures of an entry.
-class Figures {
+/// Adds values to an entry.
+class Values {
  public:
-  explicit Figures(Diagnosis& diagnosis) : figures_(diagnosis.figures) {}
+  explicit Values(DiagnosticEntry& entry) : values_(entry.values) {}
 
-  void add(std::string name, std::string value) { figures_.emplace_back(std::move(name), std::move(value)); }
+  void add(std::string name, std::string value) { values_.emplace_back(std::move(name), std::move(value)); }
   void add(std::string name, const char* value) { add(std::move(name), std::string(value)); }
   void add(std::string name, bool value) { add(std::move(name), value ? "True" : "False"); }
   void add(std::string name, std::uint64_t value) { add(std::move(name), fmt::to_string(value)); }
@@ -28,10 +28,10 @@ class Figures {
   }
 
  private:
-  std::vector<std::pair<std::string, std::string>>& figures_;
+  std::vector<std::pair<std::string, std::string>>& values_;
 };
 
-Diagnosis diagnosis_of(Health health) { return {health.level, std::move(health.text), {}, {}}; }
+DiagnosticEntry entry_of(Health health) { return {health.level, std::move(health.text), {}, {}}; }
 
 }  // namespace
 
@@ -39,11 +39,11 @@ Diagnostics::Diagnostics(const Map& map, Node& node)
     : map_(map),
       hardware_id_(fmt::format("{} {}:{} unit {}", map.name, map.connection.address, map.connection.port,
                                map.connection.unit)) {
-  const auto add = [&](const char* what, Diagnosis (Diagnostics::*tell)()) {
-    node.add_diagnosis(fmt::format("{} {}", map.name, what), [this, tell] {
-      Diagnosis diagnosis = (this->*tell)();
-      diagnosis.hardware_id = hardware_id_;
-      return diagnosis;
+  const auto add = [&](const char* what, DiagnosticEntry (Diagnostics::*make)()) {
+    node.add_diagnostics(fmt::format("{} {}", map.name, what), [this, make] {
+      DiagnosticEntry entry = (this->*make)();
+      entry.hardware_id = hardware_id_;
+      return entry;
     });
   };
   add("connection", &Diagnostics::connection);
@@ -58,51 +58,51 @@ bool Diagnostics::update(const DeviceSnapshot& device, const std::vector<PointQu
   return next_.online != now_.online;
 }
 
-/// The first of a message.
-Diagnosis Diagnostics::connection() {
+/// The first entry of a message.
+DiagnosticEntry Diagnostics::connection() {
   before_ = std::exchange(now_, next_);
-  Diagnosis result = diagnosis_of(connection_health(now_));
-  Figures figures(result);
-  figures.add("online", now_.online);
-  figures.add("identity", std::string(to_string(now_.identity)));
+  DiagnosticEntry result = entry_of(connection_health(now_));
+  Values values(result);
+  values.add("online", now_.online);
+  values.add("identity", std::string(to_string(now_.identity)));
   if (const auto hostname = hostname_of(now_.machine); !hostname.empty())
-    figures.add("hostname", std::string(hostname));
-  if (now_.machine.serial != 0) figures.add("serial", fmt::format("{:016x}", now_.machine.serial));
-  figures.add("connections", now_.connections);
-  figures.add("requests", now_.requests);
-  figures.add("timeouts", now_.timeouts);
-  figures.add("other failures", now_.failures);
+    values.add("hostname", std::string(hostname));
+  if (now_.machine.serial != 0) values.add("serial", fmt::format("{:016x}", now_.machine.serial));
+  values.add("connections", now_.connections);
+  values.add("requests", now_.requests);
+  values.add("timeouts", now_.timeouts);
+  values.add("other failures", now_.failures);
   return result;
 }
 
-Diagnosis Diagnostics::polling() {
-  Diagnosis result = diagnosis_of(polling_health(map_, points_, before_, now_));
-  Figures figures(result);
-  figures.add("cycle", now_.cycles);
-  figures.add("request latency", now_.latency);
-  figures.add("overruns", now_.overruns);
-  figures.add("rejected ranges", now_.rejected_ranges);
+DiagnosticEntry Diagnostics::polling() {
+  DiagnosticEntry result = entry_of(polling_health(map_, points_, before_, now_));
+  Values values(result);
+  values.add("cycle", now_.cycles);
+  values.add("request latency", now_.latency);
+  values.add("overruns", now_.overruns);
+  values.add("rejected ranges", now_.rejected_ranges);
   for (std::size_t code = 0; code < now_.exceptions.size(); ++code)
     if (now_.exceptions[code] > 0)
-      figures.add(to_string(Error(ExceptionReply{static_cast<modbus::Exception>(code)})),
-                  now_.exceptions[code]);
+      values.add(to_string(Error(ExceptionReply{static_cast<modbus::Exception>(code)})),
+                 now_.exceptions[code]);
   return result;
 }
 
-Diagnosis Diagnostics::writes() {
-  Diagnosis result = diagnosis_of(writes_health(before_, now_));
-  Figures figures(result);
+DiagnosticEntry Diagnostics::writes() {
+  DiagnosticEntry result = entry_of(writes_health(before_, now_));
+  Values values(result);
   for (std::size_t i = 0; i < now_.writes.size(); ++i)
-    figures.add(std::string(to_string(static_cast<WriteResult::Outcome>(i))), now_.writes[i]);
+    values.add(std::string(to_string(static_cast<WriteResult::Outcome>(i))), now_.writes[i]);
   return result;
 }
 
-Diagnosis Diagnostics::watchdog() {
-  Diagnosis result = diagnosis_of(watchdog_health(now_));
-  Figures figures(result);
-  figures.add("timeout ms", static_cast<std::uint64_t>(map_.coupler_watchdog.timeout.count()));
-  figures.add("fed", now_.watchdog.state == WatchdogStatus::State::fed);
-  figures.add("times expired", now_.watchdog.expiries);
+DiagnosticEntry Diagnostics::watchdog() {
+  DiagnosticEntry result = entry_of(watchdog_health(now_));
+  Values values(result);
+  values.add("timeout ms", static_cast<std::uint64_t>(map_.coupler_watchdog.timeout.count()));
+  values.add("fed", now_.watchdog.state == WatchdogStatus::State::fed);
+  values.add("times expired", now_.watchdog.expiries);
   return result;
 }
 

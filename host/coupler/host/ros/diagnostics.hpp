@@ -12,27 +12,27 @@
 
 namespace coupler::host {
 
-/// A device on /diagnostics (REP 107): connection, polling, writes, and the
-/// coupler's own watchdog where the driver makes use of it. The hardware id is its name and address.
+/// A device on /diagnostics (REP 107): connection, polling, writes, and the coupler's own watchdog if the
+/// driver uses it. The hardware id is the device's name and address.
 class Diagnostics {
  public:
   /// Adds its entries to the node's. What `map` views outlives it.
   Diagnostics(const Map& map, Node& node);
 
-  /// What to say next. True: it should not wait, since the device came or went.
+  /// What the next message says. True: it should not wait, since the device came online or went offline.
   bool update(const DeviceSnapshot& device, const std::vector<PointQuality>& points);
 
  private:
-  Diagnosis connection();
-  Diagnosis polling();
-  Diagnosis writes();
-  Diagnosis watchdog();
+  DiagnosticEntry connection();
+  DiagnosticEntry polling();
+  DiagnosticEntry writes();
+  DiagnosticEntry watchdog();
 
   Map map_;
   std::string hardware_id_;
   DeviceSnapshot next_;
-  DeviceSnapshot before_;  ///< what the message before told
-  DeviceSnapshot now_;     ///< what this one tells
+  DeviceSnapshot before_;  ///< of the message before
+  DeviceSnapshot now_;     ///< of this message
   std::vector<PointQuality> points_;
 };
 

@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/drive.hpp"
 
+#include <algorithm>
+#include <array>
 #include <future>
 #include <memory>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "coupler/base/line_limit.hpp"
+#include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/modbus/make_transports.hpp"
-#include "coupler/host/ros/device_topics.hpp"
-#include "coupler/host/ros/ending.hpp"
+#include "coupler/host/ros/device_services.hpp"
+#include "coupler/host/ros/diagnostics.hpp"
 #include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros/status.hpp"
+#include "coupler/host/ros/traced_transport.hpp"
+#include "coupler/map/loader/load.hpp"
 
 namespace coupler::host {
 namespace {
@@ -18,51 +27,190 @@ namespace {
 constexpr auto report_interval = std::chrono::milliseconds(100);
 constexpr auto diagnostics_interval = std::chrono::seconds(1);
 
-using Topics = std::vector<std::unique_ptr<DeviceTopics>>;
+std::string topic(const Map& map, std::string_view point) { return fmt::format("{}/{}", map.name, point); }
 
-Topics offer(const Devices& devices, Node& node) {
+std::vector<std::unique_ptr<PointPublisher>> advertise_all(Node& node, const Map& map,
+                                                           SubscriberCounts& subscribers) {
+  std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
+  for (std::uint32_t i = 0; i < map.points.size(); ++i)
+    if (is_readable(map.points[i]))
+      result[i] = node.advertise(topic(map, map.points[i].name), map.points[i], i, subscribers);
+  return result;
+}
+
+std::function<void(bool)> advertise_online(Node& node, const Map& map) {
+  auto online = node.advertise_online(topic(map, "online"));
+  online(false);
+  return online;
+}
+
+/// One device in ROS: `<name>/<point>` for each readable point, `<name>/<point>/write` for each writable one,
+/// the latched `<name>/online` and `<name>/status`, services, diagnostics, and the thread that drives the
+/// device. Values are published in that thread as they are decoded.
+class DeviceDriver : public Sink {
+ public:
+  /// The map's views must outlive it. Callbacks of the node refer to it: the node must be shut down before it
+  /// is destroyed, and publish no more diagnostics.
+  DeviceDriver(Node& node, const Map& map, std::unique_ptr<Transport> transport, Verify verify)
+      : node_(node),
+        map_(map),
+        subscribers_(map.points.size()),
+        publishers_(advertise_all(node, map_, subscribers_)),
+        publish_online_(advertise_online(node, map)),
+        publish_status_(node.advertise_status(topic(map, "status"), map)),
+        diagnostics_(map, node),
+        services_(map, subscribers_),
+        transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport), node)),
+        thread_(map, verify, load_served_map, *transport_, *this, map.poll),
+        writes_{
+            [this](const Write& write) { thread_.write(write); },
+            [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {
+    for (std::uint32_t i = 0; i < map_.points.size(); ++i)
+      if (is_writable(map_.points[i]))
+        subscriptions_.push_back(
+            node.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
+    services_.start(node, {writes_, [this] { return thread_.reset_watchdog(); },
+                           [this] { return thread_.make_safe(); }, [this] { return thread_.statistics(); }});
+    if (map.poll == Poll::subscribed)
+      subscribers_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
+  }
+  ~DeviceDriver() override { services_.stop(); }
+
+  /// Stops the device's thread; what comes from ROS afterwards does nothing. False if an output should have
+  /// its safe value and has not.
+  bool stop() {
+    services_.stop();
+    return thread_.end();
+  }
+
+  /// Publishes the status if it is due, and updates the diagnostics: true if they are to be published at
+  /// once. To be called about ten times a second; without news and without `force` it does nothing.
+  bool report(Time now, bool force);
+
+  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) override {
+    std::copy(bits.begin(), bits.end(), bits_.begin());
+    on_registers(span, {bits_.data(), bits.size()}, at);
+  }
+  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) override;
+  void on_online(bool online) override;
+  void on_report(Level level, const std::string& text) override {
+    node_.log(level, fmt::format("{}: {}", map_.name, text));
+  }
+
+ private:
+  void refuse(std::optional<std::uint32_t> point, const std::string& what);
+
+  Node& node_;
+  Map map_;
+  SubscriberCounts subscribers_;
+  std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
+  std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of one span, as publishers take them
+  std::function<void(bool)> publish_online_;
+  Node::PublishStatus publish_status_;
+  Diagnostics diagnostics_;
+  DeviceServices services_;
+  std::unique_ptr<TracedTransport> transport_;
+  DeviceThread thread_;
+  std::uint64_t reported_ = 0;  ///< the thread's revision
+  Time stale_from_{};           ///< the first of the good points becomes stale
+  Time status_due_{};
+  WriteHandler writes_;
+  LineLimit refused_lines_;
+  std::vector<std::shared_ptr<void>> subscriptions_;
+};
+
+bool DeviceDriver::report(Time now, bool force) {
+  using State = PointQuality::State;
+  const std::uint64_t revision = thread_.revision();
+  if (!force && revision == reported_ && now <= stale_from_ && now < status_due_) return false;
+  reported_ = revision;
+  stale_from_ = Time::max();
+  const DeviceSnapshot device = thread_.statistics();
+  std::vector<PointQuality> points = thread_.qualities();
+  for (const PointQuality& point : points) stale_from_ = std::min(stale_from_, point.stale_from);
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (const auto state = points[i].state; is_readable(map_.points[i]) && subscribers_.is_unwanted(i) &&
+                                            (state == State::stale || state == State::never_read))
+      points[i].state = State::not_wanted;
+  if (publish_status_(device, points, now)) status_due_ = now + status_interval;
+  thread_.report_held_back();
+  if (const auto line = refused_lines_.due(now)) on_report(Level::warning, *line);
+  return diagnostics_.update(device, points);
+}
+
+void DeviceDriver::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) {
+  for (const std::uint32_t index : span.points) {
+    const modbus::Range place = read_range(map_.points[index]);
+    const std::uint16_t* value = &registers[place.start() - std::size_t{span.range.start()}];
+    publishers_[index]->publish(value, at);
+    if (services_.value_waiter().waits_for(index))
+      services_.value_waiter().deliver(value, place.count(), transport_->read_sent_at());
+  }
+}
+
+void DeviceDriver::on_online(bool online) {
+  if (online)  // values from before the interruption are history
+    for (const auto& publisher : publishers_)
+      if (publisher) publisher->renew();
+  services_.value_waiter().set_online(online);
+  publish_online_(online);
+}
+
+void DeviceDriver::refuse(std::optional<std::uint32_t> point, const std::string& what) {
+  if (point) {
+    Write refused;
+    refused.point = *point;
+    thread_.refuse(refused, what);
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (const auto line = refused_lines_.say("refused a write to " + what, now))
+    on_report(Level::warning, *line);
+}
+
+using Drivers = std::vector<std::unique_ptr<DeviceDriver>>;
+
+Drivers start_all(const Devices& devices, Node& node) {
   std::vector<Map> maps;
   for (const auto& [settings, source] : devices) maps.push_back(source.map);
   auto transports = make_transports(maps);
   auto transport = transports.begin();
-  Topics topics;
+  Drivers drivers;
   for (const auto& [settings, source] : devices) {
-    if (Ending::asked) break;
-    topics.push_back(std::make_unique<DeviceTopics>(node, source.map, std::move(*transport++),
-                                                    settings.verify.value_or(Verify::require),
-                                                    source.map.poll));
+    if (Shutdown::requested) break;
+    drivers.push_back(std::make_unique<DeviceDriver>(node, source.map, std::move(*transport++),
+                                                     settings.verify.value_or(Verify::require)));
   }
-  return topics;
+  return drivers;
 }
 
-/// All at once: each may take most of a second for its safe values. Whether all have them that should.
-bool end_all(const Topics& devices) {
-  std::vector<std::future<bool>> ends;
-  ends.reserve(devices.size());
-  for (const auto& device : devices)
-    ends.push_back(std::async(std::launch::async, [&device] { return device->end(); }));
+/// At the same time: each may take most of a second for its safe values. False if one has not all of them.
+bool stop_all(const Drivers& drivers) {
+  std::vector<std::future<bool>> stops;
+  stops.reserve(drivers.size());
+  for (const auto& driver : drivers)
+    stops.push_back(std::async(std::launch::async, [&driver] { return driver->stop(); }));
   bool safe = true;
-  for (auto& end : ends) safe &= end.get();
+  for (auto& stop : stops) safe &= stop.get();
   return safe;
 }
 
 }  // namespace
 
 int drive(const Devices& devices, Node& node) {
-  const Topics topics = offer(devices, node);
-  Ending::driving = true;
-  if (!Ending::asked) node.begin();
-  for (Time diagnosed = Time::min(); node.is_running() && !Ending::asked;
+  const Drivers drivers = start_all(devices, node);
+  Shutdown::driving = true;
+  if (!Shutdown::requested) node.start();
+  for (Time diagnosed = Time::min(); node.is_running() && !Shutdown::requested;
        std::this_thread::sleep_for(report_interval)) {
     const Time now = std::chrono::steady_clock::now();
     const bool due = diagnosed == Time::min() || now - diagnosed >= diagnostics_interval;
-    bool news = due;
-    for (const auto& device : topics) news |= device->report(now, due);
-    if (!news) continue;
+    bool publish = due;
+    for (const auto& driver : drivers) publish |= driver->report(now, due);
+    if (!publish) continue;
     diagnosed = now;
     node.publish_diagnostics();
   }
-  const bool safe = end_all(topics);  // first: a ROS that hangs may hold up what follows
+  const bool safe = stop_all(drivers);  // first: a ROS that hangs may hold up what follows
   node.shut_down();
   return safe ? 0 : not_safe;
 }

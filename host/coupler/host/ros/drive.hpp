@@ -6,8 +6,8 @@
 
 namespace coupler::host {
 
-/// Drives them until Ending::asked or the end of the node, then ends the node. Returns 0, or not_safe if an
-/// output should have its safe value at the end and has not.
+/// Drives the devices until Shutdown::requested or the node's own end, then shuts the node down. Returns 0,
+/// or not_safe.
 int drive(const Devices& devices, Node& node);
 
 }  // namespace coupler::host

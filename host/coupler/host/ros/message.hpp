@@ -4,13 +4,182 @@
 //   the message has been filled before;
 //   encode(message, point, registers): returns what is wrong with the value and what to do, or an empty
 //   text; fills range(point).count() registers, which were zero.
+// M is the type of the message: of either ROS.
 #pragma once
 
-#include "coupler/host/ros/array_message.hpp"
-#include "coupler/host/ros/scaled_message.hpp"
-#include "coupler/host/ros/value_message.hpp"
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "coupler/codec/number.hpp"
+#include "coupler/codec/scale.hpp"
+#include "coupler/codec/text.hpp"
+#include "coupler/map/point.hpp"
+#include "coupler/map/typed_value.hpp"
 
 namespace coupler::host {
+
+/// One coil or discrete input.
+template <class M>
+struct CoilMessage {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point&, Message& message) {
+    message.data = registers[0] != 0;
+  }
+  static std::string encode(const Message& message, const Point&, std::uint16_t* registers) {
+    registers[0] = message.data != 0 ? 1 : 0;
+    return {};
+  }
+};
+
+/// Integers and floats; T is the value's type.
+template <class T, class M>
+struct NumberMessage {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    message.data = codec::take<T>(point.format, registers);
+  }
+  static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
+    codec::put(static_cast<T>(message.data), point.format, registers);
+    return {};
+  }
+};
+
+template <class M>
+struct TextMessage {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    codec::decode_text(registers, point.format, message.data);
+  }
+  static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
+    const codec::Format& format = point.format;
+    switch (codec::encode_text(message.data, format, registers)) {
+      case codec::TextError::too_long:
+        return fmt::format("'{}' is longer than {} bytes; send a shorter text", message.data, format.length);
+      case codec::TextError::not_encodable:
+        return fmt::format("'{}' has a character that {} has not", message.data,
+                           codec::to_string(format.encoding));
+      case codec::TextError::none: break;
+    }
+    return {};
+  }
+};
+
+/// Gives an array message its one dimension and its size; both stay from message to message.
+template <class Message>
+void shape(Message& message, const Point& point) {
+  if (!message.layout.dim.empty()) return;
+  message.layout.dim.resize(1);
+  message.layout.dim[0].label = std::string(point.name);
+  message.layout.dim[0].size = point.count;
+  message.layout.dim[0].stride = point.count;
+  message.data.resize(point.count);
+}
+
+/// What is wrong with the number of elements, or an empty text.
+inline std::string wrong_size(std::size_t size, std::size_t expected, std::string_view meaning) {
+  if (size == expected) return {};
+  return fmt::format("{} elements; send {}{}", size, expected, meaning);
+}
+
+/// `count` integers or floats; M is a MultiArray. The layout of what is received does not matter.
+template <class T, class M>
+struct ArrayMessage {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    shape(message, point);
+    const std::size_t width = codec::registers(point.format);
+    for (std::size_t i = 0; i < point.count; ++i)
+      message.data[i] = codec::take<T>(point.format, registers + i * width);
+  }
+  static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
+    if (auto wrong = wrong_size(message.data.size(), point.count, ""); !wrong.empty()) return wrong;
+    const std::size_t width = codec::registers(point.format);
+    for (std::size_t i = 0; i < point.count; ++i)
+      codec::put(static_cast<T>(message.data[i]), point.format, registers + i * width);
+    return {};
+  }
+};
+
+/// `count` coils or discrete inputs. M: coupler_driver/BoolArray, whose data is bytes in ROS 1 and
+/// std::vector<bool> in ROS 2.
+template <class M>
+struct BoolsMessage {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    message.data.resize(point.count);
+    for (std::size_t i = 0; i < point.count; ++i) message.data[i] = registers[i] != 0;
+  }
+  static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
+    if (auto wrong = wrong_size(message.data.size(), point.count, ""); !wrong.empty()) return wrong;
+    for (std::size_t i = 0; i < point.count; ++i) registers[i] = message.data[i] ? 1 : 0;
+    return {};
+  }
+};
+
+/// BYTE … LWORD, one or `count` of them: element i is bit i of T, those of the next value follow.
+template <class T, class M>
+struct BitsMessage {
+  using Message = M;
+  static constexpr std::size_t bits = 8 * sizeof(T);
+
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    message.data.resize(point.count * bits);
+    auto out = message.data.begin();
+    for (std::size_t n = 0; n < point.count; ++n, registers += codec::registers(point.format)) {
+      const T value = codec::take<T>(point.format, registers);
+      for (std::size_t i = 0; i < bits; ++i) *out++ = (value >> i & 1U) != 0;
+    }
+  }
+  static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
+    if (auto wrong = wrong_size(message.data.size(), point.count * bits, ", element i is bit i");
+        !wrong.empty())
+      return wrong;
+    auto in = message.data.begin();
+    for (std::size_t n = 0; n < point.count; ++n, registers += codec::registers(point.format)) {
+      T value = 0;
+      for (std::size_t i = 0; i < bits; ++i)
+        if (*in++) value = static_cast<T>(value | T{1} << i);
+      codec::put(value, point.format, registers);
+    }
+    return {};
+  }
+};
+
+/// A number with a scale. It is published as a Float64, whatever the device holds.
+template <class M>
+struct ScaledMessage {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    message.data = codec::published(registers, point.format, point.scale);
+  }
+  static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
+    return encode_scaled(message.data, point, registers);
+  }
+};
+
+/// `count` numbers with a scale.
+template <class M>
+struct ScaledArrayMessage {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    shape(message, point);
+    for (double& value : message.data) {
+      value = codec::published(registers, point.format, point.scale);
+      registers += codec::registers(point.format);
+    }
+  }
+  static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
+    std::string wrong = wrong_size(message.data.size(), point.count, "");
+    for (std::size_t i = 0; i < point.count && wrong.empty(); ++i) {
+      wrong = encode_scaled(message.data[i], point, registers);
+      registers += codec::registers(point.format);
+    }
+    return wrong;
+  }
+};
 
 /// Calls f(T{}) with the kind of message of the point, whose values are numbers of type T.
 template <class T, class One, class Several, class F>

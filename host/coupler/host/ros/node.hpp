@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the shared half of the driver needs of a ROS. coupler/host/ros1 and coupler/host/ros2 implement it.
+// What the driver needs of a ROS. coupler/host/ros1 and coupler/host/ros2 implement it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,10 +15,8 @@
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/point_quality.hpp"
+#include "coupler/host/core/sink.hpp"
 #include "coupler/host/core/write.hpp"
-#include "coupler/host/ros/listeners.hpp"
-#include "coupler/host/ros/log.hpp"
-#include "coupler/host/ros/write_handler.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {
@@ -24,11 +25,54 @@ namespace coupler::host {
 class PointPublisher {
  public:
   virtual ~PointPublisher() = default;
-  /// The point's registers as they came `at`; bit tables: each bit as one register, 0 or 1. Publishes them
-  /// where the point's policy calls them news.
+  /// The point's registers as they came `at`; bit tables: each bit as one register, 0 or 1. Publishes them if
+  /// the point's policy says so.
   virtual void publish(const std::uint16_t* registers, Time at) = 0;
-  /// The next value is news whatever it is.
+  /// The next value is published whatever it is.
   virtual void renew() = 0;
+};
+
+/// How many subscribers each point of a device has. A call that waits for the point's next value counts as
+/// one. Any thread may call.
+class SubscriberCounts {
+ public:
+  explicit SubscriberCounts(std::size_t points) : counts_(points) {}
+
+  void add(std::uint32_t point) {
+    const std::lock_guard lock(mutex_);
+    if (counts_[point]++ == 0 && want_) want_(point, true);
+  }
+  void remove(std::uint32_t point) {
+    const std::lock_guard lock(mutex_);
+    if (--counts_[point] == 0 && want_) want_(point, false);
+  }
+
+  /// Calls `want(point, true)` for each point that has a subscriber now or gets its first one later, and
+  /// `want(point, false)` when the last one has gone. `want` must not wait for anything.
+  void follow(std::function<void(std::uint32_t point, bool wanted)> want) {
+    const std::lock_guard lock(mutex_);
+    want_ = std::move(want);
+    for (std::uint32_t point = 0; point < counts_.size(); ++point)
+      if (counts_[point] > 0) want_(point, true);
+  }
+
+  /// The point has no subscriber, and after follow() that matters.
+  bool is_unwanted(std::uint32_t point) const {
+    const std::lock_guard lock(mutex_);
+    return want_ && counts_[point] == 0;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::uint32_t> counts_;
+  std::function<void(std::uint32_t, bool)> want_;
+};
+
+/// What all subscriptions of a device call.
+struct WriteHandler {
+  std::function<void(const Write&)> accept;
+  /// The value cannot be written: the point's index, if there is such a point, what was wrong and the remedy.
+  std::function<void(std::optional<std::uint32_t> point, const std::string& what)> refuse;
 };
 
 /// Answers services in a thread of its own, one call after the other: each may wait for its result.
@@ -59,49 +103,58 @@ class ServiceThread {
 
   virtual void start() = 0;
   /// Takes no more calls.
-  virtual void end() = 0;
+  virtual void stop() = 0;
 };
 
 /// An entry of /diagnostics (REP 107).
-struct Diagnosis {
+struct DiagnosticEntry {
   Level level = Level::info;  ///< OK, WARN or ERROR
-  std::string text;
+  std::string message;
   std::string hardware_id;
-  std::vector<std::pair<std::string, std::string>> figures;
+  std::vector<std::pair<std::string, std::string>> values;
 };
 
-/// A node of either ROS. Names are relative, so that they can be remapped. What is made from it must go
-/// before it does, and after shut_down(), because ROS's threads use it until then.
-class Node : public Log {
+/// A node of either ROS. Names are relative, so that they can be remapped. ROS's threads use what is made
+/// from a node until shut_down(): it must be destroyed after that, and before the node.
+class Node {
  public:
-  /// The message type follows from the point. `listeners` is told who comes and who leaves; it and the point
+  virtual ~Node() = default;
+
+  /// The message type follows from the point. The point and `subscribers`, which counts those of the topic,
   /// must outlive the publisher.
   virtual std::unique_ptr<PointPublisher> advertise(const std::string& topic, const Point& point,
-                                                    std::uint32_t index, Listeners& listeners) = 0;
-  /// To `map.points[index]`. The handler is called in ROS's network thread and must wait for nothing. The
-  /// subscription lasts as long as what is returned; map and handler must outlive it.
+                                                    std::uint32_t index, SubscriberCounts& subscribers) = 0;
+  /// To `map.points[index]`. The handler is called in ROS's network thread and must not wait for anything.
+  /// The subscription lasts as long as the result; map and handler must outlive it.
   virtual std::shared_ptr<void> subscribe(const std::string& topic, const Map& map, std::uint32_t index,
                                           const WriteHandler& handler) = 0;
   /// std_msgs/Bool, latched.
   virtual std::function<void(bool)> advertise_online(const std::string& topic) = 0;
-  /// coupler_driver/Status, latched; published when a quality, the identity or `online` is not what it was,
-  /// and after a second: then true. To be called from one thread.
+  /// coupler_driver/Status, latched. Published, and true, when a quality, the identity or `online` has
+  /// changed and at least once a second. From one thread only.
   using PublishStatus =
       std::function<bool(const DeviceSnapshot&, const std::vector<PointQuality>&, Time now)>;
   virtual PublishStatus advertise_status(const std::string& topic, const Map& map) = 0;
   virtual std::unique_ptr<ServiceThread> make_service_thread() = 0;
 
-  /// The entries of all devices are one message: a publisher of /diagnostics keeps only the newest. `tell` is
-  /// called by publish_diagnostics(), in the order in which they were added.
-  virtual void add_diagnosis(const std::string& name, std::function<Diagnosis()> tell) = 0;
+  /// publish_diagnostics() calls `make` of every entry, in the order in which they were added. The entries of
+  /// all devices are one message: a publisher of /diagnostics keeps only the newest.
+  virtual void add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) = 0;
   virtual void publish_diagnostics() = 0;
 
   /// All devices have their topics and services now.
-  virtual void begin() = 0;
+  virtual void start() = 0;
   /// False once ROS has ended the node by itself.
   virtual bool is_running() const = 0;
   /// Takes no more messages and calls. The log still works.
   virtual void shut_down() = 0;
+
+  // The log: console and /rosout, from any thread. The text may come from a device, so it is escaped as
+  // printable_lines() does.
+  virtual void log(Level level, const std::string& text) = 0;
+  /// Whether log_debug() shows anything; costs nothing.
+  virtual bool shows_debug() const = 0;
+  virtual void log_debug(const std::string& text) = 0;
 };
 
 }  // namespace coupler::host

@@ -3,12 +3,20 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "coupler/host/ros/dialect.hpp"
 #include "coupler/host/ros/settings.hpp"
 
 namespace coupler::host {
+
+/// Texts that differ between ROS 1 and ROS 2. Where `--key VALUE`, which both understand, says it, none is
+/// needed.
+struct Dialect {
+  std::string_view help;            ///< the last lines of --help
+  std::string_view device_setting;  ///< how a setting of one device of several is given
+  std::string_view relative_path;   ///< the remedy for a relative path that was not found; has {path}
+};
 
 /// The arguments that are not ROS's own.
 struct Options {

@@ -1,18 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <string_view>
+
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {
 
 // The exit codes of a driver, besides 0.
-constexpr int wrong_input = 1;
-constexpr int wrong_call = 2;
-constexpr int not_safe = 3;  ///< at the end
+constexpr int wrong_input = 1;  ///< the map or a parameter is wrong
+constexpr int wrong_call = 2;   ///< the arguments are wrong
+constexpr int not_safe = 3;     ///< an output should have its safe value at the end and has not
 
 /// The whole of a driver program, for the ROS that it is built for: coupler_driver (without a built-in map)
-/// and generated ones. Returns the exit code: 0 after SIGINT or SIGTERM, 1 the map or a parameter is wrong, 2
-/// the call is wrong, 3 an output should have its safe value at the end and has not.
+/// and generated ones. Returns the exit code; 0 after SIGINT or SIGTERM.
 int main_with(const Map* built_in, int argc, char** argv);
+
+/// How SIGINT and SIGTERM end a driver.
+struct Shutdown {
+  static std::atomic<bool> requested;  ///< by a signal; every wait looks at it
+  static std::atomic<bool> driving;    ///< outputs may have been driven: the shutdown must be orderly
+
+  /// A signal exits with status 0, as long as nothing has been started that would have to be stopped.
+  static void exit_on_signals();
+  /// A signal sets `requested`. While nothing is driven a second one exits at once, so that nobody has to
+  /// wait for a device or a ROS master that does not answer.
+  static void request_on_signals();
+};
+
+/// To standard error, for what happens before there is a node; escaped as Node::log() does.
+void print_message(std::string_view text);
 
 }  // namespace coupler::host

@@ -32,14 +32,14 @@ std::optional<double> number(const std::string& text) {
   return value;
 }
 
-/// A number as the key's range has it.
+/// A number in the key's range.
 template <class T>
 Outcome set_number(std::optional<T>& field, const SettingKey& key, const std::string& text) {
   const auto value = number(text);
-  const bool is_whole = key.kind == SettingKey::Kind::whole;
-  if (!value || *value < key.min || *value > key.max || (is_whole && *value != std::floor(*value)))
+  const bool is_integer = key.kind == SettingKey::Kind::integer;
+  if (!value || *value < key.min || *value > key.max || (is_integer && *value != std::floor(*value)))
     return wrong(key.key, text,
-                 fmt::format("a {} from {} to {}{}", is_whole ? "whole number" : "number", key.min, key.max,
+                 fmt::format("a {} from {} to {}{}", is_integer ? "whole number" : "number", key.min, key.max,
                              key.unit));
   field = static_cast<T>(*value);
   return {};
@@ -63,9 +63,9 @@ Outcome set_poll(Settings& settings, const std::string& text) {
   return settings.poll ? Outcome{} : wrong("poll", text, "all or subscribed");
 }
 
-Outcome set_text(std::optional<std::string>& field, std::string_view key, const std::string& text) {
-  if (text.empty()) return wrong(key, text, "a text; leave it out if there is nothing to say");
-  field = text;
+Outcome set_map(Settings& settings, const std::string& text) {
+  if (text.empty()) return wrong("map", text, "a path or tcp://HOST; leave the setting out if there is none");
+  settings.map = text;
   return {};
 }
 
@@ -92,16 +92,16 @@ std::string_view without(std::string_view text, std::string_view front, std::str
 }
 
 /// "a.yaml,b.yaml", also as YAML has it: [a.yaml, "b.yaml"].
-Outcome set_list(std::vector<std::string>& field, std::string_view key, const std::string& text) {
+Outcome set_maps(Settings& settings, const std::string& text) {
   std::string_view rest = without(text, " [", " ]");
-  field.clear();
+  settings.maps.clear();
   while (!rest.empty()) {
     const std::size_t comma = std::min(rest.find(','), rest.size());
     const std::string_view item = without(rest.substr(0, comma), " '\"", " '\"");
-    if (!item.empty()) field.emplace_back(item);
+    if (!item.empty()) settings.maps.emplace_back(item);
     rest.remove_prefix(std::min(comma + 1, rest.size()));
   }
-  if (field.empty()) return wrong(key, text, "a list of paths, as in [a.yaml,b.yaml]");
+  if (settings.maps.empty()) return wrong("maps", text, "a list of paths, as in [a.yaml,b.yaml]");
   return {};
 }
 
@@ -121,14 +121,14 @@ const std::array<SettingKey, 10> setting_keys{{
     {"name", "", Kind::text, 0, 0, "", "namespace of the topics, instead of the map's"},
     {"address", "", Kind::text, 0, 0, "",
      "host name or IP address; alone, without a map: a node that serves its own"},
-    {"port", "", Kind::whole, 1, 65535, "", "TCP port, 502 if the map says nothing"},
-    {"unit", "", Kind::whole, 0, 255, "", "unit id"},
+    {"port", "", Kind::integer, 1, 65535, "", "TCP port; 502 if the map has none"},
+    {"unit", "", Kind::integer, 0, 255, "", "unit id"},
     {"rate", "", Kind::real, 0.001, 10000, " Hz", "polling rate in Hz"},
     {"timeout", "", Kind::real, 0.001, 3600, " s", "longest wait for a reply, in seconds"},
     {"verify", "", Kind::text, 0, 0, "",
      "if the node's map differs: require (default: do not talk to it), warn (go on) or off (do not ask)"},
     {"poll", "", Kind::text, 0, 0, "",
-     "which points are read: all (default), or subscribed: those that somebody listens to; instead of the "
+     "which points are read: all (default), or subscribed: those that have subscribers; instead of the "
      "map's"},
 }};
 
@@ -139,8 +139,8 @@ Outcome set(Settings& settings, std::string_view name, const std::string& text) 
     return tl::make_unexpected(fmt::format("{}: {}", name, no_such_setting(name)));
   const SettingKey& setting = *found;
   const std::string_view key = setting.key;
-  if (key == "map") return set_text(settings.map, key, text);
-  if (key == "maps") return set_list(settings.maps, key, text);
+  if (key == "map") return set_map(settings, text);
+  if (key == "maps") return set_maps(settings, text);
   if (key == "name") return set_name(settings, text);
   if (key == "address") return set_address(settings, text);
   if (key == "port") return set_number(settings.port, setting, text);

@@ -12,8 +12,7 @@
 
 namespace coupler::host {
 
-/// What may be said about a device, or about all of them, outside its map. Precedence: map < ROS parameter <
-/// argument.
+/// The settings of a device, or of all devices, outside the map. Precedence: map < ROS parameter < argument.
 struct Settings {
   std::optional<std::string> map;  ///< path, or tcp://HOST[:PORT][/UNIT]
   std::vector<std::string> maps;   ///< PATH or NAME=PATH, for several devices; empty: not given
@@ -29,36 +28,36 @@ struct Settings {
 
 /// One setting by its name, as ROS parameter and as argument (`--key VALUE`).
 struct SettingKey {
-  enum class Kind { text, list, whole, real };
+  enum class Kind { text, list, integer, real };
 
   std::string_view key;
   std::string_view alias;  ///< its name in ros-modbus-device-driver, or empty
   Kind kind;
   double min;  ///< of a number
   double max;
-  std::string_view unit;  ///< behind a number, or empty
+  std::string_view unit;  ///< follows a number; or empty
   std::string_view help;
 };
 extern const std::array<SettingKey, 10> setting_keys;
-/// Of all of them, the other spellings included.
+/// Of all of them, with the aliases.
 std::vector<std::string_view> setting_names();
 bool is_setting(std::string_view name);
 /// "there is no such setting; did you mean 'poll'?"
 std::string no_such_setting(std::string_view name);
 
-/// Sets what the text says. The error says what the value should have been.
+/// Sets one setting from text. The error says what the value should have been.
 tl::expected<void, std::string> set(Settings& settings, std::string_view key, const std::string& text);
 
-/// What was set, as set() takes it; nullopt: nothing.
+/// What was set, as set() takes it; nullopt: not set.
 std::optional<std::string> text_of(const Settings& settings, std::string_view key);
 
-/// `strong` where it says something, `weak` elsewhere. `map` and `maps` are one thing to say.
+/// What is set in `strong`, and the rest of `weak`. `map` and `maps` count as one setting.
 Settings overlay(Settings weak, const Settings& strong);
 
-/// As if all that the map says had been set.
+/// As if all values of the map had been set.
 Settings with_map(Settings settings, const Map& map);
 
-/// Overrides the map's fields. The map then refers to the settings' texts.
+/// Overrides the map's fields. The map then views the settings' texts.
 void apply(const Settings& settings, Map& map);
 
 }  // namespace coupler::host

@@ -12,10 +12,11 @@
 
 namespace coupler::host {
 
-/// The status is published at least as often.
+/// The status is published at least this often.
 constexpr auto status_interval = std::chrono::seconds(1);
 
-/// The message of `<name>/status`, coupler_driver/Status of either ROS: what is to be published, and when.
+/// The message of `<name>/status`, coupler_driver/Status of either ROS: its contents, and when it is
+/// published.
 template <class Message>
 class Status {
  public:
@@ -23,12 +24,12 @@ class Status {
     message_.points.resize(map.points.size());
     for (std::size_t i = 0; i < map.points.size(); ++i) {
       message_.points[i].name = std::string(map.points[i].name);
-      message_.points[i].quality = 0xFF;  // news whatever it is
+      message_.points[i].quality = 0xFF;  // none: the first one is a change
     }
   }
 
-  /// True if the message is to be published now: a quality, the identity or `online` is not what it was, or a
-  /// second has passed. Its stamp is left to the caller.
+  /// True if the message is to be published now: a quality, the identity or `online` has changed, or
+  /// status_interval has passed. The caller sets the stamp.
   bool update(const DeviceSnapshot& device, const std::vector<PointQuality>& points, Time now) {
     if (!fill(device, points, now) && published_ != Time::min() && now - published_ < status_interval)
       return false;
@@ -62,22 +63,22 @@ class Status {
 
   bool fill(const DeviceSnapshot& device, const std::vector<PointQuality>& points, Time now) {
     check_numbers();
-    bool news = assign(message_.online, device.online);
-    news |= assign(message_.identity, to_string(device.identity));
-    news |= assign(message_.trouble, device.online ? std::string() : device.trouble);
+    bool changed = assign(message_.online, device.online);
+    changed |= assign(message_.identity, to_string(device.identity));
+    changed |= assign(message_.trouble, device.online ? std::string() : device.trouble);
     for (std::size_t i = 0; i < points.size(); ++i) {
       PointStatus& status = message_.points[i];
       const PointQuality& quality = points[i];
       const auto code = static_cast<std::uint8_t>(quality.last_exception.value_or(modbus::Exception{}));
       status.age = quality.last_good ? std::chrono::duration<double>(now - *quality.last_good).count() : -1;
-      news |= assign(status.write_outcome, number_of(quality.last_write));
-      news |= assign(status.write_text, quality.last_write_text);
-      const bool other = assign(status.quality, static_cast<std::uint8_t>(quality.state));
-      if (!(assign(status.exception, code) || other)) continue;
+      changed |= assign(status.write_outcome, number_of(quality.last_write));
+      changed |= assign(status.write_text, quality.last_write_text);
+      const bool quality_changed = assign(status.quality, static_cast<std::uint8_t>(quality.state));
+      if (!(assign(status.exception, code) || quality_changed)) continue;
       status.text = in_words(quality);
-      news = true;
+      changed = true;
     }
-    return news;
+    return changed;
   }
 
   static constexpr void check_numbers() {

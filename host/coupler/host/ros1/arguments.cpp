@@ -14,9 +14,9 @@ namespace coupler::host {
 namespace {
 
 constexpr const char* help =
-    "Each option is also a private parameter (~rate) and, as ROS has it, an argument (_rate:=20).\n"
-    "What is said of one device of several has the name in its map before it: _NAME/rate:=20, ~NAME/rate.\n"
-    "Precedence: map < parameter < argument, what is said of one device over what is said of all.\n\n"
+    "Each option is also a private parameter (~rate) and a ROS argument (_rate:=20).\n"
+    "A setting of one device of several has the name in its map before it: _NAME/rate:=20, ~NAME/rate.\n"
+    "Precedence: map < parameter < argument; a setting of one device wins over the same one of all.\n\n"
     "Examples:\n"
     "  coupler_driver _map:=device.yaml\n"
     "  coupler_driver --map device.yaml --address 192.168.10.101 --rate 50\n"
@@ -25,25 +25,24 @@ constexpr const char* help =
     "  rostopic echo /device/in_A\n"
     "  rostopic pub -1 /device/out_Z/write std_msgs/Bool true";
 
-/// What was given in ROS's spelling, `_key:=VALUE`.
-struct Assignment {
-  std::string_view device;  ///< of `_device/key:=VALUE`
+/// `_device/key:=VALUE`
+struct DeviceArgument {
+  std::string_view device;
   std::string_view key;
   std::string_view value;
 };
 
-/// What the arguments are.
-struct Sorted {
+/// The arguments by kind.
+struct SortedArguments {
   std::vector<std::string> options;  ///< as `--key VALUE` or `--key=VALUE`
-  std::vector<Assignment> of_devices;
-  std::vector<std::string_view> unknown;  ///< `_key:=VALUE` of no setting
+  std::vector<DeviceArgument> of_devices;
+  std::vector<std::string_view> unknown;  ///< `_key:=VALUE` that is not a setting
   std::vector<char*> for_ros;
   bool names_the_node = false;
 };
 
-/// ROS's own are left out.
-Sorted sorted(Span<char* const> arguments) {
-  Sorted result;
+SortedArguments sort(Span<char* const> arguments) {
+  SortedArguments result;
   result.for_ros.push_back(arguments[0]);
   for (char* const raw : arguments.from(1)) {
     const std::string_view argument(raw);
@@ -70,10 +69,11 @@ Sorted sorted(Span<char* const> arguments) {
   return result;
 }
 
-tl::expected<void, std::string> set_of_device(Settings& settings, const Assignment& given) {
+tl::expected<void, std::string> set_of_device(Settings& settings, const DeviceArgument& given) {
   if (given.key == "map" || given.key == "maps")
-    return tl::make_unexpected(
-        fmt::format("_{}/{}: the maps are given as in _maps:=[a.yaml,b.yaml]", given.device, given.key));
+    return tl::make_unexpected(fmt::format(
+        "_{}/{}: a map is not a setting of one device; give the maps as in _maps:=[a.yaml,b.yaml]",
+        given.device, given.key));
   if (const auto done = set(settings, given.key, std::string(given.value)); !done)
     return tl::make_unexpected(fmt::format("_{}/{}", given.device, done.error()));
   return {};
@@ -89,7 +89,7 @@ const Dialect ros1_dialect{
 };
 
 Arguments parse_arguments(Span<char* const> arguments) {
-  Sorted given = sorted(arguments);
+  SortedArguments given = sort(arguments);
   Arguments result{parse_options(std::move(given.options), ros1_dialect), {}, {}, false};
   result.names_the_node = given.names_the_node;
   result.for_ros = std::move(given.for_ros);
@@ -100,7 +100,7 @@ Arguments parse_arguments(Span<char* const> arguments) {
   };
   for (const std::string_view one : given.unknown)
     refuse(fmt::format("{}: {}", one, no_such_setting(one.substr(1, one.find(":=") - 1))));
-  for (const Assignment& one : given.of_devices)
+  for (const DeviceArgument& one : given.of_devices)
     if (const auto done = set_of_device(result.of_devices[std::string(one.device)], one); !done)
       refuse(done.error());
   return result;

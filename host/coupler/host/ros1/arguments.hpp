@@ -14,13 +14,12 @@ extern const Dialect ros1_dialect;
 
 struct Arguments : Options {
   std::map<std::string, Settings> of_devices;  ///< by the name in their maps
-  std::vector<char*> for_ros;   ///< all but those of one device, which ROS would keep as parameters
+  std::vector<char*> for_ros;   ///< all but those of one device: ROS would keep them as parameters
   bool names_the_node = false;  ///< `__name:=` is there
 };
 
 /// Reads the settings in both spellings, `_key:=VALUE` and `--key VALUE`, and those of one device of several,
-/// `_NAME/key:=VALUE`; passes over ROS's own arguments (`from:=to`, `__name:=…`). `arguments[0]` is the
-/// program.
+/// `_NAME/key:=VALUE`. Skips ROS's own arguments (`from:=to`, `__name:=…`). `arguments[0]` is the program.
 Arguments parse_arguments(Span<char* const> arguments);
 
 }  // namespace coupler::host

@@ -8,8 +8,7 @@
 
 #include <array>
 #include <string>
-
-#include "coupler/host/ros1/in_place_queue.hpp"
+#include <utility>
 
 namespace coupler::host {
 namespace {
@@ -27,18 +26,18 @@ class OneLogger {
 
   roscpp::Logger describe() {
     constexpr std::array<const char*, levels::Count> names{"debug", "info", "warn", "error", "fatal"};
-    roscpp::Logger told;
-    told.name = name_;
+    roscpp::Logger logger;
+    logger.name = name_;
     for (std::size_t i = names.size(); i-- > 0;) {
       ros::console::checkLogLocationEnabled(&locations_[i]);
-      if (locations_[i].logger_enabled_) told.level = names[i];
+      if (locations_[i].logger_enabled_) logger.level = names[i];
     }
-    return told;
+    return logger;
   }
 
  private:
   std::string name_;
-  std::array<ros::console::LogLocation, levels::Count> locations_{};  // known to rosconsole for ever
+  std::array<ros::console::LogLocation, levels::Count> locations_{};  // rosconsole keeps pointers to them
 };
 
 bool answer(roscpp::GetLoggers::Request& /*request*/, roscpp::GetLoggers::Response& response) {
@@ -50,10 +49,10 @@ bool answer(roscpp::GetLoggers::Request& /*request*/, roscpp::GetLoggers::Respon
 
 }  // namespace
 
-ros::ServiceServer advertise_loggers() {
+ros::ServiceServer advertise_loggers(ros::CallbackQueueInterface& queue) {
   ros::ServiceManager::instance()->unadvertiseService(ros::names::resolve("~get_loggers"));
-  auto options = ros::AdvertiseServiceOptions::create<roscpp::GetLoggers>(
-      "get_loggers", answer, ros::VoidPtr(), InPlaceQueue::instance());
+  auto options =
+      ros::AdvertiseServiceOptions::create<roscpp::GetLoggers>("get_loggers", answer, ros::VoidPtr(), &queue);
   return ros::NodeHandle("~").advertiseService(options);
 }
 

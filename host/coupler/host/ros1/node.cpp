@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros1/node.hpp"
 
+#include <coupler_driver/Read.h>
 #include <coupler_driver/Status.h>
+#include <coupler_driver/Write.h>
+#include <ros/callback_queue.h>
+#include <ros/console.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
 
+#include <cstdio>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coupler/host/ros/node_templates.hpp"
 #include "coupler/host/ros/status.hpp"
-#include "coupler/host/ros/typed_publisher.hpp"
-#include "coupler/host/ros1/in_place_queue.hpp"
 #include "coupler/host/ros1/logger_service.hpp"
 #include "coupler/host/ros1/messages.hpp"
-#include "coupler/host/ros1/ros_log.hpp"
-#include "coupler/host/ros1/service_thread.hpp"
+#include "coupler/map/printable.hpp"
 
 namespace coupler::host {
 namespace {
@@ -25,22 +36,88 @@ std::int8_t diagnostic_level(Level level) {
   return DiagnosticStatus::ERROR;
 }
 
+/// Runs a callback where it arises, in ROS's network thread, instead of waking another thread for it: a third
+/// of the time from message to Modbus request. The callbacks must not wait for anything.
+class InPlaceQueue : public ros::CallbackQueueInterface {
+ public:
+  void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t /*owner*/) override {
+    callback->call();
+  }
+  void removeByID(std::uint64_t /*owner*/) override {}  // nothing is ever kept
+
+  /// It keeps nothing, so that one is enough for all.
+  static InPlaceQueue& instance() {
+    static InPlaceQueue queue;
+    return queue;
+  }
+};
+
+struct Ros1Services {
+  using Write = coupler_driver::Write;
+  using Read = coupler_driver::Read;
+  using SetBool = std_srvs::SetBool;
+  using Trigger = std_srvs::Trigger;
+};
+
+class Ros1ServiceThread : public TypedServiceThread<Ros1ServiceThread, Ros1Services> {
+ public:
+  explicit Ros1ServiceThread(ros::NodeHandle& handle) : handle_(handle) {}
+  ~Ros1ServiceThread() override {
+    queue_.disable();
+    if (thread_.joinable()) thread_.join();
+  }
+  Ros1ServiceThread(const Ros1ServiceThread&) = delete;
+  Ros1ServiceThread& operator=(const Ros1ServiceThread&) = delete;
+
+  void start() override {
+    thread_ = std::thread([this] {
+      while (queue_.isEnabled())
+        queue_.callOne(ros::WallDuration(1));  // the wait; a call is answered at once
+    });
+  }
+  void stop() override { queue_.disable(); }
+
+  template <class S, class Function>
+  void serve(const std::string& name, Function function) {
+    auto options = ros::AdvertiseServiceOptions::create<S>(
+        name,
+        [function = std::move(function)](typename S::Request& request, typename S::Response& response) {
+          function(request, response);
+          return true;
+        },
+        ros::VoidPtr(), &queue_);
+    servers_.push_back(handle_.advertiseService(options));
+  }
+
+ private:
+  ros::NodeHandle& handle_;
+  ros::CallbackQueue queue_;
+  std::vector<ros::ServiceServer> servers_;
+  std::thread thread_;  // last: it uses the others
+};
+
+// One function each: a macro of ROS unfolds to a page.
+void log_info(const std::string& text) { ROS_INFO("%s", text.c_str()); }
+void log_warning(const std::string& text) { ROS_WARN("%s", text.c_str()); }
+void log_error(const std::string& text) { ROS_ERROR("%s", text.c_str()); }
+
 }  // namespace
 
-Ros1Node::Ros1Node() : loggers_(advertise_loggers()) {
+Ros1Node::Ros1Node() : loggers_(advertise_loggers(InPlaceQueue::instance())) {
   diagnostics_.setHardwareID("coupler_driver");  // each device has its own
 }
 
 std::unique_ptr<PointPublisher> Ros1Node::advertise(const std::string& topic, const Point& point,
-                                                    std::uint32_t index, Listeners& listeners) {
+                                                    std::uint32_t index, SubscriberCounts& subscribers) {
   return with_message<Ros1Messages>(point, [&](auto kind) -> std::unique_ptr<PointPublisher> {
     using Kind = decltype(kind);
-    auto publisher = std::make_unique<TypedPublisher<Kind, ros::Publisher>>(point, index, listeners);
+    auto publisher = std::make_unique<TypedPublisher<Kind, ros::Publisher>>(point, index, subscribers);
     auto options = ros::AdvertiseOptions::create<typename Kind::Message>(
-        topic, point.host.queue_size, [p = publisher.get()](const auto&) { p->came(); },
-        [p = publisher.get()](const auto&) { p->left(); }, ros::VoidPtr(), InPlaceQueue::instance());
+        topic, point.host.queue_size, [p = publisher.get()](const auto&) { p->add_subscriber(); },
+        [p = publisher.get()](const auto&) { p->remove_subscriber(); }, ros::VoidPtr(),
+        &InPlaceQueue::instance());
     options.latch = point.host.latch;
-    publisher->use(handle_.advertise(options));
+    publisher->set_publisher(handle_.advertise(options));
     return publisher;
   });
 }
@@ -55,8 +132,9 @@ std::shared_ptr<void> Ros1Node::subscribe(const std::string& topic, const Map& m
         [topic, &map, index, &handler](const boost::shared_ptr<const Message>& message) {
           receive<Kind>(*message, topic, map, index, handler);
         },
-        ros::VoidPtr(), InPlaceQueue::instance());
-    options.allow_concurrent_callbacks = true;  // never told to try again, which an in-place queue could not
+        ros::VoidPtr(), &InPlaceQueue::instance());
+    // Otherwise ROS may ask to try again, which the queue cannot do.
+    options.allow_concurrent_callbacks = true;
     options.transport_hints = ros::TransportHints().tcpNoDelay();
     return std::shared_ptr<void>(std::make_shared<ros::Subscriber>(handle_.subscribe(options)));
   });
@@ -85,22 +163,43 @@ std::unique_ptr<ServiceThread> Ros1Node::make_service_thread() {
   return std::make_unique<Ros1ServiceThread>(handle_);
 }
 
-void Ros1Node::add_diagnosis(const std::string& name, std::function<Diagnosis()> tell) {
-  diagnostics_.add(name, [tell = std::move(tell)](diagnostic_updater::DiagnosticStatusWrapper& status) {
-    const Diagnosis diagnosis = tell();
-    status.summary(static_cast<unsigned char>(diagnostic_level(diagnosis.level)), diagnosis.text);
-    status.hardware_id = diagnosis.hardware_id;
-    for (const auto& [key, value] : diagnosis.figures) status.add(key, value);
+void Ros1Node::add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) {
+  diagnostics_.add(name, [make = std::move(make)](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    const DiagnosticEntry entry = make();
+    status.summary(static_cast<unsigned char>(diagnostic_level(entry.level)), entry.message);
+    status.hardware_id = entry.hardware_id;
+    for (const auto& [key, value] : entry.values) status.add(key, value);
   });
 }
 
 void Ros1Node::shut_down() {
-  master_.reset();  // what it tells the master must not come after the end
+  master_.reset();  // it must not register the node again after the end
   ros::shutdown();
 }
 
-void Ros1Node::log(Level level, const std::string& text) { ros_log(level, text); }
-bool Ros1Node::shows_debug() const { return is_debug_logged(); }
-void Ros1Node::log_debug(const std::string& text) { ros_log_debug(text); }
+void Ros1Node::log(Level level, const std::string& raw) {
+  const std::string text = printable_lines(raw);
+  // ROS's log has ended then, but the results of safe values are still to be reported.
+  if (ros::isShuttingDown()) {
+    fmt::print(stderr, "[{}] {}\n",
+               level == Level::error     ? "ERROR"
+               : level == Level::warning ? " WARN"
+                                         : " INFO",
+               text);
+    return;
+  }
+  switch (level) {
+    case Level::info: return log_info(text);
+    case Level::warning: return log_warning(text);
+    case Level::error: return log_error(text);
+  }
+}
+
+bool Ros1Node::shows_debug() const {
+  ROSCONSOLE_DEFINE_LOCATION(true, ros::console::levels::Debug, ROSCONSOLE_DEFAULT_NAME);
+  return __rosconsole_define_location__enabled;
+}
+
+void Ros1Node::log_debug(const std::string& text) { ROS_DEBUG("%s", printable_lines(text).c_str()); }
 
 }  // namespace coupler::host

@@ -18,15 +18,15 @@ class Ros1Node : public Node {
   Ros1Node();
 
   std::unique_ptr<PointPublisher> advertise(const std::string& topic, const Point& point, std::uint32_t index,
-                                            Listeners& listeners) override;
+                                            SubscriberCounts& subscribers) override;
   std::shared_ptr<void> subscribe(const std::string& topic, const Map& map, std::uint32_t index,
                                   const WriteHandler& handler) override;
   std::function<void(bool)> advertise_online(const std::string& topic) override;
   PublishStatus advertise_status(const std::string& topic, const Map& map) override;
   std::unique_ptr<ServiceThread> make_service_thread() override;
-  void add_diagnosis(const std::string& name, std::function<Diagnosis()> tell) override;
+  void add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) override;
   void publish_diagnostics() override { diagnostics_.force_update(); }
-  void begin() override { master_.emplace(*this); }
+  void start() override { master_.emplace(*this); }
   bool is_running() const override { return ros::ok(); }
   void shut_down() override;
 

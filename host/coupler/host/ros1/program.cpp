@@ -1,37 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/program.hpp"
 
+#include <ros/console.h>
 #include <ros/exceptions.h>
 #include <ros/init.h>
+#include <ros/param.h>
+#include <ros/this_node.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "coupler/base/standard_files.hpp"
 #include "coupler/host/ros/configuration.hpp"
 #include "coupler/host/ros/drive.hpp"
-#include "coupler/host/ros/ending.hpp"
 #include "coupler/host/ros1/arguments.hpp"
 #include "coupler/host/ros1/node.hpp"
-#include "coupler/host/ros1/ros_log.hpp"
-#include "coupler/host/ros1/ros_parameters.hpp"
+#include "coupler/map/loader/nearest.hpp"
+#include "coupler/map/printable.hpp"
 
 namespace coupler::host {
 namespace {
 
-/// The name is overridden by `__name`. ROS takes SIGINT. False after telling what ROS does not take.
+/// The name is overridden by `__name`. ROS takes SIGINT. False after printing what ROS does not accept.
 bool init_ros(std::vector<char*> argv, const std::string& name) {
   int argc = static_cast<int>(argv.size());
   try {
     ros::init(argc, argv.data(), name);
   } catch (const ros::InvalidNameException& error) {
-    print(fmt::format("{}; what is said of one device begins with '_', as in _press/address:=HOST",
-                      error.what()));
+    print_message(fmt::format("{}; an argument for one device begins with '_', as in _press/address:=HOST",
+                              error.what()));
     return false;
   }
   ros::start();  // here, or else the end of the first NodeHandle ends ROS
@@ -39,28 +45,92 @@ bool init_ros(std::vector<char*> argv, const std::string& name) {
   return true;
 }
 
-/// A line for each name that no map has and arguments are for.
-std::string strangers(const std::vector<MapSource>& sources, const Arguments& arguments) {
+std::optional<std::string> text_of(XmlRpc::XmlRpcValue& value);
+
+/// The elements, separated by commas.
+std::optional<std::string> list_of(XmlRpc::XmlRpcValue& value) {
+  std::string list;
+  for (int i = 0; i < value.size(); ++i) {
+    const auto text = text_of(value[i]);
+    if (!text) return std::nullopt;
+    list += (i > 0 ? "," : "") + *text;
+  }
+  return list;
+}
+
+std::optional<std::string> text_of(XmlRpc::XmlRpcValue& value) {
+  switch (value.getType()) {
+    case XmlRpc::XmlRpcValue::TypeBoolean: return static_cast<bool>(value) ? "true" : "false";
+    case XmlRpc::XmlRpcValue::TypeInt: return fmt::to_string(static_cast<int>(value));
+    case XmlRpc::XmlRpcValue::TypeDouble: return fmt::to_string(static_cast<double>(value));
+    case XmlRpc::XmlRpcValue::TypeString: return static_cast<std::string>(value);
+    case XmlRpc::XmlRpcValue::TypeArray: return list_of(value);
+    default: return std::nullopt;
+  }
+}
+
+/// The settings among the parameters of a namespace, of whichever type they were given. The error names the
+/// parameter.
+tl::expected<Settings, std::string> read_parameters(const ros::NodeHandle& handle) {
+  Settings settings;
+  for (const SettingKey& key : setting_keys) {
+    for (const std::string_view name : {key.alias, key.key}) {  // the key wins over its alias
+      XmlRpc::XmlRpcValue value;
+      if (name.empty() || !handle.getParam(std::string(name), value)) continue;
+      const auto text = text_of(value);
+      if (!text)
+        return tl::make_unexpected(
+            fmt::format("parameter {}: a value or a list is needed", handle.resolveName(std::string(name))));
+      if (const auto done = set(settings, key.key, *text); !done)
+        return tl::make_unexpected(fmt::format("parameter {}/{}", handle.getNamespace(), done.error()));
+    }
+  }
+  return settings;
+}
+
+/// Parameters of diagnostic_updater.
+constexpr std::array<std::string_view, 2> other_parameters{"diagnostic_period", "diagnostic_updater_fast"};
+
+/// Warns of each parameter in the tree that is not a setting: misspelt ones do nothing. `devices`: the names
+/// of several, whose settings stand below them.
+void warn_of_unknown(XmlRpc::XmlRpcValue& tree, const std::string& place,
+                     const std::vector<std::string_view>& devices) {
+  if (tree.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
+  for (auto& [name, value] : tree) {
+    if (std::find(other_parameters.begin(), other_parameters.end(), name) != other_parameters.end()) continue;
+    if (std::find(devices.begin(), devices.end(), name) != devices.end()) {
+      warn_of_unknown(value, fmt::format("{}/{}", place, name), {});
+    } else if (!is_setting(name)) {
+      const std::string line =
+          fmt::format("parameter {}/{} is not a setting and does nothing; {}", place, name,
+                      loader::nearest_or(name, setting_names(), "coupler_driver --help shows them"));
+      ROS_WARN("%s", printable_lines(line).c_str());
+    }
+  }
+}
+
+/// A line for each name that arguments are given for and no map has.
+std::string unknown_devices(const std::vector<MapSource>& sources, const Arguments& arguments) {
   const std::vector<std::string_view> names = names_of(sources);
-  std::string told;
+  std::string text;
   for (const auto& [name, settings] : arguments.of_devices)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      told += fmt::format("{}there are arguments for '{}'; the maps themselves have the names {}",
-                          told.empty() ? "" : "\ncoupler_driver: ", name, fmt::join(names, ", "));
-  return told;
+      text += fmt::format("{}there are arguments for the device '{}', but the maps have the names {}",
+                          text.empty() ? "" : "\ncoupler_driver: ", name, fmt::join(names, ", "));
+  return text;
 }
 
 /// Precedence: map < parameter ~key < parameter ~NAME/key, where there are several devices < argument <
 /// argument for the device. The error is the exit code.
-tl::expected<Devices, int> configure(std::vector<MapSource> sources, const Arguments& arguments) {
-  if (const std::string wrong = strangers(sources, arguments); !wrong.empty()) {
-    print(wrong);
+tl::expected<Devices, int> configure_all(std::vector<MapSource> sources, const Arguments& arguments) {
+  if (const std::string wrong = unknown_devices(sources, arguments); !wrong.empty()) {
+    print_message(wrong);
     return tl::make_unexpected(wrong_call);
   }
   const bool several = sources.size() > 1;
-  for (const std::string& line :
-       unknown_parameters(several ? names_of(sources) : std::vector<std::string_view>()))
-    ros_log(Level::warning, line);
+  const std::string& node = ros::this_node::getName();
+  if (XmlRpc::XmlRpcValue tree; ros::param::get(node, tree))
+    warn_of_unknown(tree, node, several ? names_of(sources) : std::vector<std::string_view>());
   const auto common = read_parameters(ros::NodeHandle("~"));
   const auto settings_of = [&](std::string_view name) {
     auto settings = common;
@@ -75,9 +145,8 @@ tl::expected<Devices, int> configure(std::vector<MapSource> sources, const Argum
     return settings;
   };
   auto devices = configure(std::move(sources), settings_of);
-  std::string wrong = devices ? why_not(*devices) : devices.error();
-  if (wrong.empty()) return std::move(*devices);
-  print(wrong);
+  if (devices) return std::move(*devices);
+  print_message(devices.error());
   return tl::make_unexpected(wrong_input);
 }
 
@@ -86,7 +155,7 @@ tl::expected<Devices, int> configure(std::vector<MapSource> sources, const Argum
 int main_with(const Map* built_in, int argc, char** argv) {
   open_standard_files();
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // ROS_INFO is to be seen in a pipe and in the journal too
-  Ending::at_once_on_signals();
+  Shutdown::exit_on_signals();
   const Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
   if (arguments.exit_code) {
     fmt::print(*arguments.exit_code == 0 ? stdout : stderr, "{}", arguments.text);
@@ -99,21 +168,21 @@ int main_with(const Map* built_in, int argc, char** argv) {
     if (!init_ros(arguments.for_ros, "coupler_driver")) return wrong_call;
     const auto parameters = read_parameters(ros::NodeHandle("~"));
     if (!parameters) {
-      print(parameters.error());
+      print_message(parameters.error());
       return wrong_input;
     }
     settings = overlay(*parameters, arguments.settings);
   }
   auto sources = find_maps(built_in, settings, ros1_dialect,
-                           [](Level /*level*/, const std::string& text) { print(text); });
+                           [](Level /*level*/, const std::string& text) { print_message(text); });
   if (!sources) return sources.error();
   const std::string name =
       node_name(arguments.settings.name.value_or(std::string(sources->front().map.name)));
   if (!arguments.names_the_node && !init_ros(arguments.for_ros, name)) return wrong_call;
-  const auto devices = configure(std::move(*sources), arguments);
+  const auto devices = configure_all(std::move(*sources), arguments);
   if (!devices) return devices.error();
   // roscpp would shut down in a thread of its own, while this one still uses it.
-  Ending::in_order_on_signals();
+  Shutdown::request_on_signals();
   Ros1Node node;
   return drive(*devices, node);
 }

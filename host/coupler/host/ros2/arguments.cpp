@@ -13,12 +13,10 @@ namespace coupler::host {
 namespace {
 
 constexpr std::string_view help =
-    "Each option is also a parameter of the node (rate), as ROS has it: --ros-args -p rate:=20, "
-    "--params-file "
-    "FILE.\n"
-    "What is said of one device of several is a parameter with the name in its map before it: NAME.rate.\n"
-    "Precedence: map < parameter < option, what is said of one device over what is said of all.\n"
-    "Behind --ros-args: -r (names), --log-level, --enclave and what else ROS 2 takes.\n\n"
+    "Each option is also a parameter of the node (rate): --ros-args -p rate:=20, --params-file FILE.\n"
+    "A setting of one device of several is a parameter with the name in its map before it: NAME.rate.\n"
+    "Precedence: map < parameter < option; a setting of one device wins over the same one of all.\n"
+    "ROS 2's own arguments come after --ros-args: -r (remapping), --log-level, --enclave and others.\n\n"
     "Examples:\n"
     "  coupler_driver --map device.yaml\n"
     "  coupler_driver --map device.yaml --address 192.168.10.101 --rate 50\n"
@@ -75,10 +73,10 @@ Arguments parse_arguments(Span<char* const> arguments) {
       result.for_ros.emplace_back(argument);
       result.names_the_node |= starts_with(argument, "__node:=") || starts_with(argument, "__name:=");
     } else if (is_ROSs_own(argument)) {
-      wrong += fmt::format("{}: arguments of ROS 2 stand behind --ros-args\n", argument);
+      wrong += fmt::format("{}: arguments of ROS 2 come after --ros-args\n", argument);
       follows_misplaced = true;
     } else if (is_ROS1s(argument)) {
-      wrong += fmt::format("{}: that is ROS 1's spelling; in ROS 2 say --ros-args {}\n", argument,
+      wrong += fmt::format("{}: that is ROS 1's spelling; in ROS 2 write --ros-args {}\n", argument,
                            in_ros2(argument));
     } else {
       options.emplace_back(argument);

@@ -16,8 +16,8 @@ struct Arguments : Options {
   bool names_the_node = false;       ///< `-r __node:=` is there
 };
 
-/// `--key VALUE`, and what stands between `--ros-args` and `--` or the end. What is spelled as in ROS 1 is a
-/// wrong call, told with ROS 2's spelling. `arguments[0]` is the program.
+/// `--key VALUE`, and what is between `--ros-args` and `--` or the end. ROS 1's spelling is a wrong call: the
+/// text shows ROS 2's. `arguments[0]` is the program.
 Arguments parse_arguments(Span<char* const> arguments);
 
 }  // namespace coupler::host

@@ -9,12 +9,11 @@
 #include <memory>
 #include <mutex>
 
-#include "coupler/host/ros2/rcl/qos.hpp"
-#include "coupler/host/ros2/rcl/subscription.hpp"
+#include "coupler/host/ros2/rcl/topics.hpp"
 
 namespace coupler::host {
 
-/// The time for stamps of messages: the system's, or that of /clock. Any thread may ask.
+/// The time for stamps of messages: the system's, or that of /clock. Any thread may call.
 class MessageClock {
  public:
   explicit MessageClock(rcl::Node& node) : node_(node) {}
@@ -29,7 +28,7 @@ class MessageClock {
     is_simulated_ = simulated;
   }
 
-  /// 0 until /clock has said something.
+  /// 0 until the first message of /clock.
   builtin_interfaces::msg::Time now() const {
     if (is_simulated_) {
       const std::lock_guard lock(mutex_);

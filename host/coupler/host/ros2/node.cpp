@@ -5,15 +5,16 @@
 #include <coupler_driver/msg/status.hpp>
 #include <rcl_interfaces/msg/parameter_type.hpp>
 
+#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "coupler/host/ros/node_templates.hpp"
 #include "coupler/host/ros/status.hpp"
-#include "coupler/host/ros/typed_publisher.hpp"
 #include "coupler/host/ros2/messages.hpp"
+#include "coupler/host/ros2/rcl/service.hpp"
 #include "coupler/host/ros2/service_thread.hpp"
-#include "coupler/host/ros2/type_descriptions.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::host {
@@ -22,6 +23,7 @@ namespace {
 using diagnostic_msgs::msg::DiagnosticStatus;
 
 constexpr std::size_t diagnostics_depth = 10;
+constexpr auto graph_watch_interval = std::chrono::seconds(2);
 
 std::uint8_t diagnostic_level(Level level) {
   switch (level) {
@@ -74,9 +76,8 @@ Ros2Node::Ros2Node(rcl::Context& context, const std::string& name)
                                                          RCUTILS_LOG_SEVERITY_DEBUG)),
       clock_(node_),
       parameters_(std::make_unique<ParameterServer>(node_, clock_)),
-      type_descriptions_(offer_type_descriptions(node_)),
-      diagnostics_(node_, "/diagnostics", rcl::reliable(diagnostics_depth)),
-      rivals_(node_, *this) {
+      type_descriptions_(rcl::offer_type_descriptions(node_)),
+      diagnostics_(node_, "/diagnostics", rcl::reliable(diagnostics_depth)) {
   node_.inbox().start();
 }
 
@@ -96,17 +97,17 @@ void Ros2Node::declare_sim_time(bool use_sim_time) {
 }
 
 std::unique_ptr<PointPublisher> Ros2Node::advertise(const std::string& topic, const Point& point,
-                                                    std::uint32_t index, Listeners& listeners) {
+                                                    std::uint32_t index, SubscriberCounts& subscribers) {
   return with_message<Ros2Messages>(point, [&](auto kind) -> std::unique_ptr<PointPublisher> {
     using Kind = decltype(kind);
     using Message = typename Kind::Message;
-    auto publisher = std::make_unique<TypedPublisher<Kind, Owned<Message>>>(point, index, listeners);
+    auto publisher = std::make_unique<TypedPublisher<Kind, Owned<Message>>>(point, index, subscribers);
     const auto matched = [p = publisher.get()](int by) {
-      for (; by > 0; --by) p->came();
-      for (; by < 0; ++by) p->left();
+      for (; by > 0; --by) p->add_subscriber();
+      for (; by < 0; ++by) p->remove_subscriber();
     };
     const bool latch = point.host.latch;
-    publisher->use(
+    publisher->set_publisher(
         {make_publisher<Message>(node_, topic, latch ? rcl::latched() : rcl::reliable(point.host.queue_size),
                                  {matched, warn_subscriber(!latch)})});
     return publisher;
@@ -131,7 +132,7 @@ std::shared_ptr<void> Ros2Node::subscribe(const std::string& topic, const Map& m
 std::function<void(bool)> Ros2Node::advertise_online(const std::string& topic) {
   using Bool = Ros2Messages::Bool;
   const auto publisher = make_publisher<Bool>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)});
-  rivals_.watch(publisher->topic());
+  online_topics_.push_back(publisher->topic());
   return [publisher](bool online) {
     Bool message;
     message.data = online;
@@ -156,57 +157,75 @@ std::unique_ptr<ServiceThread> Ros2Node::make_service_thread() {
   return std::make_unique<Ros2ServiceThread>(node_);
 }
 
-void Ros2Node::add_diagnosis(const std::string& name, std::function<Diagnosis()> tell) {
-  entries_.push_back({fmt::format("{}: {}", node_.name(), name), std::move(tell)});
+void Ros2Node::add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) {
+  entries_.push_back({fmt::format("{}: {}", node_.name(), name), std::move(make)});
 }
 
 void Ros2Node::publish_diagnostics() {
   diagnostic_msgs::msg::DiagnosticArray message;
   message.header.stamp = clock_.now();
-  for (const auto& [name, tell] : entries_) {
-    const Diagnosis diagnosis = tell();
+  for (const auto& [name, make] : entries_) {
+    const DiagnosticEntry entry = make();
     DiagnosticStatus& status = message.status.emplace_back();
-    status.level = diagnostic_level(diagnosis.level);
+    status.level = diagnostic_level(entry.level);
     status.name = name;
-    status.message = diagnosis.text;
-    status.hardware_id = diagnosis.hardware_id;
-    for (const auto& [key, value] : diagnosis.figures) {
-      auto& figure = status.values.emplace_back();
-      figure.key = key;
-      figure.value = value;
+    status.message = entry.message;
+    status.hardware_id = entry.hardware_id;
+    for (const auto& [key, value] : entry.values) {
+      auto& added = status.values.emplace_back();
+      added.key = key;
+      added.value = value;
     }
   }
   diagnostics_.publish(message);
 }
 
-void Ros2Node::begin() { rivals_.begin(); }
+void Ros2Node::start() {
+  graph_watch_.emplace(graph_watch_interval, [this] { warn_of_duplicates(); });
+}
 
 void Ros2Node::shut_down() {
-  rivals_.end();
+  graph_watch_.reset();
   node_.inbox().stop();
 }
 
-rcl::Incompatible Ros2Node::warn_subscriber(bool could_latch) {
+rcl::OnIncompatible Ros2Node::warn_subscriber(bool could_latch) {
   return [this, could_latch, warned = false](const std::string& topic, rmw_qos_policy_kind_t policy) mutable {
     if (std::exchange(warned, true)) return;
-    const bool is_late = could_latch && policy == RMW_QOS_POLICY_DURABILITY;
+    const bool wants_latched = could_latch && policy == RMW_QOS_POLICY_DURABILITY;
     log(Level::warning,
-        fmt::format("a subscriber of {} asks for another {} than is offered, and gets nothing; {}", topic,
+        fmt::format("a subscriber of {} requests a {} that is not offered, and receives nothing; {}", topic,
                     policy_name(policy),
-                    is_late
-                        ? "subscribe with durability volatile, or say 'latch: true' of the point in the map"
+                    wants_latched
+                        ? "subscribe with durability volatile, or set 'latch: true' for the point in the map"
                         : "subscribe with reliable, volatile, keep last"));
   };
 }
 
-rcl::Incompatible Ros2Node::warn_publisher() {
+rcl::OnIncompatible Ros2Node::warn_publisher() {
   return [this, warned = false](const std::string& topic, rmw_qos_policy_kind_t policy) mutable {
     if (std::exchange(warned, true)) return;
     log(Level::warning,
-        fmt::format("a publisher of {} offers another {} than is needed, and nothing of it is written; "
-                    "publish with reliability reliable",
-                    topic, policy_name(policy)));
+        fmt::format(
+            "a publisher of {} does not offer the {} that is needed, and none of its messages is written; "
+            "publish with reliability reliable",
+            topic, policy_name(policy)));
   };
+}
+
+void Ros2Node::warn_of_duplicates() {
+  std::vector<DuplicateDriver> duplicates;
+  for (const std::string& topic : online_topics_) {
+    bool is_first_own = true;
+    for (const std::string& node : node_.publishers_of(topic)) {
+      if (node.find("_UNKNOWN_") != std::string::npos) continue;  // the graph does not know its name yet
+      if (node != node_.full_name())
+        duplicates.push_back({topic, node});
+      else if (!std::exchange(is_first_own, false))
+        duplicates.push_back({topic, "another node " + node});
+    }
+  }
+  duplicates_.update(duplicates, *this);
 }
 
 void Ros2Node::log(Level level, const std::string& text) {

@@ -3,24 +3,24 @@
 
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 
+#include <functional>
 #include <memory>
-#include <set>
+#include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "coupler/host/ros/graph_watch.hpp"
 #include "coupler/host/ros/node.hpp"
 #include "coupler/host/ros2/message_clock.hpp"
 #include "coupler/host/ros2/parameter_server.hpp"
-#include "coupler/host/ros2/rcl/publisher.hpp"
-#include "coupler/host/ros2/rivals.hpp"
+#include "coupler/host/ros2/rcl/topics.hpp"
 
 namespace coupler::host {
 
 /// The node of this program in ROS 2.
 class Ros2Node : public Node {
  public:
-  /// It is in the graph from now on, and its parameters can be asked for. Throws rcl::Error.
+  /// It is in the graph from now on, and its parameters can be read. Throws rcl::Error.
   Ros2Node(rcl::Context& context, const std::string& name);
   ~Ros2Node() override;
   Ros2Node(const Ros2Node&) = delete;
@@ -32,15 +32,15 @@ class Ros2Node : public Node {
   void declare_sim_time(bool use_sim_time);
 
   std::unique_ptr<PointPublisher> advertise(const std::string& topic, const Point& point, std::uint32_t index,
-                                            Listeners& listeners) override;
+                                            SubscriberCounts& subscribers) override;
   std::shared_ptr<void> subscribe(const std::string& topic, const Map& map, std::uint32_t index,
                                   const WriteHandler& handler) override;
   std::function<void(bool)> advertise_online(const std::string& topic) override;
   PublishStatus advertise_status(const std::string& topic, const Map& map) override;
   std::unique_ptr<ServiceThread> make_service_thread() override;
-  void add_diagnosis(const std::string& name, std::function<Diagnosis()> tell) override;
+  void add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) override;
   void publish_diagnostics() override;
-  void begin() override;
+  void start() override;
   bool is_running() const override { return true; }
   void shut_down() override;
 
@@ -49,8 +49,9 @@ class Ros2Node : public Node {
   void log_debug(const std::string& text) override;
 
  private:
-  rcl::Incompatible warn_subscriber(bool could_latch);
-  rcl::Incompatible warn_publisher();
+  rcl::OnIncompatible warn_subscriber(bool could_latch);
+  rcl::OnIncompatible warn_publisher();
+  void warn_of_duplicates();
 
   rcl::Node node_;
   bool shows_debug_;
@@ -60,10 +61,12 @@ class Ros2Node : public Node {
   rcl::Publisher<diagnostic_msgs::msg::DiagnosticArray> diagnostics_;
   struct Entry {
     std::string name;
-    std::function<Diagnosis()> tell;
+    std::function<DiagnosticEntry()> make;
   };
   std::vector<Entry> entries_;
-  Rivals rivals_;
+  std::vector<std::string> online_topics_;  ///< with their namespaces
+  DuplicateWarnings duplicates_;
+  std::optional<PeriodicThread> graph_watch_;  // last: it uses the others. The middleware may take its time
 };
 
 }  // namespace coupler::host

@@ -55,12 +55,12 @@ void ParameterServer::declare(Descriptor descriptor, const Value& value,
   const std::string name = descriptor.name;
   const auto before = declared_.find(name);
   const bool is_new = before == declared_.end();
-  const bool is_news = is_new || before->second.value != value;
+  const bool has_changed = is_new || before->second.value != value;
   declared_[name] = {std::move(descriptor), value, std::move(change)};
-  if (is_news) tell(name, value, is_new);
+  if (has_changed) publish_event(name, value, is_new);
 }
 
-void ParameterServer::tell(const std::string& name, const Value& value, bool is_new) {
+void ParameterServer::publish_event(const std::string& name, const Value& value, bool is_new) {
   rcl_interfaces::msg::ParameterEvent event;
   event.stamp = clock_.now();
   event.node = node_.full_name();
@@ -107,7 +107,7 @@ void ParameterServer::list(const List::Request& request, List::Response& respons
   response.result.prefixes.assign(prefixes.begin(), prefixes.end());
 }
 
-ParameterServer::Result ParameterServer::why_not(const Parameter& parameter) const {
+ParameterServer::Result ParameterServer::check(const Parameter& parameter) const {
   Result result;
   const auto found = declared_.find(parameter.name);
   if (found == declared_.end()) {
@@ -118,7 +118,8 @@ ParameterServer::Result ParameterServer::why_not(const Parameter& parameter) con
         "-p {}:=VALUE",
         parameter.name, parameter.name);
   } else if (found->second.descriptor.type != parameter.value.type) {
-    result.reason = fmt::format("parameter '{}' is of another type", parameter.name);
+    result.reason = fmt::format(
+        "parameter '{}' has another type than this value; describe_parameters shows it", parameter.name);
   }
   result.successful = result.reason.empty();
   return result;
@@ -128,12 +129,12 @@ void ParameterServer::set(const Parameter& parameter) {
   Declared& declared = declared_.at(parameter.name);
   declared.value = parameter.value;
   declared.change(parameter.value);
-  tell(parameter.name, parameter.value, false);
+  publish_event(parameter.name, parameter.value, false);
 }
 
 void ParameterServer::set_each(const SetEach::Request& request, SetEach::Response& response) {
   for (const Parameter& parameter : request.parameters) {
-    response.results.push_back(why_not(parameter));
+    response.results.push_back(check(parameter));
     if (response.results.back().successful) set(parameter);
   }
 }
@@ -141,7 +142,7 @@ void ParameterServer::set_each(const SetEach::Request& request, SetEach::Respons
 void ParameterServer::set_all(const SetAll::Request& request, SetAll::Response& response) {
   response.result.successful = true;
   for (const Parameter& parameter : request.parameters) {
-    response.result = why_not(parameter);
+    response.result = check(parameter);
     if (!response.result.successful) return;
   }
   for (const Parameter& parameter : request.parameters) set(parameter);

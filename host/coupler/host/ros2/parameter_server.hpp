@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "coupler/host/ros2/message_clock.hpp"
-#include "coupler/host/ros2/rcl/publisher.hpp"
 #include "coupler/host/ros2/rcl/service.hpp"
+#include "coupler/host/ros2/rcl/topics.hpp"
 
 namespace coupler::host {
 
@@ -35,8 +35,8 @@ class ParameterServer {
   /// Throws rcl::Error.
   ParameterServer(rcl::Node& node, const MessageClock& clock);
 
-  /// The descriptor has the name and the type; a value of no type is one that is not set. To be called again
-  /// when the value is another one. `change` is called in the inbox's thread.
+  /// The descriptor has the name and the type; a value without a type is not set. To be called again when the
+  /// value has changed. `change` is called in the inbox's thread.
   void declare(Descriptor descriptor, const Value& value, std::function<void(const Value&)> change = {});
 
  private:
@@ -64,9 +64,9 @@ class ParameterServer {
   void list(const List::Request& request, List::Response& response);
   void set_each(const SetEach::Request& request, SetEach::Response& response);
   void set_all(const SetAll::Request& request, SetAll::Response& response);
-  Result why_not(const Parameter& parameter) const;
+  Result check(const Parameter& parameter) const;
   void set(const Parameter& parameter);
-  void tell(const std::string& name, const Value& value, bool is_new);
+  void publish_event(const std::string& name, const Value& value, bool is_new);
 
   rcl::Node& node_;
   const MessageClock& clock_;

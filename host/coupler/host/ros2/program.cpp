@@ -11,21 +11,20 @@
 #include "coupler/base/standard_files.hpp"
 #include "coupler/host/ros/configuration.hpp"
 #include "coupler/host/ros/drive.hpp"
-#include "coupler/host/ros/ending.hpp"
 #include "coupler/host/ros2/arguments.hpp"
-#include "coupler/host/ros2/given_parameters.hpp"
 #include "coupler/host/ros2/node.hpp"
-#include "coupler/host/ros2/shown_settings.hpp"
+#include "coupler/host/ros2/parameters.hpp"
+#include "coupler/host/ros2/rcl/error.hpp"
 
 namespace coupler::host {
 namespace {
 
-/// The program has told why it ends.
-struct End {
+/// Thrown when the reason has been logged.
+struct Exit {
   int exit_code;
 };
 
-bool is_same_place(const Settings& one, const Settings& other) {
+bool have_same_maps(const Settings& one, const Settings& other) {
   return one.map == other.map && one.maps == other.maps && one.name == other.name &&
          one.address == other.address;
 }
@@ -34,7 +33,7 @@ tl::expected<bool, std::string> wants_sim_time(const std::vector<GivenParameter>
   bool wanted = false;
   for (const GivenParameter& one : parameters) {
     if (one.name != "use_sim_time") continue;
-    if (one.kind != GivenParameter::Kind::truth)
+    if (one.kind != GivenParameter::Kind::boolean)
       return tl::make_unexpected(fmt::format("parameter use_sim_time: '{}' is not true or false", one.text));
     wanted = one.text == "true";
   }
@@ -52,71 +51,68 @@ class Program {
 
   int run() {
     if (const auto unknown = context_.unknown_arguments(); !unknown.empty())
-      refuse(wrong_call,
-             fmt::format("{}: nothing that ROS 2 knows behind --ros-args; options of the driver stand "
-                         "before it",
-                         unknown.front()));
-    Ros2Node& node = node_.emplace(context_, settle_name());
+      fail(wrong_call,
+           fmt::format("{}: ROS 2 does not know this argument; options of the driver come before --ros-args",
+                       unknown.front()));
+    Ros2Node& node = node_.emplace(context_, choose_node_name());
     const auto parameters = given_.for_node(node.full_name());
-    node.declare_sim_time(accept(wants_sim_time(parameters)));
-    const Settings settings = overlay(accept(settings_among(parameters, "")), arguments_.settings);
-    show_settings(node.parameters(), settings);
-    if (!sources_ || !is_same_place(settings, early_)) find(settings);
+    node.declare_sim_time(value_or_fail(wants_sim_time(parameters)));
+    const Settings settings = overlay(value_or_fail(settings_among(parameters, "")), arguments_.settings);
+    declare_settings(node.parameters(), settings);
+    if (!sources_ || !have_same_maps(settings, early_settings_)) find(settings);
     const bool several = sources_->size() > 1;
     const auto names = several ? names_of(*sources_) : std::vector<std::string_view>();
-    for (const std::string& line : given_.unknown(node.full_name(), names)) tell(Level::warning, line);
+    for (const std::string& line : given_.unknown(node.full_name(), names)) log(Level::warning, line);
     const auto settings_of = [&](std::string_view name) -> tl::expected<Settings, std::string> {
       if (!several) return settings;
       return settings_among(parameters, fmt::format("{}.", name)).map([&](const Settings& own) {
         return overlay(settings, own);
       });
     };
-    const Devices devices = accept(configure(std::move(*sources_), settings_of));
-    if (const std::string wrong = why_not(devices); !wrong.empty()) refuse(wrong_input, wrong);
-    show_devices(node.parameters(), devices);
+    const Devices devices = value_or_fail(configure(std::move(*sources_), settings_of));
+    declare_devices(node.parameters(), devices);
     return drive(devices, node);
   }
 
  private:
   /// On the terminal; once there is a node, on /rosout, too.
-  void tell(Level level, const std::string& text) {
+  void log(Level level, const std::string& text) {
     if (node_)
       node_->log(level, text);
     else
-      print(text);
+      print_message(text);
   }
 
-  [[noreturn]] void refuse(int exit_code, const std::string& why) {
-    tell(Level::error, why);
-    throw End{exit_code};
+  [[noreturn]] void fail(int exit_code, const std::string& why) {
+    log(Level::error, why);
+    throw Exit{exit_code};
   }
 
   template <class T>
-  T accept(tl::expected<T, std::string> expected) {
-    if (!expected) refuse(wrong_input, expected.error());
+  T value_or_fail(tl::expected<T, std::string> expected) {
+    if (!expected) fail(wrong_input, expected.error());
     return std::move(*expected);
   }
 
   void find(const Settings& settings) {
     auto sources = find_maps(built_in_, settings, ros2_dialect,
-                             [this](Level level, const std::string& text) { tell(level, text); });
-    if (!sources) throw End{sources.error()};
+                             [this](Level level, const std::string& text) { log(level, text); });
+    if (!sources) throw Exit{sources.error()};
     sources_ = std::move(*sources);
   }
 
-  /// Before there is a node, and without asking a device: the node waits for that in the graph.
-  std::string settle_name() {
+  /// Before there is a node, and without asking a device: the node is in the graph while it waits for that.
+  std::string choose_node_name() {
     if (arguments_.names_the_node) return "coupler_driver";
-    early_ = overlay(accept(settings_among(given_.for_node(""), "")), arguments_.settings);
-    if (early_.name && early_.maps.empty()) return node_name(*early_.name);
-    if (is_map_of_a_node(built_in_, early_)) return node_name_by_address(early_);
+    early_settings_ = overlay(value_or_fail(settings_among(given_.for_node(""), "")), arguments_.settings);
+    if (early_settings_.name && early_settings_.maps.empty()) return node_name(*early_settings_.name);
+    if (is_map_of_a_node(built_in_, early_settings_)) return node_name_by_address(early_settings_);
     if (const auto section = given_.driver_section();
-        !section.empty() && !early_.map && early_.maps.empty() && built_in_ == nullptr)
-      refuse(wrong_call,
-             fmt::format("no map; the parameters of {} may have one: name the node so, by --ros-args -r "
-                         "__node:={}",
-                         section, section.substr(section.rfind('/') + 1)));
-    find(early_);
+        !section.empty() && !early_settings_.map && early_settings_.maps.empty() && built_in_ == nullptr)
+      fail(wrong_call,
+           fmt::format("no map; to use the parameters of {}, name the node by --ros-args -r __node:={}",
+                       section, section.substr(section.rfind('/') + 1)));
+    find(early_settings_);
     return node_name(sources_->front().map.name);
   }
 
@@ -125,7 +121,7 @@ class Program {
   rcl::Context context_;
   GivenParameters given_;
   std::optional<Ros2Node> node_;
-  Settings early_;  ///< before the node's own parameters are known; what is found may view them
+  Settings early_settings_;  ///< before the node's own parameters are known; the sources may view them
   std::optional<std::vector<MapSource>> sources_;
 };
 
@@ -134,24 +130,24 @@ class Program {
 int main_with(const Map* built_in, int argc, char** argv) {
   open_standard_files();
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  Ending::at_once_on_signals();
+  Shutdown::exit_on_signals();
   Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
   if (arguments.exit_code) {
     fmt::print(*arguments.exit_code == 0 ? stdout : stderr, "{}", arguments.text);
     return *arguments.exit_code;
   }
-  Ending::in_order_on_signals();
+  Shutdown::request_on_signals();
   try {
     return Program(built_in, std::move(arguments)).run();
-  } catch (const End& end) {
-    return end.exit_code;
+  } catch (const Exit& exit) {
+    return exit.exit_code;
   } catch (const rcl::Error& error) {
     if (error.result() != RCL_RET_INVALID_ROS_ARGS) {
-      print(error.what());
+      print_message(error.what());
       return wrong_input;
     }
-    print(fmt::format("{}; put a value that is none in YAML into quotes, as in -p address:=\"'[::1]'\"",
-                      error.what()));
+    print_message(fmt::format(
+        "{}; put a value that is not valid YAML into quotes, as in -p address:=\"'[::1]'\"", error.what()));
     return wrong_call;
   }
 }

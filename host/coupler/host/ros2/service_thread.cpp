@@ -20,7 +20,7 @@ struct Ros2Services {
 Ros2ServiceThread::Ros2ServiceThread(rcl::Node& node) : node_(node) {}
 
 Ros2ServiceThread::~Ros2ServiceThread() {
-  Ros2ServiceThread::end();
+  Ros2ServiceThread::stop();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -28,10 +28,10 @@ void Ros2ServiceThread::start() {
   thread_ = std::thread([this] { run(); });
 }
 
-void Ros2ServiceThread::end() {
+void Ros2ServiceThread::stop() {
   {
     const std::lock_guard lock(mutex_);
-    ended_ = true;
+    stopped_ = true;
     calls_.clear();
   }
   changed_.notify_one();
@@ -40,8 +40,8 @@ void Ros2ServiceThread::end() {
 void Ros2ServiceThread::run() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, [this] { return ended_ || !calls_.empty(); });
-    if (ended_) return;
+    changed_.wait(lock, [this] { return stopped_ || !calls_.empty(); });
+    if (stopped_) return;
     const auto call = std::move(calls_.front());
     calls_.pop_front();
     lock.unlock();
@@ -59,7 +59,7 @@ void Ros2ServiceThread::serve(const std::string& name, Function function) {
                                 [this, function = std::move(function), self = service.get()](
                                     const typename S::Request& request, rcl::AnyService::RequestId id) {
                                   const std::lock_guard lock(mutex_);
-                                  if (ended_) return;
+                                  if (stopped_) return;
                                   calls_.push_back([function, self, request, id] {
                                     typename S::Response response;
                                     function(request, response);

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "coupler/host/ros/typed_service_thread.hpp"
+#include "coupler/host/ros/node_templates.hpp"
 #include "coupler/host/ros2/rcl/service.hpp"
 
 namespace coupler::host {
@@ -23,7 +23,7 @@ class Ros2ServiceThread : public TypedServiceThread<Ros2ServiceThread, Ros2Servi
   Ros2ServiceThread& operator=(const Ros2ServiceThread&) = delete;
 
   void start() override;
-  void end() override;
+  void stop() override;
 
   /// Calls function(request, response) in this thread.
   template <class S, class Function>
@@ -36,7 +36,7 @@ class Ros2ServiceThread : public TypedServiceThread<Ros2ServiceThread, Ros2Servi
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> calls_;
-  bool ended_ = false;
+  bool stopped_ = false;
   std::vector<std::shared_ptr<void>> services_;
   std::thread thread_;  // last: it uses the others
 };

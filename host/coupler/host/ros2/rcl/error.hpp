@@ -1,30 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <rcl/error_handling.h>
 #include <rcl/types.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
 namespace coupler::rcl {
 
+/// The text that rcl has for the last failure in this thread, in one line. rcl forgets it.
+inline std::string take_error_text() {
+  std::string text = rcl_error_is_set() ? rcl_get_error_string().str : "unknown reason";
+  rcl_reset_error();
+  // ", at /path/of/the/build/machine/file.c:123" helps nobody here.
+  text.resize(std::min(text.size(), text.find(", at ")));
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
 /// What could not be made at the start, and why.
 class Error : public std::runtime_error {
  public:
-  Error(const std::string& what, rcl_ret_t result);
+  Error(const std::string& what, rcl_ret_t result)
+      : std::runtime_error(what + ": " + take_error_text()), result_(result) {}
   rcl_ret_t result() const { return result_; }
 
  private:
   rcl_ret_t result_;
 };
 
-/// The text that rcl has for the last failure in this thread, in one line; it is forgotten then.
-std::string take_error_text();
+/// Throws if `result` is a failure; `what`: "cannot make the node press_driver".
+inline void check(rcl_ret_t result, const std::string& what) {
+  if (result != RCL_RET_OK) throw Error(what, result);
+}
 
-/// Of what is taken down there is nothing to be done about a failure.
-void ignore(rcl_ret_t result);
-
-/// Throws where `result` is a failure; `what`: "cannot make the node press_driver".
-void check(rcl_ret_t result, const std::string& what);
+/// For destructors: nothing can be done about a failure there.
+inline void ignore(rcl_ret_t result) {
+  if (result != RCL_RET_OK) rcl_reset_error();
+}
 
 }  // namespace coupler::rcl

@@ -6,7 +6,7 @@
 namespace coupler::rcl {
 namespace {
 
-/// Of one source in a row, so that a burst delays the others little.
+/// How much is taken from one source in a row: a burst delays the others little.
 constexpr int turn = 32;
 
 }  // namespace
@@ -39,7 +39,7 @@ void Inbox::stop() {
 }
 
 void Inbox::empty(Source& source) {
-  source.noted_ = false;  // first: what comes from now on is noted anew
+  source.noted_ = false;  // first: what comes from now on is noted again
   int left = turn;
   while (source.take())
     if (--left == 0) return source.note();

@@ -12,11 +12,11 @@
 namespace coupler::rcl {
 
 /// What the middleware has for this program: messages, requests, events. The middleware's threads only note
-/// that there is something; one thread of the inbox takes it. (A wait set would have to be filled with each
-/// of some thousand entities at each wake-up.)
+/// that there is something; the inbox has one thread that takes it. (A wait set would have to be filled with
+/// each of some thousand entities at each wake-up.)
 class Inbox {
  public:
-  /// What something can be taken from.
+  /// What the inbox takes from.
   class Source {
    public:
     explicit Source(Inbox& inbox) : inbox_(inbox) {}
@@ -29,14 +29,14 @@ class Inbox {
     }
 
    protected:
-    /// note() as a callback of rcl, which is to be given self().
+    /// note() as a callback of rcl, whose argument must be self().
     static void note_of(const void* self, std::size_t /*how_many*/) {
       const_cast<Source*>(static_cast<const Source*>(self))->note();
     }
     const void* self() const { return static_cast<const Source*>(this); }
-    /// leave() must have been called.
+    /// After leave().
     virtual ~Source() = default;
-    /// For the destructor of what is derived: take() is not called any more, and does not run.
+    /// For the destructor of a derived class: take() does not run, and is not called any more.
     void leave() { inbox_.remove(*this); }
     /// Takes one thing, in the inbox's thread; false: there is nothing.
     virtual bool take() = 0;
@@ -52,7 +52,7 @@ class Inbox {
   void start() {
     thread_ = std::thread([this] { run(); });
   }
-  /// Nothing is taken any more.
+  /// Takes nothing any more.
   void stop();
 
  private:

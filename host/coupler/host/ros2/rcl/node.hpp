@@ -1,18 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <rcl/context.h>
 #include <rcl/node.h>
 
 #include <string>
 #include <vector>
 
 #include "coupler/base/line_limit.hpp"
-#include "coupler/host/ros2/rcl/context.hpp"
 #include "coupler/host/ros2/rcl/inbox.hpp"
 
 namespace coupler::rcl {
 
-/// A node, and the inbox of what is made in it. All of that must go before it does.
+/// ROS 2 in this process, with its arguments and its logging. There is one in a process.
+class Context {
+ public:
+  /// `arguments`: the program, "--ros-args" and what follows. Throws Error.
+  explicit Context(const std::vector<std::string>& arguments);
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  rcl_context_t* get() { return &context_; }
+  const rcl_arguments_t& arguments() const { return context_.global_arguments; }
+  /// Those after --ros-args that ROS does not know.
+  std::vector<std::string> unknown_arguments() const;
+
+ private:
+  std::vector<std::string> given_;
+  rcl_context_t context_;
+};
+
+/// A node, and the inbox of what is made in it. All of that must be destroyed before the node.
 class Node {
  public:
   /// The name and "/" are overridden by `__node:=` and `__ns:=`. Throws Error.
@@ -30,10 +49,11 @@ class Node {
 
   /// To the terminal and to /rosout. Any thread may call. `severity`: rcutils' RCUTILS_LOG_SEVERITY.
   void log(int severity, const std::string& text) const;
-  /// Of the last call in this thread that failed; one line a second of all.
+  /// Of the last call in this thread that failed; at most one line a second.
   void log_failure(const std::string& what);
 
-  /// The nodes that publish the topic, with their namespaces; this one, too, for each of its publishers.
+  /// The nodes that publish the topic, with their namespaces; one entry for each publisher, those of this
+  /// node too.
   std::vector<std::string> publishers_of(const std::string& full_topic) const;
 
  private:

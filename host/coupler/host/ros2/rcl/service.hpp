@@ -5,13 +5,15 @@
 #include <rosidl_typesupport_cpp/service_type_support.hpp>
 
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "coupler/host/ros2/rcl/node.hpp"
 
 namespace coupler::rcl {
 
-/// A service of whichever type.
+/// A service of any type.
 class AnyService : public Inbox::Source {
  public:
   using RequestId = rmw_request_id_t;
@@ -21,9 +23,9 @@ class AnyService : public Inbox::Source {
 
  protected:
   ~AnyService() override;
-  /// From now on take() is called.
-  void listen();
-  void end();
+  /// take() is called from now on.
+  void start();
+  void stop();
   bool take_any(RequestId& id, void* request);
   void answer_any(RequestId& id, void* response);
 
@@ -39,13 +41,13 @@ class Service : public AnyService {
   using Request = typename S::Request;
   using Response = typename S::Response;
 
-  /// `ask` is called in the inbox's thread; answer() may come later, from any thread.
-  Service(Node& node, const std::string& name, std::function<void(const Request&, RequestId)> ask)
+  /// `call` is called in the inbox's thread; answer() may follow later, from any thread.
+  Service(Node& node, const std::string& name, std::function<void(const Request&, RequestId)> call)
       : AnyService(node, rosidl_typesupport_cpp::get_service_type_support_handle<S>(), name),
-        ask_(std::move(ask)) {
-    listen();
+        call_(std::move(call)) {
+    start();
   }
-  ~Service() override { end(); }
+  ~Service() override { stop(); }
 
   void answer(RequestId id, Response& response) { answer_any(id, &response); }
 
@@ -54,12 +56,12 @@ class Service : public AnyService {
     Request request;
     RequestId id;
     if (!take_any(id, &request)) return false;
-    ask_(request, id);
+    call_(request, id);
     return true;
   }
 
  private:
-  std::function<void(const Request&, RequestId)> ask_;
+  std::function<void(const Request&, RequestId)> call_;
 };
 
 /// A service that is answered at once, in the inbox's thread.
@@ -77,5 +79,8 @@ class PromptService : public Service<S> {
                      this->answer(id, response);
                    }) {}
 };
+
+/// `~/get_type_description`, where rcl has it. It is offered as long as the result exists. Throws Error.
+std::shared_ptr<void> offer_type_descriptions(Node& node);
 
 }  // namespace coupler::rcl

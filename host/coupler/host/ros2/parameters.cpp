@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/ros2/given_parameters.hpp"
+#include "coupler/host/ros2/parameters.hpp"
 
 #include <rcl_yaml_param_parser/parser.h>
+#include <rcl_interfaces/msg/parameter_type.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <regex>
 #include <utility>
 
@@ -30,9 +32,9 @@ std::string list_of(const rcutils_string_array_t& values) {
 
 GivenParameter given(std::string name, const rcl_variant_t& value) {
   if (value.bool_value != nullptr)
-    return {std::move(name), Kind::truth, *value.bool_value ? "true" : "false"};
+    return {std::move(name), Kind::boolean, *value.bool_value ? "true" : "false"};
   if (value.integer_value != nullptr)
-    return {std::move(name), Kind::whole, fmt::to_string(*value.integer_value)};
+    return {std::move(name), Kind::integer, fmt::to_string(*value.integer_value)};
   if (value.double_value != nullptr)
     return {std::move(name), Kind::real, fmt::to_string(*value.double_value)};
   if (value.string_value != nullptr) return {std::move(name), Kind::text, value.string_value};
@@ -46,8 +48,8 @@ GivenParameter given(std::string name, const rcl_variant_t& value) {
 
 bool is_for_all(std::string_view node) { return node.find('*') != std::string_view::npos; }
 
-/// `/*` stands for one name of the path and `/**` for any number of them, as in every ROS 2 node.
-bool fits(const std::string& section, std::string_view node) {
+/// `/*` is one name of the path and `/**` any number of them, as in every ROS 2 node.
+bool matches(const std::string& section, std::string_view node) {
   if (!is_for_all(section)) return section == node;
   if (node.empty()) return section == "/**";
   std::string pattern = std::regex_replace(section, std::regex(R"(/\*\*)"), "(/\\w+)@");
@@ -76,14 +78,58 @@ bool is_meant_for_a_driver(const GivenParameters::Section& section) {
   });
 }
 
-/// What YAML has made of a word that should have stayed one, or an empty text.
+/// What is wrong where YAML has read a text as something else, or an empty text.
 std::string wrong_kind(const SettingKey& key, const GivenParameter& one) {
   const bool is_text = key.kind == SettingKey::Kind::text && key.key != "verify";
-  if (!is_text || (one.kind != Kind::truth && one.kind != Kind::real)) return {};
+  if (!is_text || (one.kind != Kind::boolean && one.kind != Kind::real)) return {};
   return fmt::format(
       "YAML reads the value as {} ({}); if it is a text put it into quotes, as in {}: 'VALUE', or "
       "-p {}:=\"'VALUE'\"",
-      one.kind == Kind::truth ? "a truth value" : "a number", one.text, one.name, one.name);
+      one.kind == Kind::boolean ? "a boolean" : "a number", one.text, one.name, one.name);
+}
+
+using Type = rcl_interfaces::msg::ParameterType;
+
+std::uint8_t type_of(SettingKey::Kind kind) {
+  switch (kind) {
+    case SettingKey::Kind::list: return Type::PARAMETER_STRING_ARRAY;
+    case SettingKey::Kind::integer: return Type::PARAMETER_INTEGER;
+    case SettingKey::Kind::real: return Type::PARAMETER_DOUBLE;
+    case SettingKey::Kind::text: break;
+  }
+  return Type::PARAMETER_STRING;
+}
+
+ParameterServer::Descriptor describe(const SettingKey& key, const std::string& prefix) {
+  ParameterServer::Descriptor descriptor;
+  descriptor.name = fmt::format("{}{}", prefix, key.key);
+  descriptor.type = type_of(key.kind);
+  descriptor.description = std::string(key.help);
+  if (key.kind == SettingKey::Kind::integer) {
+    auto& range = descriptor.integer_range.emplace_back();
+    range.from_value = static_cast<std::int64_t>(key.min);
+    range.to_value = static_cast<std::int64_t>(key.max);
+    range.step = 1;
+  } else if (key.kind == SettingKey::Kind::real) {
+    auto& range = descriptor.floating_point_range.emplace_back();
+    range.from_value = key.min;
+    range.to_value = key.max;
+  }
+  return descriptor;
+}
+
+ParameterServer::Value value_of(const SettingKey& key, const Settings& settings) {
+  ParameterServer::Value value;
+  const auto text = text_of(settings, key.key);
+  if (!text) return value;
+  value.type = type_of(key.kind);
+  switch (key.kind) {
+    case SettingKey::Kind::list: value.string_array_value = settings.maps; break;
+    case SettingKey::Kind::integer: value.integer_value = std::strtoll(text->c_str(), nullptr, 10); break;
+    case SettingKey::Kind::real: value.double_value = std::strtod(text->c_str(), nullptr); break;
+    case SettingKey::Kind::text: value.string_value = *text; break;
+  }
+  return value;
 }
 
 }  // namespace
@@ -108,7 +154,7 @@ GivenParameters GivenParameters::of(const rcl_arguments_t& arguments) {
 std::vector<GivenParameter> GivenParameters::for_node(std::string_view full_name) const {
   std::vector<GivenParameter> all;
   for (const Section& section : sections_)
-    if (fits(section.node, full_name))
+    if (matches(section.node, full_name))
       all.insert(all.end(), section.parameters.begin(), section.parameters.end());
   return all;
 }
@@ -124,22 +170,22 @@ std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
   std::vector<std::string> lines;
   const auto names = setting_names();
   for (const Section& section : sections_) {
-    if (!fits(section.node, full_name)) continue;
+    if (!matches(section.node, full_name)) continue;
     for (const GivenParameter& one : section.parameters) {
       const std::string_view setting = setting_of(one.name, devices);
       if (is_setting(setting) || is_ROSs_own(one.name)) continue;
       const std::string_view behind_slash = setting.substr(setting.rfind('/') + 1);
       if (behind_slash != setting && is_setting(behind_slash)) {
-        std::string spelt = one.name;
-        spelt[one.name.rfind('/')] = '.';
+        std::string corrected = one.name;
+        corrected[one.name.rfind('/')] = '.';
         lines.push_back(
-            fmt::format("parameter {} is ROS 1's spelling and does nothing; say {}", one.name, spelt));
+            fmt::format("parameter {} is ROS 1's spelling and does nothing; write {}", one.name, corrected));
         continue;
       }
       const std::string_view behind_dot = setting.substr(setting.rfind('.') + 1);
       if (!devices.empty() && behind_dot != setting && is_setting(behind_dot)) {
         lines.push_back(
-            fmt::format("parameter {} is for a device that is not there; the maps have the names {}",
+            fmt::format("parameter {} is for a device that does not exist; the maps have the names {}",
                         one.name, fmt::join(devices, ", ")));
         continue;
       }
@@ -151,8 +197,8 @@ std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
   const bool has_own = std::any_of(sections_.begin(), sections_.end(),
                                    [&](const Section& section) { return section.node == full_name; });
   for (const Section& section : sections_)
-    if (!has_own && !fits(section.node, full_name) && is_meant_for_a_driver(section))
-      lines.push_back(fmt::format("the parameters of {} are not those of this node; its name is {}",
+    if (!has_own && !matches(section.node, full_name) && is_meant_for_a_driver(section))
+      lines.push_back(fmt::format("the parameters of {} are not used: the name of this node is {}",
                                   section.node, full_name));
   return lines;
 }
@@ -174,6 +220,20 @@ tl::expected<Settings, std::string> settings_among(const std::vector<GivenParame
     }
   }
   return settings;
+}
+
+void declare_settings(ParameterServer& server, const Settings& settings) {
+  for (const SettingKey& key : setting_keys) server.declare(describe(key, ""), value_of(key, settings));
+}
+
+void declare_devices(ParameterServer& server, const Devices& devices) {
+  if (devices.size() == 1)
+    return declare_settings(server, with_map(devices.front().settings, devices.front().source.map));
+  for (const auto& [settings, source] : devices)
+    for (const SettingKey& key : setting_keys)
+      if (key.key != "map" && key.key != "maps")
+        server.declare(describe(key, fmt::format("{}.", source.map.name)),
+                       value_of(key, with_map(settings, source.map)));
 }
 
 }  // namespace coupler::host

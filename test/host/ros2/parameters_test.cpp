@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/ros2/given_parameters.hpp"
+#include "coupler/host/ros2/parameters.hpp"
 
 #include <gmock/gmock.h>
 
@@ -39,9 +39,9 @@ TEST(GivenParameters, The_last_one_that_is_given_counts) {
 }
 
 TEST(GivenParameters, What_YAML_made_of_a_word_is_understood) {
-  const auto settings = settings_among({{"verify", Kind::truth, "false"},
+  const auto settings = settings_among({{"verify", Kind::boolean, "false"},
                                         {"address", Kind::list, "::1"},
-                                        {"rate", Kind::whole, "5"},
+                                        {"rate", Kind::integer, "5"},
                                         {"port", Kind::text, "1502"}},
                                        "");
   ASSERT_TRUE(settings) << settings.error();
@@ -49,11 +49,11 @@ TEST(GivenParameters, What_YAML_made_of_a_word_is_understood) {
   EXPECT_EQ(settings->address, "::1");
   EXPECT_EQ(settings->rate, 5);
   EXPECT_EQ(settings->port, 1502);
-  EXPECT_THAT(settings_among({{"name", Kind::whole, "42"}}, "").error(), HasSubstr("'42' is not a name"));
+  EXPECT_THAT(settings_among({{"name", Kind::integer, "42"}}, "").error(), HasSubstr("'42' is not a name"));
 }
 
 TEST(GivenParameters, What_YAML_has_made_unreadable_is_refused_with_quotes) {
-  EXPECT_THAT(settings_among({{"name", Kind::truth, "true"}}, "").error(), HasSubstr("name: 'VALUE'"));
+  EXPECT_THAT(settings_among({{"name", Kind::boolean, "true"}}, "").error(), HasSubstr("name: 'VALUE'"));
   EXPECT_THAT(settings_among({{"name", Kind::real, "1000"}}, "").error(), HasSubstr("put it into quotes"));
   EXPECT_THAT(settings_among({text("verify", "maybe")}, "").error(), HasSubstr("require, warn or off"));
 }
@@ -100,7 +100,7 @@ TEST(GivenParameters, A_section_for_a_driver_of_another_name_is_told_unless_this
   const Section other{"/pres_driver", {text("map", "a.yaml")}};
   EXPECT_THAT(
       GivenParameters({other}).unknown("/press_driver", {}),
-      ElementsAre("the parameters of /pres_driver are not those of this node; its name is /press_driver"));
+      ElementsAre("the parameters of /pres_driver are not used: the name of this node is /press_driver"));
   EXPECT_THAT(GivenParameters({other, {"/press_driver", {text("rate", "5")}}}).unknown("/press_driver", {}),
               IsEmpty());
   EXPECT_THAT(GivenParameters({{"/camera", {text("exposure", "5")}}}).unknown("/press_driver", {}),

@@ -1,17 +1,68 @@
 // SPDX-License-Identifier: Apache-2.0
+// What the nodes of both ROSes are made of: templates over the types of their messages and services.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
 
+#include "coupler/host/core/publish_policy.hpp"
 #include "coupler/host/ros/node.hpp"
 
 namespace coupler::host {
 
-// They fill the responses of services of either ROS.
+/// Publishes a point as a kind of message (message.hpp).
+template <class Kind, class Publisher>
+class TypedPublisher : public PointPublisher {
+ public:
+  TypedPublisher(const Point& point, std::uint32_t index, SubscriberCounts& subscribers)
+      : point_(point), policy_(point), index_(index), subscribers_(subscribers) {}
 
-/// coupler_driver/Write.
+  /// Before anything is published. The publisher may call add_subscriber() and remove_subscriber() already.
+  void set_publisher(Publisher publisher) { publisher_ = std::move(publisher); }
+
+  void add_subscriber() {
+    policy_.renew();
+    subscribers_.add(index_);
+  }
+  void remove_subscriber() { subscribers_.remove(index_); }
+
+  void publish(const std::uint16_t* registers, Time at) override {
+    if (!policy_.calls_news(registers, at)) return;
+    Kind::decode(registers, point_, message_);
+    publisher_.publish(message_);
+  }
+
+  void renew() override { policy_.renew(); }
+
+ private:
+  const Point& point_;
+  PublishPolicy policy_;
+  std::uint32_t index_;
+  SubscriberCounts& subscribers_;
+  typename Kind::Message message_;
+  Publisher publisher_;
+};
+
+/// Hands on a message that came on the topic of `map.points[index]`; Kind: a kind of message (message.hpp).
+template <class Kind>
+void receive(const typename Kind::Message& message, const std::string& topic, const Map& map,
+             std::uint32_t index, const WriteHandler& handler) {
+  std::array<std::uint16_t, modbus::max_write_bits> values{};
+  const Point& point = map.points[index];
+  const std::string wrong = Kind::encode(message, point, values.data());
+  if (wrong.empty())
+    handler.accept(make_write(map, index, {values.data(), range(point).count()}));
+  else
+    handler.refuse(index, topic + ": " + wrong);
+}
+
+/// A topic of writes keeps ten times as many messages as one of values.
+constexpr std::uint32_t writes_per_value = 10;
+
+/// Fills a response of coupler_driver/Write.
 template <class Response>
 void fill(Response& response, const WriteTicket::Outcome& outcome) {
   using Outcome = WriteResult::Outcome;
@@ -29,7 +80,7 @@ void fill(Response& response, const WriteTicket::Outcome& outcome) {
   response.message = outcome.text;
 }
 
-/// coupler_driver/Read.
+/// Fills a response of coupler_driver/Read.
 template <class Response>
 void fill(Response& response, const ServiceThread::ReadAnswer& answer) {
   response.success = answer.success;
@@ -37,15 +88,15 @@ void fill(Response& response, const ServiceThread::ReadAnswer& answer) {
   response.message = answer.message;
 }
 
-/// std_srvs/SetBool and std_srvs/Trigger.
+/// Fills a response of std_srvs/SetBool or std_srvs/Trigger.
 template <class Response>
 void fill(Response& response, const Calls::Answer& answer) {
   response.success = answer.success;
   response.message = answer.text;
 }
 
-/// The services of either ROS. Types names the types of its services; `Adapter::serve<S>(name, function)`
-/// offers one whose calls are function(request, response) in the adapter's thread.
+/// Types names the service types of a ROS; `Adapter::serve<S>(name, function)` offers a service that calls
+/// function(request, response) in the adapter's thread.
 template <class Adapter, class Types>
 class TypedServiceThread : public ServiceThread {
  public:

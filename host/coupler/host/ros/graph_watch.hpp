@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// What looks at the ROS graph now and then, beside the driver: a thread for it, and what it warns of.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coupler/host/ros/node.hpp"
+
+namespace coupler::host {
+
+/// Calls a function at once and then at an interval, in a thread of its own.
+class PeriodicThread {
+ public:
+  PeriodicThread(std::chrono::milliseconds interval, std::function<void()> function)
+      : thread_([this, interval, function = std::move(function)] {
+          do function();
+          while (!stops_within(interval));
+        }) {}
+  /// Waits for the call in progress.
+  ~PeriodicThread() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopped_ = true;
+    }
+    stop_.notify_one();
+    thread_.join();
+  }
+  PeriodicThread(const PeriodicThread&) = delete;
+  PeriodicThread& operator=(const PeriodicThread&) = delete;
+
+ private:
+  bool stops_within(std::chrono::milliseconds interval) {
+    std::unique_lock lock(mutex_);
+    return stop_.wait_for(lock, interval, [this] { return stopped_; });
+  }
+
+  std::mutex mutex_;
+  std::condition_variable stop_;
+  bool stopped_ = false;
+  std::thread thread_;  // last: it uses the others
+};
+
+/// Another node that publishes `<name>/online`, as this one does: two drivers of one device, or of one name.
+struct DuplicateDriver {
+  std::string topic;
+  std::string node;
+};
+
+/// Warns of each duplicate once, as long as it is there.
+class DuplicateWarnings {
+ public:
+  /// `duplicates`: all that there are now.
+  void update(const std::vector<DuplicateDriver>& duplicates, Node& log) {
+    std::set<std::string> now;
+    for (const auto& [topic, node] : duplicates)
+      if (now.insert(topic + node).second && warned_of_.count(topic + node) == 0)
+        log.log(
+            Level::warning,
+            fmt::format("{} also publishes {}: two drivers write to the same device, or two devices have "
+                        "the same name. Stop one of the drivers, or give its device another name by --name",
+                        node, topic));
+    warned_of_ = std::move(now);
+  }
+
+ private:
+  std::set<std::string> warned_of_;
+};
+
+}  // namespace coupler::host

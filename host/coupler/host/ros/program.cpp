@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/ros/program.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "coupler/map/printable.hpp"
+
+namespace coupler::host {
+namespace {
+
+void on_signals(void (*handler)(int)) {
+  std::signal(SIGINT, handler);
+  std::signal(SIGTERM, handler);
+}
+
+}  // namespace
+
+std::atomic<bool> Shutdown::requested{false};
+std::atomic<bool> Shutdown::driving{false};
+
+void Shutdown::exit_on_signals() {
+  on_signals([](int) { ::_exit(0); });
+}
+
+void Shutdown::request_on_signals() {
+  on_signals([](int) {
+    if (requested.exchange(true) && !driving) ::_exit(0);
+  });
+}
+
+void print_message(std::string_view text) {
+  fmt::print(stderr, "coupler_driver: {}\n", printable_lines(text));
+}
+
+}  // namespace coupler::host
