@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "coupler/generate/generate.hpp"
+
 #include <fmt/format.h>
 
 #include "coupler/codec/text.hpp"
 #include "coupler/generate/code.hpp"
-#include "coupler/generate/generate.hpp"
 #include "coupler/generate/member.hpp"
 #include "coupler/map/image_layout.hpp"
 

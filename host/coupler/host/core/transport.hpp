@@ -9,6 +9,7 @@
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/error.hpp"
 #include "coupler/map/table.hpp"
+#include "coupler/modbus/client.hpp"
 #include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/range.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "coupler/host/core/transport.hpp"
 #include "coupler/host/core/write.hpp"
+#include "coupler/modbus/client.hpp"
 #include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/range.hpp"
 
