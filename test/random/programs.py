@@ -76,7 +76,7 @@ class Program:
         self._reader.join(PATIENCE)
 
 
-class Client:
+class PymodbusClient:
     """pymodbus; registers as the vectors have them."""
 
     def __init__(self, port):
@@ -139,23 +139,23 @@ def client_of(bin_, tested, port):
     return Program(bin_ / "random_end", "client", tested.name, port)
 
 
-def node_and_client(tested, node, client, client, checks):
+def node_and_client(tested, node, client, pymodbus, checks):
     """`node` names it in messages."""
     for number in range(ROUNDS):
         checks.equal(f"{node}: the client sets {number}", client.ask(f"set {number}"), "ok")
         for i, point in tested.readable():
             raw = tested.raw(i, number)
             if raw is not None:
-                checks.equal(f"{node}: {point['name']} in round {number}", masked(point, client.get(point)), raw)
+                checks.equal(f"{node}: {point['name']} in round {number}", masked(point, pymodbus.get(point)), raw)
     for number in range(ROUNDS):
         for i, point in tested.readable():
             case = tested.case(i, number)
             raw = case["raw"] if "bits" in point else [int(word, 16) for word in case["raw"]]
-            checks.equal(f"{node}: pymodbus writes {point['name']}", client.put(point, raw), True)
+            checks.equal(f"{node}: pymodbus writes {point['name']}", pymodbus.put(point, raw), True)
         checks.equal(f"{node}: the client has {number}", client.ask(f"get {number} outputs"), "ok")
 
 
-def firmware_shows(tested, firmware, client, client, checks):
+def firmware_shows(tested, firmware, client, pymodbus, checks):
     for number in range(ROUNDS):
         checks.equal(f"firmware shows {number}", firmware.ask(f"show {number}"), "ok")
         for i, point in enumerate(tested.points):
@@ -163,7 +163,7 @@ def firmware_shows(tested, firmware, client, client, checks):
             others = tested.latched | tested.counters | tested.simulated
             if raw is None or point["access"] != "read" or point["name"] in others:
                 continue
-            checks.equal(f"firmware: {point['name']} in round {number}", masked(point, client.get(point)), raw)
+            checks.equal(f"firmware: {point['name']} in round {number}", masked(point, pymodbus.get(point)), raw)
 
 
 def foreign_server(tested, bin_, checks):
@@ -199,12 +199,12 @@ def main():
                  "firmware": [test_bin / "random_end", "firmware", tested.name]}
         for node, command in nodes.items():
             with Program(*command, *tested.options) as program:
-                client = Client(program.port)
+                pymodbus = PymodbusClient(program.port)
                 with client_of(test_bin, tested, program.port) as client:
-                    node_and_client(tested, f"{tested.name}, {node}", client, client, checks)
+                    node_and_client(tested, f"{tested.name}, {node}", client, pymodbus, checks)
                     if node == "firmware":
-                        firmware_shows(tested, program, client, client, checks)
-                client.client.close()
+                        firmware_shows(tested, program, client, pymodbus, checks)
+                pymodbus.client.close()
         foreign_server(tested, test_bin, checks)
     checks.done(f"{PROGRAMS} random maps as programs, against each other and pymodbus")
 

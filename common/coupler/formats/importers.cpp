@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "coupler/formats/map_tree.hpp"
-#include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/loader/map_reader.hpp"
 #include "coupler/map/loader/names.hpp"
+#include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/loader/source_text.hpp"
 #include "coupler/map/printable.hpp"
 

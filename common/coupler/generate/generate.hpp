@@ -41,8 +41,8 @@ std::string client_source(const Map& map, const Provenance& provenance);
 /// behind the points.
 std::string node_hooks(const Map& map, const Provenance& provenance);
 
-/// NAME_core.hpp: the class coupler::maps::NAME::NodeCore, the node of a microcontroller, in static memory of the
-/// size that the map needs.
+/// NAME_core.hpp: the class coupler::maps::NAME::NodeCore, the node of a microcontroller, in static memory of
+/// the size that the map needs.
 std::string node_core(const Map& map, const Provenance& provenance);
 
 /// NAME_node.cpp: the main of a node that serves coupler::maps::NAME::map.

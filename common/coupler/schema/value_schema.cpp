@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/loader/preset.hpp"
+#include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::schema {
 namespace {

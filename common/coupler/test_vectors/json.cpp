@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "coupler/codec/value.hpp"
 #include "coupler/codec/text.hpp"
+#include "coupler/codec/value.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/test_vectors/cases.hpp"
 

@@ -228,7 +228,7 @@ class Lock(Cli):
         self.file("cell.yaml.lock", "coupler lock 1\ncoils 0 lamp\n=======\ncoils 0 horn\n")
         done = self.coupler("check", self.file("cell.yaml", OPEN))
         self.assertEqual((done.returncode, done.stdout), (1, ""))
-        self.assertRegex(done.stderr, r"(?m)^cell\.yaml\.lock:3:1: error: '<<<<<<<' is the marker of a merge conflict\")
+        self.assertRegex(done.stderr, r"(?m)^cell\.yaml\.lock:3:1: error: '=======' is the marker of a merge conflict")
         self.assertRegex(done.stderr, r"(?m)^cell\.yaml\.lock:4:1: error: .*'horn' overlaps .*'lamp' \(line 2\)")
 
     def test_that_cannot_be_read_is_told(self):
@@ -281,8 +281,8 @@ class Generate(Cli):
 
     def test_says_what_it_wrote(self):
         call = ("generate", self.file("cell.yaml", GOOD), "--out", "out")
-        self.assertEqual([line.split(": ")[1] for line in self.coupler(*call).stdout.splitlines()], ["written"] * 7)
-        self.assertEqual([line.split(": ")[1] for line in self.coupler(*call).stdout.splitlines()], ["unchanged"] * 7)
+        self.assertEqual([line.split(": ")[1] for line in self.coupler(*call).stdout.splitlines()], ["written"] * 8)
+        self.assertEqual([line.split(": ")[1] for line in self.coupler(*call).stdout.splitlines()], ["unchanged"] * 8)
         self.assertEqual(self.coupler(*call, "--quiet").stdout, "")
 
     def test_leaves_files_alone_that_would_not_change(self):

@@ -13,8 +13,8 @@
 
 #include "coupler/base/span.hpp"
 #include "coupler/map/map.hpp"
-#include "coupler/modbus/pdu.hpp"
 #include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::host {
 
