@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The conformance vectors of a map against the driver: registers at pymodbus become the value of the topic, a value that is
+"""The test vectors of a map against the driver: registers at pymodbus become the value of the topic, a value that is
 published becomes the registers. RANDOM_MAPS, a folder: with the generated drivers of the random maps in it, too."""
 import json
 import os

@@ -29,7 +29,7 @@ constexpr Importer formats[] = {
 #endif
 };
 
-constexpr std::size_t longest = 100;  // for a name that is mended: a topic stays readable
+constexpr std::size_t longest = 100;  // for a name that was changed: a topic stays readable
 
 std::string valid(std::string_view name) {
   if (!loader::is_relative_ros_name(name)) return mended_name(name, "point");

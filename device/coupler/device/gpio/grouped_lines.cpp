@@ -193,7 +193,7 @@ void GroupedLines::renew_inputs(std::size_t group, WiredInputs again) {
   inputs_[group] = std::move(renewed);
 }
 
-/// Lines of `old` that have no coil in `successor` (null: there is none) go to tsuccessor safe state.
+/// Lines of `old` that have no coil in `successor` (null: there is none) go to their safe state.
 void GroupedLines::abandon(Output& old, const Output* successor) {
   bool any = false;
   for (std::size_t line = 0; line < old.next.size(); ++line) {
