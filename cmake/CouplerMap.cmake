@@ -68,6 +68,8 @@ function(coupler_add_map name map)
 
     add_library(${name}_hooks INTERFACE)
     target_link_libraries(${name}_hooks INTERFACE ${name}_map OpenCoupler::node)
+  elseif(NOT CMAKE_SYSTEM_NAME STREQUAL Generic)
+    message(FATAL_ERROR "coupler_add_map(${name}): the target OpenCoupler::node is missing")
   endif()
 
   if(TARGET OpenCoupler::client)

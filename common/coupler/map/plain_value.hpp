@@ -13,6 +13,7 @@
 #include "coupler/codec/scale.hpp"
 #include "coupler/codec/text.hpp"
 #include "coupler/map/point.hpp"
+#include "coupler/modbus/limits.hpp"
 
 namespace coupler {
 
@@ -83,7 +84,6 @@ struct PlainValue<Text<Size>> : PlainValue<std::string_view> {
   }
 };
 
-/// If one of the values cannot be held, those before it were written.
 template <class T, std::size_t Count>
 struct PlainValue<std::array<T, Count>> {
   static std::array<T, Count> decode(const std::uint16_t* registers, const Point& point) {
@@ -93,9 +93,12 @@ struct PlainValue<std::array<T, Count>> {
     return values;
   }
   static bool encode(const std::array<T, Count>& values, const Point& point, std::uint16_t* registers) {
+    std::array<std::uint16_t, modbus::max_read_registers> tried{};  // the longest STRING has as many
+    for (const T& value : values)
+      if (!PlainValue<T>::encode(value, point, tried.data())) return false;
     const std::size_t width = codec::registers(point.format);
     for (std::size_t i = 0; i < Count; ++i)
-      if (!PlainValue<T>::encode(values[i], point, registers + i * width)) return false;
+      (void)PlainValue<T>::encode(values[i], point, registers + i * width);
     return true;
   }
 };

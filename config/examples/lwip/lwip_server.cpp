@@ -139,9 +139,11 @@ void LwipServer::forget(Client& client) {
   client.pcb = nullptr;
 }
 
-/// What was written is still sent.
+/// What was written is still sent: unless all that came was taken, lwIP would reset the connection.
 err_t LwipServer::close(Client& client) {
   tcp_pcb* pcb = client.pcb;
+  if (client.received != nullptr) tcp_recved(pcb, client.received->tot_len);
+  tcp_output(pcb);
   tcp_arg(pcb, nullptr);
   tcp_recv(pcb, nullptr);
   tcp_sent(pcb, nullptr);
