@@ -91,21 +91,25 @@ tl::expected<Settings, std::string> read_parameters(const ros::NodeHandle& handl
 /// Parameters of diagnostic_updater.
 constexpr std::array<std::string_view, 2> other_parameters{"diagnostic_period", "diagnostic_updater_fast"};
 
+void warn_of(const std::string& parameter, const std::string& name) {
+  const std::string line =
+      fmt::format("parameter {} is not a setting and does nothing; {}", parameter,
+                  loader::nearest_or(name, setting_names(), "coupler_driver --help shows them"));
+  ROS_WARN("%s", printable_lines(line).c_str());
+}
+
 /// Warns of each parameter in the tree that is not a setting: misspelt ones do nothing. `devices`: the names
 /// of several, whose settings stand below them.
 void warn_of_unknown(XmlRpc::XmlRpcValue& tree, const std::string& place,
                      const std::vector<std::string_view>& devices) {
   if (tree.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
   for (auto& [name, value] : tree) {
+    const std::string parameter = fmt::format("{}/{}", place, name);
     if (std::find(other_parameters.begin(), other_parameters.end(), name) != other_parameters.end()) continue;
-    if (std::find(devices.begin(), devices.end(), name) != devices.end()) {
-      warn_of_unknown(value, fmt::format("{}/{}", place, name), {});
-    } else if (!is_setting(name)) {
-      const std::string line =
-          fmt::format("parameter {}/{} is not a setting and does nothing; {}", place, name,
-                      loader::nearest_or(name, setting_names(), "coupler_driver --help shows them"));
-      ROS_WARN("%s", printable_lines(line).c_str());
-    }
+    if (std::find(devices.begin(), devices.end(), name) != devices.end())
+      warn_of_unknown(value, parameter, {});
+    else if (!is_setting(name))
+      warn_of(parameter, name);
   }
 }
 
