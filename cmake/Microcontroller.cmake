@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+#catkin_lint: ignore order_violation catkin_order_violation
 # For a system without an operating system (CMAKE_SYSTEM_NAME is Generic): OpenCoupler::node_core and coupler_add_map(), and
 # nothing that these do not need. The map is turned into C++ by a `coupler` of the machine that builds, COUPLER_HOST_COUPLER.
 file(GLOB core CONFIGURE_DEPENDS device/coupler/device/core/*.cpp common/coupler/modbus/*.cpp)
@@ -16,6 +17,7 @@ endif()
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
 file(CREATE_LINK ${COUPLER_EXPECTED}/tl ${PROJECT_BINARY_DIR}/include/tl SYMBOLIC)
 target_include_directories(coupler_node_core PUBLIC common device)
+#catkin_lint: ignore_once missing_directory
 target_include_directories(coupler_node_core SYSTEM PUBLIC ${PROJECT_BINARY_DIR}/include)
 
 add_library(OpenCoupler::node_core ALIAS coupler_node_core)
