@@ -122,7 +122,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.element("th.name").get_attribute("aria-sort"), "ascending")
         button.click()
         self.assertEqual(self.browser.shown(), names[::-1])
-        self.element("th.wire button").click()
+        self.element("th.address button").click()
         self.assertEqual(self.browser.shown()[-1], "label", "as numbers: 5 is the last")
         self.assertIsNone(self.element("th.name").get_attribute("aria-sort"))
 

@@ -46,7 +46,7 @@ std::string group_text(const plan::GroupPlan& group, const Map& map, const plan:
   const auto row = [&text](auto&&... cells) {
     text += fmt::format("  {:<17}  {:>14}  {:>15}  {:>6}  {}\n", cells...);
   };
-  row("table", "wire", "Modicon", "points", "ends because");
+  row("table", "address", "Modicon", "points", "ends because");
   for (const plan::ReadSpan& span : group.spans)
     row(to_string(span.table), fmt::format("{} to {}", span.range.start(), span.range.last()),
         plan::modicon(span.table, span.range.start()) + "-" + plan::modicon(span.table, span.range.last()),

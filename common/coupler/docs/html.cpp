@@ -82,7 +82,7 @@ Cell name(const Document&, const PointDescription& point) {
 
 Cell space(const Document&, const PointDescription& point) { return {words(point.table)}; }
 
-Cell wire(const Document&, const PointDescription& point) {
+Cell address(const Document&, const PointDescription& point) {
   return {point.address, joined({point.part, prefixed("reads back at ", point.read_at)})};
 }
 
@@ -123,7 +123,7 @@ Cell source(const Document& document, const PointDescription& point) {
 
 constexpr std::array columns{
     Column{"name", "Point", name},         Column{"space", "Table", space},
-    Column{"wire", "Wire", wire},          Column{"modicon", "Modicon", modicon},
+    Column{"address", "Address", address}, Column{"modicon", "Modicon", modicon},
     Column{"type", "Type", type},          Column{"range", "Range", range},
     Column{"units", "Units", units},       Column{"access", "Access", access},
     Column{"behind", "Behind it", behind}, Column{"initial", "Initial", initial},
@@ -210,7 +210,7 @@ std::string html_page(const Document& document) {
              "it</a></nav>\n</header>\n<main>\n",
              html(document.name), made_from(document)) +
          "<section id=\"list\">\n<h2>Points</h2>\n" + search(document) + html_rows(document) +
-         "<p class=\"note\">Wire counts from 0, as requests carry it. Modicon counts from 1 behind the digit "
+         "<p class=\"note\">Address counts from 0, as requests carry it. Modicon counts from 1 behind the digit "
          "of the "
          "table.</p>\n</section>\n"
          "<section id=\"spaces\">\n<h2>Address spaces</h2>\n<div class=\"picture\" tabindex=\"0\" "

@@ -37,7 +37,7 @@ std::string access_cell(const Document&, const PointDescription& point) {
 
 constexpr std::array columns{
     Column{"point", false, name_cell},
-    Column{"wire", true, [](auto&, auto& point) { return both(point.address, ", ", point.part); }},
+    Column{"address", true, [](auto&, auto& point) { return both(point.address, ", ", point.part); }},
     Column{"Modicon", true, [](auto&, auto& point) { return point.modicon; }},
     Column{"type", false, [](auto&, auto& point) { return both(point.type, ", ", point.text); }},
     Column{"count", true, [](auto&, auto& point) { return point.count; }},
@@ -104,7 +104,7 @@ std::string head(const Document& document) {
 std::string markdown_page(const Document& document) {
   std::string out = head(document);
   out +=
-      "\nAddresses: *wire* counts from 0, as requests carry it; *Modicon* counts from 1 behind the table's "
+      "\nAddresses: *address* counts from 0, as requests carry it; *Modicon* counts from 1 behind the table's "
       "digit.\n";
   for (const Table table : tables) put_table(document, table, out);
   out += "\n## The device\n\n| | |\n|---|---|\n";

@@ -84,13 +84,19 @@ struct PlainValue<Text<Size>> : PlainValue<std::string_view> {
   }
 };
 
+/// The values of an array, each as Value<T>, which may be PlainValue or TypedValue, has it.
+template <template <class> class Value, class T, std::size_t Count>
+std::array<T, Count> decode_each(const std::uint16_t* registers, const Point& point) {
+  const std::size_t width = codec::registers(point.format);
+  std::array<T, Count> values;
+  for (std::size_t i = 0; i < Count; ++i) values[i] = Value<T>::decode(registers + i * width, point);
+  return values;
+}
+
 template <class T, std::size_t Count>
 struct PlainValue<std::array<T, Count>> {
   static std::array<T, Count> decode(const std::uint16_t* registers, const Point& point) {
-    const std::size_t width = codec::registers(point.format);
-    std::array<T, Count> values;
-    for (std::size_t i = 0; i < Count; ++i) values[i] = PlainValue<T>::decode(registers + i * width, point);
-    return values;
+    return decode_each<coupler::PlainValue, T, Count>(registers, point);
   }
   static bool encode(const std::array<T, Count>& values, const Point& point, std::uint16_t* registers) {
     std::array<std::uint16_t, modbus::max_read_registers> tried{};  // the longest STRING has as many

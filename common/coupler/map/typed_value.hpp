@@ -55,10 +55,7 @@ struct TypedValue<std::string> {
 template <class T, std::size_t Count>
 struct TypedValue<std::array<T, Count>> {
   static std::array<T, Count> decode(const std::uint16_t* registers, const Point& point) {
-    const std::size_t width = codec::registers(point.format);
-    std::array<T, Count> values;
-    for (std::size_t i = 0; i < Count; ++i) values[i] = TypedValue<T>::decode(registers + i * width, point);
-    return values;
+    return decode_each<coupler::TypedValue, T, Count>(registers, point);
   }
   static std::string encode(const std::array<T, Count>& values, const Point& point,
                             std::uint16_t* registers) {

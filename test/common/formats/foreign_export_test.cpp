@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must be told of an export. That the files say the right thing is proved by test_exports.py.
+// What must be told of an export. That the files say the right thing is proved by exports_test.py.
 #include <gmock/gmock.h>
 
 #include <set>

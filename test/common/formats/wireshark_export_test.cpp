@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the dissector does is proved with tshark, on captured traffic: test/peers/with_dissector.py.
+// What the dissector does is proved with tshark, on captured traffic: test/peers/dissector_test.py.
 #include "coupler/formats/exporters.hpp"
 
 #include <gmock/gmock.h>

@@ -41,10 +41,10 @@ class DumpText : public testing::Test {
 TEST_F(DumpText, The_table_names_the_device_and_has_a_line_for_each_point) {
   EXPECT_THAT(table_lines(map(), now, Colour::no),
               ElementsAre("press at tcp://cell:502/1, 2026-11-21T12:00:00.123Z: 3 points",
-                          "  point  value    type  table            wire  Modicon",
-                          "  lamp   true     BOOL  coils            0     00001",
-                          "  horn   -        BOOL  coils            1     00002    write-only",
-                          "  level  21.5 °C  INT   input_registers  3     30004"));
+                          "  point  value    type  table            address  Modicon",
+                          "  lamp   true     BOOL  coils            0        00001",
+                          "  horn   -        BOOL  coils            1        00002    write-only",
+                          "  level  21.5 °C  INT   input_registers  3        30004"));
 }
 
 TEST_F(DumpText, A_point_that_was_not_read_says_why_and_is_counted) {

@@ -46,7 +46,7 @@
     return row.first <= address && address <= row.last;
   }
 
-  /** As the wire counts, or in the five or six digits of Modicon. */
+  /** Zero-based, or in the five or six digits of Modicon. */
   function has_address(row, number) {
     if (holds(row, number)) return true;
     return [10000, 100000].some((size) => {
@@ -89,7 +89,7 @@
   }
 
   const KEYS = {
-    wire: (row) => row.first,
+    address: (row) => row.first,
     modicon: (row) => row.table * 65536 + row.first,
     space: (row) => row.table,
     source: (row) => Number(text(row.element, "source").slice(1)),

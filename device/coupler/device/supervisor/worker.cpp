@@ -56,6 +56,16 @@ union Control {
   std::array<char, CMSG_SPACE(sizeof(int))> bytes;
 };
 
+template <std::size_t N>
+msghdr message_of(std::array<iovec, N>& parts, Control& control) {
+  msghdr message{};
+  message.msg_iov = parts.data();
+  message.msg_iovlen = parts.size();
+  message.msg_control = control.bytes.data();
+  message.msg_controllen = sizeof control.bytes;
+  return message;
+}
+
 Descriptor descriptor_of(msghdr& message) {
   const cmsghdr* control = CMSG_FIRSTHDR(&message);
   if (control == nullptr || control->cmsg_type != SCM_RIGHTS) return {};
@@ -80,11 +90,7 @@ void send_client(int socket, const OpenConnection& client) {
                               {const_cast<std::uint8_t*>(client.unread.data()), client.unread.size()},
                               {const_cast<std::uint8_t*>(client.unsent.data()), client.unsent.size()}}};
   Control control{};
-  msghdr message{};
-  message.msg_iov = parts.data();
-  message.msg_iovlen = parts.size();
-  message.msg_control = control.bytes.data();
-  message.msg_controllen = sizeof control.bytes;
+  msghdr message = message_of(parts, control);
   cmsghdr* rights = CMSG_FIRSTHDR(&message);
   rights->cmsg_level = SOL_SOCKET;
   rights->cmsg_type = SCM_RIGHTS;
@@ -101,11 +107,7 @@ Message receive(int socket) {
   std::array<std::uint8_t, longest_body> body{};
   std::array<iovec, 2> parts{{{&head, sizeof head}, {body.data(), body.size()}}};
   Control control{};
-  msghdr message{};
-  message.msg_iov = parts.data();
-  message.msg_iovlen = parts.size();
-  message.msg_control = control.bytes.data();
-  message.msg_controllen = sizeof control.bytes;
+  msghdr message = message_of(parts, control);
   const ssize_t size = ::recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
   // An error (the other process ended and left something unread) comes once; what it sent comes after that.
   if (size < 0) return Nothing{};

@@ -16,7 +16,7 @@ namespace coupler::cli {
 namespace {
 
 using State = Reading::State;
-using Cells = std::array<std::string, 6>;  // point, value, type, table, wire, Modicon
+using Cells = std::array<std::string, 6>;  // point, value, type, table, address, Modicon
 
 /// Characters of UTF-8.
 std::size_t width(const std::string& text) {
@@ -73,7 +73,7 @@ std::string value_text(const Map& map, const Reading& reading) {
 
 std::vector<std::string> table_lines(const Map& map, const Snapshot& now, Colour colour) {
   constexpr std::size_t widest = 32;  // a long text or array does not push all others aside
-  std::vector<Cells> rows{{"point", "value", "type", "table", "wire", "Modicon"}};
+  std::vector<Cells> rows{{"point", "value", "type", "table", "address", "Modicon"}};
   for (const Reading& reading : now.readings) rows.push_back(cells_of(map, reading));
   std::array<std::size_t, std::tuple_size_v<Cells>> widths{};
   for (const Cells& row : rows)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A pymodbus client reads and writes every table of a node that serves peers.yaml, with every function code.
 
-    with_pymodbus.py MAP NODE_COMMAND…
+    pymodbus_test.py MAP NODE_COMMAND…
 """
 import pathlib
 import socket

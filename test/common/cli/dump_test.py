@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `coupler dump` refuses. What it reads is tried on devices, by test/peers/with_dump.py."""
+"""What `coupler dump` refuses. What it reads is tried on devices, by test/peers/dump_test.py."""
 import os
 import socket
 import subprocess

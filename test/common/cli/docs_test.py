@@ -3,7 +3,7 @@
 import html.parser
 import unittest
 
-from test_cli import BAD, GOOD, Cli
+from cli_test import BAD, GOOD, Cli
 
 HOSTILE = """\
 name: cell

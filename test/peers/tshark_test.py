@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """tshark captures a node that serves peers.yaml, and its Modbus dissector finds nothing malformed.
 
-    with_tshark.py NODE_COMMAND…
+    tshark_test.py NODE_COMMAND…
 """
 import pathlib
 import shutil

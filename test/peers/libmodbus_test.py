@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A node's replies equal those of libmodbus's server.
 
-    with_libmodbus.py ORACLE COUPLER_NODE
+    libmodbus_test.py ORACLE COUPLER_NODE
 """
 import os
 import pathlib

@@ -3,7 +3,7 @@
 """The dissector that `coupler export --to wireshark` writes, run by tshark on captured traffic of a node, names the
 points and their values. What must stand there is packed by Python's struct, not by this project's code.
 
-    with_dissector.py COUPLER MAP NODE_COMMAND…
+    dissector_test.py COUPLER MAP NODE_COMMAND…
 """
 import pathlib
 import shutil
@@ -14,11 +14,11 @@ import sys
 import tempfile
 
 import peer
-import with_tshark
+import tshark_test
 
 
 def request(transaction, pdu):
-    return with_tshark.adu(transaction, pdu)
+    return tshark_test.adu(transaction, pdu)
 
 
 def registers(*values):
@@ -95,16 +95,16 @@ def talk(port, first):
         client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         for index, (pdu, _, _) in enumerate(TRAFFIC):
             client.sendall(request(first + index, pdu))
-            with_tshark.read_reply(stream)
+            tshark_test.read_reply(stream)
         everything = [request(first + len(TRAFFIC) + i, pdu) for i, (pdu, _, _) in enumerate(TRAFFIC)]
         cut = 8  # behind the first byte of the ninth
         segment = b"".join(everything[:cut]) + everything[cut][:1]
         client.sendall(segment)
         for _ in range(cut):  # so the first segment has arrived alone
-            with_tshark.read_reply(stream)
+            tshark_test.read_reply(stream)
         client.sendall(b"".join(everything)[len(segment):])
         for _ in TRAFFIC[cut:]:
-            with_tshark.read_reply(stream)
+            tshark_test.read_reply(stream)
 
 
 def shown(port, file, script):
@@ -139,7 +139,7 @@ def main():
         subprocess.run([coupler, "export", device_map, "--to", "wireshark", "--out", str(script)], check=True,
                        capture_output=True)
         first = 0x4000
-        with_tshark.capture(port, file, lambda: talk(port, first), checks)
+        tshark_test.capture(port, file, lambda: talk(port, first), checks)
         messages, errors = shown(port, file, script)
         checks.equal("what tshark says of the script", [line for line in errors.splitlines() if "lua" in line.lower()], [])
         for index, (pdu, asked, answered) in enumerate(TRAFFIC + TRAFFIC):

@@ -3,7 +3,7 @@
 """`coupler status` tells two nodes with one map apart, and shows what a pymodbus client reads there; readers that know
 the first registers only notice nothing.
 
-    with_status.py COUPLER NODE
+    status_test.py COUPLER NODE
 """
 import contextlib
 import json

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What an editor shows of a map through yaml-language-server: nothing of a good one, mistakes at their line, keys to
-complete, and what they mean.   with_yaml_language_server.py COUPLER SERVER_COMMAND…"""
+complete, and what they mean.   yaml_language_server_test.py COUPLER SERVER_COMMAND…"""
 import json
 import subprocess
 import sys

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a node tells systemd while it serves watchdog.yaml: it is ready, it lives, it stops.
 
-    with_service_manager.py NODE_COMMAND…
+    service_manager_test.py NODE_COMMAND…
 """
 import os
 import queue

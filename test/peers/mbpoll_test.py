@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """mbpoll reads and writes every table of a node that serves peers.yaml.
 
-    with_mbpoll.py NODE_COMMAND…
+    mbpoll_test.py NODE_COMMAND…
 """
 import pathlib
 import re

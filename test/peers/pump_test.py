@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """config/examples/pump: the firmware against pymodbus and against the client, the client against a pymodbus server.
 
-    with_pump.py FIRMWARE CLIENT NODE MAP
+    pump_test.py FIRMWARE CLIENT NODE MAP
 """
 import asyncio
 import pathlib

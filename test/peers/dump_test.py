@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`coupler dump` shows what a device of pymodbus holds, says what it does not have, and writes nothing to it.
 
-    with_dump.py COUPLER MAP NODE_COMMAND…
+    dump_test.py COUPLER MAP NODE_COMMAND…
 """
 import json
 import os

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """--realtime: what the kernel says of each process of the node, and what a user without the right to it is told.
 
-    with_realtime.py NODE_COMMAND…
+    realtime_test.py NODE_COMMAND…
 """
 import os
 import pathlib

@@ -6,7 +6,7 @@ import pathlib
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from test_cli import BAD, Cli
+from cli_test import BAD, Cli
 
 SPREAD = """\
 name: cell

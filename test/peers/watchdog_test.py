@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A client dies, a monitor goes on reading: the outputs of a node that serves watchdog.yaml go to their safe state.
 
-    with_watchdog.py NODE_COMMAND…
+    watchdog_test.py NODE_COMMAND…
 """
 import sys
 import time

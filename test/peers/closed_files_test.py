@@ -3,7 +3,7 @@
 """A node that is started with stdin, stdout and stderr closed, all or some of them: no client gets such a number, so no
 client gets a line of the log.
 
-    with_closed_files.py NODE_COMMAND…
+    closed_files_test.py NODE_COMMAND…
 """
 import itertools
 import os

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`coupler probe` finds what pymodbus servers with holes, limits and moods answer to, and what a node does.
 
-    with_probe.py COUPLER MAP NODE_COMMAND…
+    probe_test.py COUPLER MAP NODE_COMMAND…
 """
 import concurrent.futures
 import json
