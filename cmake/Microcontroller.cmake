@@ -4,8 +4,8 @@
 # nothing that these do not need. The map is turned into C++ by a `coupler` of the machine that builds, COUPLER_HOST_COUPLER.
 file(GLOB core CONFIGURE_DEPENDS device/coupler/device/core/*.cpp common/coupler/modbus/*.cpp)
 add_library(coupler_node_core STATIC ${core}
-  common/coupler/codec/scale.cpp common/coupler/codec/text.cpp common/coupler/map/identity.cpp
-  common/coupler/map/image_layout.cpp)
+  common/coupler/codec/scale.cpp common/coupler/codec/text.cpp common/coupler/map/allowed_values.cpp
+  common/coupler/map/identity.cpp common/coupler/map/image_layout.cpp)
 target_compile_features(coupler_node_core PUBLIC cxx_std_17)
 target_compile_options(coupler_node_core PUBLIC -fno-exceptions -fno-rtti -fno-threadsafe-statics)
 

@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 5, "Compare the new fields of the model here, too");
+static_assert(model_version == 6, "Compare the new fields of the model here, too");
 
 /// What fields_of() lists.
 template <class Struct>
@@ -57,6 +57,11 @@ inline void expect_same(const Point& a, const Point& b) {
   expect_same_fields(a.pwm, b.pwm);
   expect_same(a.safe_value, b.safe_value);
   EXPECT_EQ(a.read_address, b.read_address);
+  expect_same_fields(a.bounds, b.bounds);
+  EXPECT_TRUE(std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
+                         [](const NamedValue& one, const NamedValue& other) {
+                           return one.value == other.value && one.name == other.name;
+                         }));
   expect_same(a.host, b.host);
 }
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A value that cannot be written is dropped with a warning that names the topic and what to do; the next one works."""
 from coupler_driver.msg import BoolArray
-from std_msgs.msg import String
+from coupler_driver.srv import Read, Write
+from std_msgs.msg import Float32, Float64, String, UInt16
 
 from support import process, testing
 from support.peer import Peer
@@ -16,6 +17,9 @@ mapping:
     flags: {address: 0, type: WORD}
     label: {address: 1, type: STRING, length: 4}
     code: {address: 3, type: STRING, length: 4, encoding: ascii}
+    pressure: {address: 5, type: INT, scale: 0.1, min: 0, max: 21.7, units: bar}
+    mode: {address: 6, type: UINT, values: {0: "off", 1: idle, 7: auto}}
+    gain: {address: 7, type: REAL, order: ABCD, allow_nonfinite: true}
 """
 
 
@@ -44,6 +48,29 @@ class RefusedValues(testing.RosTest):
         code.publish("fur")
         wait_until(lambda: self.peer.get("holding_registers", 3) == [0x7566], "'fu' at the peer")
         self.assertEqual(self.peer.get("holding_registers", 1, 2), [0, 0])
+
+    def test_a_number_that_the_map_does_not_allow(self):
+        pressure, mode = self.publisher("/refused/pressure/write", Float64), self.publisher("/refused/mode/write", UInt16)
+        pressure.publish(21.8)
+        self.device.wait_for("write to pressure: refused: 21.8 bar is above the maximum; send 0 to 21.7 bar")
+        pressure.publish(21.7)
+        wait_until(lambda: self.peer.get("holding_registers", 5) == [217], "21.7 bar at the peer")
+        mode.publish(2)
+        self.device.wait_for("write to mode: refused: 2 is not one of its values; send off (0), idle (1) or auto (7)")
+        self.assertEqual(self.peer.get("holding_registers", 6), [0])
+
+    def test_a_service_takes_and_gives_the_names_of_values(self):
+        write = self.service("/refused/write", Write)
+        self.assertTrue(write("mode", "auto").success)
+        self.assertEqual(self.peer.get("holding_registers", 6), [7])
+        wrong = write("mode", "automatic")
+        self.assertFalse(wrong.success)
+        self.assertIn("'automatic' is not one of its values; send off (0), idle (1) or auto (7)", wrong.message)
+        self.assertEqual(self.service("/refused/read", Read)("mode").value, "auto")
+
+    def test_nan_where_the_map_allows_it(self):
+        self.publisher("/refused/gain/write", Float32).publish(float("nan"))
+        wait_until(lambda: self.peer.get("holding_registers", 7, 2) == [0x7FC0, 0], "NaN at the peer")
 
 
 if __name__ == "__main__":

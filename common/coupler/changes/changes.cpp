@@ -71,6 +71,13 @@ std::string deadman_text(const HostOptions& host) {
                                 : "";
 }
 
+std::string text_of(Span<const NamedValue> values) {
+  std::string text;
+  for (const NamedValue& named : values)
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", named.value, named.name);
+  return text;
+}
+
 std::string unreadable_text(const Map& map) {
   std::string text;
   for (const Unreadable& area : map.unreadable)
@@ -109,6 +116,7 @@ std::vector<Detail> details_of(const Point& point) {
       {"iio-changed", compatible, text_of(point.iio)},
       {"pwm-changed", compatible, text_of(point.pwm)},
       {"read-address-changed", compatible, point.read_address ? fmt::to_string(*point.read_address) : ""},
+      {"values-changed", compatible, text_of(point.values)},
       {"deadman-changed", compatible, deadman_text(point.host)},
   };
 }
@@ -165,6 +173,8 @@ void add_contract(const Difference& difference, std::vector<Change>& changes) {
 /// Zero of a number with a unit means that there is none, for example no rate of its own.
 template <class Key, class Value>
 std::string text_of(const Key& field, const Value& value) {
+  if constexpr (std::is_same_v<Value, double>)
+    if (value == Bounds::no_min || value == Bounds::no_max) return "none";
   if (field.unit.empty()) return written(value);
   return value == Value{} ? std::string() : fmt::format("{} {}", written(value), field.unit);
 }
@@ -242,6 +252,7 @@ std::vector<Change> compare(const Map& older, const Map& newer) {
       add_contract(*found->second, changes);
     if (const auto found = points.find(point.name); found != points.end()) {
       add_details(point, *found->second, point.name, changes);
+      add_fields(point.bounds, found->second->bounds, point.name, changes);
       add_fields(point.host, found->second->host, point.name, changes);
     }
   }

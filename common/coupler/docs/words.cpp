@@ -11,6 +11,7 @@
 
 #include "coupler/codec/number.hpp"
 #include "coupler/codec/value.hpp"
+#include "coupler/map/allowed_values.hpp"
 
 namespace coupler::docs {
 namespace {
@@ -33,6 +34,7 @@ std::string one_value(const Point& point, const std::uint16_t* registers) {
     return on ? "on" : "off";
   }
   if (point.scale.present()) return number(codec::published(registers, point.format, point.scale));
+  if (const auto name = name_of_value(point, registers); !name.empty()) return std::string(name);
   return codec::to_string(codec::decode(registers, point.format));
 }
 
@@ -123,10 +125,21 @@ std::string words(const EdgeOf& edge) {
 std::string range_words(const Point& point) {
   const Type type = point.format.type;
   if (!codec::is_scalable(type)) return {};
+  if (!point.values.empty()) {
+    std::string list;
+    for (const NamedValue& named : point.values) add(list, fmt::format("{} {}", named.value, named.name));
+    return list;
+  }
+  const auto [min, max, nonfinite] = point.bounds;
+  if (min != Bounds::no_min && max != Bounds::no_max) return number(min) + " … " + number(max);
   const auto [least, most] = codec::published_range(type, point.scale);
   // The channel takes no more, whatever the register could hold.
   if (point.pwm.present()) return number(std::max(0.0, least)) + " … " + number(std::min(100.0, most));
-  if (type == Type::REAL || type == Type::LREAL) return {};
+  if (type == Type::REAL || type == Type::LREAL) {
+    if (min != Bounds::no_min) return "from " + number(min);
+    return max == Bounds::no_max ? "" : "up to " + number(max);
+  }
+  if (limits_values(point)) return number(std::max(min, least)) + " … " + number(std::min(max, most));
   if (point.scale.present()) return number(least) + " … " + number(most);
   return codec::with_number(type, [](auto zero) {
     using Limits = std::numeric_limits<decltype(zero)>;

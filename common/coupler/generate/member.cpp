@@ -22,12 +22,15 @@ constexpr std::string_view taken[] = {
     "each_point", "errno",  "linux", "major",   "map",    "minor",   "online",
     "options",    "stderr", "stdin", "stdout",  "unix",   "use",     "wait_online"};
 
-std::string sanitized(std::string_view name) {
+/// A name that is not in `used`, and now is.
+std::string unique_identifier(std::string_view name, std::set<std::string>& used) {
   std::string out(name);
   std::replace_if(
       out.begin(), out.end(),
       [](char c) { return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')); },
       '_');
+  while (!is_identifier(out) || used.count(out) != 0) out += '_';
+  used.insert(out);
   return out;
 }
 
@@ -60,9 +63,11 @@ std::string value_range(const Point& point) {
     return fmt::format(", at most {} bytes of {}", point.format.length,
                        codec::to_string(point.format.encoding));
   if (type == Type::BOOL || type == Type::CHAR) return {};
-  if (point.scale.present()) {
+  const auto [min, max, nonfinite] = point.bounds;
+  const bool bounded = min != Bounds::no_min || max != Bounds::no_max;
+  if (bounded || point.scale.present()) {
     const auto [least, most] = codec::published_range(type, point.scale);
-    return fmt::format(", {:g} … {:g}", least, most);
+    return fmt::format(", {:g} … {:g}", std::max(least, min), std::min(most, max));
   }
   if (type == Type::REAL || type == Type::LREAL) return {};
   return codec::with_number(type, [](auto zero) {
@@ -76,14 +81,18 @@ std::string value_range(const Point& point) {
 std::vector<std::string> members(const Map& map) {
   std::set<std::string> used(std::begin(taken), std::end(taken));
   std::vector<std::string> names;
-  for (const Point& point : map.points) {
-    std::string name = sanitized(point.name);
-    while (!is_identifier(name) || used.count(name) != 0) name += '_';
-    used.insert(name);
-    names.push_back(std::move(name));
-  }
+  for (const Point& point : map.points) names.push_back(unique_identifier(point.name, used));
   return names;
 }
+
+std::vector<std::string> value_names(const Point& point) {
+  std::set<std::string> used(std::begin(taken), std::end(taken));
+  std::vector<std::string> names;
+  for (const NamedValue& named : point.values) names.push_back(unique_identifier(named.name, used));
+  return names;
+}
+
+std::string cpp_number(const Point& point) { return std::string(cpp_number(point.format.type)); }
 
 std::string cpp_type(const Point& point) {
   const std::string one(point.scale.present() ? "double" : cpp_number(point.format.type));

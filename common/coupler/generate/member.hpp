@@ -13,6 +13,12 @@ namespace coupler::generate {
 /// to be no word of C++, nothing that the client has already, and no other point's.
 std::vector<std::string> members(const Map& map);
 
+/// The same for each of its named values.
+std::vector<std::string> value_names(const Point& point);
+
+/// The C++ type of one value without its scale: "::std::int16_t".
+std::string cpp_number(const Point& point);
+
 /// The C++ type of its value: "bool", "::std::array<float, 4>" …
 std::string cpp_type(const Point& point);
 

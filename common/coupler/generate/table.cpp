@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/generate/generate.hpp"
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "coupler/generate/code.hpp"
@@ -25,7 +27,7 @@ static_assert(::coupler::model_version == {model},
 constexpr ::std::uint64_t fingerprint = 0x{fingerprint:016x};
 
 extern const ::coupler::Map map;
-
+{constants}
 }}  // namespace coupler::maps::{name}
 )";
 
@@ -46,6 +48,7 @@ using ::coupler::Drive;
 using ::coupler::Edge;
 using ::coupler::HostOptions;
 using ::coupler::Map;
+using ::coupler::NamedValue;
 using ::coupler::OnReconnect;
 using ::coupler::OnShutdown;
 using ::coupler::Point;
@@ -67,7 +70,7 @@ using namespace ::std::chrono_literals;
 template <::std::uint16_t... Words>
 constexpr ::std::uint16_t registers[] = {{Words...}};
 
-{points}{sim}{allow}{unreadable}{sequences}// The file itself, byte by byte: the node serves it.
+{values}{points}{sim}{allow}{unreadable}{sequences}// The file itself, byte by byte: the node serves it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 constexpr char text[] =
@@ -124,13 +127,20 @@ std::string host(const HostOptions& options) {
   return fmt::format("{{{}, {}}}", values_of(options), deadman(options.deadman));
 }
 
+/// The array of the names of its values, which stands before the points: "values_of_coils_7".
+std::string values_name(const Point& point) {
+  if (point.values.empty()) return "{}";
+  const std::string part = is_partial(point) ? fmt::format("_{}", codec::mask(point.format)) : "";
+  return fmt::format("values_of_{}_{}{}", to_string(point.table), point.address, part);
+}
+
 /// What few points have behind counter and latched: count, scale, iio, pwm, safe registers, read address,
-/// host.
+/// bounds, names of values, host.
 std::string rest(const Point& point) {
-  return fmt::format("{}, {}, {}, {}, {}, {}, {}", point.count, aggregate(point.scale), aggregate(point.iio),
-                     aggregate(point.pwm), registers(point.safe_value),
+  return fmt::format("{}, {}, {}, {}, {}, {}, {}, {}, {}", point.count, aggregate(point.scale),
+                     aggregate(point.iio), aggregate(point.pwm), registers(point.safe_value),
                      point.read_address ? fmt::format("::std::uint16_t{{{}}}", *point.read_address) : "{}",
-                     host(point.host));
+                     aggregate(point.bounds), values_name(point), host(point.host));
 }
 
 /// All that most points do not have.
@@ -159,6 +169,15 @@ std::string row(const SimWire& wire) { return fmt::format("    {},\n", aggregate
 std::string row(const Unreadable& area) {
   return fmt::format("    {{{}, Range::of({}, {})}},\n", enumerator(area.table), area.range.start(),
                      area.range.count());
+}
+
+/// As a literal; the least one has none.
+std::string number(std::int64_t value) {
+  return value == std::numeric_limits<std::int64_t>::min() ? "INT64_MIN" : fmt::to_string(value);
+}
+
+std::string row(const NamedValue& named) {
+  return fmt::format("    {{{}, {}}},\n", number(named.value), literal(named.name));
 }
 
 /// What the host writes for the watchdog of a coupler.
@@ -195,6 +214,32 @@ std::string array(std::string_view declaration, std::string_view fields, Span<co
   return fmt::format("// {}\nconstexpr {}[] = {{\n{}}};\n\n", fields, declaration, rows);
 }
 
+/// "namespace values::mode { constexpr … idle = 0; }" for each point with names.
+std::string constants(const Map& map) {
+  const auto names = members(map);
+  std::string out;
+  for (std::size_t i = 0; i < map.points.size(); ++i) {
+    const Point& point = map.points[i];
+    if (point.values.empty()) continue;
+    out += fmt::format("\n/// What the values of {} are called.\nnamespace values::{} {{\n",
+                       comment(point.name), names[i]);
+    const auto words = value_names(point);
+    for (std::size_t n = 0; n < words.size(); ++n)
+      out +=
+          fmt::format("constexpr {} {} = {};\n", cpp_number(point), words[n], number(point.values[n].value));
+    out += fmt::format("}}  // namespace values::{}\n", names[i]);
+  }
+  return out;
+}
+
+std::string values(const Map& map) {
+  std::string out;
+  for (const Point& point : map.points)
+    out += array("NamedValue " + values_name(point), comment(point.name) + ": what its values are called.",
+                 point.values);
+  return out;
+}
+
 std::string sequences(const WatchdogSequences& watchdog) {
   return array("WatchdogSequences::Write watchdog_arm",
                "How the coupler's own watchdog is armed: table, address, value, only if different.",
@@ -208,7 +253,8 @@ std::string sequences(const WatchdogSequences& watchdog) {
 std::string table_header(const Map& map, const Provenance& provenance) {
   return fmt::format(header_form, fmt::arg("name", provenance.name),
                      fmt::arg("source", comment(provenance.source)), fmt::arg("version", provenance.version),
-                     fmt::arg("model", model_version), fmt::arg("fingerprint", map.fingerprint));
+                     fmt::arg("model", model_version), fmt::arg("fingerprint", map.fingerprint),
+                     fmt::arg("constants", constants(map)));
 }
 
 std::string table_source(const Map& map, const Provenance& provenance) {
@@ -220,9 +266,9 @@ std::string table_source(const Map& map, const Provenance& provenance) {
           array("Point points",
                 "Name, table, address, format, access; initial registers, safe, line; description, units, "
                 "and what few points have: counter, latched, count, scale, iio, pwm, safe registers, read "
-                "address, host.",
+                "address, bounds, names of values, host.",
                 map.points)),
-      arg("sim", array("SimWire sim", keys_of<SimWire>(), map.sim)),
+      arg("values", values(map)), arg("sim", array("SimWire sim", keys_of<SimWire>(), map.sim)),
       arg("allow", array("::std::string_view allow", "Who may connect.", map.service.allow)),
       arg("unreadable", array("Unreadable unreadable", "What is never read.", map.unreadable)),
       arg("unreadable_name", map.unreadable.empty() ? "{}" : "unreadable"),

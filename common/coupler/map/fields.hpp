@@ -117,6 +117,12 @@ constexpr auto fields_of(const HostOptions*) {
                          field("verify_write", &H::verify_write, "write-changed", writing));
 }
 
+constexpr auto fields_of(const Bounds*) {
+  constexpr std::string_view change = "bounds-changed";
+  return std::make_tuple(field("min", &Bounds::min, change), field("max", &Bounds::max, change),
+                         field("allow_nonfinite", &Bounds::allow_nonfinite, change, About::writing));
+}
+
 constexpr auto fields_of(const Line*) {
   return std::make_tuple(field("chip", &Line::chip), field("offset", &Line::offset),
                          field("name", &Line::name), field("active_low", &Line::active_low),

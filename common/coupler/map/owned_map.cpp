@@ -24,6 +24,10 @@ Span<const std::string_view> OwnedMap::keep(const std::vector<std::string_view>&
   return lists_.emplace_back(list.begin(), list.end());
 }
 
+Span<const NamedValue> OwnedMap::keep(const std::vector<NamedValue>& values) {
+  return values_.emplace_back(values.begin(), values.end());
+}
+
 Span<const Unreadable> OwnedMap::keep(const std::vector<Unreadable>& areas) {
   return areas_.emplace_back(areas.begin(), areas.end());
 }

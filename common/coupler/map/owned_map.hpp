@@ -29,6 +29,8 @@ class OwnedMap {
   std::string_view keep(const std::string& text);
   /// Keeps a copy of the registers.
   Span<const std::uint16_t> keep(const std::vector<std::uint16_t>& registers);
+  /// Keeps the list; its names must be kept, too.
+  Span<const NamedValue> keep(const std::vector<NamedValue>& values);
   Span<const Unreadable> keep(const std::vector<Unreadable>& areas);
   Span<const WatchdogSequences::Write> keep(const std::vector<WatchdogSequences::Write>& sequence);
   /// Keeps the list; what its elements view must be kept, too.
@@ -43,6 +45,7 @@ class OwnedMap {
   std::pmr::deque<std::pmr::string> texts_;
   std::pmr::deque<std::pmr::vector<std::uint16_t>> registers_;
   std::pmr::deque<std::pmr::vector<std::string_view>> lists_;
+  std::pmr::deque<std::pmr::vector<NamedValue>> values_;
   std::pmr::deque<std::pmr::vector<Unreadable>> areas_;
   std::pmr::deque<std::pmr::vector<WatchdogSequences::Write>> sequences_;
   std::pmr::vector<Point> points_;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -73,6 +74,23 @@ constexpr Enumeration<Access, 3> enumeration(Access) {
   return {"Access", {{Access::read, "read"}, {Access::write, "write"}, {Access::read_write, "read_write"}}};
 }
 
+/// Between which numbers a point's values are, in published units. It does not concern how they stand in
+/// their registers, so it is not in the fingerprint.
+struct Bounds {
+  static constexpr double no_min = std::numeric_limits<double>::lowest();
+  static constexpr double no_max = std::numeric_limits<double>::max();
+
+  double min = no_min;
+  double max = no_max;
+  bool allow_nonfinite = false;  ///< REAL and LREAL: NaN and the infinities may be written
+};
+
+/// What a value of an integer is called.
+struct NamedValue {
+  std::int64_t value = 0;
+  std::string_view name;  ///< an identifier
+};
+
 /// One named value of a coupler. A literal type, so that a generated table is constant data.
 struct Point {
   std::string_view name;  ///< a valid ROS name, unique in the map
@@ -99,6 +117,9 @@ struct Point {
   Span<const std::uint16_t> safe_value{};
   /// Holding registers and coils: where the output reads back, if not at its own address.
   std::optional<std::uint16_t> read_address{};
+  Bounds bounds{};
+  /// Of an integer without a scale: what its values are called, in ascending order; others are not written.
+  Span<const NamedValue> values{};
   HostOptions host{};
 };
 

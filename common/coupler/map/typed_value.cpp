@@ -4,12 +4,38 @@
 #include <fmt/format.h>
 
 #include "coupler/codec/text.hpp"
+#include "coupler/codec/value.hpp"
 
 namespace coupler {
+namespace {
+
+std::string units_of(const Point& point) {
+  return point.units.empty() ? "" : fmt::format(" {}", point.units);
+}
+
+/// "0 to 10 bar", "at least 0 bar".
+std::string bounds_text(const Point& point) {
+  const auto [min, max, nonfinite] = point.bounds;
+  const std::string units = units_of(point);
+  if (min == Bounds::no_min) return fmt::format("at most {:g}{}", max, units);
+  if (max == Bounds::no_max) return fmt::format("at least {:g}{}", min, units);
+  return fmt::format("{:g} to {:g}{}", min, max, units);
+}
+
+std::string value_names_text(const Point& point) {
+  std::string text;
+  for (const NamedValue& named : point.values) {
+    if (!text.empty()) text += &named + 1 == point.values.end() ? " or " : ", ";
+    text += fmt::format("{} ({})", named.name, named.value);
+  }
+  return text;
+}
+
+}  // namespace
 
 std::string encode_scaled(double value, const Point& point, std::uint16_t* registers) {
   const auto [least, most] = codec::published_range(point.format.type, point.scale);
-  const std::string units = point.units.empty() ? "" : fmt::format(" {}", point.units);
+  const std::string units = units_of(point);
   switch (codec::encode_published(value, point.format, point.scale, registers)) {
     case codec::ScaleError::not_a_number:
       return fmt::format("not a number; send {:g} to {:g}{}", least, most, units);
@@ -31,6 +57,24 @@ std::string encode_string(std::string_view text, const Point& point, std::uint16
     case codec::TextError::none: break;
   }
   return {};
+}
+
+std::string forbidden_text(const Point& point, const ForbiddenValue& value) {
+  const double number = codec::published(value.registers, point.format, point.scale);
+  switch (value.why) {
+    case Forbidden::nonfinite: return "a number that is not finite (NaN or infinity)";
+    case Forbidden::below_min: return fmt::format("{:g}{} is below the minimum", number, units_of(point));
+    case Forbidden::above_max: return fmt::format("{:g}{} is above the maximum", number, units_of(point));
+    case Forbidden::unnamed:
+      return fmt::format("{} is not one of its values",
+                         codec::to_string(codec::decode(value.registers, point.format)));
+  }
+  return {};
+}
+
+std::string allowed_text(const Point& point) {
+  if (!point.values.empty()) return value_names_text(point);
+  return limits_values(point) ? bounds_text(point) : "a finite number";
 }
 
 }  // namespace coupler

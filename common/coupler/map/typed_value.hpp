@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "coupler/codec/text.hpp"
+#include "coupler/map/allowed_values.hpp"
 #include "coupler/map/plain_value.hpp"
 #include "coupler/map/point.hpp"
 
@@ -20,6 +21,12 @@ std::string encode_scaled(double value, const Point& point, std::uint16_t* regis
 
 /// The same for UTF-8 `text` and a STRING.
 std::string encode_string(std::string_view text, const Point& point, std::uint16_t* registers);
+
+/// What may be written to a number: "0 to 10 bar", "idle (0) or running (1)".
+std::string allowed_text(const Point& point);
+
+/// Why the value must not be: "12 bar is above the maximum".
+std::string forbidden_text(const Point& point, const ForbiddenValue& value);
 
 /// `decode` gives the value in the registers. `encode` writes it, leaves other bits of a shared register
 /// alone, and returns what is wrong and what would be right, or an empty text.

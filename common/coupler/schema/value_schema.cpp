@@ -89,6 +89,13 @@ Json value_schema(const Key& key) {
       return {{"type", {"string", "number", "boolean", "array"}},
               {"items", {{"type", {"string", "number", "boolean"}}}}};
     case ValueKind::list: return {{"type", "array"}, {"minItems", 1}, {"items", {{"type", "string"}}}};
+    case ValueKind::names:
+      return {{"type", "object"},
+              {"minProperties", 1},
+              {"patternProperties",
+               {{"^(-?[0-9]+|0[xX][0-9A-Fa-f]+)$",
+                 text("^[A-Za-z][A-Za-z0-9_]*$", "use letters, digits and '_', a letter first")}}},
+              {"additionalProperties", false}};
     case ValueKind::section:
     case ValueKind::points: break;
   }

@@ -9,6 +9,7 @@
 
 #include "coupler/codec/number.hpp"
 #include "coupler/codec/text.hpp"
+#include "coupler/map/allowed_values.hpp"
 
 namespace coupler::test_vectors {
 namespace {
@@ -158,11 +159,35 @@ std::vector<Element> elements_of(const Point& point) {
                                                   : number_elements(point.format);
 }
 
-/// Neither the driver nor a generated client writes other numbers.
-bool is_finite(const codec::Value& value) {
-  if (const auto* single = std::get_if<float>(&value)) return std::isfinite(*single);
-  if (const auto* real = std::get_if<double>(&value)) return std::isfinite(*real);
-  return true;
+/// A number as decode() gives it for the point.
+codec::Value number_of(const Point& point, double number) {
+  if (point.scale.present() || point.format.type == codec::Type::LREAL) return number;
+  if (point.format.type == codec::Type::REAL) return static_cast<float>(number);
+  return static_cast<std::int64_t>(number);
+}
+
+/// `min` and `max`, and beside each the next number that must not be written.
+void add_bounds(const Point& point, std::vector<Element>& allowed, std::vector<codec::Value>& refused) {
+  const double step = std::fabs(point.scale.gain);
+  const auto add = [&](double bound, double beyond) {
+    Element element(codec::registers(point.format));
+    if (encode(number_of(point, bound), point, element.data())) allowed.push_back(element);
+    refused.push_back(number_of(point, beyond));
+  };
+  if (point.bounds.min != Bounds::no_min) add(point.bounds.min, point.bounds.min - step);
+  if (point.bounds.max != Bounds::no_max) add(point.bounds.max, point.bounds.max + step);
+}
+
+/// The named values, and a number between or behind them that has no name.
+void add_names(const Point& point, std::vector<Element>& allowed, std::vector<codec::Value>& refused) {
+  if (point.values.empty()) return;
+  std::int64_t unnamed = point.values.front().value;
+  for (const NamedValue& named : point.values) {
+    allowed.emplace_back(codec::registers(point.format));
+    (void)codec::encode(named.value, point.format, allowed.back().data());
+    if (named.value == unnamed) ++unnamed;
+  }
+  refused.emplace_back(unnamed);
 }
 
 /// `pick(i)`: which element is the i-th value.
@@ -177,12 +202,12 @@ Case make_case(const Point& point, const std::vector<Element>& elements, Pick pi
   std::vector<std::uint16_t> written(made.raw.size());
   const std::size_t width = codec::registers(point.format);
   for (std::size_t i = 0; i < point.count; ++i)
-    made.only_read |= !is_finite(made.values[i]) || !encode(made.values[i], point, &written[i * width]);
-  made.only_read |= written != made.raw;
+    made.only_read |= !encode(made.values[i], point, &written[i * width]);
+  made.only_read |= written != made.raw || find_forbidden(point, made.raw.data());
   return made;
 }
 
-std::vector<codec::Value> refused_by(const Point& point) {
+std::vector<codec::Value> refused_by(const Point& point, std::vector<codec::Value> beyond) {
   std::vector<codec::Value> values;
   if (holds_bits(point.table) || !is_writable(point)) return values;
   if (point.format.type == codec::Type::STRING)
@@ -191,9 +216,12 @@ std::vector<codec::Value> refused_by(const Point& point) {
     values = refused_scaled(point.format.type, point.scale);
   else
     values = refused_numbers(point.format.type);
+  values.insert(values.end(), beyond.begin(), beyond.end());
   // A scale of a wide type rounds its own ends: what it still takes is no example.
   std::vector<std::uint16_t> registers(codec::registers(point.format));
-  const auto taken = [&](const codec::Value& value) { return encode(value, point, registers.data()); };
+  const auto taken = [&](const codec::Value& value) {
+    return encode(value, point, registers.data()) && !why_forbidden(point, registers.data());
+  };
   values.erase(std::remove_if(values.begin(), values.end(), taken), values.end());
   return values;
 }
@@ -219,7 +247,10 @@ bool encode(const codec::Value& value, const Point& point, std::uint16_t* regist
 }
 
 Cases cases_of(const Point& point) {
-  const std::vector<Element> elements = elements_of(point);
+  std::vector<Element> elements = elements_of(point);
+  std::vector<codec::Value> beyond;
+  add_bounds(point, elements, beyond);
+  add_names(point, elements, beyond);
   std::vector<Case> cases;
   const auto add = [&](Case&& made) {
     const auto same = [&](const Case& other) { return other.raw == made.raw; };
@@ -229,7 +260,7 @@ Cases cases_of(const Point& point) {
     for (const std::size_t all : {0U, 1U}) add(make_case(point, elements, [&](std::size_t) { return all; }));
   for (std::size_t first = 0; first < elements.size(); ++first)
     add(make_case(point, elements, [&](std::size_t i) { return first + i; }));
-  return {std::move(cases), refused_by(point)};
+  return {std::move(cases), refused_by(point, beyond)};
 }
 
 }  // namespace coupler::test_vectors

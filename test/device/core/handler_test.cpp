@@ -53,6 +53,63 @@ TEST_F(Handling, A_write_that_the_hardware_refuses_is_answered_04_and_leaves_no_
   EXPECT_EQ(node.statistics.hardware_errors, 2U);
 }
 
+constexpr NamedValue modes[] = {{0, "off"}, {7, "auto"}};
+
+/// A REAL from 0 to 21.7 in 0 and 1, a mode in 2, an array from 0 to 9 in 3 to 5, two bytes, one of them to
+/// 10, in 6.
+MapPtr limited() {
+  return MapBuilder()
+      .add(Table::holding_registers, "pressure", 0, codec::Type::REAL,
+           [](Point& point) {
+             point.format.order = codec::Order::ABCD;
+             point.bounds = {0, 21.7};
+           })
+      .add(Table::holding_registers, "mode", 2, codec::Type::UINT, [](Point& point) { point.values = modes; })
+      .add(Table::holding_registers, "profile", 3, codec::Type::INT,
+           [](Point& point) {
+             point.count = 3;
+             point.bounds = {0, 9};
+           })
+      .add(Table::holding_registers, "low", 6, codec::Type::USINT,
+           [](Point& point) {
+             point.format.half = codec::Half::low;
+             point.bounds.max = 10;
+           })
+      .add(Table::holding_registers, "high", 6, codec::Type::USINT,
+           [](Point& point) { point.format.half = codec::Half::high; })
+      .build();
+}
+
+TEST(AllowedValuesOfANode, What_the_map_does_not_allow_is_exception_03_and_changes_nothing) {
+  NodeUnderTest node{limited()};
+  EXPECT_THAT(node.ask(pdu(16, {0, 2}, {4, 0x41, 0xAD, 0x99, 0x9A})),
+              ElementsAreArray(pdu(16, {0, 2})));                                       // 21.7
+  EXPECT_THAT(node.ask(pdu(16, {0, 2}, {4, 0x41, 0xAE, 0, 0})), ElementsAre(0x90, 3));  // 21.75
+  EXPECT_THAT(node.ask(pdu(16, {0, 2}, {4, 0x7F, 0xC0, 0, 0})), ElementsAre(0x90, 3));  // NaN
+  EXPECT_THAT(node.ask(pdu(6, {0, 0xBF80})), ElementsAre(0x86, 3));  // a half of it makes it negative
+  EXPECT_THAT(node.ask(pdu(3, {0, 2})), ElementsAre(3, 4, 0x41, 0xAD, 0x99, 0x9A));
+  EXPECT_THAT(node.ask(pdu(6, {2, 7})), ElementsAreArray(pdu(6, {2, 7})));
+  EXPECT_THAT(node.ask(pdu(6, {2, 1})), ElementsAre(0x86, 3));
+  EXPECT_THAT(node.ask(pdu(22, {2, 0, 8})), ElementsAre(0x96, 3));
+  EXPECT_THAT(node.ask(pdu(23, {2, 1, 2, 1}, {2, 0, 8})), ElementsAre(0x97, 3));
+  EXPECT_THAT(node.ask(pdu(3, {2, 1})), ElementsAre(3, 2, 0, 7));
+}
+
+TEST(AllowedValuesOfANode, An_array_is_looked_at_value_by_value) {
+  NodeUnderTest node{limited()};
+  EXPECT_THAT(node.ask(pdu(16, {3, 3}, {6, 0, 1, 0, 9, 0, 3})), ElementsAreArray(pdu(16, {3, 3})));
+  EXPECT_THAT(node.ask(pdu(16, {4, 2}, {4, 0, 2, 0, 10})), ElementsAre(0x90, 3));
+  EXPECT_THAT(node.ask(pdu(6, {5, 0xFFFF})), ElementsAre(0x86, 3));
+  EXPECT_THAT(node.ask(pdu(3, {3, 3})), ElementsAre(3, 6, 0, 1, 0, 9, 0, 3));
+}
+
+TEST(AllowedValuesOfANode, A_part_of_a_register_is_looked_at_if_its_own_bits_change) {
+  NodeUnderTest node{limited()};
+  EXPECT_THAT(node.ask(pdu(6, {6, 0xFF0A})), ElementsAreArray(pdu(6, {6, 0xFF0A})));
+  EXPECT_THAT(node.ask(pdu(6, {6, 0xFF0B})), ElementsAre(0x86, 3));
+  EXPECT_THAT(node.ask(pdu(6, {6, 0x200A})), ElementsAreArray(pdu(6, {6, 0x200A})));
+}
+
 TEST_F(Handling, A_discrete_input_reads_its_lines_level) {
   node.lines.set_input(1, 1);
   node.lines.set_input(9, 1);

@@ -41,6 +41,21 @@ TEST(ValueText, A_coil_is_true_or_false_in_the_usual_words) {
   EXPECT_THAT(error_of("2", coil), HasSubstr("neither true nor false"));
 }
 
+TEST(ValueText, A_named_value_is_written_and_read_by_its_name) {
+  constexpr NamedValue names[] = {{-1, "fault"}, {0, "off"}, {2, "auto"}};
+  Point mode = point_of(codec::Type::INT);
+  mode.values = names;
+  EXPECT_EQ(parsed(" auto ", mode), Registers{2});
+  EXPECT_EQ(parsed("2", mode), Registers{2});
+  EXPECT_EQ(parsed("fault", mode), Registers{0xFFFF});
+  EXPECT_THAT(error_of("Auto", mode),
+              HasSubstr("not one of its values; send fault (-1), off (0) or auto (2)"));
+  const std::uint16_t named = 2;
+  const std::uint16_t unnamed = 3;
+  EXPECT_EQ(format_value(&named, mode), "auto");
+  EXPECT_EQ(format_value(&unnamed, mode), "3");
+}
+
 TEST(ValueText, A_bit_of_a_register_leaves_the_others_zero) {
   Point bit = point_of(codec::Type::BOOL);
   bit.format.bit = 3;

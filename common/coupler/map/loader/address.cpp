@@ -41,7 +41,7 @@ tl::expected<std::uint16_t, AddressError> parse_modicon(std::string_view text, T
   const bool digits = !text.empty() && std::all_of(text.begin(), text.end(), is_digit);
   if (!digits || text.size() > 6)
     return wrong(fmt::format("a Modicon address has up to six digits, not {}", shown(text)),
-                 fmt::format("write it as in '1' or '{}00001'", prefix_of(table)));
+                 fmt::format("write it as in '1' or '{}0001'", prefix_of(table)));
   const bool prefixed = text.size() >= 5;
   if (prefixed && text[0] != prefix_of(table))
     return wrong(

@@ -55,6 +55,7 @@ constexpr S treatment = point | S::defaults;
 constexpr S writing = S::coil | S::holding_register | S::defaults;
 
 constexpr std::string_view byte_types = "BYTE|SINT|USINT|CHAR";
+constexpr std::string_view float_types = "REAL|LREAL";
 constexpr double most_address = 65535;
 constexpr double most_seconds = 3600;
 constexpr double most_double = std::numeric_limits<double>::max();
@@ -178,6 +179,14 @@ constexpr Key keys[] = {
         .otherwise("1")
         .within(1, modbus::max_read_bits),
     project("scale", registers, K::number, "0.1", "published value = raw × gain + offset").holds(S::scale),
+    project("min", registers, K::number, "0", "the least value, as it is published"),
+    project("max", registers, K::number, "100", "the greatest value, as it is published"),
+    project("allow_nonfinite", S::holding_register, K::boolean, "true",
+            "NaN and the infinities may be written")
+        .only_for(float_types)
+        .otherwise("false"),
+    project("values", registers, K::names, "{0: idle, 1: running}",
+            "what the values of an integer are called"),
     project("iio", registers, K::section, "{device: adc0, channel: voltage0}", "an analogue channel")
         .holds(S::iio),
     project("pwm", S::holding_register, K::section, "{chip: pwmchip0, channel: 0, period: 1ms}",

@@ -65,6 +65,7 @@ enum class ValueKind : std::uint8_t {
   value,     ///< of the point's type
   list,      ///< of texts
   section,   ///< only what Key::inside says
+  names,     ///< integer -> identifier
   points,    ///< name -> point: a map as Key::inside says; for bits just an address is good
 };
 

@@ -130,13 +130,17 @@ DraftPoint read_place(const Entry& entry, Table table, const PointDefaults& defa
 void read_rest(const PointDefaults& defaults, DraftPoint& draft, const Context& context) {
   const Reader& options = draft.options;
   Point& point = draft.point;
-  if (draft.placed && !holds_bits(point.table)) read_scale(options, point, context);
+  if (draft.placed && !holds_bits(point.table)) {
+    read_scale(options, point, context);
+    read_allowed_values(options, point, context);
+  }
   if (const Entry* initial = options.find("initial"); draft.placed && initial != nullptr)
     point.initial = read_value("initial", *initial, point, context);
   if (holds_bits(point.table))
     read_line(options, draft, context);
   else
     read_channel(options, draft, context);
+  check_start(options, point, context);
   read_edges(options, draft, context);
   check_array(options, point, context);
   read_host_options(options, defaults.host, draft, context);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupler/codec/format.hpp"
+#include "coupler/map/allowed_values.hpp"
 #include "coupler/map/loader/address.hpp"
 #include "coupler/map/loader/draft_point.hpp"
 #include "coupler/map/loader/reader.hpp"
@@ -49,6 +50,12 @@ void read_format(const Reader& reader, const Entry& point, codec::Order order, c
 /// `scale:`, a number or a map of gain and offset.
 void read_scale(const Reader& reader, Point& point, const Context& context);
 
+/// `min:`, `max:`, `allow_nonfinite:` and `values:`. The point's format and scale must be known.
+void read_allowed_values(const Reader& reader, Point& point, const Context& context);
+
+/// An analogue output begins with `initial` and ends with `safe`, both 0 if not given: that must be allowed.
+void check_start(const Reader& reader, const Point& point, const Context& context);
+
 /// The GPIO line of a coil or discrete input: `line: GPIO17`, `line: {chip: gpiochip0, offset: 17}` or
 /// `line: {name: GPIO17}`. The properties of the line (active_low, bias, drive, debounce) stand beside `line`
 /// or inside it, not in both; what the node does with it (safe, initial) stands beside it.
@@ -66,7 +73,8 @@ void check_edges(const DraftPoints& points, Span<const SimWire> sim, const Conte
 
 /// A value of the point, given by `key` (`initial`, `safe`, …), as range(point).count() registers as they
 /// stand on the wire. A scaled point's is written as it is published. An array takes a list, or one value for
-/// all of its elements. Empty if it is wrong. The point's format, count and scale must be known.
+/// all of its elements. Empty if it is wrong, or not allowed. The point's format, count, scale and allowed
+/// values must be known.
 Span<const std::uint16_t> read_value(std::string_view key, const Entry& entry, const Point& point,
                                      const Context& context);
 

@@ -5,6 +5,7 @@
 #include "coupler/codec/value.hpp"
 #include "coupler/map/loader/point_reader.hpp"
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/typed_value.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -144,6 +145,13 @@ class ValueWriter {
   }
 
  private:
+  /// A name of `values`.
+  std::optional<Value> named_value(const Entry& entry) const {
+    for (const NamedValue& named : point_.values)
+      if (entry.kind == Entry::Kind::scalar && entry.text == named.name) return named.value;
+    return std::nullopt;
+  }
+
   bool wrong(const Entry& entry, const std::string& wanted) const {
     context_.problems.error(entry.at,
                             fmt::format("'{}' of type {} must be {}, not {}", key_,
@@ -153,7 +161,8 @@ class ValueWriter {
   }
 
   bool write_plain(const Entry& entry, std::uint16_t* registers) const {
-    const auto value = value_of(entry, point_.format.type);
+    const auto named = named_value(entry);
+    const auto value = named ? named : value_of(entry, point_.format.type);
     if (!value) return wrong(entry, expected(point_.format.type));
     if (const auto encoded = codec::encode(*value, point_.format, registers); !encoded) {
       context_.problems.error(entry.at, fmt::format("'{}': {}", key_, encoded.error()),
@@ -243,6 +252,11 @@ Span<const std::uint16_t> read_value(std::string_view key, const Entry& entry, c
   }
   for (std::size_t i = 0; i < point.count; ++i)
     if (!writer.write(list ? entry.children[i] : entry, &registers[i * step])) return {};
+  if (const auto forbidden = find_forbidden(point, registers.data())) {
+    context.problems.error(entry.at, fmt::format("'{}': {}", key, forbidden_text(point, *forbidden)),
+                           "write " + allowed_text(point));
+    return {};
+  }
   return context.map.keep(registers);
 }
 

@@ -31,4 +31,16 @@ void each_number(const Map& map, Table table, modbus::Range touched, Use use) {
   });
 }
 
+/// The points of any length that have an address in the range. Points of a table follow each other without
+/// overlap; only parts of one register begin and end alike.
+inline Span<const Point> touched_points(const Map& map, Table table, modbus::Range touched) {
+  const Point* first = std::partition_point(map.points.begin(), map.points.end(), [&](const Point& point) {
+    return point.table < table || (point.table == table && range(point).end() <= touched.start());
+  });
+  const Point* end = std::partition_point(first, map.points.end(), [&](const Point& point) {
+    return point.table == table && point.address < touched.end();
+  });
+  return {first, static_cast<std::size_t>(end - first)};
+}
+
 }  // namespace coupler::device

@@ -5,6 +5,7 @@
 
 #include "coupler/device/core/each_point.hpp"
 #include "coupler/device/core/identity.hpp"
+#include "coupler/map/allowed_values.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/modbus/server.hpp"
 
@@ -32,7 +33,10 @@ Handler::Handler(const Map& map, Image& image, Hardware hardware, Statistics& st
       hardware_(hardware),
       statistics_(statistics),
       watchdog_(watchdog),
-      edge_points_(map, image, statistics, links) {
+      edge_points_(map, image, statistics, links),
+      limits_values_(std::any_of(map.points.begin(), map.points.end(), [](const Point& point) {
+        return is_writable(point) && limits_values(point);
+      })) {
   write_identity(map, machine_, image);
   show_outputs();
 }
@@ -104,6 +108,7 @@ Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
 
 tl::expected<void, Exception> Handler::store(Table table, modbus::Range range, Span<std::uint16_t> cells,
                                              TimePoint now) {
+  if (is_forbidden(table, range)) return tl::unexpected(Exception::illegal_data_value);
   const auto next = Span<std::uint16_t>(next_).first(cells.size());
   edge_points_.keep_latches(table, range, cells, next);
   if (watchdog_.is_locked() && hardware_.driven(table, range, next))
@@ -135,6 +140,32 @@ Span<std::uint16_t> Handler::writable_registers(modbus::Range range) const {
     if (point.counter.present() || is_analogue(point)) whole &= range.contains(coupler::range(point));
   });
   return whole ? image_.find_writable(Table::holding_registers, range) : Span<std::uint16_t>();
+}
+
+bool Handler::is_forbidden(Table table, modbus::Range written) const {
+  if (!limits_values_ || table != Table::holding_registers) return false;
+  const auto points = touched_points(map_, table, written);
+  return std::any_of(points.begin(), points.end(), [&](const Point& point) {
+    return is_writable(point) && limits_values(point) && is_forbidden(point, written);
+  });
+}
+
+/// Value by value, so that an array needs no room for all of it.
+bool Handler::is_forbidden(const Point& point, modbus::Range written) const {
+  const std::uint16_t width = codec::registers(point.format);
+  const auto now = image_.find(point.table, range(point));
+  std::array<std::uint16_t, widest_number> value{};
+  for (std::uint32_t at = 0; at < now.size(); at += width) {
+    const auto own = modbus::Range::of(point.address + at, width);
+    if (!own.overlaps(written)) continue;
+    for (std::uint32_t i = 0; i < width; ++i) {
+      const std::uint32_t address = own.start() + i;
+      value[i] = written.contains(address) ? next_[address - written.start()] : now[at + i];
+    }
+    const bool concerned = !is_partial(point) || ((value[0] ^ now[at]) & codec::mask(point.format)) != 0;
+    if (concerned && why_forbidden(point, value.data())) return true;
+  }
+  return false;
 }
 
 void Handler::put_next(const modbus::WriteRegisters& write) {

@@ -32,9 +32,9 @@ class Handler {
 
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
   /// returns its size; `session` sent it. Exceptions: those of parse_request(); 02 an address that is not
-  /// mapped, not readable or not writable; 03 a value that does not reset the watchdog, or that an output
-  /// cannot take; 04 hardware that cannot be read or driven, or an output that the watchdog keeps in its safe
-  /// state.
+  /// mapped, not readable or not writable; 03 a value that does not reset the watchdog, that the
+  /// map does not allow, or that an output cannot take; 04 hardware that cannot be read or driven, or an
+  /// output that the watchdog keeps in its safe state.
   std::size_t handle(modbus::Bytes request, ClientSession& session, TimePoint now, Span<std::uint8_t> reply);
 
   /// Drives the outputs to their safe state if the watchdog is due. handle() does so too.
@@ -66,6 +66,9 @@ class Handler {
   /// Empty if one is not mapped, not writable, or holds in part a value that is only written as a whole: a
   /// counter's, or that of an analogue output.
   Span<std::uint16_t> writable_registers(modbus::Range range) const;
+  /// What next_ says would give a point of the range a value that the map does not allow.
+  bool is_forbidden(Table table, modbus::Range written) const;
+  bool is_forbidden(const Point& point, modbus::Range written) const;
   void put_next(const modbus::WriteRegisters& write);
   /// Drives the outputs of the range, then stores in its cells: what next_ says.
   tl::expected<void, modbus::Exception> store(Table table, modbus::Range range, Span<std::uint16_t> cells,
@@ -79,6 +82,7 @@ class Handler {
   Statistics& statistics_;
   OutputWatchdog& watchdog_;
   EdgePoints edge_points_;
+  bool limits_values_;                                        ///< the map does, of a point that is written
   bool wrote_output_ = false;                                 ///< the request that is being answered has
   std::array<std::uint16_t, modbus::max_write_bits> next_{};  ///< what a write stores, before it is committed
 };

@@ -3,20 +3,16 @@
 
 #include <algorithm>
 
+#include "coupler/device/core/each_point.hpp"
+
 namespace coupler::device {
 
 using modbus::Range;
 
-/// Points of a table follow each other without overlap; only parts of one register begin and end alike.
 HookedPoints::Indices HookedPoints::touched(Table table, Range range) const {
-  const Point* const begin = map_.points.begin();
-  const auto* first = std::partition_point(begin, map_.points.end(), [&](const Point& point) {
-    return point.table < table || (point.table == table && coupler::range(point).end() <= range.start());
-  });
-  const auto* end = std::partition_point(first, map_.points.end(), [&](const Point& point) {
-    return point.table == table && point.address < range.end();
-  });
-  return {static_cast<std::uint32_t>(first - begin), static_cast<std::uint32_t>(end - begin)};
+  const auto points = touched_points(map_, table, range);
+  const auto first = static_cast<std::uint32_t>(points.begin() - map_.points.begin());
+  return {first, first + static_cast<std::uint32_t>(points.size())};
 }
 
 Span<const std::uint16_t> HookedPoints::before(std::uint32_t point) const {

@@ -70,7 +70,12 @@ Outcome parse_element(std::string_view text, const Point& point, std::uint16_t* 
     registers[0] = *on ? 1 : 0;
     return {};
   }
+  for (const NamedValue& named : point.values)
+    if (text == named.name) return codec::encode(named.value, format, registers);
   const auto number = parse_number(std::string(text));
+  if (!number && !point.values.empty())
+    return tl::make_unexpected(
+        fmt::format("'{}' is not one of its values; send {}", text, allowed_text(point)));
   if (!number) return tl::make_unexpected(fmt::format("'{}' is not a number", text));
   if (point.scale.present()) {
     const std::string wrong = encode_scaled(as_double(*number), point, registers);
@@ -123,6 +128,7 @@ std::string format_value(const std::uint16_t* registers, const Point& point) {
   const auto one = [&](const std::uint16_t* at) -> std::string {
     if (holds_bits(point.table)) return at[0] != 0 ? "true" : "false";
     if (point.scale.present()) return scaled_text(at, point);
+    if (const auto name = name_of_value(point, at); !name.empty()) return std::string(name);
     return codec::to_string(codec::decode(at, point.format));
   };
   if (point.count == 1) return one(registers);

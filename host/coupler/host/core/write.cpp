@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "coupler/codec/number.hpp"
 #include "coupler/host/core/error.hpp"
 
 namespace coupler::host {
@@ -29,14 +27,6 @@ std::string not_taken_text(const WriteResult& result) {
     return fmt::format("not taken: acknowledged, but it cannot be read back: {}", exception_text(result));
   return fmt::format("not taken: acknowledged, but {} was written and {} reads back",
                      registers_text(result.written), registers_text(result.found));
-}
-
-template <class T>
-bool are_finite(const Point& point, const std::uint16_t* registers) {
-  const std::size_t width = codec::registers(point.format);
-  for (std::size_t i = 0; i < point.count; ++i)
-    if (!std::isfinite(codec::take<T>(point.format, registers + i * width))) return false;
-  return true;
 }
 
 std::optional<Write> safe_value(const Map& map, std::uint32_t index) {
@@ -93,15 +83,6 @@ Write make_write(const Map& map, std::uint32_t point, Span<const std::uint16_t> 
     std::copy(value.begin(), value.end(), write.registers.begin());
   }
   return write;
-}
-
-bool is_finite(const Point& point, const Write& write) {
-  if (holds_bits(point.table)) return true;
-  switch (point.format.type) {
-    case codec::Type::REAL: return are_finite<float>(point, write.registers.data());
-    case codec::Type::LREAL: return are_finite<double>(point, write.registers.data());
-    default: return true;
-  }
 }
 
 std::vector<Write> safe_values(const Map& map) {

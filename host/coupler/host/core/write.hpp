@@ -111,9 +111,6 @@ struct Write {
 /// bit tables. Empty is all zero.
 Write make_write(const Map& map, std::uint32_t point, Span<const std::uint16_t> value);
 
-/// Whether none of its floats is NaN or infinite.
-bool is_finite(const Point& point, const Write& write);
-
 /// The safe value of each output, by Point::safe and Point::safe_value; none for those that hold theirs. A
 /// register without a safe value of its own is left alone unless it is an analogue output.
 std::vector<Write> safe_values(const Map& map);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/typed_value.hpp"
+
 namespace coupler::host {
 namespace {
 
@@ -36,9 +38,11 @@ Writer::Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceSt
 }
 
 void Writer::push(const Write& write) {
-  if (!is_finite(map_.points[write.point], write)) {
-    const WriteResult wrong = {Outcome::refused, std::nullopt,
-                               "a number that is not finite (NaN or infinity); send a finite one"};
+  const Point& point = map_.points[write.point];
+  if (const auto forbidden = find_forbidden(point, write.registers.data())) {
+    const std::string why =
+        fmt::format("{}; send {}", forbidden_text(point, *forbidden), allowed_text(point));
+    const WriteResult wrong = {Outcome::refused, std::nullopt, why};
     tell(write, wrong);
     report(write, wrong);
     return;

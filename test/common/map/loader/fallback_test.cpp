@@ -42,7 +42,9 @@ MapPtr with(std::string text, const std::string& key_and_value) {
 std::string made_for(const Key& key, const Place& place) {
   std::string map(place.map);
   constexpr std::string_view number = "type: INT, ";
-  if (!applies_to(key, "INT")) map.replace(map.find(number), number.size(), "type: STRING, length: 2, ");
+  if (!applies_to(key, "INT"))
+    map.replace(map.find(number), number.size(),
+                applies_to(key, "REAL") ? "type: REAL, " : "type: STRING, length: 2, ");
   if (key.name == "deadband") map.replace(map.find('@'), 1, "publish: on_change, @");
   return map;
 }

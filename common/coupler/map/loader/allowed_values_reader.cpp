@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "coupler/codec/scale.hpp"
+#include "coupler/codec/value.hpp"
+#include "coupler/map/loader/point_reader.hpp"
+#include "coupler/map/loader/scalar.hpp"
+
+namespace coupler::loader {
+namespace {
+
+constexpr std::string_view names_form = "write it as in 'values: {0: idle, 1: running}'";
+
+bool is_float(codec::Type type) { return type == codec::Type::REAL || type == codec::Type::LREAL; }
+
+/// The bound is a value of the point: of the type, and not between two steps of a scaled integer.
+void check_bound(std::string_view key, double bound, const Reader& reader, const Point& point,
+                 const Context& context) {
+  const Entry* entry = reader.find(key);
+  if (entry == nullptr) return;
+  const auto [least, most] = codec::published_range(point.format.type, point.scale);
+  if (bound < least || bound > most) {
+    context.problems.error(entry->at,
+                           fmt::format("'{}' is {:.15g}, but {} is published from {:.15g} to {:.15g}", key,
+                                       bound, shown(point.name), least, most),
+                           fmt::format("write a number in that range, or remove '{}'", key));
+    return;
+  }
+  if (is_float(point.format.type)) return;
+  std::array<std::uint16_t, 4> registers{};
+  codec::encode_nearest(bound, point.format, point.scale, registers.data());
+  const double nearest = codec::published(registers.data(), point.format, point.scale);
+  if (std::fabs(nearest - bound) > 1e-6 * std::fabs(point.scale.gain))
+    context.problems.error(entry->at,
+                           fmt::format("'{}' is {:.15g}, which is not a value of {}; the nearest is {:.15g}",
+                                       key, bound, shown(point.name), nearest),
+                           fmt::format("write '{}: {:.15g}'", key, nearest));
+}
+
+bool check_type(const Reader& reader, const Point& point, const Context& context) {
+  bool good = true;
+  const auto refuse = [&](std::string_view key, std::string_view what, std::string_view remedy) {
+    const Entry* entry = reader.find(key);
+    if (entry == nullptr) return;
+    good = false;
+    context.problems.error(entry->key_at, fmt::format("'{}' does not apply to {}", key, what),
+                           std::string(remedy));
+  };
+  const std::string_view type = to_string(point.format.type);
+  if (!codec::is_scalable(point.format.type)) {
+    for (const std::string_view key : {"min", "max"})
+      refuse(key, type, "use a type that is a number: SINT to ULINT, REAL or LREAL");
+    refuse("values", type, "use a type that is a whole number: SINT to ULINT");
+  } else if (is_float(point.format.type)) {
+    refuse("values", type, "use a type that is a whole number: SINT to ULINT");
+  } else if (point.scale.present()) {
+    refuse("values", "a point with a 'scale'", "remove 'scale': names are for whole numbers");
+  }
+  return good;
+}
+
+bool is_identifier(std::string_view text) {
+  return !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), [](char c) {
+    return is_letter(c) || is_digit(c) || c == '_';
+  });
+}
+
+/// One entry of `values`; false if it is wrong.
+bool read_name(const Entry& entry, const Point& point, std::vector<NamedValue>& names,
+               const Context& context) {
+  const auto wrong = [&](Position at, std::string what, std::string remedy) {
+    context.problems.error(at, std::move(what), std::move(remedy));
+    return false;
+  };
+  const auto value = parse_integer(entry.key);
+  if (!value)
+    return wrong(entry.key_at,
+                 fmt::format("'values' has {} where a whole number must stand", shown(entry.key)),
+                 std::string(names_form) + ": the number first");
+  if (entry.kind != Entry::Kind::scalar || !is_identifier(entry.text))
+    return wrong(entry.at, fmt::format("{} cannot be the name of a value", shown(entry)),
+                 "use letters, digits and '_', a letter first");
+  std::array<std::uint16_t, 4> registers{};
+  if (const auto held = codec::encode(codec::Value{*value}, point.format, registers.data()); !held)
+    return wrong(entry.key_at, fmt::format("'values': {}", held.error()),
+                 "write a value that the type can hold");
+  for (const NamedValue& other : names)
+    if (other.value == *value || other.name == entry.text)
+      return wrong(entry.key_at,
+                   fmt::format("'values' has '{}' twice", other.value == *value ? entry.key : entry.text),
+                   "keep one of the two");
+  if (const auto why = why_forbidden(point, registers.data()))
+    return wrong(entry.key_at,
+                 fmt::format("'values' names {}, which is {}", *value,
+                             *why == Forbidden::below_min ? "below 'min'" : "above 'max'"),
+                 "change one of the two");
+  names.push_back({*value, context.map.keep(entry.text)});
+  return true;
+}
+
+void read_names(const Entry& entry, Point& point, const Context& context) {
+  if (entry.kind != Entry::Kind::map || entry.children.empty()) {
+    context.problems.error(entry.at,
+                           fmt::format("'values' must be a map of numbers and names, not {}", shown(entry)),
+                           std::string(names_form));
+    return;
+  }
+  std::vector<NamedValue> names;
+  bool good = true;
+  for (const Entry& each : entry.children) good = read_name(each, point, names, context) && good;
+  if (!good) return;
+  std::sort(names.begin(), names.end(),
+            [](const NamedValue& a, const NamedValue& b) { return a.value < b.value; });
+  point.values = context.map.keep(names);
+}
+
+}  // namespace
+
+void read_allowed_values(const Reader& reader, Point& point, const Context& context) {
+  if (!check_type(reader, point, context)) return;
+  const std::size_t errors = context.problems.errors();
+  Bounds bounds;
+  reader.fields(bounds);
+  if (bounds.min > bounds.max)
+    context.problems.error(reader.find("max")->at,
+                           fmt::format("'max' is {:g}, below 'min', which is {:g}", bounds.max, bounds.min),
+                           "exchange the two, or change one");
+  check_bound("min", bounds.min, reader, point, context);
+  check_bound("max", bounds.max, reader, point, context);
+  if (context.problems.errors() != errors) return;
+  point.bounds = bounds;
+  if (const Entry* names = reader.find("values")) read_names(*names, point, context);
+}
+
+void check_start(const Reader& reader, const Point& point, const Context& context) {
+  if (!is_writable(point) || !is_analogue(point)) return;
+  constexpr std::array<std::uint16_t, 4> zero{};
+  const auto check = [&](std::string_view key, bool given, std::string_view when) {
+    if (given || !find_forbidden(point, zero.data())) return;
+    const Entry* channel = reader.find(point.iio.present() ? "iio" : "pwm");
+    context.problems.error(channel->key_at,
+                           fmt::format("{} is set to 0 {}, which {} do not allow", shown(point.name), when,
+                                       point.values.empty() ? "'min' and 'max'" : "its 'values'"),
+                           fmt::format("add '{}' with a value that they allow", key));
+  };
+  check("initial", !point.initial.empty(), "at the start");
+  check("safe", point.safe == Safe::hold || !point.safe_value.empty(), "when nobody is in command");
+}
+
+}  // namespace coupler::loader
