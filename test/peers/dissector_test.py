@@ -79,6 +79,9 @@ TRAFFIC = [
     (read(3, 30, 7), ["label", "plain"], ['label: "Anlage"', 'plain: "Kühler"']),
     *((write(18, swap_bytes(struct.pack(">d", number))), [f"long_badc: {text}"], ["long_badc"])
       for number, text in DOUBLES.items()),
+    (b"\x06" + registers(40, 7), ["mode: auto (7)"], ["mode: auto (7)"]),
+    (b"\x06" + registers(40, 0xFFFF), ["mode: fault (-1)"], ["mode: fault (-1)"]),
+    (b"\x06" + registers(40, 3), ["mode: 3"], ["mode [exception 03]"]),
     # FC 23 writes speed and reads it back with its neighbour.
     (b"\x17" + registers(0, 2, 0, 1) + b"\x02" + registers(25), ["speed: 25 rpm", "speed", "swapped"],
      ["speed: 25 rpm", "swapped: 4660"]),

@@ -131,6 +131,7 @@ end
 local function register_value(tvb, at, point)
   if point.type == "STRING" then return text_of(tvb, at, point) end
   local number, text = number_of(tvb, at, point)
+  if point.names and point.names[text] then return point.names[text] .. " (" .. text .. ")" end
   if not point.gain then return text end
   return string.format("%.12g", number * point.gain + point.offset)
 end

@@ -41,6 +41,12 @@ std::string row_of(const Point& point) {
       is_readable(point), is_writable(point));
   if (point.read_address) row += fmt::format(", read_from = {}", *point.read_address);
   if (!holds_bits(point.table)) add_format(point, row);
+  if (!point.values.empty()) {
+    row += ", names = {";
+    for (const NamedValue& named : point.values)
+      row += fmt::format(" [\"{}\"] = {},", named.value, literal(named.name));
+    row += " }";
+  }
   if (!point.units.empty()) row += ", units = " + literal(point.units);
   if (!point.description.empty()) row += ", description = " + literal(point.description);
   return row + " },\n";
