@@ -40,11 +40,11 @@ class RefusedValues(testing.RosTest):
     def test_a_text_that_is_too_long_or_not_in_the_encoding(self):
         label, code = (self.publisher(f"/refused/{name}/write", String) for name in ("label", "code"))
         label.publish("lange")
-        self.device.wait_for("refused a write to refused/label/write: 'lange' is longer than 4 bytes")
+        self.device.wait_for("refused a write to refused/label/write: 'lange' is too long; give at most 4 bytes of utf-8")
         code.publish("für")
         # How the log shows the letter is the locale's affair.
         self.device.wait_for("refused a write to refused/code/write: 'f")
-        self.device.wait_for("has a character that ascii has not")
+        self.device.wait_for("cannot be written in ascii; leave out what it does not have")
         code.publish("fur")
         wait_until(lambda: self.peer.get("holding_registers", 3) == [0x7566], "'fu' at the peer")
         self.assertEqual(self.peer.get("holding_registers", 1, 2), [0, 0])

@@ -85,6 +85,7 @@ void decode_text(const std::uint16_t* registers, const Format& format, std::stri
 }
 
 TextError encode_text(std::string_view text, const Format& format, std::uint16_t* registers) {
+  if (text.find('\0') != std::string_view::npos) return TextError::has_nul;
   std::size_t size = 0;
   if (!for_each_encoded(text, format.encoding, [&](std::uint8_t) { ++size; }))
     return TextError::not_encodable;

@@ -26,8 +26,9 @@ void decode_text(const std::uint16_t* registers, const Format& format, std::stri
 /// Why a text does not fit into a STRING.
 enum class TextError : std::uint8_t {
   none,
-  too_long,      ///< more than `format.length` bytes once encoded
-  not_encodable  ///< a character that ascii or latin-1 does not have, or not UTF-8 at all
+  too_long,       ///< more than `format.length` bytes once encoded
+  not_encodable,  ///< a character that ascii or latin-1 does not have, or not UTF-8 at all
+  has_nul         ///< a NUL character, which would end it for those who read it
 };
 
 /// Writes UTF-8 `text`, padded with NUL, into codec::registers(format) registers; nothing is written on an

@@ -36,11 +36,26 @@ tl::unexpected<std::string> out_of_range(const Value& value, Type type) {
                                            +std::numeric_limits<To>::max()));
 }
 
+/// From here on a double is no float. What is below rounds to the largest, as 3.4028235e38 does, its shortest
+/// text.
+constexpr double rounds_to_infinity = 0x1.ffffffp127;
+
+/// A double that rounds to the largest float is above it, which the language leaves undefined.
+template <class To, class From>
+To converted(From from) {
+  if constexpr (std::is_same_v<To, float> && std::is_same_v<From, double>)
+    if (std::isfinite(from)) {
+      constexpr double most = std::numeric_limits<float>::max();
+      return static_cast<float>(std::clamp(from, -most, most));
+    }
+  return static_cast<To>(from);
+}
+
 template <class To, class From>
 bool fits(From from) {
   if constexpr (std::is_floating_point_v<To>) {
     if constexpr (std::is_same_v<From, double> && std::is_same_v<To, float>)
-      return !std::isfinite(from) || std::fabs(from) <= std::numeric_limits<float>::max();
+      return !std::isfinite(from) || std::fabs(from) < rounds_to_infinity;
     return true;
   } else if constexpr (std::is_floating_point_v<From>) {  // the largest may have no double, one more has
     return from >= static_cast<From>(std::numeric_limits<To>::min()) &&
@@ -68,7 +83,7 @@ Result put_number(const Value& value, const Format& format, std::uint16_t* regis
               return tl::make_unexpected(
                   fmt::format("{} is not a whole number, as {} needs", v, to_string(format.type)));
           if (!fits<To>(v)) return out_of_range<To>(value, format.type);
-          put(static_cast<To>(v), format, registers);
+          put(converted<To>(v), format, registers);
           return {};
         }
       },
@@ -84,6 +99,9 @@ Result put_text(const Value& value, const Format& format, std::uint16_t* registe
     case TextError::not_encodable:
       return tl::make_unexpected(
           fmt::format("'{}' cannot be written in {}", *text, to_string(format.encoding)));
+    case TextError::has_nul:
+      return tl::make_unexpected(
+          std::string("a text with a NUL character cannot be written, since it would end there"));
     case TextError::none: break;
   }
   return {};

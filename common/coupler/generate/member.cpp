@@ -42,6 +42,7 @@ std::string_view cpp_number(Type type) {
     case Type::DINT: return "::std::int32_t";
     case Type::LINT: return "::std::int64_t";
     case Type::BYTE:
+    case Type::CHAR:
     case Type::USINT: return "::std::uint8_t";
     case Type::WORD:
     case Type::UINT: return "::std::uint16_t";
@@ -51,7 +52,6 @@ std::string_view cpp_number(Type type) {
     case Type::ULINT: return "::std::uint64_t";
     case Type::REAL: return "float";
     case Type::LREAL: return "double";
-    case Type::CHAR: return "char";
     case Type::STRING: return "::std::string";
   }
   return {};

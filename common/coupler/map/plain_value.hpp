@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The value of a point as a C++ type without heap: bool, char, std::intN_t, std::uintN_t, float, double (also
+// The value of a point as a C++ type without heap: bool, std::intN_t, std::uintN_t, float, double (also
 // of every point with a scale, in its units), Text, or std::array of one of them. Registers are
 // range(point).count() of them; bit tables give each bit as one register, 0 or 1.
 #pragma once

@@ -54,6 +54,8 @@ std::string encode_string(std::string_view text, const Point& point, std::uint16
     case codec::TextError::not_encodable:
       return fmt::format("'{}' cannot be written in {}; leave out what it does not have", text,
                          codec::to_string(point.format.encoding));
+    case codec::TextError::has_nul:
+      return "a text with a NUL character would end there; leave the character out";
     case codec::TextError::none: break;
   }
   return {};

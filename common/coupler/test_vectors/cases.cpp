@@ -137,7 +137,10 @@ std::vector<Element> text_elements(const codec::Format& format) {
   for (const std::string& text : texts(format)) add(text, format);
   codec::Format bytes = format;  // Latin-1 has all of them, each as itself
   bytes.encoding = Encoding::latin1;
-  add(std::string_view("a\0z", 3), bytes);
+  add("a\x01z", bytes);  // and NUL in place of the 1, behind which nothing counts
+  for (std::uint16_t& word : elements.back())
+    word = static_cast<std::uint16_t>((word >> 8 == 1 ? 0 : word & 0xFF00) |
+                                      ((word & 0xFF) == 1 ? 0 : word & 0xFF));
   if (format.encoding == Encoding::ascii) add("é", bytes);
   return elements;
 }

@@ -71,6 +71,18 @@ TEST(Value, A_double_beyond_float_is_refused_but_infinity_is_a_REAL) {
   EXPECT_EQ(registers[0], 0x7F80);
 }
 
+TEST(Value, The_largest_REAL_goes_in_as_the_text_in_which_it_comes_out) {
+  std::array<std::uint16_t, 2> registers{};
+  Format real = format(Type::REAL);
+  real.order = Order::ABCD;
+  for (const double text : {3.4028235e38, -3.4028235e38}) {  // beyond FLT_MAX as a double
+    EXPECT_TRUE(encode(text, real, registers.data())) << text;
+    EXPECT_EQ(registers[0], text > 0 ? 0x7F7F : 0xFF7F);
+    EXPECT_EQ(registers[1], 0xFFFF);
+  }
+  EXPECT_THAT(refusal(3.4028236e38, real), HasSubstr("does not fit into REAL"));
+}
+
 TEST(Value, A_kind_that_does_not_suit_the_type_is_refused) {
   EXPECT_EQ(refusal(std::int64_t{1}, format(Type::BOOL)), "1 is neither true nor false");
   EXPECT_EQ(refusal(true, format(Type::INT)), "'true' is not a number");
@@ -94,6 +106,12 @@ TEST(Text, A_character_that_the_encoding_lacks_is_refused) {
   f.encoding = Encoding::utf8;
   EXPECT_THAT(refusal(std::string("\xC3("), f), HasSubstr("cannot be written in utf-8"));
   EXPECT_THAT(refusal(std::string("\xED\xA0\x80"), f), HasSubstr("cannot be written"));
+}
+
+TEST(Text, A_text_with_a_NUL_character_is_refused) {
+  Format f = format(Type::STRING);
+  f.length = 8;
+  EXPECT_THAT(refusal(std::string("a\0z", 3), f), HasSubstr("NUL"));
 }
 
 TEST(Text, A_value_ends_at_the_first_NUL) {

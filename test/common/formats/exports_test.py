@@ -35,7 +35,7 @@ HOLDINGS = {0: struct.pack(">h", -100), 1: b"\x34\x12", 2: b"\xfe\x07", 3: b"\x1
             18: swap_bytes(struct.pack(">d", 1.25)), 22: swap_words(swap_bytes(struct.pack(">q", 81985529216486895))),
             26: struct.pack(">hhh", 3, -4, 5), 30: swap_bytes(b"Anlage\0\0"), 34: b"Kuhler"}
 # What the points are, raw.
-RAW = {"level": 615, "badc": -123456789, "dcba": 4000000000, "far": 7, "speed": -100, "swapped": 0x1234, "high": -2,
+RAW = {"level": 615, "badc": -123456789, "dcba": 4000000000, "far": 7, "speed": -100, "mode": 0, "swapped": 0x1234, "high": -2,
        "low": 7, "mask": 0xBEEF, "long_abcd": -2**63 + 1, "long_cdab": 2**64 - 2, "long_dcba": 81985529216486895}
 
 

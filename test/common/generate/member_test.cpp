@@ -25,7 +25,7 @@ TEST(Member, A_name_that_cannot_be_a_member_gets_one_that_can) {
 TEST(Member, The_type_is_that_of_the_value) {
   Point point;
   point.format.type = Type::CHAR;
-  EXPECT_EQ(cpp_type(point), "char");
+  EXPECT_EQ(cpp_type(point), "::std::uint8_t");
   point.format.type = Type::DWORD;
   EXPECT_EQ(cpp_type(point), "::std::uint32_t");
   point.count = 3;

@@ -26,5 +26,16 @@ def number(loader, node):
 Loader.add_constructor("tag:yaml.org,2002:int", number)
 
 
+def mapping(loader, node):
+    """The keys of JSON are text: `0:` is "0"."""
+    for key, _ in node.value:
+        if not isinstance(key, yaml.ScalarNode):
+            raise yaml.constructor.ConstructorError(None, None, "a key that is not text", key.start_mark)
+    return {key.value: loader.construct_object(value, deep=True) for key, value in node.value}
+
+
+Loader.add_constructor("tag:yaml.org,2002:map", mapping)
+
+
 def load(text):
     return yaml.load(text, Loader)

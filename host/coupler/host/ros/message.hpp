@@ -54,16 +54,7 @@ struct TextMessage {
     codec::decode_text(registers, point.format, message.data);
   }
   static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
-    const codec::Format& format = point.format;
-    switch (codec::encode_text(message.data, format, registers)) {
-      case codec::TextError::too_long:
-        return fmt::format("'{}' is longer than {} bytes; send a shorter text", message.data, format.length);
-      case codec::TextError::not_encodable:
-        return fmt::format("'{}' has a character that {} has not", message.data,
-                           codec::to_string(format.encoding));
-      case codec::TextError::none: break;
-    }
-    return {};
+    return encode_string(message.data, point, registers);
   }
 };
 
