@@ -21,10 +21,11 @@ namespace {
 /// coupler/map/fields.hpp.
 struct Detail {
   std::string_view rule;  ///< what a change of it is called
-  Severity severity;      ///< compatible or documentation
+  Severity severity;      ///< not breaking
   std::string value;      ///< as text; equal texts mean the same
 };
 
+constexpr auto meaning = Severity::meaning;
 constexpr auto compatible = Severity::compatible;
 constexpr auto documentation = Severity::documentation;
 
@@ -35,8 +36,7 @@ std::string joined(Span<const std::uint16_t> registers) {
 std::string text_of(const Line& line) {
   if (!line.present()) return {};
   return fmt::format(
-      "{}{}{}{}{}", line.name.empty() ? fmt::format("{} {}", line.chip, line.offset) : std::string(line.name),
-      line.active_low ? ", active_low" : "",
+      "{}{}{}{}", line.name.empty() ? fmt::format("{} {}", line.chip, line.offset) : std::string(line.name),
       line.bias == Bias::as_is ? "" : fmt::format(", bias {}", to_string(line.bias)),
       line.drive == Drive::push_pull ? "" : fmt::format(", drive {}", to_string(line.drive)),
       line.debounce.count() > 0 ? fmt::format(", debounce {}", line.debounce) : "");
@@ -107,16 +107,17 @@ std::string sim_text(const Map& map) {
 std::vector<Detail> details_of(const Point& point) {
   return {
       {"description-changed", documentation, std::string(point.description)},
-      {"units-changed", documentation, std::string(point.units)},
+      {"units-changed", meaning, std::string(point.units)},
       {"initial-changed", compatible, initial_text(point)},
       {"safe-changed", compatible, safe_text(point)},
       {"line-changed", compatible, text_of(point.line)},
-      {"counter-changed", compatible, text_of(point.counter)},
-      {"latched-changed", compatible, text_of(point.latched)},
+      {"active-low-changed", meaning, point.line.active_low ? "true" : "false"},
+      {"counter-changed", meaning, text_of(point.counter)},
+      {"latched-changed", meaning, text_of(point.latched)},
       {"iio-changed", compatible, text_of(point.iio)},
       {"pwm-changed", compatible, text_of(point.pwm)},
       {"read-address-changed", compatible, point.read_address ? fmt::to_string(*point.read_address) : ""},
-      {"values-changed", compatible, text_of(point.values)},
+      {"values-changed", meaning, text_of(point.values)},
       {"deadman-changed", compatible, deadman_text(point.host)},
   };
 }
@@ -237,6 +238,47 @@ std::unordered_map<Key, const Element*> indexed(Span<const Element> elements, Ke
   return index;
 }
 
+using PointsByName = std::unordered_map<std::string_view, const Point*>;
+
+/// All but what the fingerprint contains.
+void add_rest(const Point& older, const Point& newer, std::vector<Change>& changes) {
+  add_details(older, newer, older.name, changes);
+  add_fields(older.bounds, newer.bounds, older.name, changes);
+  add_fields(older.host, newer.host, older.name, changes);
+}
+
+bool is_same_place(const Point& a, const Point& b) {
+  return a.table == b.table && a.address == b.address && a.format.type == b.format.type &&
+         codec::mask(a.format) == codec::mask(b.format);
+}
+
+/// Points of the old map that are gone, by name, each with the new one that stands where it stood.
+using Renamed = std::unordered_map<std::string_view, const Point*>;
+Renamed find_renamed(const Map& older, const Map& newer, const PointsByName& old_points,
+                     const PointsByName& new_points) {
+  Renamed renamed;
+  for (const Point& gone : older.points) {
+    if (new_points.count(gone.name) != 0) continue;
+    for (const Point& point : newer.points)
+      if (is_same_place(gone, point) && old_points.count(point.name) == 0) renamed.emplace(gone.name, &point);
+  }
+  return renamed;
+}
+
+/// What else the fingerprint contains may have changed with the name.
+void add_renamed(const Point& older, const Point& newer, std::vector<Change>& changes) {
+  changes.push_back({"point-renamed", Severity::breaking, std::string(older.name), std::string(older.name),
+                     std::string(newer.name)});
+  Point same_name = newer;
+  same_name.name = older.name;
+  Map before;
+  Map now;
+  before.points = {&older, 1};
+  now.points = {&same_name, 1};
+  for (const Difference& difference : diff(before, now)) add_contract(difference, changes);
+  add_rest(older, newer, changes);
+}
+
 }  // namespace
 
 std::vector<Change> compare(const Map& older, const Map& newer) {
@@ -246,18 +288,27 @@ std::vector<Change> compare(const Map& older, const Map& newer) {
   const std::vector<Difference> contract = diff(older, newer);
   const auto differences = indexed<std::string_view>(
       Span<const Difference>(contract), [](const Difference& d) -> std::string_view { return d.point; });
-  const auto points = indexed<std::string_view>(newer.points, [](const Point& point) { return point.name; });
+  const auto name_of = [](const Point& point) { return point.name; };
+  const PointsByName new_points = indexed<std::string_view>(newer.points, name_of);
+  const Renamed renamed =
+      find_renamed(older, newer, indexed<std::string_view>(older.points, name_of), new_points);
   for (const Point& point : older.points) {
+    if (const auto found = renamed.find(point.name); found != renamed.end()) {
+      add_renamed(point, *found->second, changes);
+      continue;
+    }
     if (const auto found = differences.find(point.name); found != differences.end())
       add_contract(*found->second, changes);
-    if (const auto found = points.find(point.name); found != points.end()) {
-      add_details(point, *found->second, point.name, changes);
-      add_fields(point.bounds, found->second->bounds, point.name, changes);
-      add_fields(point.host, found->second->host, point.name, changes);
-    }
+    if (const auto found = new_points.find(point.name); found != new_points.end())
+      add_rest(point, *found->second, changes);
   }
+  const auto is_new_name = [&](const Difference& added) {
+    return std::any_of(renamed.begin(), renamed.end(),
+                       [&](const auto& pair) { return pair.second->name == added.point; });
+  };
   for (const Difference& difference : contract)
-    if (difference.kind == Difference::Kind::added) add_contract(difference, changes);
+    if (difference.kind == Difference::Kind::added && !is_new_name(difference))
+      add_contract(difference, changes);
   return changes;
 }
 

@@ -15,6 +15,7 @@ namespace coupler::changes {
 /// The worst first.
 enum class Severity : std::uint8_t {
   breaking,      ///< a driver with the old map refuses a node with the new one: is_breaking()
+  meaning,       ///< both sides agree on the registers, and a value means something else: mm, then inches
   compatible,    ///< something behaves in another way, and both sides still agree
   documentation  ///< only what people read
 };
@@ -22,6 +23,7 @@ enum class Severity : std::uint8_t {
 constexpr std::string_view to_string(Severity severity) {
   switch (severity) {
     case Severity::breaking: return "breaking";
+    case Severity::meaning: return "meaning";
     case Severity::compatible: return "compatible";
     case Severity::documentation: return "documentation";
   }
@@ -38,7 +40,8 @@ struct Change {
 };
 
 /// Every difference: of the map as a whole, then of the points in the order of the old map, then the added
-/// ones. There is a breaking one exactly if !is_subset(older, newer).
+/// ones. Points are matched by name; one that is gone and another that stands in its place, with its type, is
+/// renamed. There is a breaking one exactly if !is_subset(older, newer).
 std::vector<Change> compare(const Map& older, const Map& newer);
 
 /// The worst of them; nullopt: there are none.

@@ -28,7 +28,8 @@ struct Versions {
   std::string newer;
 };
 
-constexpr std::array severities{Severity::breaking, Severity::compatible, Severity::documentation};
+constexpr std::array severities{Severity::breaking, Severity::meaning, Severity::compatible,
+                                Severity::documentation};
 
 std::ptrdiff_t count(const std::vector<Change>& changes, Severity severity) {
   return std::count_if(changes.begin(), changes.end(),
@@ -119,12 +120,12 @@ std::string diff_markdown(const Versions& versions, const std::vector<Change>& c
 struct Arguments {
   Versions versions;
   std::string format = "text";
-  std::string fail_on = "breaking";
+  std::string fail_on = "meaning";
 };
 
 /// `name`: a word of --fail-on.
 Severity severity_of(const std::string& name) {
-  for (const Severity severity : {Severity::breaking, Severity::compatible})
+  for (const Severity severity : severities)
     if (to_string(severity) == name) return severity;
   return Severity::documentation;
 }
@@ -160,9 +161,10 @@ void add_diff(Program& program, Exit& exit) {
       .one_of({"text", "json", "markdown"})
       .type_name("FORMAT");
   command
-      .add_option("--fail-on", arguments->fail_on,
-                  "Exit with 1 for this class or a worse one: breaking (default), compatible, documentation")
-      .one_of({"breaking", "compatible", "documentation"})
+      .add_option(
+          "--fail-on", arguments->fail_on,
+          "Exit with 1 for this class or a worse one: breaking, meaning (default), compatible, documentation")
+      .one_of({"breaking", "meaning", "compatible", "documentation"})
       .type_name("CLASS");
   command.footer(
       "Example:\n  coupler diff main:config/cell.yaml config/cell.yaml\n  coupler diff cell.yaml "

@@ -59,10 +59,24 @@ TEST(Changes, Each_changed_field_is_a_change) {
       ElementsAre("breaking address-moved speed: 4 -> 5", "breaking type-changed speed: INT -> UINT"));
 }
 
-TEST(Changes, A_removed_point_is_breaking_an_added_one_compatible) {
-  EXPECT_THAT(changes_by("label:", "title:"),
+TEST(Changes, A_point_of_another_name_in_the_same_place_is_renamed_otherwise_removed_and_added) {
+  EXPECT_THAT(changes_by("label:", "title:"), ElementsAre("breaking point-renamed label: label -> title"));
+  EXPECT_THAT(changes_by("label: {address: 10", "title: {address: 11"),
               ElementsAre("breaking point-removed label: holding_registers 10, STRING -> ",
-                          "compatible point-added title:  -> holding_registers 10, STRING"));
+                          "compatible point-added title:  -> holding_registers 11, STRING"));
+}
+
+TEST(Changes, What_changes_with_a_name_is_a_change_of_that_point) {
+  EXPECT_THAT(
+      changes_by("speed: {address: 4, type: INT, units: rpm",
+                 "pace: {address: 4, type: INT, units: Hz, scale: 0.5"),
+      ElementsAre("breaking point-renamed speed: speed -> pace", "breaking scale-changed speed: none -> 0.5",
+                  "meaning units-changed speed: rpm -> Hz", "compatible initial-changed speed: [5] -> [10]"));
+}
+
+TEST(Changes, Points_that_change_places_are_not_renamed) {
+  EXPECT_THAT(changes_by("lamp: {address: 0, line: GPIO27, safe: off}", "lamp: 1\n    horn: 0"),
+              ::testing::Contains("breaking address-moved lamp: 0 -> 1"));
 }
 
 TEST(Changes, What_a_side_does_by_itself_is_compatible) {
@@ -85,11 +99,19 @@ TEST(Changes, Keys_that_are_told_as_one_change_are_named_with_their_values) {
                           "request_gap 5ms"));
   EXPECT_THAT(changes_by("units: rpm", "units: rpm, publish: on_change, deadband: 2"),
               ElementsAre("compatible publish-changed speed: always, deadband 0 -> on_change, deadband 2"));
+  EXPECT_THAT(changes_by("units: rpm", "units: rpm, max: 9"),
+              ElementsAre("compatible bounds-changed speed: max none -> max 9"));
+}
+
+TEST(Changes, What_makes_a_value_mean_something_else_is_of_meaning) {
+  EXPECT_THAT(changes_by("units: rpm", "units: Hz"), ElementsAre("meaning units-changed speed: rpm -> Hz"));
+  EXPECT_THAT(changes_by("GPIO27", "GPIO27, active_low: true"),
+              ElementsAre("meaning active-low-changed lamp: false -> true"));
+  EXPECT_THAT(changes_by("units: rpm", "units: rpm, values: {5: five}"),
+              ElementsAre("meaning values-changed speed:  -> 5: five"));
 }
 
 TEST(Changes, What_only_people_read_is_documentation) {
-  EXPECT_THAT(changes_by("units: rpm", "units: Hz"),
-              ElementsAre("documentation units-changed speed: rpm -> Hz"));
   EXPECT_THAT(changes_by("units: rpm", "units: rpm, description: of the belt"),
               ElementsAre("documentation description-changed speed:  -> of the belt"));
 }
