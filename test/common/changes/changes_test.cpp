@@ -87,6 +87,11 @@ TEST(Changes, Keys_that_are_told_as_one_change_are_named_with_their_values) {
               ElementsAre("compatible publish-changed speed: always, deadband 0 -> on_change, deadband 2"));
 }
 
+TEST(Changes, How_the_host_writes_a_point_is_compatible) {
+  EXPECT_THAT(changes_by("units: rpm", "units: rpm, priority: high"),
+              ElementsAre("compatible write-changed speed: priority normal -> priority high"));
+}
+
 TEST(Changes, What_only_people_read_is_documentation) {
   EXPECT_THAT(changes_by("units: rpm", "units: Hz"),
               ElementsAre("documentation units-changed speed: rpm -> Hz"));
