@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """More is written than a slow device can take: reads go on, the newest value counts, order stays where it matters, and
 safe values go before all that waits."""
-import socket
-import sys
 import threading
 import time
 
@@ -11,7 +9,7 @@ from coupler_driver.srv import Write
 from std_msgs.msg import Bool, Int16, UInt16
 from std_srvs.srv import SetBool, Trigger
 
-from support import process, testing
+from support import in_order, process, testing
 from support.device import FAILURE, Device, Refuse
 from support.patience import NO_TIMEOUT, PATIENCE
 from support.topics import wait_until
@@ -70,17 +68,6 @@ class SlowDevice(Device):
                 yield request.address + i, request.data[6 + i // 8] >> i % 8 & 1
 
 
-def receiving_end(connection):
-    """The line of /proc/net/tcp of the other end: its address, ours, and what it has not read yet."""
-    def hexadecimal(address):
-        host, port = address
-        return f"{int.from_bytes(socket.inet_aton(host), sys.byteorder):08X}:{port:04X}"
-
-    ends = [hexadecimal(connection.getpeername()), hexadecimal(connection.getsockname())]
-    with open("/proc/net/tcp", encoding="ascii") as file:
-        return next(fields for fields in map(str.split, file) if fields[1:3] == ends)
-
-
 class LoadTest(testing.RosTest):
     def setUp(self):
         self.device = SlowDevice().start()
@@ -90,18 +77,7 @@ class LoadTest(testing.RosTest):
         self.program.wait_for("connected")
 
     def senders(self, *names):
-        """Publishers that return when the message is sent."""
-        publishers = [rospy.Publisher(f"/slow/{name}/write", {"start": Bool}.get(name, UInt16)) for name in names]
-        for publisher in publishers:
-            self.addCleanup(publisher.unregister)
-            wait_until(lambda p=publisher: p.get_num_connections() > 0, f"a subscriber of {publisher.name}")
-        return publishers
-
-    def publish_in_order(self, publisher, value):
-        """Returns when the driver has read the message: each topic has a connection of its own."""
-        publisher.publish(value)
-        connection = publisher.impl.connections[0].socket
-        wait_until(lambda: receiving_end(connection)[4].endswith(":00000000"), "the driver to read it")
+        return in_order.senders(self, {f"/slow/{name}/write": {"start": Bool}.get(name, UInt16) for name in names})
 
     def call(self, name, kind, *arguments):
         rospy.wait_for_service(f"/slow/{name}", PATIENCE)
@@ -161,7 +137,7 @@ class Order(LoadTest):
         for topic, value in ((speed, 1), (torque, 1), (speed, 2),  # speed keeps its place, before torque
                              (start, True), (torque, 2),           # torque has come after start: it goes behind it
                              (start, True), (start, False), (speed, 3)):
-            self.publish_in_order(topic, value)
+            in_order.publish(topic, value)
         self.device.go_on()
         wait_until(lambda: self.device.tables["holding_registers"][10] == 3, "the last one")
         self.assertEqual(list(self.device.written()), [(1, 1), (20, 2), (1, 0), (10, 3)])
@@ -181,7 +157,7 @@ class Safe(LoadTest):
         speed, torque, start = self.senders("speed", "torque", "start")
         self.device.hold()
         for topic, value in ((speed, 7), (torque, 7), (start, True)):
-            self.publish_in_order(topic, value)
+            in_order.publish(topic, value)
         calling, answer = self.ask()
         self.device.go_on()
         calling.join(PATIENCE)

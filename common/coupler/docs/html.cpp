@@ -98,7 +98,7 @@ Cell range(const Document&, const PointDescription& point) { return {point.range
 Cell units(const Document&, const PointDescription& point) { return {html(point.units)}; }
 
 Cell access(const Document&, const PointDescription& point) {
-  return {point.access, prefixed("at ", point.rate)};
+  return {point.access, joined({prefixed("at ", point.rate), prefixed("priority ", point.priority)})};
 }
 
 Cell behind(const Document&, const PointDescription& point) {
@@ -210,7 +210,8 @@ std::string html_page(const Document& document) {
              "it</a></nav>\n</header>\n<main>\n",
              html(document.name), made_from(document)) +
          "<section id=\"list\">\n<h2>Points</h2>\n" + search(document) + html_rows(document) +
-         "<p class=\"note\">Address counts from 0, as requests carry it. Modicon counts from 1 behind the digit "
+         "<p class=\"note\">Address counts from 0, as requests carry it. Modicon counts from 1 behind the "
+         "digit "
          "of the "
          "table.</p>\n</section>\n"
          "<section id=\"spaces\">\n<h2>Address spaces</h2>\n<div class=\"picture\" tabindex=\"0\" "

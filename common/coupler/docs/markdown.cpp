@@ -53,6 +53,7 @@ constexpr std::array columns{
     Column{"initial", false, [](auto&, auto& point) { return markdown(point.initial); }},
     Column{"safe", false, [](auto&, auto& point) { return markdown(point.safe); }},
     Column{"deadman", false, [](auto&, auto& point) { return markdown(point.deadman); }},
+    Column{"priority", false, [](auto&, auto& point) { return point.priority; }},
     Column{"polled", true, [](auto&, auto& point) { return point.rate; }},
     Column{"message", false, [](auto&, auto& point) { return "`" + point.message + "`"; }},
     Column{"description", false, [](auto&, auto& point) { return markdown(point.description); }},
@@ -104,7 +105,8 @@ std::string head(const Document& document) {
 std::string markdown_page(const Document& document) {
   std::string out = head(document);
   out +=
-      "\nAddresses: *address* counts from 0, as requests carry it; *Modicon* counts from 1 behind the table's "
+      "\nAddresses: *address* counts from 0, as requests carry it; *Modicon* counts from 1 behind the "
+      "table's "
       "digit.\n";
   for (const Table table : tables) put_table(document, table, out);
   out += "\n## The device\n\n| | |\n|---|---|\n";

@@ -92,6 +92,7 @@ PointDescription describe(const Point& point, int line) {
     const std::string value = value_words(point, point.host.deadman.value);
     out.deadman = fmt::format("{} after {}", value, words(point.host.deadman.timeout));
   }
+  if (point.host.priority != HostOptions::Priority::normal) out.priority = to_string(point.host.priority);
   if (point.host.rate > 0 && is_readable(point)) out.rate = fmt::format("{} Hz", point.host.rate);
   out.message = ros_message(point);
   out.line = line;

@@ -31,10 +31,11 @@ struct PointDescription {
   std::string source_details;  ///< "active low, pull-up, debounce 5 ms"
   std::string initial;
   std::string safe;
-  std::string deadman;  ///< "0 after 500 ms"
-  std::string rate;     ///< "50 Hz", of a point that is read at a rate of its own
-  std::string message;  ///< "std_msgs/Bool"
-  int line = 0;         ///< of the map's file; 0: unknown
+  std::string deadman;   ///< "0 after 500 ms"
+  std::string priority;  ///< "high", of writes that go first
+  std::string rate;      ///< "50 Hz", of a point that is read at a rate of its own
+  std::string message;   ///< "std_msgs/Bool"
+  int line = 0;          ///< of the map's file; 0: unknown
 };
 
 /// `line`: as PointDescription::line.

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/fields.hpp"
+
 namespace coupler::formats {
 namespace {
 
@@ -30,12 +32,13 @@ bool is_of_the_node(const Point& point) {
          !point.initial.empty() || point.safe != Safe::off;
 }
 
+/// The rate is not, and a deadband and a queue for subscribers have no meaning by themselves.
 bool is_of_the_driver(const Point& point) {
-  const HostOptions& host = point.host;
-  return host.publish != HostOptions::Publish::always || host.latch || host.verify_write ||
-         host.deadman.present() || host.max_interval.count() > 0 ||
-         host.write_function != HostOptions::WriteFunction::automatic ||
-         host.write_queue != HostOptions::WriteQueue::latest;
+  HostOptions host = point.host;
+  host.rate = 0;
+  host.deadband = 0;
+  host.queue_size = HostOptions{}.queue_size;
+  return !has_defaults(host) || host.deadman.present();
 }
 
 }  // namespace

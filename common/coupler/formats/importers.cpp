@@ -33,7 +33,7 @@ constexpr std::size_t longest = 100;  // for a name that was changed: a topic st
 
 std::string valid(std::string_view name) {
   if (!loader::is_relative_ros_name(name)) return mended_name(name, "point");
-  if (name == "online" || name == "status") return std::string(name) + "_point";  // the driver's own topics
+  if (loader::is_driver_topic(name)) return std::string(name) + "_point";
   return std::string(name);
 }
 

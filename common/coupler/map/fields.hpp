@@ -114,6 +114,7 @@ constexpr auto fields_of(const HostOptions*) {
                          field("queue_size", &H::queue_size, "queue-size-changed"),
                          field("write_function", &H::write_function, "write-changed", writing),
                          field("write_queue", &H::write_queue, "write-changed", writing),
+                         field("priority", &H::priority, "write-changed", writing),
                          field("verify_write", &H::verify_write, "write-changed", writing));
 }
 

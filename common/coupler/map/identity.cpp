@@ -2,12 +2,28 @@
 #include "coupler/map/identity.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "coupler/codec/number.hpp"
 
 namespace coupler::identity {
 
 using codec::Order;
+
+namespace {
+
+constexpr bool are_in_the_report() {
+  for (const Counter& counter : counters)
+    if (counter.at < at_statistics || counter.at + 2 > report_size) return false;
+  return true;
+}
+static_assert(are_in_the_report(),
+              "A counter behind the report is a further field: nodes that do not have it are out there");
+
+constexpr std::size_t hostname_registers = std::tuple_size_v<decltype(Machine::hostname)> / 2;
+static_assert(at_hostname + hostname_registers <= size);
+
+}  // namespace
 
 Head head_of(const Map& map) {
   return {map.fingerprint, static_cast<std::uint32_t>(map.text.size()), map.text_crc};
@@ -64,7 +80,7 @@ Machine read_machine(Span<const std::uint16_t> further) {
   constexpr std::size_t name = at_hostname - at_serial;
   Machine machine;
   if (further.size() >= name) machine.serial = codec::decode<std::uint64_t>(further.data(), Order::ABCD);
-  for (std::size_t i = name; i < std::min<std::size_t>(further.size(), further_size); ++i) {
+  for (std::size_t i = name; i < std::min(further.size(), name + hostname_registers); ++i) {
     machine.hostname[2 * (i - name)] = static_cast<char>(further[i] >> 8);
     machine.hostname[2 * (i - name) + 1] = static_cast<char>(further[i] & 0xFF);
   }

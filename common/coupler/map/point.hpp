@@ -31,6 +31,11 @@ struct HostOptions {
     latest,  ///< replaces one that is last in the queue
     every    ///< every value is sent, by itself
   };
+  /// Which writes go first of those that wait to be sent.
+  enum class Priority : std::uint8_t {
+    normal,
+    high  ///< before all that are normal
+  };
   /// After so long without a message the value is written.
   struct Deadman {
     std::chrono::milliseconds timeout{0};  ///< 0: none
@@ -48,6 +53,7 @@ struct HostOptions {
   std::uint32_t queue_size = 10;  ///< of the topic; its subscription to writes holds ten times as many
   WriteFunction write_function = WriteFunction::automatic;
   WriteQueue write_queue = WriteQueue::latest;
+  Priority priority = Priority::normal;
   bool verify_write = false;  ///< read back after a write
   Deadman deadman{};
 };
@@ -66,6 +72,10 @@ constexpr Enumeration<HostOptions::WriteFunction, 3> enumeration(HostOptions::Wr
 constexpr Enumeration<HostOptions::WriteQueue, 2> enumeration(HostOptions::WriteQueue) {
   using Queue = HostOptions::WriteQueue;
   return {"HostOptions::WriteQueue", {{Queue::latest, "latest"}, {Queue::every, "every"}}};
+}
+constexpr Enumeration<HostOptions::Priority, 2> enumeration(HostOptions::Priority) {
+  using Priority = HostOptions::Priority;
+  return {"HostOptions::Priority", {{Priority::normal, "normal"}, {Priority::high, "high"}}};
 }
 
 /// What the client may do with a point.

@@ -2,6 +2,7 @@
 #include "coupler/schema/schema.hpp"
 
 #include "coupler/base/version.hpp"
+#include "coupler/map/loader/names.hpp"
 #include "coupler/schema/value_schema.hpp"
 
 namespace coupler::schema {
@@ -27,7 +28,7 @@ Json points_of(Section section) {
   return or_nothing({{"propertyNames",
                       {{"pattern", ros_name},
                        {"patternErrorMessage", ros_name_rule},
-                       {"not", {{"enum", {"online", "status"}}}}}},
+                       {"not", {{"enum", loader::driver_topics}}}}},
                      {"additionalProperties", std::move(point)}});
 }
 

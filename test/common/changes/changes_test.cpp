@@ -111,6 +111,11 @@ TEST(Changes, What_makes_a_value_mean_something_else_is_of_meaning) {
               ElementsAre("meaning values-changed speed:  -> 5: five"));
 }
 
+TEST(Changes, How_the_host_writes_a_point_is_compatible) {
+  EXPECT_THAT(changes_by("units: rpm", "units: rpm, priority: high"),
+              ElementsAre("compatible write-changed speed: priority normal -> priority high"));
+}
+
 TEST(Changes, What_only_people_read_is_documentation) {
   EXPECT_THAT(changes_by("units: rpm", "units: rpm, description: of the belt"),
               ElementsAre("documentation description-changed speed:  -> of the belt"));

@@ -136,6 +136,13 @@ TEST(PointDescription, The_deadman_says_what_is_written_and_when) {
   EXPECT_EQ(describe(point, 0).rate, "2.5 Hz");
 }
 
+TEST(PointDescription, A_priority_is_named_where_it_is_not_the_usual_one) {
+  Point point = point_of(Type::INT);
+  EXPECT_EQ(describe(point, 0).priority, "");
+  point.host.priority = HostOptions::Priority::high;
+  EXPECT_EQ(describe(point, 0).priority, "high");
+}
+
 TEST(Words, A_duration_has_the_largest_unit_that_needs_no_fraction) {
   EXPECT_EQ(words(2s), "2 s");
   EXPECT_EQ(words(1500ms), "1500 ms");

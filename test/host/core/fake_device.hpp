@@ -31,6 +31,7 @@ class FakeDevice : public Transport {
   bool connected = false;
   std::vector<std::thread::id> senders;  ///< of writes
   std::function<bool()> await_read;      ///< what happens while a read waits for its turn; whether it gets it
+  std::function<void()> await_write;     ///< what happens while a write waits for its turn
   std::function<void()> during_read;     ///< what happens while a read waits for its answer
   bool refuse_send = false;              ///< it is somebody else's turn
   bool woken_by_call = false;            ///< how the last wait_until() ended
@@ -49,6 +50,9 @@ class FakeDevice : public Transport {
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
   Turn await_turn(Time, bool) override { return !await_read || await_read() ? Turn::read : Turn::none; }
+  void await_turn_to_write() override {
+    if (await_write) await_write();
+  }
   bool reserve() override { return !refuse_send; }
   Result<> send(const modbus::WriteRequest&) override;
   /// Requests take effect when their answer is fetched.

@@ -22,11 +22,22 @@ struct WriteQueueTest : testing::Test {
     builder.add(Table::holding_registers, "every", 20, Type::UINT,
                 [](Point& point) { point.host.write_queue = HostOptions::WriteQueue::every; });
     builder.add(Table::holding_registers, "flags", 21, Type::WORD);
+    const auto first = [](Point& point) { point.host.priority = HostOptions::Priority::high; };
+    for (std::uint16_t i = 0; i < 2; ++i) {
+      const std::string index = std::to_string(i);
+      builder.add(Table::coils, "high_coil" + index, static_cast<std::uint16_t>(10 + i), Type::BOOL, first);
+      builder.add(Table::holding_registers, "high" + index, static_cast<std::uint16_t>(30 + i), Type::UINT,
+                  first);
+    }
     return builder.build();
   }
-  static constexpr std::uint32_t number = 10;  ///< the first of ten
-  static constexpr std::uint32_t every = 20;
-  static constexpr std::uint32_t flags = 21;
+  static constexpr std::uint32_t high_coil = 10;  ///< the neighbour of coil 9
+  static constexpr std::uint32_t other_high_coil = 11;
+  static constexpr std::uint32_t number = 12;  ///< the first of ten
+  static constexpr std::uint32_t every = 22;
+  static constexpr std::uint32_t flags = 23;
+  static constexpr std::uint32_t high_number = 24;
+  static constexpr std::uint32_t other_high_number = 25;
 
   static Write write_of(std::uint32_t point, std::uint16_t value = 0) {
     Write write;
@@ -171,6 +182,84 @@ TEST_F(WriteQueueTest, A_point_that_comes_twice_is_not_in_one_request_twice) {
   push(4, 0);
   EXPECT_THAT(take(), ElementsAre(4, 5));
   EXPECT_THAT(take(), ElementsAre(4));
+}
+
+TEST_F(WriteQueueTest, Writes_of_high_priority_go_before_all_others_that_wait) {
+  push(3, 1);
+  push(number, 1);
+  push(service_of(number, 2));
+  push(high_number, 1);
+  push(high_coil, 1);
+  EXPECT_THAT(take_all(), ElementsAre(Value(high_number, 1), Value(high_coil, 1), Value(3, 1),
+                                      Value(number, 1), Value(number, 2)));
+  EXPECT_TRUE(queue.empty());
+}
+
+TEST_F(WriteQueueTest, Order_stays_within_each_priority) {
+  for (std::uint16_t i = 0; i < 3; ++i) {
+    push(3, i);
+    push(every, i);
+    push(high_coil, i % 2U);
+    push(service_of(high_number, i));
+  }
+  EXPECT_THAT(take_all(),
+              ElementsAre(Value(high_coil, 0), Value(high_number, 0), Value(high_coil, 1),
+                          Value(high_number, 1), Value(high_coil, 0), Value(high_number, 2), Value(3, 0),
+                          Value(every, 0), Value(3, 1), Value(every, 1), Value(3, 2), Value(every, 2)));
+}
+
+TEST_F(WriteQueueTest, A_number_gives_way_to_ordered_writes_of_its_own_priority_only) {
+  push(high_number, 1);
+  push(other_high_number, 1);
+  push(3, 1);
+  EXPECT_EQ(push(high_number, 2), 1) << "a coil of normal priority waits behind it anyway";
+  EXPECT_THAT(take_all(), ElementsAre(Value(high_number, 2), Value(other_high_number, 1), Value(3, 1)));
+  push(number, 1);
+  push(number + 1, 1);
+  push(high_coil, 1);
+  EXPECT_EQ(push(number, 2), 1);
+  EXPECT_THAT(take_all(), ElementsAre(Value(high_coil, 1), Value(number, 2), Value(number + 1, 1)));
+  push(high_number, 1);
+  push(high_coil, 1);
+  EXPECT_EQ(push(high_number, 2), 1);
+  EXPECT_THAT(take_all(), ElementsAre(Value(high_coil, 1), Value(high_number, 2)));
+}
+
+TEST_F(WriteQueueTest, A_queue_that_is_full_takes_writes_of_the_other_priority) {
+  for (std::uint32_t i = 0; i < WriteQueue::capacity; ++i) push(1, static_cast<std::uint16_t>(i));
+  EXPECT_FALSE(queue.push(write_of(5)).accepted);
+  for (std::uint32_t i = 0; i < WriteQueue::capacity; ++i) push(high_coil, static_cast<std::uint16_t>(i));
+  EXPECT_FALSE(queue.push(write_of(other_high_coil)).accepted);
+}
+
+TEST_F(WriteQueueTest, A_request_holds_writes_of_one_priority) {
+  for (const std::uint32_t point : {9U, 8U, high_coil, other_high_coil}) push(point, 1);
+  EXPECT_THAT(take(), ElementsAre(high_coil, other_high_coil));
+  EXPECT_THAT(take(), ElementsAre(9, 8));
+}
+
+TEST_F(WriteQueueTest, What_is_put_back_is_first_of_its_priority_and_overtaken_by_a_higher_one) {
+  for (const std::uint32_t point : {3U, 4U, 9U}) push(point, 1);
+  WriteBatch batch(owned->map());
+  queue.take(batch);
+  EXPECT_FALSE(queue.overtakes(batch.writes().front()));
+  push(high_coil, 1);
+  EXPECT_TRUE(queue.overtakes(batch.writes().front()));
+  queue.put_back(batch.writes());
+  EXPECT_THAT(take_all(), ElementsAre(Value(high_coil, 1), Value(3, 1), Value(4, 1), Value(9, 1)));
+  push(high_coil, 1);
+  EXPECT_FALSE(queue.overtakes(write_of(high_number)));
+}
+
+TEST_F(WriteQueueTest, Writes_to_some_points_are_taken_out_in_either_priority) {
+  std::uint16_t value = 0;
+  for (const std::uint32_t point : {3U, high_coil, high_number, 4U}) push(point, value++);
+  std::vector<bool> some(owned->map().points.size());
+  some[3] = some[high_number] = true;
+  std::vector<std::uint32_t> taken;
+  while (const auto write = queue.take_one_of(some)) taken.push_back(write->point);
+  EXPECT_THAT(taken, ElementsAre(high_number, 3));
+  EXPECT_THAT(take_all(), ElementsAre(Value(high_coil, 1), Value(4, 3)));
 }
 
 TEST_F(WriteQueueTest, A_value_is_on_its_way_from_push_to_result) {

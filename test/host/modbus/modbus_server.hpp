@@ -88,6 +88,8 @@ class ModbusServer {
   /// Ends the connection after so many requests, again and again; 0: never.
   std::atomic<int> hang_up_after{0};
   std::atomic<int> requests{0};  ///< so many have come
+  /// Called before a write is answered, with its address. To be set before the first connection.
+  std::function<void(int address)> on_write;
 
  private:
   bool answer(int fd) {
@@ -97,6 +99,8 @@ class ModbusServer {
     if (size < 0) return false;
     ++requests;
     if (hang_up_after > 0 && requests % hang_up_after == 0) return false;
+    if (size > 9 && on_write && (query[7] == 5 || query[7] == 6 || query[7] == 15 || query[7] == 16))
+      on_write(query[8] * 256 + query[9]);
     return size == 0 || modbus_reply(context_.get(), query.data(), size, tables_.get()) >= 0;
   }
 

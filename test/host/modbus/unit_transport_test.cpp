@@ -198,6 +198,32 @@ TEST_F(UnitTransportTest, A_read_that_waits_for_its_turn_makes_room_when_its_uni
   EXPECT_TRUE(read(3));
 }
 
+TEST_F(UnitTransportTest, Who_has_awaited_its_turn_to_write_is_the_next_to_write) {
+  connect_all();
+  const auto request = WriteRequest::register_value(1, 7);
+  ASSERT_TRUE(unit(1).send(request));
+  auto waiting = std::async(std::launch::async, [this] { unit(2).await_turn_to_write(); });
+  EXPECT_EQ(waiting.wait_for(milliseconds(20)), std::future_status::timeout);
+  EXPECT_TRUE(unit(1).receive(request));
+  waiting.get();
+  EXPECT_FALSE(unit(3).reserve());
+  ASSERT_TRUE(unit(2).send(request));
+  EXPECT_TRUE(unit(2).receive(request));
+  EXPECT_TRUE(read(3));
+}
+
+TEST_F(UnitTransportTest, An_interrupt_ends_the_wait_for_a_turn_to_write) {
+  connect_all();
+  const auto request = WriteRequest::register_value(1, 7);
+  ASSERT_TRUE(unit(1).send(request));
+  auto waiting = std::async(std::launch::async, [this] { unit(2).await_turn_to_write(); });
+  unit(2).interrupt();
+  waiting.get();
+  EXPECT_FALSE(unit(2).send(request));
+  EXPECT_TRUE(unit(1).receive(request));
+  EXPECT_TRUE(read(3));
+}
+
 TEST_F(UnitTransportTest, A_gateway_that_takes_no_connection_any_more_is_lost_for_all_at_once) {
   const test::LoopbackSocket listener;
   listener.listen(0);  // the kernel takes one connection that nobody accepts

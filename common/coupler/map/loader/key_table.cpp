@@ -213,6 +213,9 @@ constexpr Key keys[] = {
     project("write_queue", writing, K::choice, "every", "which of the waiting writes are sent")
         .otherwise("latest")
         .one_of<HostOptions::WriteQueue>(),
+    project("priority", writing, K::choice, "high", "whether its writes go before all others that wait")
+        .otherwise("normal")
+        .one_of<HostOptions::Priority>(),
     project("deadman", writing, K::section, "{timeout: 1s, value: 0}",
             "what is written when no message comes")
         .holds(S::deadman),

@@ -2,6 +2,7 @@
 #include "coupler/map/loader/names.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -42,7 +43,7 @@ void check_topic(const DraftPoint& draft, const FirstOfName& first, const Contex
   if (!is_relative_ros_name(name)) {
     context.problems.error(draft.name_at, fmt::format("{} is not a valid ROS name", shown(name)),
                            std::string(rule));
-  } else if (name == "online" || name == "status") {
+  } else if (is_driver_topic(name)) {
     context.problems.error(draft.name_at, fmt::format("'{}' is a topic of the driver itself", name),
                            "give the point another name");
   } else if (const DraftPoint* other = written_by(name, first)) {
@@ -56,6 +57,10 @@ void check_topic(const DraftPoint& draft, const FirstOfName& first, const Contex
 }
 
 }  // namespace
+
+bool is_driver_topic(std::string_view name) {
+  return std::find(std::begin(driver_topics), std::end(driver_topics), name) != std::end(driver_topics);
+}
 
 bool is_relative_ros_name(std::string_view name) {
   if (name.empty() || !is_letter(name.front()) || name.back() == '/') return false;

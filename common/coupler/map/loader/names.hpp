@@ -11,6 +11,10 @@ namespace coupler::loader {
 /// A relative ROS graph name: a letter, then letters, digits, '_' and single '/' that do not end it.
 bool is_relative_ros_name(std::string_view name);
 
+/// Topics of the driver itself, beside those of the points: no point may have such a name.
+constexpr std::string_view driver_topics[] = {"online", "status"};
+bool is_driver_topic(std::string_view name);
+
 /// The map's name is a namespace.
 void check_map_name(std::string_view name, Position at, const Context& context);
 

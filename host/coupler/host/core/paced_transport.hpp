@@ -32,6 +32,10 @@ class PacedTransport : public Transport {
     pause();  // before the turn, which others wait for
     return transport_.await_turn(until, write_waits);
   }
+  void await_turn_to_write() override {
+    pause();
+    transport_.await_turn_to_write();
+  }
   bool reserve() override { return transport_.reserve(); }
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;

@@ -51,7 +51,7 @@ class Transport {
   virtual Result<> read_file_record(std::uint16_t file, std::uint16_t record,
                                     Span<std::uint16_t> registers) = 0;
 
-  // For units that share a connection, and take turns.
+  // For units that share a connection, and take turns. A transport in front of another one hands these on.
 
   /// Sets the rank of the reads that follow, and of the writes if it is Rank::safe. Otherwise writes are
   /// Rank::write.
@@ -61,6 +61,9 @@ class Transport {
   /// request or another call must follow. Turn::none after wake(), or at `until`: something else may come
   /// before a read.
   virtual Turn await_turn(Time /*until*/, bool /*write_waits*/ = false) { return Turn::read; }
+  /// Waits until a send() would wait for nobody else's request, or would fail. It or another call must
+  /// follow.
+  virtual void await_turn_to_write() {}
   /// Whether a send() made now would wait for nobody else's request. If true, send() must follow.
   virtual bool reserve() { return true; }
 

@@ -25,6 +25,8 @@ bool sends_every_value(const Point& point) {
   return point.host.write_queue == HostOptions::WriteQueue::every;
 }
 
+bool goes_first(const Point& point) { return point.host.priority == HostOptions::Priority::high; }
+
 }  // namespace
 
 WriteQueue::WriteQueue(const Map& map) : map_(map), waiting_(map.points.size()) {}
@@ -39,19 +41,24 @@ bool WriteQueue::joins(const Write& newer, const Write& older) const {
          newer.registers == older.registers;
 }
 
+WriteQueue::Class& WriteQueue::class_of(const Write& write) {
+  return goes_first(map_.points[write.point]) ? high_ : normal_;
+}
+
 WriteQueue::Pushed WriteQueue::push(const Write& write) {
   const std::lock_guard lock(mutex_);
+  Class& own = class_of(write);
   Waiting& waiting = waiting_[write.point];
   const bool ordered = is_ordered(write);
   const Index older = ordered ? waiting.ordered : waiting.number;
   if (older != none) {
     Place& place = places_[older];
-    if (ordered ? joins(write, place.write) : place.number > last_ordered_)
+    if (ordered ? joins(write, place.write) : place.number > own.last_ordered)
       return {true, std::exchange(place.write, write)};
   }
   Pushed pushed;
   if (ordered) {
-    if (ordered_ >= capacity) return {false, {}};
+    if (own.ordered >= capacity) return {false, {}};
   } else if (older != none) {
     pushed.superseded = remove(older);
     --waiting.pending;
@@ -59,7 +66,7 @@ WriteQueue::Pushed WriteQueue::push(const Write& write) {
   }
   const Index place = insert(write, ordered, none);
   if (ordered) {
-    last_ordered_ = places_[place].number;
+    own.last_ordered = places_[place].number;
     waiting.ordered = place;
   } else {
     waiting.number = place;
@@ -71,25 +78,32 @@ WriteQueue::Pushed WriteQueue::push(const Write& write) {
 
 void WriteQueue::take(WriteBatch& batch, bool merge) {
   const std::lock_guard lock(mutex_);
-  while (first_ != none && (merge || batch.empty()) && batch.add(places_[first_].write)) remove(first_);
+  Index& first = high_.first != none ? high_.first : normal_.first;
+  while (first != none && (merge || batch.empty()) && batch.add(places_[first].write)) remove(first);
 }
 
 std::optional<Write> WriteQueue::take() {
   const std::lock_guard lock(mutex_);
-  if (first_ == none) return std::nullopt;
-  return remove(first_);
+  if (first() == none) return std::nullopt;
+  return remove(first());
 }
 
 std::optional<Write> WriteQueue::take_one_of(const std::vector<bool>& points) {
   const std::lock_guard lock(mutex_);
-  for (Index place = first_; place != none; place = places_[place].behind)
+  for (Index place = first(); place != none; place = next(place))
     if (points[places_[place].write.point]) return remove(place);
   return std::nullopt;
 }
 
 void WriteQueue::put_back(const std::vector<Write>& writes) {
   const std::lock_guard lock(mutex_);
-  for (auto write = writes.rbegin(); write != writes.rend(); ++write) insert(*write, true, first_);
+  for (auto write = writes.rbegin(); write != writes.rend(); ++write)
+    insert(*write, true, class_of(*write).first);
+}
+
+bool WriteQueue::overtakes(const Write& taken) const {
+  const std::lock_guard lock(mutex_);
+  return high_.first != none && !goes_first(map_.points[taken.point]);
 }
 
 void WriteQueue::settled(std::uint32_t point) {
@@ -103,7 +117,12 @@ bool WriteQueue::is_pending(std::uint32_t point) const {
   return waiting_[point].pending != 0;
 }
 
-/// Before the place `behind`, or at the end if that is none.
+/// That behind it, in its class or in the next one.
+WriteQueue::Index WriteQueue::next(Index place) const {
+  return place == high_.last ? normal_.first : places_[place].behind;
+}
+
+/// Before the place `behind`, or at the end of its class if that is none.
 WriteQueue::Index WriteQueue::insert(const Write& write, bool ordered, Index behind) {
   if (free_.empty()) {
     const std::size_t size = places_.size();
@@ -112,20 +131,22 @@ WriteQueue::Index WriteQueue::insert(const Write& write, bool ordered, Index beh
   }
   const Index at = free_.back();
   free_.pop_back();
-  const Index before = behind == none ? last_ : places_[behind].before;
+  Class& own = class_of(write);
+  const Index before = behind == none ? own.last : places_[behind].before;
   places_[at] = {write, ordered, ++numbered_, before, behind};
-  (before == none ? first_ : places_[before].behind) = at;
-  (behind == none ? last_ : places_[behind].before) = at;
-  ordered_ += ordered ? 1 : 0;
+  (before == none ? own.first : places_[before].behind) = at;
+  (behind == none ? own.last : places_[behind].before) = at;
+  own.ordered += ordered ? 1 : 0;
   ++size_now_;
   return at;
 }
 
 Write WriteQueue::remove(Index at) {
   const Place& place = places_[at];
-  (place.before == none ? first_ : places_[place.before].behind) = place.behind;
-  (place.behind == none ? last_ : places_[place.behind].before) = place.before;
-  ordered_ -= place.ordered ? 1 : 0;
+  Class& own = class_of(place.write);
+  (place.before == none ? own.first : places_[place.before].behind) = place.behind;
+  (place.behind == none ? own.last : places_[place.behind].before) = place.before;
+  own.ordered -= place.ordered ? 1 : 0;
   --size_now_;
   Waiting& waiting = waiting_[place.write.point];
   if (waiting.number == at) waiting.number = none;

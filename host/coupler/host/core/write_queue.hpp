@@ -12,7 +12,9 @@
 
 namespace coupler::host {
 
-/// The writes that wait to be sent.
+/// The writes that wait to be sent: first those to points of `priority: high`, then the others. What follows
+/// holds in each of these two classes by itself. All writes to a point are in its class, whoever makes them,
+/// so that an older value never comes after a newer one.
 ///
 /// A *number* has one waiting place. A newer value takes it, or goes to the end if an ordered write has been
 /// queued meanwhile: a number never overtakes an ordered write that was made before it.
@@ -25,7 +27,7 @@ namespace coupler::host {
 /// while it grows.
 class WriteQueue {
  public:
-  static constexpr std::size_t capacity = 1024;  ///< of ordered writes
+  static constexpr std::size_t capacity = 1024;  ///< of ordered writes of a class
 
   /// The map must outlive the queue.
   explicit WriteQueue(const Map& map);
@@ -36,14 +38,16 @@ class WriteQueue {
   };
   Pushed push(const Write& write);
 
-  /// Moves the first write, and those behind it that go into the same request, to the empty `batch`; only the
-  /// first if not `merge`.
+  /// Moves the first write, and those of its class behind it that go into the same request, to the empty
+  /// `batch`; only the first if not `merge`.
   void take(WriteBatch& batch, bool merge = true);
   std::optional<Write> take();
   /// Takes the first write to one of the points (by index, as long as the map's).
   std::optional<Write> take_one_of(const std::vector<bool>& points);
-  /// Puts writes that were taken and not sent back to the front, in their order.
+  /// Puts writes that were taken and not sent back to the front of their class, in their order.
   void put_back(const std::vector<Write>& writes);
+  /// A write waits that goes before `taken`, which was taken and not sent.
+  bool overtakes(const Write& taken) const;
   bool empty() const { return size_now_.load(std::memory_order_relaxed) == 0; }
 
   /// A write from take() has its result.
@@ -70,8 +74,19 @@ class WriteQueue {
     std::uint16_t pending = 0;
   };
 
+  /// A class: the writes of one priority, as a list through their places.
+  struct Class {
+    Index first = none;
+    Index last = none;
+    std::size_t ordered = 0;         ///< how many
+    std::uint64_t last_ordered = 0;  ///< Place::number of the last that was queued
+  };
+
   bool is_ordered(const Write& write) const;
   bool joins(const Write& newer, const Write& older) const;
+  Class& class_of(const Write& write);
+  Index first() const { return high_.first != none ? high_.first : normal_.first; }
+  Index next(Index place) const;
   Index insert(const Write& write, bool ordered, Index behind);
   Write remove(Index place);
 
@@ -79,10 +94,8 @@ class WriteQueue {
   mutable std::mutex mutex_;
   std::vector<Place> places_;
   std::vector<Index> free_;
-  Index first_ = none;
-  Index last_ = none;
-  std::size_t ordered_ = 0;         ///< how many
-  std::uint64_t last_ordered_ = 0;  ///< Place::number of the last that was queued
+  Class high_;
+  Class normal_;
   std::uint64_t numbered_ = 0;
   std::vector<Waiting> waiting_;  ///< by point
   std::atomic<std::size_t> pending_writes_{0};

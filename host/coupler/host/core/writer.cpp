@@ -97,9 +97,18 @@ Result<> Writer::step() {
   if (sent_) return finish(transport_.receive(*sent_));
   if (is_safe_asked()) return make_safe();
   fire_deadmen();
-  if (batch_.empty()) queue_.take(batch_, merges_);
-  if (batch_.empty()) return {};
+  if (batch_.empty() && queue_.empty()) return {};
+  transport_.await_turn_to_write();  // first, since a write that goes before all others may come meanwhile
+  choose_next();
   return finish(exchange(batch_, map_, transport_));
+}
+
+void Writer::choose_next() {
+  if (!batch_.empty() && queue_.overtakes(batch_.writes().front())) {
+    queue_.put_back(batch_.writes());
+    batch_.clear();
+  }
+  if (batch_.empty()) queue_.take(batch_, merges_);
 }
 
 Result<> Writer::finish(const Result<>& answer) {

@@ -76,6 +76,7 @@ class Writer {
 
  private:
   void fire_deadmen();
+  void choose_next();
   Result<> finish(const Result<>& answer);
   Result<> finish_one(const Write& write, const Result<>& answer);
   Result<> verify(const Write& write);

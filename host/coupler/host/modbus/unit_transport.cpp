@@ -151,15 +151,22 @@ Transport::Turn UnitTransport::await_turn(Time until, bool write_waits) {
   return interrupted_.is_set() || is_lost() ? Turn::read : Turn::none;  // the read fails, with the reason
 }
 
+void UnitTransport::await_turn_to_write() {
+  if (has_turn_) return;
+  const auto give_up = [this] { return interrupted_.is_set() || is_lost(); };
+  has_turn_ = shared_->turns.take(this, {Rank::write}, Time::max(), give_up).has_value();
+}
+
 bool UnitTransport::reserve() {
   if (!shared_->turns.try_take(this)) return false;
   has_turn_ = connected_ && !is_lost() && shared_->open && std::chrono::steady_clock::now() >= ready();
   if (!has_turn_) release();
+  reserved_ = has_turn_;
   return has_turn_;
 }
 
 Result<> UnitTransport::send(const modbus::WriteRequest& request) {
-  const bool reserved = has_turn_;
+  const bool reserved = std::exchange(reserved_, false);
   if (auto taken = take(Rank::write); !taken) return taken;
   if (auto prepared = prepare(); !prepared) {
     release();

@@ -45,6 +45,7 @@ class UnitTransport : public Transport {
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
   void rank(Rank rank) override;
   Turn await_turn(Time until, bool write_waits = false) override;
+  void await_turn_to_write() override;
   bool reserve() override;
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;
@@ -74,6 +75,7 @@ class UnitTransport : public Transport {
   bool connected_ = false;
   std::uint64_t ended_ = 0;  ///< SharedConnection::ended when it connected
   bool has_turn_ = false;    ///< for the request that follows
+  bool reserved_ = false;    ///< by reserve()
   bool in_flight_ = false;   ///< it has the turn until receive()
 };
 

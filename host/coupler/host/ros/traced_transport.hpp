@@ -50,6 +50,7 @@ class TracedTransport : public Transport {
   Turn await_turn(Time until, bool write_waits = false) override {
     return transport_->await_turn(until, write_waits);
   }
+  void await_turn_to_write() override { transport_->await_turn_to_write(); }
   bool reserve() override { return transport_->reserve(); }
   Result<> send(const modbus::WriteRequest& request) override {
     write_sent_ = now();

@@ -120,7 +120,7 @@ tl::expected<KnownValue, std::string> parse_known_value(std::string_view text) {
   if (const auto equals = text.find('='); equals != std::string_view::npos) {
     known.name = text.substr(0, equals);
     number = text.substr(equals + 1);
-    if (!loader::is_relative_ros_name(known.name) || known.name == "online" || known.name == "status")
+    if (!loader::is_relative_ros_name(known.name) || loader::is_driver_topic(known.name))
       return tl::make_unexpected(fmt::format(
           "'{}' cannot be a point's name; write a letter, then letters, digits and '_'", known.name));
   }

@@ -77,8 +77,8 @@ TEST(HostOptions, A_point_has_its_own) {
   const OnePoint point(
       "holding_registers",
       "{address: 0, type: INT, rate: 2, publish: on_change, deadband: 0.5, max_interval: 3s, "
-      "latch: true, queue_size: 4, write_function: multiple, write_queue: every, verify_write: "
-      "true, deadman: {timeout: 250ms, value: 7}, read_address: 512}");
+      "latch: true, queue_size: 4, write_function: multiple, write_queue: every, priority: high, "
+      "verify_write: true, deadman: {timeout: 250ms, value: 7}, read_address: 512}");
   const HostOptions& host = point->host;
   EXPECT_EQ(host.rate, 2);
   EXPECT_EQ(host.publish, HostOptions::Publish::on_change);
@@ -88,6 +88,7 @@ TEST(HostOptions, A_point_has_its_own) {
   EXPECT_EQ(host.queue_size, 4U);
   EXPECT_EQ(host.write_function, HostOptions::WriteFunction::multiple);
   EXPECT_EQ(host.write_queue, HostOptions::WriteQueue::every);
+  EXPECT_EQ(host.priority, HostOptions::Priority::high);
   EXPECT_TRUE(host.verify_write);
   EXPECT_EQ(host.deadman.timeout, 250ms);
   EXPECT_EQ(words(host.deadman.value), Words{7});
@@ -115,6 +116,16 @@ TEST(HostOptions, A_default_that_a_point_cannot_have_is_not_its_own) {
             HostOptions::WriteFunction::automatic);
   EXPECT_EQ(words(OnePoint("holding_registers", "{address: 0, type: DINT}", defaults)->host.deadman.value),
             (Words{0, 0}));
+}
+
+TEST(HostOptions, A_priority_of_all_points_is_for_those_that_are_written) {
+  using Priority = HostOptions::Priority;
+  const std::string defaults = "defaults: {priority: high}";
+  EXPECT_EQ(OnePoint("coils", "0", defaults)->host.priority, Priority::high);
+  EXPECT_EQ(OnePoint("coils", "{address: 0, access: write}", defaults)->host.priority, Priority::high);
+  EXPECT_EQ(OnePoint("coils", "{address: 0, priority: normal}", defaults)->host.priority, Priority::normal);
+  EXPECT_EQ(OnePoint("coils", "{address: 0, access: read}", defaults)->host.priority, Priority::normal);
+  EXPECT_EQ(OnePoint("discrete_inputs", "0", defaults)->host.priority, Priority::normal);
 }
 
 TEST(HostOptions, What_is_only_written_is_not_read_back) {
