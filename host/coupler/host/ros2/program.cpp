@@ -146,8 +146,8 @@ int main_with(const Map* built_in, int argc, char** argv) {
       print_message(error.what());
       return wrong_input;
     }
-    print_message(fmt::format(
-        "{}; put a value that is not valid YAML into quotes, as in -p address:=\"'[::1]'\"", error.what()));
+    const std::string_view remedy = remedy_of(error.what());
+    print_message(fmt::format("{}{}{}", error.what(), remedy.empty() ? "" : "; ", remedy));
     return wrong_call;
   }
 }
