@@ -33,7 +33,7 @@ tl::expected<bool, std::string> wants_sim_time(const std::vector<GivenParameter>
   bool wanted = false;
   for (const GivenParameter& one : parameters) {
     if (one.name != "use_sim_time") continue;
-    if (one.kind != GivenParameter::Kind::boolean)
+    if (one.text != "true" && one.text != "false")  // in quotes, too, as a launch file may pass it
       return tl::make_unexpected(fmt::format("parameter use_sim_time: '{}' is not true or false", one.text));
     wanted = one.text == "true";
   }
