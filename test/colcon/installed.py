@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What `colcon build` has installed: it is in ament's index, can be imported, and works.  installed.py PREFIX"""
+"""What `colcon build` or `cmake --install` has installed: it is in ament's index, can be imported, and works.  installed.py PREFIX"""
 import os
 import re
 import subprocess

@@ -220,7 +220,7 @@ class FaultMatrix(testing.RosTest):
         for unit, level in levels.items():
             self.level_follows(level, 10 + unit)
         away = self.topic("/unit2/online", Bool)
-        self.assertFalse(away.next())
+        away.wait_for(lambda online: not online)
 
         def asked(unit):
             return len([request for request in self.device.requests if request.unit == unit])

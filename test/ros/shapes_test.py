@@ -92,7 +92,7 @@ class Shapes(testing.RosTest):
         self.reads(25)
         self.assertEqual(level.values, [1, 2], "25 reads with nothing new")
         self.assertNotIn(5, raw.values, "within the deadband")
-        self.assertEqual(self.topic("/shapes/kept", UInt16, latched=True).next(), 0)
+        self.assertEqual(self.topic("/shapes/kept", UInt16, latched=True).wait_for(lambda _: True), 0)
 
     def test_after_a_reconnect_the_same_value_is_news(self):
         level = self.topic("/shapes/level", UInt16)

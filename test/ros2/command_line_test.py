@@ -86,8 +86,28 @@ class Wrong(CallTest):
                 self.assertIn(driver.wait(), (1, 2), driver.output)
                 self.assertTrue(driver.output.strip())
 
+    def test_what_ros_2_refuses_is_told_with_the_remedy_for_that(self):
+        other_file = process.write_map("called_driver:\n  rate: 5\n")
+        quotes = "put a value that is not valid YAML into quotes"
+        for arguments, remedy in ((("-p", "rate=5"), "; write it as -p NAME:=VALUE"), (("-p", "rate:=[1"), f"; {quotes}"),
+                                  (("--params-file", "/nowhere.yaml"), "/nowhere.yaml'. Error: Error opening YAML file; give the path"),
+                                  (("--params-file", other_file), "; the file is YAML, as in /press_driver: {ros__parameters: "),
+                                  (("-r", "__node:=bad-name"), "; write it as -r FROM:=TO"), (("-r", "__ns:=cell"), "or -r __ns:=/cell"),
+                                  (("--log-level", "loud"), "; the levels are debug, info, warn, error and fatal")):
+            with self.subTest(arguments):
+                driver = process.Process("coupler_driver", "--map", self.map, "--ros-args", *arguments)
+                self.assertEqual(driver.wait(), 2, driver.output)
+                self.assertIn(remedy, driver.output)
+                self.assertEqual(quotes in driver.output, quotes in remedy, driver.output)
+
+    def test_a_middleware_that_is_not_there_is_named(self):
+        driver = process.Process("coupler_driver", "--map", self.map, environment={**os.environ, "RMW_IMPLEMENTATION": "rmw_nowhere_cpp"})
+        self.assertNotEqual(driver.wait(), 0)
+        self.assertIn("rmw_nowhere_cpp", driver.output)
+
     def test_ros_2s_arguments_without_ros_args_are_told_where_they_belong(self):
-        for arguments in (("-p", "rate:=5"), ("-r", "__ns:=/cell"), ("--params-file", "x.yaml"), ("--log-level", "debug")):
+        for arguments in (("-p", "rate:=5"), ("-r", "__ns:=/cell"), ("--params-file", "x.yaml"), ("--log-level", "debug"), ("--enclave", "/cell"),
+                          ("--disable-rosout-logs",)):
             self.assert_ends(2, "--ros-args", "--map", self.map, *arguments)
 
     def test_a_wrong_call_ends_with_2_and_says_why(self):

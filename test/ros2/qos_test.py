@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Two ends whose policies do not fit are silent in ROS 2: the driver says so, once for a topic, with what to do."""
-from rcl_interfaces.msg import Log
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import Log, ParameterEvent
 from std_msgs.msg import Bool, UInt16
 
 from support import process, testing
@@ -64,6 +65,11 @@ class Qos(testing.RosTest):
         self.warning("fits/level", "durability")
         self.assertEqual(level.values, [])
         self.assertEqual(self.subscriber("/fits/level", UInt16).next(), 0, "others are served")
+
+    def test_a_transient_local_subscriber_of_what_every_node_publishes_is_told_of_durability(self):
+        for name, kind in (("/diagnostics", DiagnosticArray), ("/parameter_events", ParameterEvent)):
+            self.subscriber(name, kind, latched=True)
+            self.warning(name, "durability", "volatile")
 
     def test_a_best_effort_publisher_of_writes_is_told_of_reliability(self):
         unreliable = self.writer("/fits/lamp/write", best_effort=True)

@@ -39,8 +39,8 @@ class OneProcess(SeveralTest):
         level = self.topic("/belt/level", Int16)
         # The dead one's first request is waited for longer than this is.
         wait_until(lambda: len(level.values) > 40, "two seconds of values")
-        self.assertFalse(self.topic("/dead/online", Bool).next())
-        self.assertFalse(self.topic("/away/online", Bool).next())
+        self.topic("/dead/online", Bool).wait_for(lambda online: not online)
+        self.topic("/away/online", Bool).wait_for(lambda online: not online)
         self.assertFalse(self.service("/away/write", Write)("level", "1").success)
         self.assertTrue(self.service("/belt/write", Write)("level", "23").success)
 

@@ -61,6 +61,10 @@ class Spellings(testing.RosTest):
         self.assert_taken("rate", "'50'", 50.0)
         self.assert_taken("port", f"'{self.peer.port}'", self.peer.port)
 
+    def test_a_truth_value_in_quotes_is_that_value(self):
+        self.assert_taken("use_sim_time", "'false'", False)
+        self.assert_refused("use_sim_time", "1", "use_sim_time: '1' is not true or false")
+
     def test_a_word_in_quotes_is_the_word(self):
         self.assert_taken("verify", "'warn'", "warn")
         self.assert_taken("poll", '"all"', "all")

@@ -46,7 +46,11 @@ TEST(Arguments, ROS_1s_spelling_is_a_wrong_call_told_with_that_of_ROS_2) {
 }
 
 TEST(Arguments, ROSs_own_without_ros_args_are_told_where_they_belong) {
-  EXPECT_THAT(parse({"-p", "rate:=5"}).text, HasSubstr("come after --ros-args"));
+  for (const char* argument : {"-p", "--remap", "-e", "--enclave", "--params-file", "--log-config-file"})
+    EXPECT_EQ(parse({argument, "what:=ever"}).text,
+              std::string(argument) + ": arguments of ROS 2 come after --ros-args\n");
+  EXPECT_EQ(parse({"--disable-rosout-logs", "--map", "a.yaml"}).text,
+            "--disable-rosout-logs: arguments of ROS 2 come after --ros-args\n");
 }
 
 TEST(Arguments, A_misspelt_option_is_a_wrong_call) {

@@ -2,6 +2,7 @@
 #include "coupler/host/ros2/arguments.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -38,14 +39,22 @@ std::string in_ros2(std::string_view assignment) {
   return "-p " + parameter;
 }
 
-bool is_ROSs_own(std::string_view argument) {
-  return argument == "-p" || argument == "--param" || argument == "-r" || argument == "--remap" ||
-         argument == "--params-file" || argument == "--log-level";
+/// ROS 2's own arguments, apart from those that are whole in one word.
+constexpr std::array<std::string_view, 10> with_a_value{
+    "-p",        "--param",       "-r",          "--remap",           "-e",
+    "--enclave", "--params-file", "--log-level", "--log-config-file", "--log-file-name"};
+constexpr std::array<std::string_view, 6> without_a_value{
+    "--enable-rosout-logs",  "--disable-rosout-logs",      "--enable-stdout-logs",
+    "--disable-stdout-logs", "--enable-external-lib-logs", "--disable-external-lib-logs"};
+
+template <class Words>
+bool is_among(const Words& words, std::string_view argument) {
+  return std::find(words.begin(), words.end(), argument) != words.end();
 }
 
-bool is_ROS1s(std::string_view argument) {
-  return argument.find(":=") != std::string_view::npos && !starts_with(argument, "-");
-}
+bool has(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+
+bool is_ROS1s(std::string_view argument) { return has(argument, ":=") && !starts_with(argument, "-"); }
 
 }  // namespace
 
@@ -72,9 +81,9 @@ Arguments parse_arguments(Span<char* const> arguments) {
       is_for_ros = argument != "--";
       result.for_ros.emplace_back(argument);
       result.names_the_node |= starts_with(argument, "__node:=") || starts_with(argument, "__name:=");
-    } else if (is_ROSs_own(argument)) {
+    } else if (is_among(with_a_value, argument) || is_among(without_a_value, argument)) {
       wrong += fmt::format("{}: arguments of ROS 2 come after --ros-args\n", argument);
-      follows_misplaced = true;
+      follows_misplaced = is_among(with_a_value, argument);
     } else if (is_ROS1s(argument)) {
       wrong += fmt::format("{}: that is ROS 1's spelling; in ROS 2 write --ros-args {}\n", argument,
                            in_ros2(argument));
@@ -89,6 +98,24 @@ Arguments parse_arguments(Span<char* const> arguments) {
   }
   static_cast<Options&>(result) = parse_options(std::move(options), ros2_dialect);
   return result;
+}
+
+std::string_view remedy_of(std::string_view refusal) {
+  if (has(refusal, "parameter override rule")) {
+    if (!has(refusal, ":=")) return "write it as -p NAME:=VALUE, as in -p rate:=20";
+    return "put a value that is not valid YAML into quotes, as in -p address:=\"'[::1]'\"";
+  }
+  if (has(refusal, "Error opening")) return "give the path of a file that can be read";
+  if (has(refusal, "params file"))
+    return "the file is YAML, as in /press_driver: {ros__parameters: {address: '[::1]'}}, with such quotes "
+           "around "
+           "a value that is not valid YAML";
+  if (has(refusal, "remap rule"))
+    return "write it as -r FROM:=TO, as in -r __node:=press_driver or -r __ns:=/cell; names have letters, "
+           "digits "
+           "and '_'";
+  if (has(refusal, "log level")) return "the levels are debug, info, warn, error and fatal";
+  return {};
 }
 
 }  // namespace coupler::host

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "coupler/base/span.hpp"
@@ -19,5 +20,9 @@ struct Arguments : Options {
 /// `--key VALUE`, and what is between `--ros-args` and `--` or the end. ROS 1's spelling is a wrong call: the
 /// text shows ROS 2's. `arguments[0]` is the program.
 Arguments parse_arguments(Span<char* const> arguments);
+
+/// What to do where rcl refuses arguments with this text, whose last part may be about characters ("lexeme
+/// type 19"); empty where the text says it.
+std::string_view remedy_of(std::string_view refusal);
 
 }  // namespace coupler::host

@@ -75,9 +75,9 @@ Ros2Node::Ros2Node(rcl::Context& context, const std::string& name)
       shows_debug_(rcutils_logging_logger_is_enabled_for(rcl_node_get_logger_name(node_.get()),
                                                          RCUTILS_LOG_SEVERITY_DEBUG)),
       clock_(node_),
-      parameters_(std::make_unique<ParameterServer>(node_, clock_)),
+      parameters_(std::make_unique<ParameterServer>(node_, clock_, warn_subscriber(false))),
       type_descriptions_(rcl::offer_type_descriptions(node_)),
-      diagnostics_(node_, "/diagnostics", rcl::reliable(diagnostics_depth)) {
+      diagnostics_(node_, "/diagnostics", rcl::reliable(diagnostics_depth), {{}, warn_subscriber(false)}) {
   node_.inbox().start();
 }
 

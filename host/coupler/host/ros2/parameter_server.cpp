@@ -29,8 +29,10 @@ bool is_listed(const std::string& name, const std::vector<std::string>& prefixes
 
 }  // namespace
 
-ParameterServer::ParameterServer(rcl::Node& node, const MessageClock& clock)
-    : node_(node), clock_(clock), events_(node, "/parameter_events", rcl::reliable(events_depth)) {
+ParameterServer::ParameterServer(rcl::Node& node, const MessageClock& clock, rcl::OnIncompatible incompatible)
+    : node_(node),
+      clock_(clock),
+      events_(node, "/parameter_events", rcl::reliable(events_depth), {{}, std::move(incompatible)}) {
   offer<Describe>("describe_parameters", &ParameterServer::describe);
   offer<Types>("get_parameter_types", &ParameterServer::types);
   offer<Get>("get_parameters", &ParameterServer::get);

@@ -32,8 +32,8 @@ class ParameterServer {
   using Value = rcl_interfaces::msg::ParameterValue;
   using Descriptor = rcl_interfaces::msg::ParameterDescriptor;
 
-  /// Throws rcl::Error.
-  ParameterServer(rcl::Node& node, const MessageClock& clock);
+  /// `incompatible` is for subscribers of /parameter_events. Throws rcl::Error.
+  ParameterServer(rcl::Node& node, const MessageClock& clock, rcl::OnIncompatible incompatible);
 
   /// The descriptor has the name and the type; a value without a type is not set. To be called again when the
   /// value has changed. `change` is called in the inbox's thread.

@@ -33,7 +33,7 @@ tl::expected<bool, std::string> wants_sim_time(const std::vector<GivenParameter>
   bool wanted = false;
   for (const GivenParameter& one : parameters) {
     if (one.name != "use_sim_time") continue;
-    if (one.kind != GivenParameter::Kind::boolean)
+    if (one.text != "true" && one.text != "false")  // in quotes, too, as a launch file may pass it
       return tl::make_unexpected(fmt::format("parameter use_sim_time: '{}' is not true or false", one.text));
     wanted = one.text == "true";
   }
@@ -146,8 +146,8 @@ int main_with(const Map* built_in, int argc, char** argv) {
       print_message(error.what());
       return wrong_input;
     }
-    print_message(fmt::format(
-        "{}; put a value that is not valid YAML into quotes, as in -p address:=\"'[::1]'\"", error.what()));
+    const std::string_view remedy = remedy_of(error.what());
+    print_message(fmt::format("{}{}{}", error.what(), remedy.empty() ? "" : "; ", remedy));
     return wrong_call;
   }
 }
