@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "coupler/codec/format.hpp"
+#include "coupler/codec/type_name.hpp"
 
 namespace coupler::fakes {
 namespace {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 #include "coupler/base/enumeration.hpp"
@@ -74,19 +73,6 @@ constexpr unsigned width(Type type) {
     case Type::STRING: return 0;
   }
   return 0;
-}
-
-/// The type of that name, in any case ("uint", "UINT").
-constexpr std::optional<Type> parse_type(std::string_view name) {
-  const auto is = [name](std::string_view upper) {
-    bool same = name.size() == upper.size();
-    for (std::size_t i = 0; same && i < name.size(); ++i)
-      same = name[i] == upper[i] || (upper[i] >= 'A' && upper[i] <= 'Z' && name[i] == upper[i] - 'A' + 'a');
-    return same;
-  };
-  for (const Word<Type>& each : enumeration_of<Type>.words)
-    if (is(each.word)) return each.value;
-  return std::nullopt;
 }
 
 /// Where the bytes of a value stand in its registers. A is the most significant byte.

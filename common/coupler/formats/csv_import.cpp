@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/codec/type_name.hpp"
 #include "coupler/formats/csv.hpp"
 #include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/document.hpp"
@@ -54,12 +55,19 @@ std::vector<Column> read_header(const Row& header, Problems& problems) {
     column.described = loader::find_key(column.key, any_point);
     if (column.described == nullptr && column.key != "table" && column.key != "name" &&
         column.key != "unit" && !column.key.empty()) {
-      const std::string_view near = loader::nearest(column.key, column_names());
-      problems.warning(
-          cell.at,
-          fmt::format("the column {} is not carried over: a point has no such key", shown(cell.text)),
-          near.empty() ? "see docs/import-export.md for the columns"
-                       : fmt::format("did you mean '{}'?", near));
+      const auto names = column_names();
+      const std::string_view near = loader::nearest(column.key, names);
+      const bool slip = std::any_of(names.begin(), names.end(),
+                                    [&](const auto name) { return loader::is_slip(column.key, name); });
+      if (slip)
+        problems.error(cell.at, fmt::format("a point has no key {}", shown(cell.text)),
+                       fmt::format("did you mean '{}'? If not, give the column another heading", near));
+      else
+        problems.warning(
+            cell.at,
+            fmt::format("the column {} is not carried over: a point has no such key", shown(cell.text)),
+            near.empty() ? "see docs/import-export.md for the columns"
+                         : fmt::format("did you mean '{}'?", near));
       column.key.clear();
     }
     columns.push_back(std::move(column));
@@ -149,14 +157,15 @@ class RowReader {
 
   bool is_string(const Row& row) const {
     const Cell* type = cell(row, "type");
-    return type != nullptr && loader::lower(type->text) == "string";
+    return type != nullptr && codec::parse_type(type->text) == codec::Type::STRING;
   }
 
   void add(const Column& column, const Cell& given, const Row& row, Table table, Entry& point) {
     const loader::Key* own = loader::find_key(column.key, loader::section_of(table));
     const loader::Key& key = own != nullptr ? *own : *column.described;
     // A coil's type is BOOL whether it is said or not.
-    if (column.key == "type" && holds_bits(table) && loader::lower(given.text) == "bool") return;
+    if (column.key == "type" && holds_bits(table) && codec::parse_type(given.text) == codec::Type::BOOL)
+      return;
     const bool text = (key.kind == ValueKind::text && key.inside == Section::none) ||
                       (key.kind == ValueKind::value && is_string(row));
     if (!text) {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/codec/type_name.hpp"
 #include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/map_reader.hpp"
 #include "coupler/map/loader/names.hpp"
@@ -77,6 +78,16 @@ void mend_point_names(Entry& map, Problems& problems) {
       for (Entry& point : entry->children) names.mend(point);
 }
 
+/// A map that is written has the types' names of IEC 61131-3.
+void spell_types(Entry& map) {
+  Entry* mapping = find(map, "mapping");
+  if (mapping == nullptr) return;
+  for (Entry& table : mapping->children)
+    for (Entry& point : table.children)
+      if (Entry* given = find(point, "type"); given != nullptr && given->kind == Entry::Kind::scalar)
+        if (const auto type = codec::parse_type(given->text)) given->text = to_string(*type);
+}
+
 std::string_view base_name(std::string_view path) { return path.substr(path.rfind('/') + 1); }
 
 /// "Line 4.csv" -> "Line_4"
@@ -119,6 +130,27 @@ void check_units(const std::vector<ForeignUnit>& units, Problems& problems) {
     if (std::any_of(units.begin(), unit, [&](const ForeignUnit& other) { return other.unit == unit->unit; }))
       problems.error(unit->map.at, fmt::format("unit {} is there twice", unit->unit.value_or(0)),
                      "give every unit a number of its own");
+}
+
+bool has_points(const Entry& map) {
+  const Entry* mapping = find(map, "mapping");
+  return mapping != nullptr && std::any_of(mapping->children.begin(), mapping->children.end(),
+                                           [](const Entry& table) { return !table.children.empty(); });
+}
+
+/// Of several; one alone without points is an error of its map.
+void leave_out_empty_units(std::vector<ForeignUnit>& units, Problems& problems) {
+  const bool any =
+      std::any_of(units.begin(), units.end(), [](const auto& unit) { return has_points(unit.map); });
+  if (!any) return;
+  const auto is_empty = [&](const ForeignUnit& unit) {
+    if (has_points(unit.map)) return false;
+    problems.warning(unit.map.at,
+                     fmt::format("unit {} has no points, so there is no map of it", unit.unit.value_or(0)),
+                     "no action is needed");
+    return true;
+  };
+  units.erase(std::remove_if(units.begin(), units.end(), is_empty), units.end());
 }
 
 ImportedMap finish(const ForeignUnit& foreign, std::string_view comment, Problems& problems) {
@@ -177,11 +209,13 @@ ImportResult import_text(const Importer& importer, std::string_view text, std::s
   check_units(units, problems);
   const bool several = units.size() > 1;
   if (options.unit) choose_unit(units, *options.unit, problems);
+  if (!options.unit) leave_out_empty_units(units, problems);
   std::vector<ImportedMap> maps;
   for (ForeignUnit& unit : units) {
     set_name(unit.map, options, file, several && unit.unit ? fmt::format("_{}", *unit.unit) : "");
     if (unit.unit) set(unit.map, scalar("unit", fmt::to_string(*unit.unit), unit.map.at));
     mend_point_names(unit.map, problems);
+    spell_types(unit.map);
     maps.push_back(finish(unit, comment_of(importer, file), problems));
   }
   if (problems.has_errors()) maps.clear();

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include "coupler/codec/type_name.hpp"
 #include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/scalar.hpp"
 
@@ -47,17 +48,18 @@ struct Value {
   unsigned rank = 0;    ///< which register of the fed value it is: 0 the least significant
 };
 
-/// The type of a value that the binding's class feeds, and how many registers it has. ModbusPal's classes:
-/// Binding_SINT16, Binding_SINT32, Binding_FLOAT32.
+/// The type of a value that the binding's class feeds, and how many registers it has. ModbusPal's classes are
+/// Binding_SINT16, Binding_SINT32 and Binding_FLOAT32.
 struct Fed {
   std::string_view type = "UINT";
   unsigned registers = 1;
 };
 Fed fed_by(std::string_view binding) {
-  if (binding == "Binding_SINT16") return {"INT", 1};
-  if (binding == "Binding_SINT32") return {"DINT", 2};
-  if (binding == "Binding_FLOAT32") return {"REAL", 2};
-  return {};
+  constexpr std::string_view prefix = "Binding_";
+  if (binding.substr(0, prefix.size()) != prefix) return {};
+  const auto type = codec::parse_type(binding.substr(prefix.size()));
+  if (!type || (codec::width(*type) != 16 && codec::width(*type) != 32)) return {};
+  return {to_string(*type), codec::width(*type) / 16};
 }
 
 /// The two are the registers of one value, in one order or the other.

@@ -142,6 +142,30 @@ bool has_errors(const Diagnostics& diagnostics) {
                      [](const Diagnostic& d) { return d.severity == Diagnostic::Severity::error; });
 }
 
+Diagnostics shortened(Diagnostics diagnostics) {
+  if (diagnostics.size() <= most_reported) return diagnostics;
+  const auto is_error = [](const Diagnostic& d) { return d.severity == Diagnostic::Severity::error; };
+  const auto errors =
+      static_cast<std::size_t>(std::count_if(diagnostics.begin(), diagnostics.end(), is_error));
+  const std::size_t all = diagnostics.size();
+  std::size_t errors_left = std::min(errors, most_reported);
+  std::size_t warnings_left = most_reported - errors_left;
+  Diagnostics kept;
+  for (Diagnostic& diagnostic : diagnostics) {
+    std::size_t& left = is_error(diagnostic) ? errors_left : warnings_left;
+    if (left == 0) continue;
+    --left;
+    kept.push_back(std::move(diagnostic));
+  }
+  const std::size_t hidden_errors = errors - std::min(errors, most_reported);
+  kept.push_back({hidden_errors > 0 ? Diagnostic::Severity::error : Diagnostic::Severity::warning,
+                  kept.front().file, 0, 0,
+                  fmt::format("{} more errors and {} more warnings are not shown", hidden_errors,
+                              all - most_reported - hidden_errors),
+                  "mend those above first"});
+  return kept;
+}
+
 std::string render(const Diagnostic& d, Colour colour) {
   const Style& style = colour == Colour::yes ? ansi : plain;
   const bool error = d.severity == Diagnostic::Severity::error;
@@ -170,7 +194,8 @@ Colour colour_of(int descriptor) {
 
 void print(const Diagnostics& diagnostics) {
   const Colour colour = colour_of(STDERR_FILENO);
-  for (const Diagnostic& diagnostic : diagnostics) std::fputs(render(diagnostic, colour).c_str(), stderr);
+  for (const Diagnostic& diagnostic : shortened(diagnostics))
+    std::fputs(render(diagnostic, colour).c_str(), stderr);
 }
 
 }  // namespace coupler

@@ -43,6 +43,12 @@ std::string to_string(const Diagnostic& diagnostic);
 
 bool has_errors(const Diagnostics& diagnostics);
 
+/// Nobody reads more, and the first ones often cause the others.
+constexpr std::size_t most_reported = 100;
+
+/// At most so many of them, errors first, in their order; the last one says how many there are more.
+Diagnostics shortened(Diagnostics diagnostics);
+
 /// Copies the lines that they are about from `text`, the file, into the diagnostics and their notes.
 void quote(Diagnostics& diagnostics, std::string_view text);
 
@@ -55,7 +61,7 @@ std::string render(const Diagnostic& diagnostic, Colour colour);
 /// Yes for a terminal, unless NO_COLOR (no-color.org) is set.
 Colour colour_of(int descriptor);
 
-/// Renders all of them to standard error.
+/// Renders them, shortened, to standard error.
 void print(const Diagnostics& diagnostics);
 
 }  // namespace coupler

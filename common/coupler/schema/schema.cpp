@@ -52,7 +52,7 @@ Json property(const Key& key) {
 
 /// Which keys a point's type needs, and which it has no use for.
 Json rule_for_types(const Key& key) {
-  const Json type{{"properties", {{"type", {{"pattern", any_case(loader::words(key.types))}}}}}};
+  const Json type{{"properties", {{"type", {{"pattern", any_name(loader::words(key.types))}}}}}};
   Json rule{{"if", type}, {"else", {{"properties", {{key.name, false}}}}}};
   const Json needed = Json::array({key.name});
   if (key.required) rule["then"] = {{"required", needed}};

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/codec/type_name.hpp"
 #include "coupler/map/loader/preset.hpp"
 #include "coupler/map/loader/scalar.hpp"
 
@@ -41,6 +42,10 @@ Json any_of(std::initializer_list<Json> schemas) {
   return {{"anyOf", Json::array_t(schemas.begin(), schemas.end())}};
 }
 
+std::string in_both_cases(char c) {
+  return loader::is_letter(c) ? std::string{'[', c, static_cast<char>(c ^ ' '), ']'} : std::string(1, c);
+}
+
 Json boolean() {
   return any_of({{{"type", "boolean"}}, text(any_case({"yes", "no", "on", "off"}), "write true or false")});
 }
@@ -54,6 +59,13 @@ Json choice(const Key& key) {
   return any_of({exact, text(any_case(choices), fmt::format("write one of {}", fmt::join(choices, ", ")))});
 }
 
+/// Editors suggest the names of IEC 61131-3.
+Json type(const Key& key) {
+  const auto types = loader::words(key.choices);
+  return any_of(
+      {{{"enum", types}}, text(any_name(types), fmt::format("write one of {}", fmt::join(types, ", ")))});
+}
+
 Json preset() {
   Json names = Json::array();
   for (const loader::PresetFile& file : loader::preset_files()) names.push_back(file.name);
@@ -62,7 +74,11 @@ Json preset() {
 
 Json time(const Key& key) {
   const Json with_unit = text(duration, "write a number with its unit: us, ms, s or min");
-  if (key.kind == ValueKind::seconds) return any_of({with_unit, number("number", key)});
+  if (key.kind == ValueKind::seconds) {
+    Json bare = number("number", key);
+    bare["maximum"] = loader::most_bare_seconds;
+    return any_of({with_unit, bare});
+  }
   return key.least > 0 ? with_unit : any_of({with_unit, {{"const", 0}}});
 }
 
@@ -81,6 +97,7 @@ Json value_schema(const Key& key) {
                   "write a host name or an IP address, without scheme and port");
     case ValueKind::ip_address: return text(ip_address, "write an IP address of the node");
     case ValueKind::choice: return choice(key);
+    case ValueKind::type: return type(key);
     case ValueKind::preset: return preset();
     case ValueKind::duration:
     case ValueKind::seconds: return time(key);
@@ -126,15 +143,23 @@ std::string any_case(const std::vector<std::string_view>& words) {
   std::string pattern;
   for (const std::string_view word : words) {
     pattern += pattern.empty() ? "^(" : "|";
-    for (const char c : word) {
-      if (c == '-')
-        pattern += "[-_]?";
-      else if (loader::is_letter(c))
-        pattern += {'[', c, static_cast<char>(c ^ ' '), ']'};  // both cases
-      else
-        pattern += c;
-    }
+    for (const char c : word) pattern += c == '-' ? "[-_]?" : in_both_cases(c);
   }
+  return pattern + ")$";
+}
+
+std::string any_name(const std::vector<std::string_view>& types) {
+  std::string pattern;
+  for (const std::string_view type : types)
+    for (const std::string_view name : codec::names_of(*codec::parse_type(type))) {
+      pattern += pattern.empty() ? "^(" : "|";
+      char before = name.front();
+      for (const char c : codec::folded_type_name(name)) {
+        if (loader::is_digit(before) != loader::is_digit(c)) pattern += "[-_ ]?";
+        pattern += in_both_cases(c);
+        before = c;
+      }
+    }
   return pattern + ")$";
 }
 

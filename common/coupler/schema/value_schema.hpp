@@ -42,4 +42,7 @@ constexpr std::string_view ip_address =
 /// One of the words in any case; where it has '-', '_' or nothing will do too.
 std::string any_case(const std::vector<std::string_view>& words);
 
+/// Any name of those types, as coupler/codec/type_name.hpp has them: in any case, the number apart or not.
+std::string any_name(const std::vector<std::string_view>& types);
+
 }  // namespace coupler::schema

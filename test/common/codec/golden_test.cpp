@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "coupler/codec/type_name.hpp"
 #include "coupler/codec/value.hpp"
 #include "test/support/paths.hpp"
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "coupler/codec/scale.hpp"
+#include "coupler/codec/type_name.hpp"
 #include "test/support/paths.hpp"
 
 namespace coupler::codec {

@@ -155,13 +155,6 @@ TEST(Format, Registers_follow_from_the_type) {
   EXPECT_EQ(registers(format(Type::LWORD)), 4);
 }
 
-TEST(Type, Names_are_read_in_any_case_and_written_in_capitals) {
-  EXPECT_EQ(parse_type("lreal"), Type::LREAL);
-  EXPECT_EQ(parse_type("Udint"), Type::UDINT);
-  EXPECT_EQ(parse_type("FLOAT"), std::nullopt);
-  EXPECT_EQ(to_string(Type::UDINT), "UDINT");
-}
-
 }  // namespace
 
 namespace {

@@ -93,12 +93,33 @@ TEST(CsvImport, Two_points_at_one_place_are_told_with_both_lines) {
               HasSubstr("given:3:9: error: 'b' (coils 5) overlaps 'a' (coils 5, line 2)"));
 }
 
-TEST(CsvImport, A_column_that_no_point_has_is_told_with_the_nearest) {
-  const Imported csv("csv", "table,name,address,Unitz,\ncoils,a,0,V,\n");
-  EXPECT_EQ(csv.said,
-            "given:1:20: warning: the column 'Unitz' is not carried over: a point has no such key; did you "
-            "mean 'units'?\n");
+TEST(CsvImport, A_column_that_no_point_has_is_told) {
+  const Imported csv("csv", "table,name,address,Location,\ncoils,a,0,hall 3,\n");
+  EXPECT_THAT(csv.said, HasSubstr("given:1:20: warning: the column 'Location' is not carried over"));
   EXPECT_EQ(csv.result.maps.size(), 1U);
+}
+
+TEST(CsvImport, A_column_that_is_nearly_a_key_is_an_error) {
+  EXPECT_EQ(
+      Imported("csv", "table,name,address,Unitz,\ncoils,a,0,V,\n").said,
+      "given:1:20: error: a point has no key 'Unitz'; did you mean 'units'? If not, give the column another "
+      "heading\n");
+}
+
+TEST(CsvImport, Types_are_read_under_all_their_names_and_written_under_that_of_IEC_61131_3) {
+  const Imported csv("csv",
+                     "table,name,address,type,length,initial\n"
+                     "holding_registers,a,0,uint32,,\n"
+                     "holding_registers,b,2,Float,,\n"
+                     "holding_registers,c,4,text,4,12\n"
+                     "coils,d,0,boolean,,\n");
+  EXPECT_EQ(csv.said, "");
+  EXPECT_THAT(csv.text(), HasSubstr("a: {address: 0, type: UDINT}"));
+  EXPECT_THAT(csv.text(), HasSubstr("b: {address: 2, type: REAL}"));
+  EXPECT_THAT(csv.text(), HasSubstr("c: {address: 4, type: STRING, length: 4, initial: \"12\"}"));
+  EXPECT_THAT(csv.text(), HasSubstr("d: 0"));
+  EXPECT_THAT(Imported("csv", "table,name,address,type\nholding_registers,a,0,LONG\n").said,
+              HasSubstr("write DINT (32 bits) or LINT (64 bits)"));
 }
 
 TEST(CsvImport, A_table_without_headings_or_without_points_is_refused) {

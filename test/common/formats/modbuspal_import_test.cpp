@@ -89,11 +89,20 @@ TEST(ModbusPalImport, Doubles_and_wrong_numbers_are_told) {
 TEST(ModbusPalImport, Several_slaves_are_several_maps) {
   const Imported both(
       "modbuspal",
-      project(
-          "<slave id=\"1\"><coils><coil address=\"0\"/></coils></slave><slave id=\"2\" enabled=\"false\"/>"));
+      project("<slave id=\"1\"><coils><coil address=\"0\"/></coils></slave><slave id=\"2\" enabled=\"false\">"
+              "<coils><coil address=\"1\"/></coils></slave>"));
   ASSERT_EQ(both.result.maps.size(), 2U);
   EXPECT_EQ(both.text(0), "name: given_1\nport: 503\nunit: 1\nmapping:\n  coils:\n    coil_0: 0\n");
   EXPECT_THAT(both.said, HasSubstr("the slave is switched off in the project"));
+}
+
+TEST(ModbusPalImport, A_slave_without_points_beside_others_is_left_out) {
+  const Imported one(
+      "modbuspal", project("<slave id=\"1\"><coils><coil address=\"0\"/></coils></slave><slave id=\"2\"/>"));
+  ASSERT_EQ(one.result.maps.size(), 1U);
+  EXPECT_THAT(one.said, HasSubstr("warning: unit 2 has no points, so there is no map of it"));
+  EXPECT_THAT(Imported("modbuspal", project("<slave id=\"2\"/>")).said,
+              HasSubstr("error: the map has no points"));
 }
 
 TEST(ModbusPalImport, Entities_are_never_read) {

@@ -20,6 +20,34 @@ TEST(Diagnostic, About_a_whole_file_it_has_no_place) {
             "a.yaml: error: no such file; look");
 }
 
+/// `errors` and `warnings`, in turn as long as there are both.
+Diagnostics many(int errors, int warnings) {
+  Diagnostics all;
+  for (int line = 1; errors > 0 || warnings > 0; ++line) {
+    if (warnings-- > 0) all.push_back({Diagnostic::Severity::warning, "m", line, 1, "w", "x"});
+    if (errors-- > 0) all.push_back({Diagnostic::Severity::error, "m", line, 1, "e", "x"});
+  }
+  return all;
+}
+
+TEST(Shortened, A_hundred_are_kept_and_the_last_one_says_how_many_there_are_more) {
+  EXPECT_EQ(shortened(many(60, 40)).size(), 100U);
+  const Diagnostics short_of_250 = shortened(many(50, 200));
+  ASSERT_EQ(short_of_250.size(), 101U);
+  EXPECT_EQ(to_string(short_of_250.back()),
+            "m: warning: 0 more errors and 150 more warnings are not shown; mend those above first");
+  EXPECT_EQ(short_of_250.front().what, "w") << "in their order";
+  EXPECT_EQ(short_of_250[99].what, "e") << "every error is there";
+}
+
+TEST(Shortened, Errors_go_before_warnings) {
+  const Diagnostics kept = shortened(many(130, 200));
+  EXPECT_EQ(kept[0].what, "e");
+  EXPECT_EQ(kept[99].line, 100);
+  EXPECT_EQ(to_string(kept.back()),
+            "m: error: 30 more errors and 200 more warnings are not shown; mend those above first");
+}
+
 TEST(Diagnostic, Warnings_are_no_errors) {
   Diagnostics found{{Severity::warning, "a.yaml", 1, 1, "this is odd", "look"}};
   EXPECT_FALSE(has_errors(found));

@@ -6,6 +6,7 @@
 
 #include <regex>
 
+#include "coupler/codec/type_name.hpp"
 #include "coupler/map/loader/names.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/network.hpp"
@@ -38,6 +39,20 @@ TEST(Pattern, Of_words_takes_them_in_any_case) {
   const std::string pattern = any_case({"utf-8", "ascii"});
   for (const char* good : {"utf-8", "UTF_8", "utf8", "Ascii"}) EXPECT_TRUE(matches(good, pattern)) << good;
   for (const char* bad : {"utf", "utf-88", "asci", ""}) EXPECT_FALSE(matches(bad, pattern)) << bad;
+}
+
+TEST(Pattern, Of_types_takes_every_name_that_the_loader_takes) {
+  std::vector<std::string_view> all;
+  for (const auto& type : enumeration_of<codec::Type>.words) all.push_back(type.word);
+  const std::string pattern = any_name(all);
+  for (const codec::TypeName& other : codec::other_type_names())
+    EXPECT_TRUE(matches(std::string(other.name), pattern)) << other.name;
+  for (const char* good : {"UINT", "uint", "UInt16", "float-32", "Unsigned 16", "uint8_t"})
+    EXPECT_TRUE(matches(good, pattern)) << good;
+  for (const codec::AmbiguousTypeName& each : codec::ambiguous_type_names())
+    EXPECT_FALSE(matches(std::string(each.name), pattern)) << each.name;
+  for (const char* bad : {"", "int24", "uint 1 6", "UNIT"}) EXPECT_FALSE(matches(bad, pattern)) << bad;
+  EXPECT_FALSE(matches("float32", any_name({"LREAL", "STRING"})));
 }
 
 }  // namespace

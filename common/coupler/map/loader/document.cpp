@@ -2,7 +2,6 @@
 #include "coupler/map/loader/document.hpp"
 
 #include <algorithm>
-#include <array>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -13,73 +12,10 @@
 
 #include "coupler/map/loader/problems.hpp"
 #include "coupler/map/loader/source_text.hpp"
+#include "coupler/map/loader/syntax_error.hpp"
 
 namespace coupler::loader {
 namespace {
-
-/// Why a text is no document. Thrown through yaml-cpp, which knows no other way to stop; never leaves this
-/// file.
-struct SyntaxError {
-  Position at;
-  std::string what;
-  std::string remedy;
-};
-
-struct Explanation {
-  std::string_view message;  ///< how yaml-cpp's begins
-  std::string_view what;
-  std::string_view remedy;
-};
-
-constexpr std::array<Explanation, 13> explanations{{
-    {"end of map flow not found", "',' or '}' is missing before this",
-     "separate entries with ',' and end them with '}'"},
-    {"end of sequence flow not found", "',' or ']' is missing before this",
-     "separate values with ',' and end them with ']'"},
-    {"end of map not found", "this does not belong to the entries above",
-     "check the indentation, and what follows a closing quote"},
-    {"end of sequence not found", "this does not belong to the list above", "check the indentation"},
-    {"illegal map value", "':' does not belong here",
-     "write 'key: value' here and in the line before, at one indentation; put text that contains ': ' in "
-     "quotes"},
-    {"illegal map key", "a key does not belong here",
-     "write one 'key: value' a line, all at one indentation"},
-    {"illegal block entry", "'- ' does not belong here", "begin the list in the line below its key"},
-    {"illegal flow end", "the bracket has no opening one", "remove it, or open it before"},
-    {"unknown token", "no value begins with this character", "put the text in quotes"},
-    {"unknown escape character", "the escape is not known",
-     "write '\\\\' for a backslash, or use single quotes"},
-    {"invalid unicode", "the escape stands for no character (half of a surrogate pair)",
-     "write the character itself"},
-    {"the referenced anchor is not defined", "aliases are not supported",
-     "write the values out where they are used"},
-    {"bad file", "the values are nested too deep", "a map has at most five levels"},
-}};
-
-/// Tabs where YAML counts blanks.
-bool indented_by_tab(std::string_view text, std::size_t offset) {
-  const std::size_t newline = text.substr(0, offset).rfind('\n');
-  const std::size_t start = newline == std::string_view::npos ? 0 : newline + 1;
-  const std::size_t first = text.find_first_not_of(" \t", start);
-  const std::size_t tab = text.find('\t', start);
-  return tab != std::string_view::npos && tab < std::min(first, text.size());
-}
-
-/// yaml-cpp's `message` about `offset` of `text`, in words that help.
-SyntaxError explain(std::string_view text, std::size_t offset, std::string_view message) {
-  const std::size_t last = text.find_last_not_of(" \t\r\n");
-  if (last == std::string_view::npos || offset > last) {
-    const Position end = position_of(text, last == std::string_view::npos ? 0 : last + 1);
-    return {end, "the file ends too early", "close what is open: a '}', a ']' or a quote"};
-  }
-  const Position at = position_of(text, offset);
-  if (!is_json(text) && indented_by_tab(text, offset))
-    return {at, "the line is indented by a tab", "indent with blanks"};
-  for (const Explanation& known : explanations)
-    if (message.substr(0, known.message.size()) == known.message)
-      return {at, std::string(known.what), std::string(known.remedy)};
-  return {at, std::string(message), "write it as YAML or JSON"};
-}
 
 /// A ':' follows the key that begins at `at`; without one yaml-cpp takes any text for a key with no value.
 bool has_colon(std::string_view text, std::size_t at, std::string_view key) {

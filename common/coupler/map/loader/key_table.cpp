@@ -123,7 +123,7 @@ constexpr Key keys[] = {
         .holds(S::holding_register),
     // Points.
     inherited("address", point, K::address, "0", "where the point is in its table"),
-    inherited("type", registers, K::choice, "INT", "data type of IEC 61131-3").needed().one_of<codec::Type>(),
+    inherited("type", registers, K::type, "INT", "data type of IEC 61131-3").needed().one_of<codec::Type>(),
     inherited("offset", registers, K::choice, "high", "which byte of the register an 8-bit value is")
         .only_for(byte_types)
         .needed_with("address")

@@ -58,6 +58,7 @@ enum class ValueKind : std::uint8_t {
   host,        ///< text without blanks
   ip_address,  ///< of the node
   choice,
+  type,      ///< one of the choices, or another name of it (coupler/codec/type_name.hpp)
   preset,    ///< the name of one
   duration,  ///< with a unit
   seconds,   ///< a duration; a bare number means seconds
@@ -68,6 +69,9 @@ enum class ValueKind : std::uint8_t {
   names,     ///< integer -> identifier
   points,    ///< name -> point: a map as Key::inside says; for bits just an address is good
 };
+
+/// A bare number of seconds above it is refused: somebody meant milliseconds.
+constexpr int most_bare_seconds = 60;
 
 enum class Owner : std::uint8_t {
   inherited,  ///< a key of ros-modbus-device-driver

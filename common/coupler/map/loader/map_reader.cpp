@@ -71,16 +71,21 @@ std::vector<TableEntry> find_points(const Reader& top, const Entry& root, const 
   std::vector<TableEntry> found;
   const Entry* mapping = top.find("mapping");
   if (mapping == nullptr) {
-    context.problems.error(root.at, "the map has no 'mapping'",
-                           "add 'mapping:' with the tables and their points");
+    context.problems.error(
+        root.at, "the map has no 'mapping'",
+        "add 'mapping:' with the tables and their points, as in 'mapping: {coils: {valve: 0}}'");
     return found;
   }
   if (!check_map(*mapping, "'mapping' holds the tables",
                  "write 'coils:', 'holding_registers:' or another table below it", context))
     return found;
+  const std::size_t errors = context.problems.errors();
   const Reader reader(*mapping, Section::mapping, context);
   for (const Table table : tables)
     if (const Entry* entry = reader.find(to_string(table))) find_points(*entry, table, found, context);
+  if (found.empty() && context.problems.errors() == errors && !context.served)
+    context.problems.error(mapping->key_at, "the map has no points",
+                           "add one to its table, as in 'mapping: {coils: {valve: 0}}'");
   std::stable_sort(found.begin(), found.end(), [](const TableEntry& a, const TableEntry& b) {
     return std::tie(a.entry->key_at.line, a.entry->key_at.column) <
            std::tie(b.entry->key_at.line, b.entry->key_at.column);
@@ -121,7 +126,7 @@ MapLayout finish(Map head, const DraftPoints& drafts, const std::vector<SimWire>
   const auto left_out =
       std::find_if(drafts.begin(), drafts.end(), [](const DraftPoint& d) { return d.addressless; });
   const bool complete = left_out == drafts.end();
-  head.text = map.keep(complete ? std::string(text) : addressed_text(text, drafts, addressing));
+  head.text = map.keep(completed_text(text, drafts, addressing));
   std::vector<Point> points;
   points.reserve(drafts.size());
   for (const DraftPoint& draft : drafts) points.push_back(draft.point);
@@ -133,7 +138,7 @@ MapLayout finish(Map head, const DraftPoints& drafts, const std::vector<SimWire>
 
 std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Placement& placement,
                                   Problems& problems, OwnedMap& map) {
-  const Context context{problems, map, source.served || has_only_inherited_keys(file)};
+  const Context context{problems, map, source.served, has_only_inherited_keys(file)};
   if (file.kind != Entry::Kind::map) {
     problems.error(file.at, fmt::format("a map consists of keys, but this is {}", shown(file)),
                    "begin with 'name: NAME'");

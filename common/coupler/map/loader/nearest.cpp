@@ -28,18 +28,33 @@ unsigned edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
+std::vector<std::string_view> all_nearest(std::string_view word,
+                                          const std::vector<std::string_view>& candidates) {
   constexpr std::size_t longest = 40;  // longer words are no typing mistakes, and would cost time
   if (word.size() > longest) return {};
-  std::string_view best;
-  unsigned least = static_cast<unsigned>(2 + word.size() / 4);  // one more than may differ
+  std::vector<std::string_view> best;
+  unsigned least = static_cast<unsigned>(1 + word.size() / 4);
   for (const std::string_view candidate : candidates) {
     const unsigned distance = edit_distance(lower(word), lower(candidate));
-    if (distance >= least || distance >= candidate.size()) continue;
+    if (distance > least || distance >= candidate.size()) continue;
+    if (distance < least) best.clear();
     least = distance;
-    best = candidate;
+    best.push_back(candidate);
   }
   return best;
+}
+
+bool is_slip(std::string_view word, std::string_view candidate) {
+  constexpr std::size_t longest = 40;
+  if (word.size() > longest) return false;
+  const auto most = std::max<std::size_t>(1, word.size() / 4);
+  const unsigned distance = edit_distance(lower(word), lower(candidate));
+  return distance <= most && distance < std::min(word.size(), candidate.size());
+}
+
+std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
+  const auto best = all_nearest(word, candidates);
+  return best.empty() ? std::string_view{} : best.front();
 }
 
 std::string nearest_or(std::string_view word, const std::vector<std::string_view>& candidates,

@@ -10,6 +10,13 @@ namespace coupler::loader {
 /// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
 unsigned edit_distance(std::string_view a, std::string_view b);
 
+/// The candidates that were most likely meant, whatever the case: those that differ least, if that is little.
+std::vector<std::string_view> all_nearest(std::string_view word,
+                                          const std::vector<std::string_view>& candidates);
+
+/// The words differ by no more than a slip of the fingers: by one letter, in long words by two or more.
+bool is_slip(std::string_view word, std::string_view candidate);
+
 /// The candidate that was most likely meant, whatever the case; empty if none is near.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
 

@@ -41,8 +41,9 @@ lock::FreeSpace free_space_of(const DraftPoints& points, const Areas& reserved, 
 void place_points(DraftPoints& points, const lock::FreeSpace& free_space, Placement& placement,
                   const Context& context);
 
-/// The text of a map, with the addresses written into it that its points got from the lock: the same map for
-/// a reader without a lock.
-std::string addressed_text(std::string_view text, const DraftPoints& points, Addressing addressing);
+/// The text of a map as it is served: with the addresses that its points got from the lock, and with the
+/// types' names of IEC 61131-3. The same map, for a reader without a lock and of any version. `text` itself
+/// if it has both; the points must come from it.
+std::string completed_text(std::string_view text, const DraftPoints& points, Addressing addressing);
 
 }  // namespace coupler::loader

@@ -12,12 +12,19 @@ void read_address(const Entry* entry, Addressing addressing, DraftPoint& draft, 
   draft.addressless = entry == nullptr;
   if (draft.addressless) return;
   draft.address_at = entry->at;
-  if (entry->kind != Entry::Kind::scalar || entry->quoted) {
+  if (entry->kind != Entry::Kind::scalar) {
+    context.problems.error(entry->at, fmt::format("the address must be a number, not {}", shown(*entry)),
+                           entry->kind == Entry::Kind::list
+                               ? "write the first address; 'count' says how many follow"
+                               : "write the number");
+    return;
+  }
+  const auto address = parse_address(entry->text, draft.point.table, addressing);
+  if (entry->quoted && address) {
     context.problems.error(entry->at, fmt::format("the address must be a number, not {}", shown(*entry)),
                            "write the number, without quotes");
     return;
   }
-  const auto address = parse_address(entry->text, draft.point.table, addressing);
   if (address)
     draft.point.address = *address;
   else

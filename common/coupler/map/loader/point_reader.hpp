@@ -47,6 +47,9 @@ void read_host_options(const Reader& reader, const HostDefaults& defaults, Draft
 void read_format(const Reader& reader, const Entry& point, codec::Order order, codec::Format& format,
                  const Context& context);
 
+/// `type:`, by any of its names; must be given.
+void read_type(const Reader& reader, codec::Type& type, const Context& context);
+
 /// `scale:`, a number or a map of gain and offset.
 void read_scale(const Reader& reader, Point& point, const Context& context);
 

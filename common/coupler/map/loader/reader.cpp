@@ -2,11 +2,13 @@
 #include "coupler/map/loader/reader.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
 #include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/loader/synonyms.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -25,16 +27,49 @@ std::string folded(std::string_view word, Owner owner) {
   return lower(result);
 }
 
-/// The key is known elsewhere, but may still be a typing mistake for one that is known here.
-std::string slip(std::string_view word, const std::vector<std::string_view>& candidates) {
-  const std::string_view near = nearest(word, candidates);
-  const bool one_letter = !near.empty() && edit_distance(lower(word), near) == 1;
-  return one_letter ? fmt::format("; or did you mean '{}'?", near) : std::string();
-}
-
 std::string range_text(const Key& key, std::string_view unit) {
   const bool has_least = key.least != std::numeric_limits<double>::lowest();
   return has_least ? fmt::format(" from {} to {}{}", key.least, key.most, unit) : std::string();
+}
+
+bool fits(const std::string& text, const Key& key) {
+  const auto value = parse_duration(text);
+  const double in_seconds = value ? std::chrono::duration<double>(*value).count() : -1;
+  return in_seconds >= key.least && in_seconds <= key.most;
+}
+
+/// "500" -> "'500ms' or '500s'", "3 sec" -> "'3s'", as far as they are good values of the key. Empty: nothing
+/// is.
+std::string mended_duration(std::string_view text, const Key& key) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 15> spellings{{{"us", "us"},
+                                                                                     {"µs", "us"},
+                                                                                     {"ms", "ms"},
+                                                                                     {"msec", "ms"},
+                                                                                     {"millisecond", "ms"},
+                                                                                     {"milliseconds", "ms"},
+                                                                                     {"s", "s"},
+                                                                                     {"sec", "s"},
+                                                                                     {"secs", "s"},
+                                                                                     {"second", "s"},
+                                                                                     {"seconds", "s"},
+                                                                                     {"m", "min"},
+                                                                                     {"min", "min"},
+                                                                                     {"minute", "min"},
+                                                                                     {"minutes", "min"}}};
+  const std::size_t end = std::min(text.find_first_not_of("0123456789."), text.size());
+  const std::string number(text.substr(0, end));
+  if (!parse_number(number)) return {};
+  const std::size_t at = text.find_first_not_of(' ', end);
+  const std::string unit = at == std::string_view::npos ? std::string() : lower(text.substr(at));
+  std::vector<std::string> good;
+  const auto add = [&](const std::string& duration) {
+    if (fits(duration, key)) good.push_back('\'' + duration + '\'');
+  };
+  if (unit.empty())
+    for (const std::string_view each : {"ms", "s"}) add(number + std::string(each));
+  for (const auto& [spelling, right] : spellings)
+    if (unit == spelling) add(number + std::string(right));
+  return fmt::to_string(fmt::join(good, " or "));
 }
 
 }  // namespace
@@ -55,21 +90,6 @@ void Reader::check_key(const Entry& entry) {
         fmt::format("'{}' is given twice, first in line {}", key->name, first->value->key_at.line),
         "keep one of the two", {{first->value->key_at, "the first is here"}});
   fields_.push_back({key, &entry});
-}
-
-void Reader::unknown(const Entry& entry) const {
-  const Section elsewhere = sections_with(entry.key);
-  if (elsewhere != Section::none) {
-    std::string places;
-    for (unsigned bit = 1; bit <= static_cast<unsigned>(Section::last); bit <<= 1U)
-      if (overlap(elsewhere, static_cast<Section>(bit)))
-        places += fmt::format("{}{}", places.empty() ? "" : ", ", describe(static_cast<Section>(bit)));
-    return context_.ignored(
-        entry.key_at, fmt::format("'{}' does not apply to {}", entry.key, describe(section_)),
-        fmt::format("remove it; it is a key of {}{}", places, slip(entry.key, key_names(section_))));
-  }
-  context_.ignored(entry.key_at, fmt::format("unknown key {} of {}", shown(entry.key), describe(section_)),
-                   suggestion(entry.key, key_names(section_)));
 }
 
 const Reader::Field* Reader::field(std::string_view key) const {
@@ -105,8 +125,8 @@ void Reader::wrong(std::string_view key, std::string_view expected) const {
                           fmt::format("write it as in '{}: {}'", f.key->name, f.key->example));
 }
 
-void Reader::ignored(std::string_view key, std::string what, std::string remedy) const {
-  context_.ignored(field(key)->value->key_at, std::move(what), std::move(remedy));
+void Reader::refuse(std::string_view key, std::string what, std::string remedy) const {
+  context_.problem(context_.served, field(key)->value->key_at, std::move(what), std::move(remedy));
 }
 
 std::optional<std::int64_t> Reader::integer_in_range(std::string_view key) const {
@@ -125,8 +145,15 @@ void Reader::number(std::string_view key, double& out) const {
   if (entry == nullptr) return;
   const Key& known = *field(key)->key;
   const auto value = is_bare(*entry) ? parse_number(entry->text) : std::nullopt;
-  if (value && *value >= known.least && *value <= known.most)
+  if (value && *value >= known.least && *value <= known.most) {
     out = *value;
+    return;
+  }
+  const std::chrono::microseconds none{0};
+  const auto period = entry->kind == Entry::Kind::scalar ? parse_duration(entry->text).value_or(none) : none;
+  if (known.name == "rate" && period > none)
+    context_.problems.error(entry->at, fmt::format("'rate' must be a number of Hz, not {}", shown(*entry)),
+                            fmt::format("write 'rate: {:.6g}'", 1e6 / static_cast<double>(period.count())));
   else
     wrong(key, "a number" + range_text(known, ""));
 }
@@ -161,9 +188,20 @@ std::optional<std::chrono::microseconds> Reader::duration_in_range(std::string_v
     value = parse_duration(bare_number ? entry->text + "s" : entry->text);
   }
   const double in_seconds = value ? std::chrono::duration<double>(*value).count() : -1;
-  if (in_seconds >= known.least && in_seconds <= known.most) return value;
-  wrong(key, fmt::format("a duration{} with its unit (us, ms, s, min){}", range_text(known, " s"),
-                         seconds ? " or a number of seconds" : ""));
+  const bool bare = entry->kind == Entry::Kind::scalar && parse_number(entry->text).has_value();
+  const bool in_range = in_seconds >= known.least && in_seconds <= known.most;
+  // Milliseconds, most likely: no device is waited for that long.
+  const bool doubtful = seconds && bare && in_seconds > most_bare_seconds && !context_.served;
+  if (in_range && !doubtful) return value;
+  std::string expected = fmt::format("a duration{} with its unit (us, ms, s, min)", range_text(known, " s"));
+  if (seconds) expected += fmt::format(", or a number of seconds up to {}", most_bare_seconds);
+  const std::string mended = entry->kind == Entry::Kind::scalar ? mended_duration(entry->text, known) : "";
+  if (mended.empty())
+    wrong(key, expected);
+  else
+    context_.problems.error(entry->at,
+                            fmt::format("'{}' must be {}, not {}", known.name, expected, shown(*entry)),
+                            "write " + mended);
   return std::nullopt;
 }
 
@@ -176,10 +214,14 @@ std::string_view Reader::chosen_word(std::string_view key) const {
       entry->kind == Entry::Kind::scalar ? folded(entry->text, known.owner) : std::string();
   for (const std::string_view choice : choices)
     if (given == folded(choice, known.owner)) return choice;
+  const std::string_view meant =
+      entry->kind == Entry::Kind::scalar ? remedy_for_choice(entry->text, known.name) : std::string_view{};
   context_.problems.error(
       entry->at,
       fmt::format("'{}' must be one of {}, not {}", known.name, fmt::join(choices, ", "), shown(*entry)),
-      nearest_or(given, choices, fmt::format("write it as in '{}: {}'", known.name, known.example)));
+      meant.empty() ? nearest_or(given, choices,
+                                 fmt::format("write one of them, as in '{}: {}'", known.name, known.example))
+                    : std::string(meant));
   return {};
 }
 

@@ -22,12 +22,14 @@ namespace coupler::loader {
 struct Context {
   Problems& problems;
   OwnedMap& map;  ///< keeps the texts that points refer to
-  /// What is not known here is a warning: ros-modbus-device-driver would ignore it, or the node that serves
-  /// the map may be newer than this program.
-  bool tolerant = false;
+  /// A node serves the map. It may be newer than this program: what is not known here is a warning.
+  bool served = false;
+  /// The file may be one of ros-modbus-device-driver, which ignores keys: those unlike all of ours are
+  /// warnings.
+  bool foreign = false;
 
-  void ignored(Position at, std::string what, std::string remedy) const {
-    if (tolerant)
+  void problem(bool is_warning, Position at, std::string what, std::string remedy) const {
+    if (is_warning)
       problems.warning(at, what + ", ignored", std::move(remedy));
     else
       problems.error(at, std::move(what), std::move(remedy));
@@ -101,8 +103,8 @@ class Reader {
 
   /// "'key' is …, not …", with the key's example as the remedy.
   void wrong(std::string_view key, std::string_view expected) const;
-  /// The value of the key cannot be used here.
-  void ignored(std::string_view key, std::string what, std::string remedy) const;
+  /// The key is known, but does not apply here.
+  void refuse(std::string_view key, std::string what, std::string remedy) const;
 
  private:
   struct Field {
@@ -112,6 +114,7 @@ class Reader {
 
   void check_key(const Entry& entry);
   void unknown(const Entry& entry) const;
+  void misplaced(const Entry& entry, Section elsewhere) const;
   const Field* field(std::string_view key) const;
   std::optional<std::int64_t> integer_in_range(std::string_view key) const;
   std::optional<std::chrono::microseconds> duration_in_range(std::string_view key) const;

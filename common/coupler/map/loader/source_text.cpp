@@ -55,6 +55,9 @@ class CommentBlanker {
       count_bracket();
       if (blanks.find(text_[at_]) == std::string_view::npos) previous_ = text_[at_];
     }
+    if (!open_.empty() && hiding_ != std::string::npos)
+      return fail(hiding_, "'#' begins a comment, which hides the closing bracket behind it",
+                  "close the bracket before the '#', or put text that contains ' #' in quotes");
     return open_.empty() || fail(open_.back(), fmt::format("the '{}' is never closed", text_[open_.back()]),
                                  "check the brackets that follow");
   }
@@ -71,6 +74,10 @@ class CommentBlanker {
       const std::size_t end = comment_end(text_, at_);
       if (end == std::string::npos) return fail(at_, "the comment '/*' is never closed", "end it with '*/'");
       if (end == at_) return true;
+      if (text_[at_] == '#' && hiding_ == std::string::npos && !open_.empty()) {
+        const char closing = text_[open_.back()] == '{' ? '}' : ']';
+        if (text_.substr(at_, end - at_).find(closing) != std::string::npos) hiding_ = at_;
+      }
       for (; at_ < end; ++at_)
         if (text_[at_] != '\n' && text_[at_] != '\r') text_[at_] = ' ';
     }
@@ -94,8 +101,9 @@ class CommentBlanker {
   std::string& text_;
   Problems& problems_;
   std::size_t at_ = 0;
-  char previous_ = '\0';           ///< the last character that is neither blank nor comment
-  std::vector<std::size_t> open_;  ///< brackets
+  char previous_ = '\0';                    ///< the last character that is neither blank nor comment
+  std::vector<std::size_t> open_;           ///< brackets
+  std::size_t hiding_ = std::string::npos;  ///< a comment in which a bracket is closed
 };
 
 }  // namespace

@@ -25,6 +25,18 @@ std::string missing(std::string_view key) {
   return fmt::format("add '{}: BYTES'", key);
 }
 
+/// What was meant by a key that the type does not have.
+std::string remedy_for_other_type(const Entry& given, Type type) {
+  if (given.key == "offset" && parse_number(given.text) && codec::is_scalable(type))
+    return fmt::format(
+        "what is added to a value belongs to its scale, as in 'scale: {{gain: 1, offset: {}}}'", given.text);
+  if (given.key == "bit") return "write 'type: BOOL' for one bit of the register, or remove it";
+  if (given.key == "length")
+    return fmt::format("remove it: {} says how many registers there are; 'type: STRING' is for texts",
+                       to_string(type));
+  return "remove it";
+}
+
 /// The keys that only some types have.
 void check_type_keys(const Reader& reader, const Entry& point, Type type, const Context& context) {
   for (const Key& key : all_keys()) {
@@ -32,8 +44,8 @@ void check_type_keys(const Reader& reader, const Entry& point, Type type, const 
     const bool given = reader.has(key.name);
     const bool applies = applies_to(key, to_string(type));
     if (given && !applies)
-      reader.ignored(key.name, fmt::format("'{}' does not apply to {}", key.name, to_string(type)),
-                     "remove it");
+      reader.refuse(key.name, fmt::format("'{}' does not apply to {}", key.name, to_string(type)),
+                    remedy_for_other_type(*reader.find(key.name), type));
     const bool required = key.required || (!key.required_with.empty() && reader.has(key.required_with));
     if (!given && applies && required)
       context.problems.error(
@@ -203,7 +215,7 @@ void read_format(const Reader& reader, const Entry& point, Order order, Format& 
         reader.has("bit") ? "add 'type: BOOL'" : "add 'type: INT', or what the registers hold");
     return;
   }
-  reader.choice("type", format.type);
+  read_type(reader, format.type, context);
   if (context.problems.errors() != errors) return;
   check_type_keys(reader, point, format.type, context);
   if (is_byte(format.type)) reader.choice("offset", format.half);

@@ -44,7 +44,7 @@ class MapInput {
  private:
   MapPtr read() const {
     const LoadResult loaded = load_map_file(path_);
-    for (const Diagnostic& diagnostic : loaded.diagnostics) log_.tell(diagnostic);
+    for (const Diagnostic& diagnostic : shortened(loaded.diagnostics)) log_.tell(diagnostic);
     return loaded.map;
   }
 

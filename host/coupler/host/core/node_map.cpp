@@ -109,7 +109,8 @@ tl::expected<MapPtr, std::string> load_node_map(const std::string& text, const i
   LoadResult result = load(text, "the node's map");
   if (result.map) return result.map;
   std::string why = "it does not load";
-  for (const Diagnostic& diagnostic : result.diagnostics) why += "\n" + to_string(diagnostic);
+  for (const Diagnostic& diagnostic : shortened(std::move(result.diagnostics)))
+    why += "\n" + to_string(diagnostic);
   return tl::make_unexpected(why);
 }
 

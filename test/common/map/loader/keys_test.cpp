@@ -20,7 +20,7 @@ TEST(Keys, Every_key_is_described_with_an_example) {
     EXPECT_NE(key.sections, Section::none) << key.name;
     EXPECT_FALSE(key.example.empty()) << key.name;
     EXPECT_FALSE(key.summary.empty()) << key.name;
-    EXPECT_EQ(key.kind == ValueKind::choice, !key.choices.empty()) << key.name;
+    EXPECT_EQ(key.kind == ValueKind::choice || key.kind == ValueKind::type, !key.choices.empty()) << key.name;
     EXPECT_LE(key.least, key.most) << key.name;
   }
 }

@@ -45,10 +45,34 @@ TEST(Load, The_line_of_a_point_is_where_its_name_stands) {
   EXPECT_TRUE(load_map("name: press\nmapping: {coils: {a: -1}}\n", "map.yaml").point_lines.empty());
 }
 
-TEST(Load, Empty_tables_and_an_empty_mapping_are_no_mistake) {
-  EXPECT_EQ(test::load_clean("name: press\nmapping:\n  coils:\n  discrete_inputs: {}\n")->map().points.size(),
-            0U);
-  EXPECT_EQ(test::load_clean("name: press\nmapping:\n")->map().points.size(), 0U);
+TEST(Load, An_empty_table_beside_others_is_no_mistake) {
+  EXPECT_EQ(test::load_clean("name: press\nmapping:\n  coils: {valve: 0}\n  discrete_inputs: {}\n")
+                ->map()
+                .points.size(),
+            1U);
+}
+
+TEST(Load, A_map_without_points_is_an_error_unless_a_node_serves_it) {
+  for (const char* mapping : {"mapping:", "mapping: {}", "mapping: {coils: , discrete_inputs: {}}"}) {
+    const std::string text = std::string("name: press\n") + mapping + '\n';
+    EXPECT_TRUE(has_errors(load_map(text, "map.yaml").diagnostics)) << mapping;
+    EXPECT_NE(load_served_map(text, "map.yaml").map, nullptr) << mapping;
+  }
+}
+
+TEST(Load, What_a_node_serves_may_have_keys_that_are_near_to_ours_or_stand_elsewhere) {
+  const LoadResult served = load_served_map(
+      "name: press\nwatchdgo: {timeout: 1s}\nmapping: {coils: {valve: {address: 0, scael: 1, port: 1}}}\n",
+      "m");
+  ASSERT_NE(served.map, nullptr) << test::text_of(served.diagnostics);
+  EXPECT_EQ(served.diagnostics.size(), 3U);
+}
+
+TEST(Load, A_bare_timeout_of_more_than_a_minute_is_refused_in_files_only) {
+  const std::string text = "name: press\ntimeout: 61\nmapping: {coils: {valve: 0}}\n";
+  EXPECT_EQ(load_map(text, "m").map, nullptr);
+  EXPECT_NE(load_served_map(text, "m").map, nullptr) << "an older node may have it";
+  EXPECT_NE(load_map("name: press\ntimeout: 60\nmapping: {coils: {valve: 0}}\n", "m").map, nullptr);
 }
 
 TEST(Load, Names_may_have_parts) {

@@ -23,6 +23,20 @@ TEST(Nearest, A_typing_mistake_finds_the_word_that_was_meant) {
             "registers_read_separation_gap");
 }
 
+TEST(Nearest, All_that_differ_least_are_found) {
+  using Words = std::vector<std::string_view>;
+  EXPECT_EQ(all_nearest("ULNT", {"INT", "UINT", "ULINT"}), (Words{"UINT", "ULINT"}));
+  EXPECT_EQ(all_nearest("colour", {"name", "port"}), Words{});
+}
+
+TEST(Nearest, A_slip_is_one_letter_and_more_in_long_words) {
+  EXPECT_TRUE(is_slip("scael", "scale"));
+  EXPECT_TRUE(is_slip("Discrete Inputs", "discrete_inputs"));
+  EXPECT_FALSE(is_slip("note", "rate")) << "two of four letters";
+  EXPECT_FALSE(is_slip("f", "of"));
+  EXPECT_FALSE(is_slip(std::string(100000, 'a'), "name"));
+}
+
 TEST(Nearest, Nothing_is_suggested_for_another_word) {
   EXPECT_EQ(nearest("colour", {"name", "address", "port"}), "");
   EXPECT_EQ(nearest("x", {"to"}), "");

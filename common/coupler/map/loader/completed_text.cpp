@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "coupler/codec/type_name.hpp"
 #include "coupler/map/loader/placement.hpp"
 #include "coupler/map/loader/source_text.hpp"
 
@@ -28,7 +30,7 @@ class Editor {
       if (text[i] == '\n') lines_.push_back(i + 1);
   }
 
-  Edit edit(const DraftPoint& draft) const {
+  Edit address_edit(const DraftPoint& draft) const {
     const Entry& entry = *draft.entry;
     if (entry.kind == Entry::Kind::null) return replace_nothing(draft);
     const bool flow = bare_[offset(entry.at)] == '{' && !is_key(entry);
@@ -39,6 +41,18 @@ class Editor {
     const std::size_t at = bare_[before] == '?' ? before : key;
     const std::size_t line = bare_.rfind('\n', at) + 1;
     return {at, 0, keys(draft, '\n' + std::string(at - line, ' '), true)};
+  }
+
+  /// Nothing to do: the name is IEC 61131-3's, or it is written in a way that hides it, as behind '|'.
+  std::optional<Edit> type_edit(const DraftPoint& draft) const {
+    const Entry* type = child(*draft.entry, "type");
+    if (type == nullptr || codec::is_iec_name(type->text)) return std::nullopt;
+    const auto line = static_cast<std::size_t>(type->at.line);
+    if (line < 1 || line > lines_.size()) return std::nullopt;
+    const std::size_t at = offset(type->at) + (type->quoted ? 1 : 0);
+    if (std::string_view(bare_).substr(std::min(at, bare_.size()), type->text.size()) != type->text)
+      return std::nullopt;
+    return Edit{at, type->text.size(), std::string(to_string(draft.point.format.type))};
   }
 
  private:
@@ -92,13 +106,17 @@ class Editor {
 
 }  // namespace
 
-std::string addressed_text(std::string_view text, const DraftPoints& points, Addressing addressing) {
+std::string completed_text(std::string_view text, const DraftPoints& points, Addressing addressing) {
+  const std::string_view whole = text;
   text = without_byte_order_mark(text);
   const Editor editor(text, addressing);
   std::vector<Edit> edits;
-  for (const DraftPoint& draft : points)
-    if (draft.addressless) edits.push_back(editor.edit(draft));
-  std::sort(edits.begin(), edits.end(), [](const Edit& a, const Edit& b) { return a.at < b.at; });
+  for (const DraftPoint& draft : points) {
+    if (draft.addressless) edits.push_back(editor.address_edit(draft));
+    if (auto edit = editor.type_edit(draft)) edits.push_back(std::move(*edit));
+  }
+  if (edits.empty()) return std::string(whole);
+  std::stable_sort(edits.begin(), edits.end(), [](const Edit& a, const Edit& b) { return a.at < b.at; });
   std::string result;
   std::size_t from = 0;
   for (const Edit& edit : edits) {
