@@ -29,10 +29,11 @@ constexpr auto diagnostics_interval = std::chrono::seconds(1);
 
 std::string topic(const Map& map, std::string_view point) { return fmt::format("{}/{}", map.name, point); }
 
+/// Many topics take their time, above all where the processor is busy: a signal ends that.
 std::vector<std::unique_ptr<PointPublisher>> advertise_all(Node& node, const Map& map,
                                                            SubscriberCounts& subscribers) {
   std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
-  for (std::uint32_t i = 0; i < map.points.size(); ++i)
+  for (std::uint32_t i = 0; i < map.points.size() && !Shutdown::requested; ++i)
     if (is_readable(map.points[i]))
       result[i] = node.advertise(topic(map, map.points[i].name), map.points[i], i, subscribers);
   return result;
@@ -65,7 +66,7 @@ class DeviceDriver : public Sink {
         writes_{
             [this](const Write& write) { thread_.write(write); },
             [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {
-    for (std::uint32_t i = 0; i < map_.points.size(); ++i)
+    for (std::uint32_t i = 0; i < map_.points.size() && !Shutdown::requested; ++i)
       if (is_writable(map_.points[i]))
         subscriptions_.push_back(
             node.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
@@ -142,6 +143,7 @@ void DeviceDriver::on_registers(const ReadSpan& span, Span<const std::uint16_t> 
   for (const std::uint32_t index : span.points) {
     const modbus::Range place = read_range(map_.points[index]);
     const std::uint16_t* value = &registers[place.start() - std::size_t{span.range.start()}];
+    if (!publishers_[index]) continue;  // the driver ends before it has begun
     publishers_[index]->publish(value, at);
     if (services_.value_waiter().waits_for(index))
       services_.value_waiter().deliver(value, place.count(), transport_->read_sent_at());
