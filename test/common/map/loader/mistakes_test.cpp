@@ -72,7 +72,12 @@ TEST(Mistakes, Each_is_answered_as_the_table_says) {
     for (const Diagnostic& d : load_map(map_of(mistake), "m").diagnostics)
       said += std::string(d.severity == Diagnostic::Severity::error ? "error" : "warning") + ": " + d.what +
               "; " + d.remedy + '\n';
-    EXPECT_EQ(said, mistake.said) << mistake.place;
+    constexpr std::string_view goes_on = "…\n";
+    const std::size_t end = mistake.said.size() - std::min(mistake.said.size(), goes_on.size());
+    if (mistake.said.compare(end, std::string::npos, goes_on) == 0)
+      EXPECT_EQ(said.substr(0, end), mistake.said.substr(0, end)) << mistake.place;
+    else
+      EXPECT_EQ(said, mistake.said) << mistake.place;
     EXPECT_FALSE(mistake.why.empty()) << mistake.place;
   }
 }
