@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/docs/escape.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include "coupler/map/printable.hpp"
 
 namespace coupler::docs {
 namespace {
 
-/// Line breaks and other control characters would end a cell, or be dropped without a trace.
-char printable(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return byte < 0x20 || byte == 0x7F ? ' ' : c;
+/// Calls use(bytes) with each character. Line breaks and other control characters, which would end a cell or
+/// be dropped without a trace, are a blank. What turns the direction of writing shows as its number.
+template <class Use>
+void each_character(std::string_view text, const Use& use) {
+  for (std::size_t at = 0; at < text.size();) {
+    const Character c = character_at(text, at);
+    if (turns_direction(c.code))
+      use(fmt::format("U+{:04X}", static_cast<unsigned>(c.code)));
+    else
+      use(std::string(c.code < 0x20 || c.code == 0x7F ? " " : text.substr(at, c.size)));
+    at += c.size;
+  }
 }
 
 std::string_view entity(char c) {
@@ -29,33 +37,30 @@ std::string_view entity(char c) {
 
 std::string html(std::string_view text) {
   std::string out;
-  for (const char c : text) {
-    const std::string_view name = entity(c);
-    if (name.empty())
-      out += printable(c);
-    else
-      out += name;
-  }
+  each_character(text, [&](const std::string& c) {
+    const std::string_view name = entity(c[0]);
+    out += name.empty() ? std::string_view(c) : name;
+  });
   return out;
 }
 
 std::string markdown(std::string_view text) {
   constexpr std::string_view punctuation = R"(\`*_[]|~$:)";
   std::string out;
-  for (const char c : text) {
-    if (c == '&' || c == '<' || c == '>') {
-      out += entity(c);
-      continue;
+  each_character(text, [&](const std::string& c) {
+    if (c == "&" || c == "<" || c == ">") {
+      out += entity(c[0]);
+      return;
     }
-    if (punctuation.find(c) != std::string_view::npos) out += '\\';
-    out += printable(c);
-  }
+    if (punctuation.find(c[0]) != std::string_view::npos) out += '\\';
+    out += c;
+  });
   return out;
 }
 
 std::string one_line(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), printable);
+  std::string out;
+  each_character(text, [&](const std::string& c) { out += c; });
   return out;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/format.h>
+
 namespace coupler::formats {
 namespace {
 
@@ -124,6 +126,29 @@ class CsvParser {
 
 std::vector<Row> parse_csv(std::string_view text, loader::Problems& problems) {
   return CsvParser(text, problems).run();
+}
+
+namespace {
+
+bool would_be_run(std::string_view text) {
+  const std::size_t first = text.find_first_not_of('\'');
+  return first != std::string_view::npos &&
+         std::string_view("=+-@").find(text[first]) != std::string_view::npos;
+}
+
+}  // namespace
+
+bool is_text(const loader::Key& key, bool is_string) {
+  return (key.kind == loader::ValueKind::text && key.inside == loader::Section::none) ||
+         (key.kind == loader::ValueKind::value && is_string);
+}
+
+std::string guarded(std::string_view text) {
+  return would_be_run(text) ? fmt::format("'{}", text) : std::string(text);
+}
+
+std::string_view unguarded(std::string_view text) {
+  return text.substr(0, 1) == "'" && would_be_run(text) ? text.substr(1) : text;
 }
 
 std::string csv_cell(std::string_view text) {

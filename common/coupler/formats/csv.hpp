@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "coupler/map/loader/keys.hpp"
 #include "coupler/map/loader/problems.hpp"
 
 namespace coupler::formats {
@@ -20,6 +21,14 @@ using Row = std::vector<Cell>;
 /// All rows that are not empty; empty with the first error in `problems` if a quote is never closed, or text
 /// follows a closed one. The separator is the one that the first line has most often, outside quotes.
 std::vector<Row> parse_csv(std::string_view text, loader::Problems& problems);
+
+/// The cells below this key are text, whatever they look like; `is_string`: those of a STRING.
+bool is_text(const loader::Key& key, bool is_string);
+
+/// Text as a cell that spreadsheets do not take for a formula: an apostrophe before "=", "+", "-" and "@",
+/// and one more where apostrophes stand there. unguarded() takes it away.
+std::string guarded(std::string_view text);
+std::string_view unguarded(std::string_view text);
 
 /// The text as a cell of a file whose separator is ',': in quotes where they are needed.
 std::string csv_cell(std::string_view text);

@@ -127,6 +127,11 @@ bool implies_on_shutdown(const Map& map, const EntriesByName& entries) {
   });
 }
 
+bool holds_text(std::string_view column, const Point& point) {
+  const loader::Key* key = loader::find_key(column, loader::section_of(point.table));
+  return key != nullptr && is_text(*key, point.format.type == codec::Type::STRING);
+}
+
 void warn_of_device_keys(const Entry& root, bool with_on_shutdown, ConversionWarnings& warnings) {
   std::set<std::string_view> worked_in{"mapping", "defaults", "addressing", "byteorder_reverse",
                                        "wordorder_reverse"};
@@ -155,11 +160,12 @@ Export write_csv(const Map& map) {
   if (root) warn_of_device_keys(*root, implies_on_shutdown(map, entries), out.warnings);
   const std::vector<std::string> columns = columns_of(rows);
   out.text = fmt::format("{}\r\n", fmt::join(columns, ","));
-  for (const Cells& cells : rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     std::string line;
     for (const std::string& column : columns) {
-      const auto found = cells.find(column);
-      line += (line.empty() ? "" : ",") + (found == cells.end() ? std::string() : csv_cell(found->second));
+      if (!line.empty()) line += ',';
+      if (const auto found = rows[i].find(column); found != rows[i].end())
+        line += csv_cell(holds_text(column, map.points[i]) ? guarded(found->second) : found->second);
     }
     out.text += line + "\r\n";
   }

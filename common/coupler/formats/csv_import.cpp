@@ -166,8 +166,7 @@ class RowReader {
     // A coil's type is BOOL whether it is said or not.
     if (column.key == "type" && holds_bits(table) && codec::parse_type(given.text) == codec::Type::BOOL)
       return;
-    const bool text = (key.kind == ValueKind::text && key.inside == Section::none) ||
-                      (key.kind == ValueKind::value && is_string(row));
+    const bool text = is_text(key, is_string(row));
     if (!text) {
       if (auto entry = structured(given, problems_)) {
         entry->key = column.key;
@@ -175,7 +174,7 @@ class RowReader {
         return;
       }
     }
-    Entry entry = scalar(column.key, given.text, given.at, text);
+    Entry entry = scalar(column.key, std::string(text ? unguarded(given.text) : given.text), given.at, text);
     if (!text && has_decimal_comma(given.text)) {
       std::replace(entry.text.begin(), entry.text.end(), ',', '.');
       problems_.warning(given.at, fmt::format("{} is read as {}", shown(given.text), entry.text),

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "coupler/map/fields.hpp"
+#include "coupler/map/printable.hpp"
 
 namespace coupler::formats {
 namespace {
@@ -83,16 +84,30 @@ void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) 
   }
 }
 
-std::string double_quoted(std::string_view text, std::string_view control) {
+std::string UniqueNames::make(const std::string& name, std::string_view point) {
+  std::string unique = name;
+  for (int n = 2; !taken_.insert(unique).second; ++n) unique = fmt::format("{}_{}", name, n);
+  if (unique != name)
+    warnings_.add("names that would be those of other points get a number", "rename one of the points",
+                  point);
+  return unique;
+}
+
+std::string double_quoted(std::string_view text, std::string_view control, Escapes escapes) {
   std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      out += {'\\', c};
-    else if (byte < 0x20 || byte == 0x7F)
-      out += fmt::format(fmt::runtime(control), byte);
+  for (std::size_t at = 0; at < text.size();) {
+    const Character c = character_at(text, at);
+    const std::string_view bytes = text.substr(at, c.size);
+    at += c.size;
+    if (bytes == "\"" || bytes == "\\")
+      out.append("\\").append(bytes);
+    else if (!turns_direction(c.code) && c.code >= 0x20 && c.code != 0x7F)
+      out += bytes;
+    else if (escapes == Escapes::characters)
+      out += fmt::format(fmt::runtime(control), static_cast<unsigned>(c.code));
     else
-      out += c;
+      for (const char byte : bytes)
+        out += fmt::format(fmt::runtime(control), static_cast<unsigned>(static_cast<unsigned char>(byte)));
   }
   return out + '"';
 }

@@ -2,6 +2,8 @@
 // Exports a map as another program's file. A format is one function and its row in exporters.cpp.
 #pragma once
 
+#include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -73,8 +75,24 @@ const Exporter* find_exporter(std::string_view name);
 /// for it.
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings);
 
+/// Names that another program has to tell apart.
+class UniqueNames {
+ public:
+  explicit UniqueNames(ConversionWarnings& warnings) : warnings_(warnings) {}
+
+  /// `name`; where it is taken, the first of name_2, name_3 … that is not, and a warning about the point.
+  std::string make(const std::string& name, std::string_view point);
+
+ private:
+  ConversionWarnings& warnings_;
+  std::set<std::string> taken_;
+};
+
+/// What an escape of a string's characters stands for.
+enum class Escapes : std::uint8_t { characters, bytes };
+
 /// The text in double quotes, with a backslash before quotes and backslashes. `control` is a format of fmt
-/// for the number of a control character, "\\u{:04X}".
-std::string double_quoted(std::string_view text, std::string_view control);
+/// for the number of a control character, or of one that turns the direction of writing: "\\u{:04X}".
+std::string double_quoted(std::string_view text, std::string_view control, Escapes escapes);
 
 }  // namespace coupler::formats

@@ -102,7 +102,8 @@ struct Entities {
 
 class EntityWriter {
  public:
-  EntityWriter(const Map& map, ConversionWarnings& warnings) : map_(map), warnings_(warnings) {}
+  EntityWriter(const Map& map, ConversionWarnings& warnings)
+      : map_(map), warnings_(warnings), ids_(warnings) {}
 
   Entities write() {
     for (const Point& point : map_.points) {
@@ -118,12 +119,12 @@ class EntityWriter {
  private:
   static constexpr std::string_view indent = "        ";
 
-  std::string head(const Point& point, std::uint16_t element, modbus::Range place) const {
+  std::string head(const Point& point, std::uint16_t element, modbus::Range place) {
     const auto name = point.count > 1 ? fmt::format("{} {}", point.name, element) : std::string(point.name);
     const unsigned address = place.start() + static_cast<unsigned>(element) * codec::registers(point.format);
     return fmt::format("      - name: {}\n{}unique_id: {}\n{}slave: {}\n{}address: {}\n{}scan_interval: {}\n",
-                       text(name), indent, unique_id(map_, name), indent, map_.connection.unit, indent,
-                       address, indent, interval_of(map_, point));
+                       text(name), indent, ids_.make(unique_id(map_, name), point.name), indent,
+                       map_.connection.unit, indent, address, indent, interval_of(map_, point));
   }
 
   void add(const Point& point, std::uint16_t element) {
@@ -182,6 +183,8 @@ class EntityWriter {
     if (is_writable(point) && is_readable(point))
       warnings_.add("holding registers become sensors, which cannot be written",
                     "use the action modbus.write_register", point.name);
+    if (!point.values.empty())
+      warnings_.add("names of values are left out", "make template sensors that name them", point.name);
     if (point.format.type == Type::REAL || point.format.type == Type::LREAL)
       warnings_.add("floats are rounded to 6 decimals", "change 'precision' if that is too few", point.name);
     if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
@@ -190,6 +193,7 @@ class EntityWriter {
 
   const Map& map_;
   ConversionWarnings& warnings_;
+  UniqueNames ids_;
   Entities entities_;
 };
 

@@ -9,13 +9,15 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/printable.hpp"
+
 namespace coupler::formats {
 namespace {
 
 using codec::Type;
 
 /// A basic string of TOML, quotes included.
-std::string literal(std::string_view text) { return double_quoted(text, "\\u{:04X}"); }
+std::string literal(std::string_view text) { return double_quoted(text, "\\u{:04X}", Escapes::characters); }
 
 /// A float of TOML, even if it is whole.
 std::string number(double value) {
@@ -65,9 +67,8 @@ std::string type_of(const codec::Format& format) {
   return {};
 }
 
-std::string field_of(const Point& point, std::uint16_t element) {
+std::string field_of(const Point& point, std::uint16_t element, const std::string& name) {
   const auto address = read_range(point).start() + element * codec::registers(point.format);
-  const auto name = point.count > 1 ? fmt::format("{}_{}", point.name, element) : std::string(point.name);
   std::string field = fmt::format("address = {}, name = {}", address, literal(name));
   if (!holds_bits(point.table)) {
     const codec::Format& format = point.format;
@@ -84,10 +85,7 @@ std::string comment_of(const Point& point) {
   std::string text(point.units);
   if (!point.units.empty() && !point.description.empty()) text += ", ";
   text += point.description;
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '\x7F'; },
-      ' ');
-  return text.empty() ? text : "  # " + text;
+  return text.empty() ? text : "  # " + printable(text);
 }
 
 /// Telegraf refuses a field if the address after it is past 65535.
@@ -105,6 +103,8 @@ void add_warnings(const Point& point, ConversionWarnings& warnings) {
     warnings.add("Telegraf only reads, so writing is left out", "no action is needed", point.name);
   if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
     warnings.add("texts are read as UTF-8", "convert the field where it is shown", point.name);
+  if (!point.values.empty())
+    warnings.add("names of values are left out", "name them where the field is shown", point.name);
   if (point.count > 1)
     warnings.add("arrays become several fields, whose names end in _0, _1, ...", "no action is needed",
                  point.name);
@@ -177,13 +177,21 @@ Export write_telegraf(const Map& map) {
   Export out;
   add_warnings(map, out.warnings);
   Requests requests;
-  for (const Point& point : map.points) {
-    if (!is_field(point, out.warnings)) continue;
-    add_warnings(point, out.warnings);
-    std::string& fields = requests[{point.table, byte_order_of(point)}];
-    for (std::uint16_t element = 0; element < point.count; ++element)
-      fields +=
-          fmt::format("      {{ {} }},{}\n", field_of(point, element), element == 0 ? comment_of(point) : "");
+  std::vector<const Point*> points;
+  for (const Point& point : map.points)
+    if (is_field(point, out.warnings)) points.push_back(&point);
+  // Single points first: they have their own names, and elements of arrays give way.
+  std::stable_partition(points.begin(), points.end(), [](const Point* point) { return point->count == 1; });
+  UniqueNames names(out.warnings);
+  for (const Point* point : points) {
+    add_warnings(*point, out.warnings);
+    std::string& fields = requests[{point->table, byte_order_of(*point)}];
+    for (std::uint16_t element = 0; element < point->count; ++element) {
+      const std::string name =
+          point->count > 1 ? fmt::format("{}_{}", point->name, element) : std::string(point->name);
+      fields += fmt::format("      {{ {} }},{}\n", field_of(*point, element, names.make(name, point->name)),
+                            element == 0 ? comment_of(*point) : "");
+    }
   }
   out.text = "# Made by `coupler export --to telegraf`.\n" + connection_of(map);
   for (const auto& [key, fields] : requests) out.text += request_of(map, key.first, key.second, fields);

@@ -11,7 +11,7 @@ namespace coupler::formats {
 namespace {
 
 /// A string of Lua, quotes included, that stands for exactly these bytes.
-std::string literal(std::string_view text) { return double_quoted(text, "\\{:03}"); }
+std::string literal(std::string_view text) { return double_quoted(text, "\\{:03}", Escapes::bytes); }
 
 /// Names of protocols and of their fields: lower case, digits, '_'.
 std::string protocol_of(std::string_view name) {

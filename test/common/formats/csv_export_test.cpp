@@ -109,6 +109,22 @@ TEST(CsvExport, Where_the_wiring_alone_has_safe_states_the_drivers_manners_are_t
   EXPECT_EQ(back.result.maps[0].map->map().on_shutdown, OnShutdown::hold);
 }
 
+TEST(CsvExport, Texts_that_a_spreadsheet_would_run_are_kept_from_it_and_numbers_are_not) {
+  const LoadResult loaded = load_map(
+      "{name: m, mapping: {holding_registers: {a: {address: 0, type: INT, initial: -5, description: "
+      "'=cmd()'}, b: {address: 1, type: STRING, length: 4, initial: '-x'}}}}",
+      "m");
+  ASSERT_NE(loaded.map, nullptr) << lines_of(loaded.diagnostics);
+  const std::string table = formats::write_csv(loaded.map->map()).text;
+  EXPECT_THAT(table, testing::HasSubstr(",'=cmd(),,-5\r\n")) << table;
+  EXPECT_THAT(table, testing::HasSubstr(",'-x\r\n")) << table;
+  const Imported back("csv", table, {"m", {}});
+  ASSERT_EQ(back.result.maps.size(), 1U) << back.said << table;
+  const Map& again = back.result.maps[0].map->map();
+  EXPECT_EQ(again.points[0].description, "=cmd()");
+  EXPECT_EQ(again.points[1].initial[0], 0x782D);  // the low byte first
+}
+
 TEST(CsvExport, The_devices_own_keys_are_told) {
   const LoadResult loaded = load_map("{name: m, port: 503, mapping: {coils: {a: 0}}}", "m");
   ASSERT_NE(loaded.map, nullptr);

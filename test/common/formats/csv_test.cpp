@@ -69,5 +69,16 @@ TEST(Csv, What_is_written_as_a_cell_reads_back) {
     EXPECT_THAT(parsed(csv_cell(text) + ",x"), ElementsAre(ElementsAre(text, "x")));
 }
 
+TEST(Csv, Text_that_a_spreadsheet_would_run_gets_an_apostrophe_and_loses_it_again) {
+  for (const std::string text : {"=1+1", "+49 151", "-flow", "@home", "'=1", "''-x"}) {
+    EXPECT_EQ(guarded(text), "'" + text);
+    EXPECT_EQ(unguarded(guarded(text)), text);
+  }
+  for (const std::string text : {"", "'", "'quoted'", "a=1", "°C", "5-6"}) {
+    EXPECT_EQ(guarded(text), text);
+    EXPECT_EQ(unguarded(text), text);
+  }
+}
+
 }  // namespace
 }  // namespace coupler::formats

@@ -63,6 +63,23 @@ TEST(TelegrafExport, What_it_cannot_say_is_told_with_the_points) {
   EXPECT_THAT(exported("telegraf", points).text, AllOf(Not(HasSubstr("\"last\"")), Not(HasSubstr("\"c\""))));
 }
 
+TEST(TelegrafExport, An_element_of_an_array_gives_way_to_a_point_of_its_name) {
+  const std::string points =
+      "holding_registers: {pair: {address: 0, type: INT, count: 2}, pair_1: {address: 9, type: INT}}";
+  const std::string text = exported("telegraf", points).text;
+  for (const char* field : {"address = 0, name = \"pair_0\"", "address = 1, name = \"pair_1_2\"",
+                            "address = 9, name = \"pair_1\""})
+    EXPECT_THAT(text, HasSubstr(field));
+  EXPECT_THAT(told("telegraf", points),
+              HasSubstr("names that would be those of other points get a number: pair; rename one"));
+}
+
+TEST(TelegrafExport, No_text_turns_the_direction_of_writing) {
+  const std::string text =
+      exported("telegraf", "coils: {a: {address: 0, description: \"on\u202Effo\"}}").text;
+  EXPECT_THAT(text, AllOf(HasSubstr("# on\\u202effo"), Not(HasSubstr("\u202E"))));
+}
+
 TEST(TelegrafExport, Unmapped_registers_are_read_only_where_the_map_allows_it) {
   const std::string points = "holding_registers: {a: {address: 1, type: INT}}, coils: {b: 1}";
   EXPECT_THAT(exported("telegraf", points).text, Not(HasSubstr("optimization")));
@@ -100,6 +117,15 @@ TEST(HomeAssistantExport, What_it_cannot_say_is_told_with_the_points) {
                 "only the lowest bit of a register can be a binary sensor, so other bits are left out: bit;"),
             HasSubstr("descriptions are left out: low;"), HasSubstr("floats are rounded to 6 decimals: r;"),
             HasSubstr("which cannot be written: low, bit, r;")));
+}
+
+TEST(HomeAssistantExport, No_two_entities_have_one_id) {
+  const std::string points =
+      "coils: {Lamp: 0, lamp: 1, lamp_2: 2}, discrete_inputs: {arm/left: 0, arm_left: 1}";
+  const std::string text = exported("home-assistant", points).text;
+  for (const char* id : {"m_lamp\n", "m_lamp_2\n", "m_lamp_2_2\n", "m_arm_left\n", "m_arm_left_2\n"})
+    EXPECT_THAT(text, HasSubstr(id)) << text;
+  EXPECT_THAT(told("home-assistant", points), HasSubstr("get a number: lamp, lamp_2, arm_left; rename one"));
 }
 
 TEST(HomeAssistantExport, A_swapped_bit_8_is_the_lowest_on_the_wire) {
