@@ -11,8 +11,8 @@ namespace coupler::loader {
 /// A word of other programs and manuals for what a key says here.
 struct Synonym {
   std::string_view word;  ///< in lower case, without blanks, '-' and '_'
-  Section sections;       ///< where it is one
   std::string_view remedy;
+  Section sections;       ///< where it is one
   bool harmless = false;  ///< without it every value is read the same
 };
 

@@ -50,8 +50,26 @@ bool indented_by_tab(std::string_view text, std::size_t offset) {
   return tab != std::string_view::npos && tab < std::min(first, text.size());
 }
 
-/// '#' after a blank begins a comment, also inside brackets. Where it hides a bracket that closes one, and
-/// nothing else closes that, the rest of the file makes no sense. npos: there is no such place before
+/// A quote opens a string where a value or key can begin.
+bool begins_value(char previous) {
+  return std::string_view("{[,:-\n").find(previous) != std::string_view::npos;
+}
+
+/// The comment that begins at `at`; empty if none does.
+std::string_view comment_at(std::string_view text, std::size_t at) {
+  const bool begins =
+      text[at] == '#' && (at == 0 || std::string_view(" \t\n").find(text[at - 1]) != std::string_view::npos);
+  return begins ? text.substr(at, std::min(text.find('\n', at), text.size()) - at) : std::string_view{};
+}
+
+/// The comment has more brackets that close `open` than ones like it.
+bool closes(std::string_view comment, char open) {
+  return std::count(comment.begin(), comment.end(), open == '{' ? '}' : ']') >
+         std::count(comment.begin(), comment.end(), open);
+}
+
+/// Where a comment hides a bracket that closes one, and nothing else closes that, the rest of the file makes
+/// no sense: '#' after a blank begins a comment also inside brackets. npos: there is no such place before
 /// `offset`.
 std::size_t hiding_comment(std::string_view text, std::size_t offset) {
   std::string open;  // brackets
@@ -60,28 +78,18 @@ std::size_t hiding_comment(std::string_view text, std::size_t offset) {
   char previous = '\n';
   for (std::size_t i = 0; i < std::min(text.size(), offset); ++i) {
     const char c = text[i];
-    if ((c == '"' || c == '\'') && std::string_view("{[,:-\n").find(previous) != std::string_view::npos) {
-      const std::size_t end = quoted_end(text, i);
-      if (end == std::string_view::npos) break;
-      i = end - 1;
-    } else if (c == '#' &&
-               (i == 0 || std::string_view(" \t\n").find(text[i - 1]) != std::string_view::npos)) {
-      const std::string_view comment = text.substr(i, std::min(text.find('\n', i), text.size()) - i);
-      const char closing = open.empty() || open.back() == '{' ? '}' : ']';
-      const auto closed = std::count(comment.begin(), comment.end(), closing);
-      if (found == std::string_view::npos && !open.empty() &&
-          closed > std::count(comment.begin(), comment.end(), open.back())) {
-        found = i;
-        depth = open.size();
-      }
-      i += comment.size() - 1;
-    } else if (c == '{' || c == '[') {
-      open += c;
-    } else if ((c == '}' || c == ']') && !open.empty()) {
-      open.pop_back();
-      if (open.size() < depth) found = std::string_view::npos;
+    const std::string_view comment = comment_at(text, i);
+    const std::size_t quoted = begins_value(previous) ? quoted_end(text, i) : i;
+    if (quoted == std::string_view::npos) break;
+    if (found == std::string_view::npos && !open.empty() && closes(comment, open.back())) {
+      found = i;
+      depth = open.size();
     }
-    if (text[i] != ' ' && text[i] != '\t') previous = text[i];
+    if (c == '{' || c == '[') open += c;
+    if ((c == '}' || c == ']') && !open.empty()) open.pop_back();
+    if (open.size() < depth) found = std::string_view::npos;
+    if (c != ' ' && c != '\t') previous = c;
+    i = std::max({i + 1, quoted, i + comment.size()}) - 1;
   }
   return found;
 }

@@ -107,6 +107,7 @@ std::string remedy_for_near_name(std::string_view word, const Number& number) {
   if (meant.empty() || meant.size() > most) return {};
   if (meant.size() == 1) return fmt::format("did you mean '{}'?", to_string(meant.front()));
   std::vector<std::string> texts;
+  texts.reserve(meant.size());
   for (const Type type : meant) texts.push_back(with_width(type));
   return fmt::format("did you mean {}?", fmt::join(texts, " or "));
 }
