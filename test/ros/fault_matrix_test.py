@@ -29,7 +29,7 @@ class FaultMatrix(testing.RosTest):
         self.addCleanup(self.device.stop)
 
     def start(self, mapping, *arguments, head="", timeout=NO_TIMEOUT):
-        path = process.write_map(f"{MAP}timeout: {timeout}\n{head}mapping:\n{mapping}")
+        path = process.write_map(f"{MAP}timeout: {timeout}s\n{head}mapping:\n{mapping}")
         driver = self.driver(f"_map:={path}", f"_port:={self.device.port}", *arguments)
         self.online = self.topic("/plant/online", Bool)
         return driver
@@ -214,7 +214,7 @@ class FaultMatrix(testing.RosTest):
     def test_09_a_unit_that_is_away_costs_the_others_neither_values_nor_connection(self):
         self.device.away = {2}
         maps = [process.write_map(f"name: unit{unit}\naddress: 127.0.0.1\nport: {self.device.port}\nunit: {unit}\n"
-                                  f"rate: 20\ntimeout: {NO_TIMEOUT}\nmapping:\n{self.LEVEL}") for unit in (1, 2, 3)]
+                                  f"rate: 20\ntimeout: {NO_TIMEOUT}s\nmapping:\n{self.LEVEL}") for unit in (1, 2, 3)]
         self.driver(f"_maps:=[{','.join(maps)}]")
         levels = {unit: self.topic(f"/unit{unit}/level", Int16) for unit in (1, 3)}
         for unit, level in levels.items():

@@ -17,7 +17,7 @@ address: 127.0.0.1
 port: {port}
 unit: {unit}
 rate: 20
-timeout: {timeout}
+timeout: {timeout}s
 mapping:
   holding_registers: {{level: {{address: 4, type: INT}}, goal: {{address: 5, type: INT, access: write}}}}
 """

@@ -18,7 +18,7 @@ MAP = f"""
 name: slow
 address: 127.0.0.1
 rate: 20
-timeout: {NO_TIMEOUT}
+timeout: {NO_TIMEOUT}s
 mapping:
   coils: {{start: 1, brake: {{address: 2, safe: on}}, kept: {{address: 3, safe: hold}}}}
   holding_registers:

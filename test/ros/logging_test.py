@@ -12,7 +12,7 @@ MAP = f"""
 name: told
 address: 127.0.0.1
 rate: 20
-timeout: {NO_TIMEOUT}
+timeout: {NO_TIMEOUT}s
 mapping:
   coils: {{lamp: 3}}
   input_registers: {{level: {{address: 0, type: INT}}}}

@@ -17,7 +17,7 @@ MAP = f"""
 name: kept
 address: 127.0.0.1
 rate: 20
-timeout: {NO_TIMEOUT}
+timeout: {NO_TIMEOUT}s
 mapping:
   input_registers: {{level: {{address: 0, type: INT}}}}
   holding_registers: {{goal: {{address: 4, type: INT, access: write}}}}

@@ -13,7 +13,7 @@ MAP = """
 name: plan
 address: localhost
 rate: 20
-timeout: {timeout}
+timeout: {timeout}s
 discrete_read_continuous: true
 registers_read_continuous: true
 limits: {read_registers: 20}
@@ -33,7 +33,7 @@ RATES = """
 name: plan
 address: localhost
 rate: 10
-timeout: {timeout}
+timeout: {timeout}s
 registers_read_continuous: true
 unreadable: [{table: holding_registers, from: 24, to: 27}]
 mapping:

@@ -25,7 +25,7 @@ MAP = """
 name: rack
 address: 127.0.0.1
 rate: {rate}
-timeout: {timeout}
+timeout: {timeout}s
 preset: {preset}
 {top}
 mapping:

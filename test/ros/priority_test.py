@@ -17,7 +17,7 @@ MAP = f"""
 name: slow
 address: 127.0.0.1
 rate: 20
-timeout: {NO_TIMEOUT}
+timeout: {NO_TIMEOUT}s
 mapping:
   coils: {{lamp: {LAMP}, stop: {{address: {STOP}, priority: high}}}}
   holding_registers:

@@ -19,7 +19,7 @@ MAP = """
 name: served
 address: 127.0.0.1
 rate: 20
-timeout: {timeout}
+timeout: {timeout}s
 mapping:
   coils: {lamp: 3, locked: 4}
   input_registers:

@@ -17,7 +17,7 @@ from support.topics import wait_until
 MAP = """
 name: shutdown
 address: 127.0.0.1
-timeout: {timeout}
+timeout: {timeout}s
 mapping:
   coils: {lamp: 3}
 """
@@ -68,7 +68,7 @@ class Shutdown(unittest.TestCase):
                     self.assert_ends_soon(driver)
 
     def test_while_many_devices_that_do_not_answer_should_get_safe_values(self):
-        text = "name: silent{number}\naddress: 127.0.0.1\nport: {port}\ntimeout: {timeout}\non_shutdown: safe\n" \
+        text = "name: silent{number}\naddress: 127.0.0.1\nport: {port}\ntimeout: {timeout}s\non_shutdown: safe\n" \
                "mapping:\n  coils: {{lamp: 3}}\n"
         with contextlib.ExitStack() as stack:
             silent = [stack.enter_context(silent_server()) for _ in range(20)]

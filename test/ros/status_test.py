@@ -15,7 +15,7 @@ MAP = """
 name: plant
 address: 127.0.0.1
 rate: 20
-timeout: {timeout}
+timeout: {timeout}s
 mapping:
   holding_registers:
     level: {address: 4, type: INT}

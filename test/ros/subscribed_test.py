@@ -16,7 +16,7 @@ MAP = """
 name: quiet
 address: 127.0.0.1
 rate: 20
-timeout: {timeout}
+timeout: {timeout}s
 mapping:
   input_registers:
     a: {address: 0, type: INT}

@@ -17,11 +17,11 @@ SINGLE, SEVERAL = 6, 16  # function codes of writes
 
 def several(extra=""):
     points = "".join(f"    r{i}: {{address: {i}, type: UINT}}\n" for i in range(COUNT))
-    return f"name: writes\naddress: 127.0.0.1\nrate: 10\ntimeout: {NO_TIMEOUT}\n{extra}mapping:\n  holding_registers:\n{points}"
+    return f"name: writes\naddress: 127.0.0.1\nrate: 10\ntimeout: {NO_TIMEOUT}s\n{extra}mapping:\n  holding_registers:\n{points}"
 
 
 def one(options, extra=""):
-    return (f"name: writes\naddress: 127.0.0.1\nrate: 20\ntimeout: {NO_TIMEOUT}\n{extra}"
+    return (f"name: writes\naddress: 127.0.0.1\nrate: 20\ntimeout: {NO_TIMEOUT}s\n{extra}"
             f"mapping:\n  holding_registers:\n    speed: {{address: 5, type: UINT{options}}}\n")
 
 

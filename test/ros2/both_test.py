@@ -20,7 +20,7 @@ MAP = f"""
 name: shared
 address: 127.0.0.1
 rate: 20
-timeout: {NO_TIMEOUT}
+timeout: {NO_TIMEOUT}s
 mapping:
   coils: {{lamp: {{address: 3, line: GPIO17}}}}
   holding_registers:

@@ -18,7 +18,7 @@ MAP = f"""
 name: burst
 address: 127.0.0.1
 rate: 20
-timeout: {NO_TIMEOUT}
+timeout: {NO_TIMEOUT}s
 mapping:
   coils: {{start: 1, stop: {{address: 2, write_queue: every}}}}
   holding_registers:

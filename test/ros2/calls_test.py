@@ -18,7 +18,7 @@ MAP = f"""
 name: called
 address: 127.0.0.1
 rate: 20
-timeout: {NO_TIMEOUT}
+timeout: {NO_TIMEOUT}s
 mapping:
   coils: {{start: 1, brake: {{address: 2, safe: on}}, kept: {{address: 3, safe: hold}}}}
   holding_registers:
@@ -124,7 +124,7 @@ class Watchdog(testing.RosTest):
     def test_reset_watchdog_gives_an_expired_coupler_its_outputs_back(self):
         coupler = wago.Wago750().start()
         self.addCleanup(coupler.stop)
-        path = process.write_map(f"name: rack\naddress: 127.0.0.1\nrate: 20\ntimeout: {NO_TIMEOUT}\npreset: wago_750\n"
+        path = process.write_map(f"name: rack\naddress: 127.0.0.1\nrate: 20\ntimeout: {NO_TIMEOUT}s\npreset: wago_750\n"
                                  "watchdog: {timeout: 1500ms, recovery: manual}\nmapping:\n  coils: {valve: 3}\n")
         driver = self.driver("--map", path, "--port", coupler.port)
         driver.wait_for("watchdog is fed: outputs go off after 1500 ms")

@@ -18,7 +18,7 @@ name: {name}
 address: 127.0.0.1
 port: {port}
 rate: 20
-timeout: {timeout}
+timeout: {timeout}s
 mapping:
   coils: {{lamp: 3, lamps: {{address: 10, count: 3}}}}
   holding_registers:

@@ -20,7 +20,7 @@ MAP = f"""
 name: hung
 address: 127.0.0.1
 rate: 20
-timeout: {NO_TIMEOUT}
+timeout: {NO_TIMEOUT}s
 mapping:
   coils: {{lamp: 3}}
   holding_registers: {{level: {{address: 4, type: INT}}}}

@@ -13,7 +13,7 @@ MAP = f"""
 name: heard
 address: 127.0.0.1
 rate: 20
-timeout: {NO_TIMEOUT}
+timeout: {NO_TIMEOUT}s
 mapping:
   coils: {{lamp: 3}}
   input_registers:

@@ -9,7 +9,7 @@ name: {name}
 address: 127.0.0.1
 port: {port}
 rate: 20
-timeout: {timeout}
+timeout: {timeout}s
 mapping:
   holding_registers: {{level: {{address: 4, type: INT}}}}
 """

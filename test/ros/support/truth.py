@@ -15,7 +15,7 @@ class Truth:
     """Of the device `plant` with the point `level` in holding register 4."""
 
     def __init__(self, test, port, *arguments, address="127.0.0.1", timeout=TIMEOUT):
-        path = write_map(f"name: plant\naddress: {address}\nrate: 20\ntimeout: {timeout}\n"
+        path = write_map(f"name: plant\naddress: {address}\nrate: 20\ntimeout: {timeout}s\n"
                          "mapping:\n  holding_registers: {level: {address: 4, type: INT}}\n")
         self.driver = test.driver(f"_map:={path}", f"_port:={port}", *arguments)
         self.level = test.topic("/plant/level", Int16)

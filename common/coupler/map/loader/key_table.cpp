@@ -47,6 +47,11 @@ constexpr KeyRow project(std::string_view name, S sections, K kind, std::string_
   return KeyRow({name, sections, kind, Owner::project, example, summary});
 }
 
+/// One of `limits:`, which is the most that Modbus has if not given.
+constexpr KeyRow limit(std::string_view name, std::string_view text, double most, std::string_view summary) {
+  return project(name, S::limits, K::integer, text, summary).otherwise(text).within(1, most);
+}
+
 constexpr S bits = S::coil | S::discrete_input;
 constexpr S registers = S::input_register | S::holding_register;
 constexpr S point = bits | registers;
@@ -72,17 +77,14 @@ constexpr Key keys[] = {
     inherited("rate", S::map, K::number, "10", "polling rate in Hz").otherwise("10").within(0.001, 10000),
     inherited("byteorder_reverse", S::map, K::boolean, "false", "the low byte of a register comes first")
         .otherwise("false"),
-    inherited("wordorder_reverse", S::map, K::boolean, "false",
-              "the most significant register of a value comes first")
+    inherited("wordorder_reverse", S::map, K::boolean, "false", "the most significant register comes first")
         .otherwise("false"),
-    inherited("discrete_read_continuous", S::map, K::boolean, "false",
-              "unmapped bits between points may be read")
+    inherited("discrete_read_continuous", S::map, K::boolean, "false", "unmapped bits may be read, too")
         .otherwise("false"),
     inherited("discrete_read_separation_gap", S::map, K::integer, "64", "gap from which bits are read apart")
         .otherwise("64")
         .within(0, most_address),
-    inherited("registers_read_continuous", S::map, K::boolean, "false",
-              "unmapped registers between points may be read")
+    inherited("registers_read_continuous", S::map, K::boolean, "false", "unmapped registers may be read, too")
         .otherwise("false"),
     inherited("registers_read_separation_gap", S::map, K::integer, "12",
               "gap from which registers are read apart")
@@ -255,18 +257,10 @@ constexpr Key keys[] = {
     project("offset", line, K::integer, "17", "the line's number on the chip").within(0, 65535),
     project("name", line, K::text, "GPIO17", "the line's name, instead of chip and offset"),
     // `limits:`
-    project("read_registers", S::limits, K::integer, "125", "registers in one read")
-        .otherwise("125")
-        .within(1, modbus::max_read_registers),
-    project("read_bits", S::limits, K::integer, "2000", "bits in one read")
-        .otherwise("2000")
-        .within(1, modbus::max_read_bits),
-    project("write_registers", S::limits, K::integer, "123", "registers in one write")
-        .otherwise("123")
-        .within(1, modbus::max_write_registers),
-    project("write_bits", S::limits, K::integer, "1968", "bits in one write")
-        .otherwise("1968")
-        .within(1, modbus::max_write_bits),
+    limit("read_registers", "125", modbus::max_read_registers, "registers in one read"),
+    limit("read_bits", "2000", modbus::max_read_bits, "bits in one read"),
+    limit("write_registers", "123", modbus::max_write_registers, "registers in one write"),
+    limit("write_bits", "1968", modbus::max_write_bits, "bits in one write"),
     project("request_gap", S::limits, K::duration, "5ms", "pause between a reply and the next request")
         .otherwise("0ms")
         .within(0, most_seconds),
