@@ -27,7 +27,10 @@ struct Arguments {
   std::string file;
   std::string out;
   formats::ImportOptions options;
+  std::string addressing = "zero_based";
+  std::string columns;
   unsigned unit = 0;
+  bool force = false;
   bool list = false;
 };
 
@@ -67,6 +70,25 @@ fs::path path_of(const std::string& out, const formats::ImportedMap& map, bool s
   return path;
 }
 
+/// A map that somebody may have worked on. What is the same may be written again.
+bool holds_other_text(const fs::path& path, const std::string& text) {
+  if (!fs::exists(path)) return false;
+  const auto found = read_file(path.string());
+  return !found || *found != text;
+}
+
+/// "name=Tag no.,address=Reg" for --columns; false if it is not of that form.
+bool parse_columns(std::string_view text, std::vector<formats::ColumnNames>& columns) {
+  while (!text.empty()) {
+    const std::string_view one = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(text.size(), one.size() + 1));
+    const std::size_t equals = one.find('=');
+    if (equals == std::string_view::npos || equals == 0 || equals + 1 == one.size()) return false;
+    columns.push_back({std::string(one.substr(0, equals)), std::string(one.substr(equals + 1))});
+  }
+  return true;
+}
+
 Exit write(const Arguments& arguments, const formats::ImportResult& result) {
   const bool several = result.maps.size() > 1;
   if (several && arguments.out.empty()) {
@@ -82,6 +104,9 @@ Exit write(const Arguments& arguments, const formats::ImportResult& result) {
       continue;
     }
     const fs::path path = path_of(arguments.out, imported, several);
+    if (!arguments.force && holds_other_text(path, imported.text))
+      return complain("import", bad_call, fmt::format("{} is already there", path.string()),
+                      "name another file with --out, or replace it with --force");
     if (const auto outcome = generate::write_if_changed(path, imported.text); !outcome)
       return complain("import", bad_call, outcome.error(), "give a file that you may write with --out");
     std::puts(summary(path.string(), imported.map->map()).c_str());
@@ -102,6 +127,15 @@ Exit run(const Arguments& arguments) {
     return complain("import", bad_call,
                     fmt::format("'{}' is not a format that can be read", arguments.format),
                     "give one of " + names_of_formats());
+  formats::ImportOptions options = arguments.options;
+  options.addressing = *parse_word<loader::Addressing>(arguments.addressing);
+  if (!parse_columns(arguments.columns, options.columns))
+    return complain("import", bad_call,
+                    fmt::format("--columns '{}' is not a list of columns", arguments.columns),
+                    "write it as in --columns 'name=Tag no.,address=Reg'");
+  if (!importer->is_table && (!arguments.columns.empty() || arguments.addressing != "zero_based"))
+    return complain("import", bad_call, "--columns and --addressing are for tables",
+                    fmt::format("leave them out: '{}' says both itself", importer->name));
   const std::string file = arguments.file == "-" ? "<stdin>" : arguments.file;
   const auto text = read_file(arguments.file);
   if (!text) {
@@ -109,7 +143,7 @@ Exit run(const Arguments& arguments) {
                file, text.error());
     return bad_input;
   }
-  const formats::ImportResult result = formats::import_text(*importer, *text, file, arguments.options);
+  const formats::ImportResult result = formats::import_text(*importer, *text, file, options);
   print(result.diagnostics);
   return result.maps.empty() ? bad_input : write(arguments, result);
 }
@@ -131,6 +165,18 @@ void add_import(Program& program, Exit& exit) {
   auto unit = command.add_option("--unit", arguments->unit, "Only this unit of the file")
                   .in_range(0, 255)
                   .type_name("N");
+  command
+      .add_option(
+          "--addressing", arguments->addressing,
+          "What the addresses of a table count: zero_based (default) or modicon, where 40001 is the first "
+          "holding register and no column 'table' is needed")
+      .one_of({"zero_based", "modicon"})
+      .type_name("KIND");
+  command
+      .add_option("--columns", arguments->columns,
+                  "Headings of a table that are not understood: name=Tag,address=Reg")
+      .type_name("LIST");
+  command.add_flag("--force", arguments->force, "Replace a map that is there with --out");
   command.add_flag("--list", arguments->list, "Print the formats");
   command.footer(
       "Example:\n  coupler import csv points.csv --name press --out press.yaml\n"

@@ -7,6 +7,7 @@
 
 #include "coupler/codec/type_name.hpp"
 #include "coupler/formats/csv.hpp"
+#include "coupler/formats/csv_words.hpp"
 #include "coupler/formats/map_tree.hpp"
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/keys.hpp"
@@ -21,7 +22,6 @@ using loader::Entry;
 using loader::Problems;
 using loader::Section;
 using loader::shown;
-using loader::ValueKind;
 
 constexpr Section any_point =
     Section::coil | Section::discrete_input | Section::input_register | Section::holding_register;
@@ -37,54 +37,86 @@ std::vector<std::string_view> column_names() {
   return names;
 }
 
-/// "Read Address" -> "read_address"
-std::string key_of(std::string_view heading) {
-  std::string key = loader::lower(heading);
-  std::replace(key.begin(), key.end(), ' ', '_');
-  return key;
+/// The heading's own column, or what --columns says of it.
+std::string column_of(std::string_view heading, const ImportOptions& options) {
+  for (const auto& [column, given] : options.columns)
+    if (loader::lower(given) == loader::lower(heading)) return column;
+  return formats::column_of(heading);
 }
 
-std::vector<Column> read_header(const Row& header, Problems& problems) {
+bool is_known(const Column& column) {
+  return column.described != nullptr || column.key == "table" || column.key == "name" || column.key == "unit";
+}
+
+/// What becomes of a column that is none of a point's.
+void report_unknown(const Cell& heading, std::string_view key, Problems& problems) {
+  const auto names = column_names();
+  const std::string_view near = loader::nearest(key, names);
+  const bool slip =
+      std::any_of(names.begin(), names.end(), [&](const auto name) { return loader::is_slip(key, name); });
+  if (slip)
+    problems.error(heading.at, fmt::format("a point has no key {}", shown(heading.text)),
+                   fmt::format("did you mean '{}'? If not, give the column another heading", near));
+  else
+    problems.warning(
+        heading.at,
+        fmt::format("the column {} is not carried over: a point has no such key", shown(heading.text)),
+        near.empty() ? "see docs/import-export.md for the columns, or name it with --columns"
+                     : fmt::format("did you mean '{}'?", near));
+}
+
+void need_columns(const Row& header, const std::vector<Column>& columns, const ImportOptions& options,
+                  Problems& problems) {
+  for (const std::string_view needed : {"table", "name", "address"}) {
+    // Modicon's numbers begin with the table's digit.
+    if (needed == "table" && options.addressing == loader::Addressing::modicon) continue;
+    if (std::none_of(columns.begin(), columns.end(), [&](const Column& c) { return c.key == needed; }))
+      problems.error(header.front().at, fmt::format("there is no column '{}'", needed),
+                     fmt::format("begin with a line of headings, such as table,name,address,type; or say "
+                                 "which one it is: --columns {}=HEADING",
+                                 needed));
+  }
+}
+
+std::vector<Column> read_header(const Row& header, const ImportOptions& options, Problems& problems) {
   std::vector<Column> columns;
   for (const Cell& cell : header) {
-    Column column{key_of(cell.text), nullptr};
+    Column column{column_of(cell.text, options), nullptr};
+    column.described = loader::find_key(column.key, any_point);
     const bool twice = std::any_of(columns.begin(), columns.end(),
                                    [&](const Column& c) { return !c.key.empty() && c.key == column.key; });
     if (twice)
-      problems.error(cell.at, fmt::format("the column {} is there twice", shown(cell.text)), "remove one");
-    column.described = loader::find_key(column.key, any_point);
-    if (column.described == nullptr && column.key != "table" && column.key != "name" &&
-        column.key != "unit" && !column.key.empty()) {
-      const auto names = column_names();
-      const std::string_view near = loader::nearest(column.key, names);
-      const bool slip = std::any_of(names.begin(), names.end(),
-                                    [&](const auto name) { return loader::is_slip(column.key, name); });
-      if (slip)
-        problems.error(cell.at, fmt::format("a point has no key {}", shown(cell.text)),
-                       fmt::format("did you mean '{}'? If not, give the column another heading", near));
-      else
-        problems.warning(
-            cell.at,
-            fmt::format("the column {} is not carried over: a point has no such key", shown(cell.text)),
-            near.empty() ? "see docs/import-export.md for the columns"
-                         : fmt::format("did you mean '{}'?", near));
+      problems.error(cell.at,
+                     fmt::format("the column '{}' is there twice, here as {}", column.key, shown(cell.text)),
+                     "remove one, or give it another heading");
+    if (!is_known(column) && !column.key.empty()) {
+      report_unknown(cell, column.key, problems);
       column.key.clear();
     }
     columns.push_back(std::move(column));
   }
-  for (const std::string_view needed : {"table", "name", "address"})
-    if (std::none_of(columns.begin(), columns.end(), [&](const Column& c) { return c.key == needed; }))
-      problems.error(header.front().at, fmt::format("there is no column '{}'", needed),
-                     "begin with a line of headings, such as table,name,address,type");
+  need_columns(header, columns, options, problems);
+  for (const auto& [column, heading] : options.columns)
+    if (std::none_of(header.begin(), header.end(), [&, &name = heading](const Cell& c) {
+          return loader::lower(c.text) == loader::lower(name);
+        }))
+      problems.error(header.front().at, fmt::format("--columns: there is no heading {}", shown(heading)),
+                     "write it as the file does");
   return columns;
 }
 
-std::optional<Table> parse_table(std::string_view text) {
-  std::string word = key_of(text);
-  if (!word.empty() && word.back() != 's') word += 's';
-  for (const Table table : tables)
-    if (to_string(table) == word) return table;
-  return std::nullopt;
+/// "Unit" is the unit id to one, "bar" to another: where one cell is no unit id, the column is `units`.
+void tell_units_from_unit_ids(std::vector<Column>& columns, const std::vector<Row>& rows) {
+  const auto of = [&](std::string_view key) {
+    return std::find_if(columns.begin(), columns.end(), [key](const Column& c) { return c.key == key; });
+  };
+  const auto unit = of("unit");
+  if (unit == columns.end() || of("units") != columns.end()) return;
+  const auto at = static_cast<std::size_t>(unit - columns.begin());
+  const bool is_text = std::any_of(rows.begin() + 1, rows.end(), [at](const Row& row) {
+    return at < row.size() && !row[at].text.empty() && !loader::parse_unsigned(row[at].text);
+  });
+  if (is_text) *unit = {"units", loader::find_key("units", any_point)};
 }
 
 void place(Entry& entry, loader::Position at) {
@@ -118,8 +150,8 @@ bool has_decimal_comma(std::string_view text) {
 
 class RowReader {
  public:
-  RowReader(const std::vector<Column>& columns, Problems& problems)
-      : columns_(columns), problems_(problems) {}
+  RowReader(const std::vector<Column>& columns, const ImportOptions& options, Problems& problems)
+      : columns_(columns), options_(options), problems_(problems) {}
 
   void read(const Row& row, std::vector<ForeignUnit>& units) {
     if (row.size() > columns_.size()) {
@@ -131,24 +163,32 @@ class RowReader {
     }
     const Cell* name = cell(row, "name");
     const Cell* table_cell = cell(row, "table");
-    const auto table = table_cell != nullptr ? parse_table(table_cell->text) : std::nullopt;
-    if (!table) {
-      problems_.error(table_cell != nullptr ? table_cell->at : row.front().at,
-                      fmt::format("{} is not a table", shown(table_cell != nullptr ? table_cell->text : "")),
-                      "write coils, discrete_inputs, input_registers or holding_registers");
-      return;
-    }
+    const auto table = table_of(row, table_cell);
+    if (!table) return;
     const loader::Position at = name != nullptr ? name->at : row.front().at;
     Entry point = section(name != nullptr ? name->text : "", at);
     for (std::size_t i = 0; i < row.size(); ++i)
       if (columns_[i].described != nullptr && !row[i].text.empty())
         add(columns_[i], row[i], row, *table, point);
     Entry& map = unit_of(row, units).map;
+    if (options_.addressing == loader::Addressing::modicon) set(map, scalar("addressing", "modicon", map.at));
     Entry& mapping = make_section(map, "mapping", at);
     make_section(mapping, to_string(*table), at).children.push_back(std::move(point));
   }
 
  private:
+  std::optional<Table> table_of(const Row& row, const Cell* given) const {
+    if (given == nullptr && options_.addressing == loader::Addressing::modicon)
+      if (const Cell* address = cell(row, "address"))
+        if (const auto table = table_of_modicon(address->text)) return table;
+    if (given != nullptr)
+      if (const auto table = parse_table(given->text)) return table;
+    problems_.error(given != nullptr ? given->at : row.front().at,
+                    fmt::format("{} is not a table", shown(given != nullptr ? given->text : "")),
+                    "write coils, discrete_inputs, input_registers or holding_registers");
+    return std::nullopt;
+  }
+
   const Cell* cell(const Row& row, std::string_view key) const {
     for (std::size_t i = 0; i < row.size(); ++i)
       if (columns_[i].key == key && !row[i].text.empty()) return &row[i];
@@ -175,6 +215,7 @@ class RowReader {
       }
     }
     Entry entry = scalar(column.key, std::string(text ? unguarded(given.text) : given.text), given.at, text);
+    if (column.key == "access") entry.text = access_of(given.text);
     if (!text && has_decimal_comma(given.text)) {
       std::replace(entry.text.begin(), entry.text.end(), ',', '.');
       problems_.warning(given.at, fmt::format("{} is read as {}", shown(given.text), entry.text),
@@ -202,6 +243,7 @@ class RowReader {
   }
 
   const std::vector<Column>& columns_;
+  const ImportOptions& options_;
   Problems& problems_;
 };
 
@@ -235,7 +277,7 @@ void add_on_shutdown(Entry& map, Problems& problems) {
 
 }  // namespace
 
-std::vector<ForeignUnit> read_csv(std::string_view text, Problems& problems) {
+std::vector<ForeignUnit> read_csv(std::string_view text, const ImportOptions& options, Problems& problems) {
   const std::vector<Row> rows = parse_csv(text, problems);
   if (problems.has_errors()) return {};
   if (rows.size() < 2) {
@@ -243,10 +285,11 @@ std::vector<ForeignUnit> read_csv(std::string_view text, Problems& problems) {
                    "write a line of headings and one line for each point");
     return {};
   }
-  const std::vector<Column> columns = read_header(rows.front(), problems);
+  std::vector<Column> columns = read_header(rows.front(), options, problems);
   if (problems.has_errors()) return {};
+  tell_units_from_unit_ids(columns, rows);
   std::vector<ForeignUnit> units;
-  RowReader reader(columns, problems);
+  RowReader reader(columns, options, problems);
   for (auto row = rows.begin() + 1; row != rows.end(); ++row) reader.read(*row, units);
   for (ForeignUnit& unit : units) add_on_shutdown(unit.map, problems);
   return units;

@@ -9,6 +9,7 @@
 
 #include "coupler/codec/type_name.hpp"
 #include "coupler/formats/map_tree.hpp"
+#include "coupler/formats/text_encoding.hpp"
 #include "coupler/map/loader/map_reader.hpp"
 #include "coupler/map/loader/names.hpp"
 #include "coupler/map/loader/scalar.hpp"
@@ -22,7 +23,7 @@ using loader::Entry;
 using loader::Problems;
 
 constexpr Importer formats[] = {
-    {"csv", "a table of points: one row a point, one column a key", read_csv},
+    {"csv", "a table of points: one row a point, one column a key", read_csv, true},
     {"origin", "bitmeal/ros-modbus-device-driver, YAML or JSON", read_ros_modbus_device_driver},
     {"unslave", "Unslave's config.json", read_unslave},
 #ifdef COUPLER_WITH_PUGIXML
@@ -48,6 +49,8 @@ class Names {
     std::string name = wanted;
     int& last = last_.emplace(wanted, 1).first->second;
     while (!lines_.emplace(name, point.key_at.line).second) name = fmt::format("{}_{}", wanted, ++last);
+    if (wanted != point.key && !point.key.empty() && find(point, "description") == nullptr)
+      point.children.push_back(scalar("description", point.key, point.key_at, true));
     if (wanted != point.key)
       problems_.warning(point.key_at,
                         fmt::format("{} is not a valid name of a point and was changed to '{}'",
@@ -203,9 +206,17 @@ const Importer* find_importer(std::string_view name) {
 ImportResult import_text(const Importer& importer, std::string_view text, std::string_view file,
                          const ImportOptions& options) {
   Problems problems(file);
+  Utf8 converted;
+  if (importer.is_table) {
+    converted = to_utf8(text);
+    text = converted.text;
+    if (converted.from == WrittenIn::windows_1252)
+      problems.warning({}, "the file is not UTF-8, so it is read as Windows-1252 (Latin-1)",
+                       "save it as UTF-8 if texts look wrong");
+  }
   text = loader::without_byte_order_mark(text);
   if (!loader::check_text(text, problems)) return {{}, quoted(std::move(problems), text)};
-  std::vector<ForeignUnit> units = importer.read(text, problems);
+  std::vector<ForeignUnit> units = importer.read(text, options, problems);
   check_units(units, problems);
   const bool several = units.size() > 1;
   if (options.unit) choose_unit(units, *options.unit, problems);

@@ -9,6 +9,7 @@
 
 #include "coupler/base/span.hpp"
 #include "coupler/map/diagnostic.hpp"
+#include "coupler/map/loader/address.hpp"
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/problems.hpp"
 #include "coupler/map/owned_map.hpp"
@@ -23,46 +24,60 @@ struct ForeignUnit {
   loader::Entry map;
 };
 
+/// How a table is read, besides what it says itself.
+struct ColumnNames {
+  std::string column;   ///< "name"
+  std::string heading;  ///< "Tag no."
+};
+
+struct ImportOptions {
+  std::string name;              ///< of the map; empty: the file's own, else made from the file's name
+  std::optional<unsigned> unit;  ///< only this one; for a file that does not say any, the map's unit
+  loader::Addressing addressing = loader::Addressing::zero_based;  ///< what a table's addresses count
+  std::vector<ColumnNames> columns{};                              ///< headings that no word is known for
+};
+
 /// Reads UTF-8 text without control characters or byte order mark. What makes the file unusable is an error,
 /// what a map cannot express is a warning, each with its place. Never throws.
-using ReadForeign = std::vector<ForeignUnit> (*)(std::string_view text, loader::Problems& problems);
+using ReadForeign = std::vector<ForeignUnit> (*)(std::string_view text, const ImportOptions& options,
+                                                 loader::Problems& problems);
 
 struct Importer {
   std::string_view name;  ///< at the command line
   std::string_view summary;
   ReadForeign read;
+  bool is_table = false;  ///< of any encoding, with ImportOptions::addressing and columns
 };
 
 // A function for each format.
 
 /// A table of points: one row a point, one column a key of the map's points, `table` and `name` among them,
 /// in any order. With a column `unit`, one map a unit. docs/import-export.md describes the columns.
-std::vector<ForeignUnit> read_csv(std::string_view text, loader::Problems& problems);
+std::vector<ForeignUnit> read_csv(std::string_view text, const ImportOptions& options,
+                                  loader::Problems& problems);
 
 /// ModbusPal's projects (.xmpp): the coils and holding registers of its slaves. Registers are UINT; those
 /// that an automation feeds as SINT16, SINT32 or FLOAT32 are INT, DINT or REAL. The DTD and other external
 /// entities are never read.
-std::vector<ForeignUnit> read_modbuspal(std::string_view text, loader::Problems& problems);
+std::vector<ForeignUnit> read_modbuspal(std::string_view text, const ImportOptions& options,
+                                        loader::Problems& problems);
 
 /// The files of ros-modbus-device-driver (bitmeal), and maps of this project, which are written in one style.
 /// Comments are left out with a warning.
-std::vector<ForeignUnit> read_ros_modbus_device_driver(std::string_view text, loader::Problems& problems);
+std::vector<ForeignUnit> read_ros_modbus_device_driver(std::string_view text, const ImportOptions& options,
+                                                       loader::Problems& problems);
 
 /// Unslave's config.json (https://unserver.xyz/docs/unslave): values of coils (C), discrete inputs (DI),
 /// input registers (IR) and holding registers (HR). It has no names and no types: the points are UINT and
 /// named after table and address.
-std::vector<ForeignUnit> read_unslave(std::string_view text, loader::Problems& problems);
+std::vector<ForeignUnit> read_unslave(std::string_view text, const ImportOptions& options,
+                                      loader::Problems& problems);
 
 /// All of them; what was left out of the build is not there.
 Span<const Importer> importers();
 
 /// The importer of that name, or nullptr.
 const Importer* find_importer(std::string_view name);
-
-struct ImportOptions {
-  std::string name;              ///< of the map; empty: the file's own, else made from the file's name
-  std::optional<unsigned> unit;  ///< only this one; for a file that does not say any, the map's unit
-};
 
 struct ImportedMap {
   std::optional<unsigned> unit;

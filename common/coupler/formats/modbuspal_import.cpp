@@ -248,7 +248,8 @@ bool check_declaration(const pugi::xml_document& document, const Lines& lines, P
 
 }  // namespace
 
-std::vector<ForeignUnit> read_modbuspal(std::string_view text, Problems& problems) {
+std::vector<ForeignUnit> read_modbuspal(std::string_view text, const ImportOptions& /*options*/,
+                                        Problems& problems) {
   const Lines lines(text);
   pugi::xml_document document;
   const auto outcome = document.load_buffer(text.data(), text.size(),

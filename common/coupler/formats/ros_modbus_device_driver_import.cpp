@@ -58,7 +58,8 @@ void warn_of_comments(std::string_view text, bool json, std::string_view blanked
 
 }  // namespace
 
-std::vector<ForeignUnit> read_ros_modbus_device_driver(std::string_view text, Problems& problems) {
+std::vector<ForeignUnit> read_ros_modbus_device_driver(std::string_view text,
+                                                       const ImportOptions& /*options*/, Problems& problems) {
   auto root = loader::parse_document(text, problems);
   if (!root) return {};
   std::string blanked(text);

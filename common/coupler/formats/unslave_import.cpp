@@ -149,7 +149,8 @@ std::vector<Entry> read_device(const Entry& root, Problems& problems) {
 
 }  // namespace
 
-std::vector<ForeignUnit> read_unslave(std::string_view text, Problems& problems) {
+std::vector<ForeignUnit> read_unslave(std::string_view text, const ImportOptions& /*options*/,
+                                      Problems& problems) {
   const auto root = loader::parse_document(text, problems);
   if (!root) return {};
   const Entry* slaves = find(*root, "slaves");

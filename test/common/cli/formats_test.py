@@ -31,7 +31,7 @@ class Import(Formats):
         done = self.coupler("import", "csv", "-", "--name", "press", stdin=ONE)
         self.assertEqual(done.returncode, 0)
         self.assertEqual(done.stdout, "# Imported from <stdin> by `coupler import csv`.\nname: press\nmapping:\n"
-                                      "  coils:\n    lamp_one: 0\n")
+                                      "  coils:\n    lamp_one: {address: 0, description: \"lamp one\"}\n")
         self.assertIn("<stdin>:2:7: warning: 'lamp one' is not a valid name of a point", done.stderr)
 
     def test_writes_a_file_that_check_takes(self):
@@ -47,6 +47,24 @@ class Import(Formats):
         self.assertEqual(self.coupler("import", "csv", name, "--out", "bus.yaml").returncode, 0)
         self.assertEqual(sorted(p.name for p in self.folder.glob("*.yaml")), ["bus_1.yaml", "bus_2.yaml"])
         self.assertIn("name: bus_2\nunit: 2\n", self.coupler("import", "csv", name, "--unit", "2").stdout)
+
+    def test_replaces_no_other_map_unless_it_is_forced(self):
+        name = self.file("a.csv", ONE)
+        (self.folder / "a.yaml").write_text("name: mine\nmapping: {coils: {a: 0}}\n", encoding="utf-8")
+        done = self.coupler("import", "csv", name, "--out", "a.yaml")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("a.yaml is already there; name another file with --out, or replace it with --force", done.stderr)
+        self.assertIn("name: mine", (self.folder / "a.yaml").read_text(encoding="utf-8"))
+        for arguments in (("--force",), ()):  # what is the same may be written again
+            self.assertEqual(self.coupler("import", "csv", name, "--out", "a.yaml", *arguments).returncode, 0)
+
+    def test_takes_the_headings_and_addresses_of_a_manual(self):
+        name = self.file("m.csv", "Tag no.,Modbus,Data Type\nspeed,40002,INT\n")
+        done = self.coupler("import", "csv", name, "--addressing", "modicon", "--columns", "name=Tag no.,address=Modbus")
+        self.assertEqual(done.stdout.split("\n", 1)[1], "name: m\naddressing: modicon\nmapping:\n  holding_registers:\n"
+                                                        "    speed: {address: 40002, type: INT}\n")
+        self.assertIn("is not a list of columns; write it as in", self.coupler("import", "csv", name, "--columns", "x").stderr)
+        self.assertIn("are for tables", self.coupler("import", "origin", name, "--columns", "name=x").stderr)
 
     def test_refuses_what_it_cannot_read_and_writes_nothing(self):
         done = self.coupler("import", "unslave", self.file("a.json", "{"), "--out", "a.yaml")

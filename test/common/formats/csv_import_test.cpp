@@ -7,6 +7,7 @@ namespace coupler::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(CsvImport, A_row_is_a_point_and_a_column_a_key_in_any_order) {
   const Imported csv("csv",
@@ -66,12 +67,12 @@ TEST(CsvImport, What_is_wrong_is_told_at_its_cell) {
                      "coils,a,0,\n"
                      "coil,b,zero,\n"
                      "holding_registers,c,1,INTT\n"
-                     "holding,d,1,INT\n"
+                     "registers,d,1,INT\n"
                      "input_registers,e,70000,INT\n"
                      "input_registers,f,9,INT,extra\n");
   EXPECT_TRUE(csv.result.maps.empty());
   for (const auto* place :
-       {"given:3:8: error:", "given:4:23: error:", "given:5:1: error: 'holding' is not a table",
+       {"given:3:8: error:", "given:4:23: error:", "given:5:1: error: 'registers' is not a table",
         "given:6:19: error:", "given:7:25: error: the row has 5 cells"})
     EXPECT_THAT(csv.said, HasSubstr(place));
 }
@@ -81,7 +82,8 @@ TEST(CsvImport, Names_that_are_no_ROS_names_or_taken_are_mended_and_told) {
       "csv", "table,name,address\ncoils,1st lamp,0\ncoils,lamp,1\ncoils,lamp,2\ncoils,status,3\ncoils,,4\n");
   EXPECT_THAT(
       csv.text(),
-      HasSubstr("    point_1st_lamp: 0\n    lamp: 1\n    lamp_2: 2\n    status_point: 3\n    point: 4\n"));
+      HasSubstr("    point_1st_lamp: {address: 0, description: \"1st lamp\"}\n    lamp: 1\n    lamp_2: 2\n"
+                "    status_point: {address: 3, description: status}\n    point: 4\n"));
   EXPECT_THAT(csv.said, HasSubstr("given:2:7: warning: '1st lamp' is not a valid name of a point and was "
                                   "changed to 'point_1st_lamp'"));
   EXPECT_THAT(csv.said, HasSubstr("given:4:7: warning: 'lamp' is already the name of the point in line 3, so "
@@ -120,6 +122,84 @@ TEST(CsvImport, Types_are_read_under_all_their_names_and_written_under_that_of_I
   EXPECT_THAT(csv.text(), HasSubstr("d: 0"));
   EXPECT_THAT(Imported("csv", "table,name,address,type\nholding_registers,a,0,LONG\n").said,
               HasSubstr("write DINT (32 bits) or LINT (64 bits)"));
+}
+
+TEST(CsvImport, Headings_and_words_are_those_that_people_write) {
+  const Imported csv("csv",
+                     "Tag;FC;Register;Data Type;R/W;Unit;Factor;Remarks\n"
+                     "speed;HR;7;u16;R/W;rpm;0,5;of the belt\n"
+                     "level;3x;1;s16;RO;mm;1;\n"
+                     "lamp;0x;2;bool;RW;;;\n"
+                     "door;discrete;3;bit;R;;;\n"
+                     "go;FC3;9;uint16;WO;;;\n");
+  EXPECT_THAT(csv.said, Not(HasSubstr("error")));
+  const std::string text = csv.text();
+  for (const char* line : {"speed: {address: 7, type: UINT, access: read_write, units: rpm, scale: 0.5, "
+                           "description: \"of the belt\"}",
+                           "level: {address: 1, type: INT, access: read, units: mm, scale: 1}",
+                           "lamp: {address: 2, access: read_write}", "door: {address: 3, access: read}",
+                           "go: {address: 9, type: UINT, access: write}"})
+    EXPECT_THAT(text, HasSubstr(line));
+}
+
+TEST(CsvImport, A_column_unit_with_text_is_units_and_with_numbers_the_unit_id) {
+  EXPECT_THAT(Imported("csv", "table,name,address,type,Unit\nhr,a,0,INT,bar\nhr,b,1,INT,\n").text(),
+              HasSubstr("a: {address: 0, type: INT, units: bar}"));
+  EXPECT_THAT(Imported("csv", "table,name,address,type,Unit\nhr,a,0,INT,3\n").text(), HasSubstr("unit: 3\n"));
+}
+
+TEST(CsvImport, Modicon_addresses_say_the_table_and_stay_as_they_are) {
+  formats::ImportOptions options{"m", {}};
+  options.addressing = loader::Addressing::modicon;
+  const Imported csv(
+      "csv", "name,address,type\nlamp,00001,\ndoor,10003,\nlevel,30001,INT\nspeed,400002,INT\n", options);
+  EXPECT_EQ(csv.said, "");
+  EXPECT_THAT(csv.text(), HasSubstr("addressing: modicon"));
+  ASSERT_EQ(csv.result.maps.size(), 1U);
+  const Map& map = csv.result.maps[0].map->map();
+  EXPECT_EQ(find(map, "lamp")->table, Table::coils);
+  EXPECT_EQ(find(map, "door")->address, 2);
+  EXPECT_EQ(find(map, "level")->table, Table::input_registers);
+  EXPECT_EQ(find(map, "speed")->address, 1);
+}
+
+TEST(CsvImport, Headings_of_other_languages_are_named_by_the_caller) {
+  const std::string table = "Bezeichnung;Bereich;Adresse\nLampe;coils;3\n";
+  EXPECT_THAT(Imported("csv", table).said, HasSubstr("there is no column 'name'"));
+  formats::ImportOptions options{"m", {}};
+  options.columns = {{"name", "bezeichnung"}, {"table", "Bereich"}, {"address", "Adresse"}};
+  EXPECT_THAT(Imported("csv", table, options).text(), HasSubstr("Lampe: 3"));
+  options.columns.push_back({"type", "Typ"});
+  EXPECT_THAT(Imported("csv", table, options).said, HasSubstr("--columns: there is no heading 'Typ'"));
+}
+
+TEST(CsvImport, Latin_1_and_UTF_16_are_read_as_Excel_saves_them) {
+  const std::string head = "table,name,address,description\n";
+  const Imported latin("csv", head + "coils,a,0,T\xFCr f\xFCr 5 \x80\n");
+  EXPECT_THAT(latin.said, HasSubstr("read as Windows-1252 (Latin-1)"));
+  ASSERT_EQ(latin.result.maps.size(), 1U);
+  EXPECT_EQ(latin.result.maps[0].map->map().points[0].description, "Tür für 5 €");
+  for (const bool big_endian : {false, true}) {
+    std::string bytes = big_endian ? "\xFE\xFF" : "\xFF\xFE";
+    for (const char16_t unit :
+         std::u16string(u"table\tname\taddress\tdescription\r\ncoils\ta\t0\tTür 🔧\r\n")) {
+      const char high = static_cast<char>(unit >> 8);
+      const char low = static_cast<char>(unit & 0xFF);
+      bytes += big_endian ? high : low;
+      bytes += big_endian ? low : high;
+    }
+    const Imported wide("csv", bytes);
+    EXPECT_EQ(wide.said, "");
+    ASSERT_EQ(wide.result.maps.size(), 1U);
+    EXPECT_EQ(wide.result.maps[0].map->map().points[0].description, "Tür 🔧");
+  }
+}
+
+TEST(CsvImport, A_name_that_had_to_change_is_kept_as_the_description) {
+  EXPECT_THAT(Imported("csv", "table,name,address\ncoils,Lamp 1,0\n").text(),
+              HasSubstr("Lamp_1: {address: 0, description: \"Lamp 1\"}"));
+  EXPECT_THAT(Imported("csv", "table,name,address,description\ncoils,Lamp 1,0,above the door\n").text(),
+              HasSubstr("Lamp_1: {address: 0, description: \"above the door\"}"));
 }
 
 TEST(CsvImport, A_table_without_headings_or_without_points_is_refused) {

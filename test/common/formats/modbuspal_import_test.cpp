@@ -49,7 +49,7 @@ TEST(ModbusPalImport, A_saved_project_becomes_a_map) {
             "    lamp: {address: 4, initial: on}\n"
             "  holding_registers:\n"
             "    hr_100: {address: 100, type: UINT, initial: 123}\n"
-            "    set_point: {address: 101, type: UINT, initial: 65534}\n"
+            "    set_point: {address: 101, type: UINT, initial: 65534, description: \"set point\"}\n"
             "    hr_102: {address: 102, type: INT}\n");
   EXPECT_THAT(
       imported.said,
@@ -116,7 +116,8 @@ TEST(ModbusPalImport, Entities_are_never_read) {
   const std::string external = "<!DOCTYPE modbuspal_project [<!ENTITY c SYSTEM \"file:///etc/passwd\">]>";
   EXPECT_TRUE(Imported("modbuspal", project(with, external)).result.maps.empty());
   const Imported undeclared("modbuspal", project(with));
-  EXPECT_THAT(undeclared.text(), HasSubstr("    c: 0\n"));  // the name is "&c;", mended
+  EXPECT_THAT(undeclared.text(),
+              HasSubstr("    c: {address: 0, description: \"&c;\"}\n"));  // the name is "&c;", mended
 }
 
 TEST(ModbusPalImport, What_is_no_project_is_refused_where_it_breaks) {

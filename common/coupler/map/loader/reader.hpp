@@ -46,6 +46,8 @@ class Reader {
   /// The value of the key, or nullptr.
   const Entry* find(std::string_view key) const;
   bool has(std::string_view key) const { return find(key) != nullptr; }
+  /// The section has a key of that name.
+  bool knows(std::string_view key) const { return find_key(key, section_) != nullptr; }
   /// The first required key that is absent; empty if there is none. For sections without a type.
   std::string_view missing() const;
   std::string_view example(std::string_view key) const { return find_key(key, section_)->example; }

@@ -40,7 +40,7 @@ std::string remedy_for_other_type(const Entry& given, Type type) {
 /// The keys that only some types have.
 void check_type_keys(const Reader& reader, const Entry& point, Type type, const Context& context) {
   for (const Key& key : all_keys()) {
-    if (key.types.empty()) continue;
+    if (key.types.empty() || !reader.knows(key.name)) continue;
     const bool given = reader.has(key.name);
     const bool applies = applies_to(key, to_string(type));
     if (given && !applies)

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What people call the columns of a table of points, and what stands in them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "coupler/map/table.hpp"
+
+namespace coupler::formats {
+
+/// The column that a heading means, "data type" or "Tag"; the heading in lower case, with '_' for blanks, if
+/// it is none of the words that are known.
+std::string column_of(std::string_view heading);
+
+/// "holding_registers", "Holding Register", "HR", "4x", "FC3".
+std::optional<Table> parse_table(std::string_view text);
+
+/// The table that a Modicon address of five or six digits begins with: "40001".
+std::optional<Table> table_of_modicon(std::string_view address);
+
+/// Of `access`: "read" for "RO", "read_write" for "R/W"; the text itself if it is no word that is known.
+std::string_view access_of(std::string_view text);
+
+}  // namespace coupler::formats
