@@ -62,9 +62,6 @@ ROS_PACKAGE_PATH=$(without \"$ROS_PACKAGE_PATH\" \"${PROJECT_SOURCE_DIR}\")
 export ROS_PACKAGE_PATH=\"${devel}/share$(without \"\${ROS_PACKAGE_PATH#:}\" \"${devel}/share\")\"
 unset -f without
 ")
-else()
-  # $(find coupler_driver)/launch/NAME, as it is once installed.
-  link(${PROJECT_SOURCE_DIR}/config/launch ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME}/launch)
 endif()
 # catkin wants shared libraries and devel/lib; the modules are small static libraries.
 set(BUILD_SHARED_LIBS OFF)
