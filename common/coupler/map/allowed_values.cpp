@@ -43,6 +43,9 @@ std::optional<Forbidden> why_forbidden(const Point& point, const std::uint16_t* 
 }
 
 std::optional<ForbiddenValue> find_forbidden(const Point& point, const std::uint16_t* registers) {
+  // Each write of the driver comes here, and of most points every value may be written.
+  const codec::Type type = point.format.type;
+  if (!limits_values(point) && type != codec::Type::REAL && type != codec::Type::LREAL) return std::nullopt;
   const std::size_t width = codec::registers(point.format);
   for (std::size_t i = 0; i < point.count; ++i, registers += width)
     if (const auto why = why_forbidden(point, registers)) return ForbiddenValue{*why, registers};

@@ -1,32 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """`coupler import` and `coupler export` as a script sees them. COUPLER is the program."""
-import os
-import subprocess
-import tempfile
 import unittest
-from pathlib import Path
+
+from cli_test import Cli
 
 CSV = "unit,table,name,address,type\n1,coils,lamp,0,\n2,holding_registers,speed,1,INT\n"
 ONE = "table,name,address\ncoils,lamp one,0\n"
 MAP = "name: cell\nport: 1502\nmapping:\n  coils: {lamp: 0}\n  holding_registers:\n    speed: {address: 0, type: REAL}\n"
 
 
-class Formats(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
-    def file(self, name, text):
-        (self.folder / name).write_text(text, encoding="utf-8")
-        return name
-
-    def coupler(self, *arguments, stdin=""):
-        return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, input=stdin,
-                              capture_output=True, text=True, encoding="utf-8", check=False)
-
-
-class Import(Formats):
+class Import(Cli):
     def test_writes_the_map_to_standard_output_and_the_report_to_standard_error(self):
         done = self.coupler("import", "csv", "-", "--name", "press", stdin=ONE)
         self.assertEqual(done.returncode, 0)
@@ -94,7 +77,7 @@ class Import(Formats):
         self.assertIn("unslave", done.stdout)
 
 
-class Export(Formats):
+class Export(Cli):
     def test_and_import_again_is_the_same_map(self):
         name = self.file("cell.yaml", MAP)
         done = self.coupler("export", name, "--to", "csv", "--out", "cell.csv")

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "coupler/map/loader/scalar.hpp"
+#include "coupler/codec/type_name.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -154,18 +154,10 @@ constexpr ChoiceSynonym choices[] = {
     {"addressing", "onebased", "write 'modicon': its numbers count from 1"},
 };
 
-std::string folded(std::string_view word) {
-  std::string result = lower(word);
-  result.erase(
-      std::remove_if(result.begin(), result.end(), [](char c) { return c == '-' || c == '_' || c == ' '; }),
-      result.end());
-  return result;
-}
-
 }  // namespace
 
 const Synonym* find_synonym(std::string_view word, Section section) {
-  const std::string plain = folded(word);
+  const std::string plain = codec::folded_type_name(word);
   const auto* found = std::find_if(std::begin(synonyms), std::end(synonyms), [&](const Synonym& each) {
     return overlap(each.sections, section) && each.word == plain;
   });
@@ -173,7 +165,7 @@ const Synonym* find_synonym(std::string_view word, Section section) {
 }
 
 std::string_view remedy_for_choice(std::string_view word, std::string_view key) {
-  const std::string plain = folded(word);
+  const std::string plain = codec::folded_type_name(word);
   const auto* found = std::find_if(std::begin(choices), std::end(choices), [&](const ChoiceSynonym& each) {
     return each.key == key && each.word == plain;
   });
