@@ -33,19 +33,19 @@ foreach(kind msg srv)
   file(COPY host/${kind} DESTINATION ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME})
   install(DIRECTORY host/${kind} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} COMPONENT ros)
 endforeach()
+# link(FILE NAME): once; another program may be looking.
+macro(link file name)
+  if(NOT IS_SYMLINK ${name})
+    get_filename_component(folder ${name} DIRECTORY)
+    file(MAKE_DIRECTORY ${folder})
+    file(CREATE_LINK ${file} ${name} SYMBOLIC)
+  endif()
+endmacro()
+set(package ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME})
 if(plain)
   set(devel ${PROJECT_BINARY_DIR}/devel)
   set(package ${devel}/share/${PROJECT_NAME})
-  # link(FILE NAME): once; another program may be looking.
-  macro(link file name)
-    if(NOT IS_SYMLINK ${name})
-      get_filename_component(folder ${name} DIRECTORY)
-      file(MAKE_DIRECTORY ${folder})
-      file(CREATE_LINK ${file} ${name} SYMBOLIC)
-    endif()
-  endmacro()
   link(${PROJECT_SOURCE_DIR}/package.xml ${package}/package.xml)
-  link(${PROJECT_SOURCE_DIR}/config/launch ${package}/launch)
   link(${PROJECT_SOURCE_DIR}/config/example-node.yaml ${package}/config/example-node.yaml)
   link(${PROJECT_SOURCE_DIR}/host/msg ${package}/msg)
   link(${PROJECT_SOURCE_DIR}/host/srv ${package}/srv)
@@ -63,6 +63,14 @@ export ROS_PACKAGE_PATH=\"${devel}/share$(without \"\${ROS_PACKAGE_PATH#:}\" \"$
 unset -f without
 ")
 endif()
+if(IS_SYMLINK ${package}/launch)  # of an older build folder: what follows would be written into the source
+  file(REMOVE ${package}/launch)
+endif()
+# $(find coupler_driver)/launch/NAME.launch, in a plain build as in a workspace. The sources have other names: roslaunch looks
+# for NAME.launch in the whole source tree, too, and refuses to choose between two.
+foreach(name device devices simulated)
+  link(${PROJECT_SOURCE_DIR}/config/launch/ros1/${name}.xml ${package}/launch/${name}.launch)
+endforeach()
 # catkin wants shared libraries and devel/lib; the modules are small static libraries.
 set(BUILD_SHARED_LIBS OFF)
 

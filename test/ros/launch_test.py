@@ -19,7 +19,7 @@ from support.peer import Peer
 from support.ports import free_port
 
 HERE = pathlib.Path(__file__).resolve().parent
-DEVICE = str(HERE.parent.parent / "config" / "launch" / "device.launch")
+DEVICE = str(HERE.parent.parent / "config" / "launch" / "ros1" / "device.xml")
 MAP = """
 name: {name}
 address: 192.0.2.1
