@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "coupler/map/fingerprint.hpp"
 #include "test/common/map/loader/loaded.hpp"
 #include "test/support/paths.hpp"
 
@@ -20,6 +21,7 @@ struct Mistake {
   std::string where;
   std::string typed;
   std::string said;  ///< one message a line
+  std::string read;  ///< the points of an accepted map, a canonical line each
   std::string why;
 };
 
@@ -44,12 +46,14 @@ std::vector<Mistake> mistakes() {
       if (line.empty() || line[0] == '#') continue;
       if (line.compare(0, 4, "  > ") == 0) {
         found.back().said += line.substr(4) + '\n';
+      } else if (line.compare(0, 4, "  = ") == 0) {
+        found.back().read += line.substr(4) + '\n';
       } else if (line.compare(0, 2, "  ") == 0) {
         found.back().why += line.substr(2);
       } else {
         const std::size_t colon = line.find(": ");
         const std::string place = file.filename().string() + ':' + std::to_string(number);
-        found.push_back({place, line.substr(0, colon), unescaped(line.substr(colon + 2)), "", ""});
+        found.push_back({place, line.substr(0, colon), unescaped(line.substr(colon + 2)), "", "", ""});
       }
     }
   }
@@ -64,14 +68,19 @@ std::string map_of(const Mistake& mistake) {
   return "name: press\nmapping:\n  " + mistake.where + ":\n    p: " + mistake.typed + '\n';
 }
 
+std::string text_of(const std::vector<Diagnostic>& diagnostics) {
+  std::string text;
+  for (const Diagnostic& d : diagnostics)
+    text += std::string(d.severity == Diagnostic::Severity::error ? "error" : "warning") + ": " + d.what +
+            "; " + d.remedy + '\n';
+  return text;
+}
+
 TEST(Mistakes, Each_is_answered_as_the_table_says) {
   const auto table = mistakes();
   EXPECT_GE(table.size(), 100U);
   for (const Mistake& mistake : table) {
-    std::string said;
-    for (const Diagnostic& d : load_map(map_of(mistake), "m").diagnostics)
-      said += std::string(d.severity == Diagnostic::Severity::error ? "error" : "warning") + ": " + d.what +
-              "; " + d.remedy + '\n';
+    const std::string said = text_of(load_map(map_of(mistake), "m").diagnostics);
     constexpr std::string_view goes_on = "…\n";
     const std::size_t end = mistake.said.size() - std::min(mistake.said.size(), goes_on.size());
     if (mistake.said.compare(end, std::string::npos, goes_on) == 0)
@@ -80,6 +89,16 @@ TEST(Mistakes, Each_is_answered_as_the_table_says) {
       EXPECT_EQ(said, mistake.said) << mistake.place;
     EXPECT_FALSE(mistake.why.empty()) << mistake.place;
   }
+}
+
+TEST(Mistakes, What_is_accepted_is_read_as_the_author_meant_it) {
+  std::size_t accepted = 0;
+  for (const Mistake& mistake : mistakes()) {
+    const LoadResult loaded = load_map(map_of(mistake), "m");
+    EXPECT_EQ(loaded.map ? canonical_text(loaded.map->map().points) : "", mistake.read) << mistake.place;
+    accepted += loaded.map ? 1 : 0;
+  }
+  EXPECT_GE(accepted, 30U);
 }
 
 }  // namespace
