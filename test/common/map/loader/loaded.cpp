@@ -27,4 +27,15 @@ OnePoint::OnePoint(const std::string& table, const std::string& options, const s
   EXPECT_EQ(map_->map().points.size(), 1U);
 }
 
+LoadResult load_with_lock(const std::string& text, LockUse use, std::optional<std::string> lock) {
+  return load_map_with_lock(text, "m.yaml", {"m.yaml.lock", std::move(lock), use});
+}
+
+LoadResult renewed(const std::string& text, std::optional<std::string> lock) {
+  LoadResult result = load_with_lock(text, LockUse::renew, std::move(lock));
+  EXPECT_EQ(text_of(result.diagnostics), "");
+  EXPECT_NE(result.map, nullptr);
+  return result;
+}
+
 }  // namespace coupler::test

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 
 #include "coupler/map/loader/load.hpp"
@@ -20,6 +21,13 @@ std::string map_of(const std::string& table, const std::string& points, const st
 
 /// The map of a coil and of these keys beside it, which must load without a word.
 MapPtr load_with(const std::string& top);
+
+/// With a lock in a file of that text, or none.
+LoadResult load_with_lock(const std::string& text, LockUse use,
+                          std::optional<std::string> lock = std::nullopt);
+
+/// The same, which must load without a word.
+LoadResult renewed(const std::string& text, std::optional<std::string> lock = std::nullopt);
 
 /// The only point of a table, loaded without a word.
 class OnePoint {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points without an address: what they get, what the lock says, and the text that a node serves.
+// Points without an address: what they get, and what the lock says.
 #include <gmock/gmock.h>
 
 #include "test/common/map/loader/loaded.hpp"
@@ -7,19 +7,10 @@
 namespace coupler {
 namespace {
 
+using test::load_with_lock;
 using test::map_of;
+using test::renewed;
 using test::text_of;
-
-LoadResult load(const std::string& text, LockUse use, std::optional<std::string> lock = std::nullopt) {
-  return load_map_with_lock(text, "m.yaml", {"m.yaml.lock", std::move(lock), use});
-}
-
-LoadResult renewed(const std::string& text, std::optional<std::string> lock = std::nullopt) {
-  LoadResult result = load(text, LockUse::renew, std::move(lock));
-  EXPECT_EQ(text_of(result.diagnostics), "");
-  EXPECT_NE(result.map, nullptr);
-  return result;
-}
 
 /// "a 0, b 4": the points in their order, with their addresses and parts.
 std::string places(const LoadResult& result) {
@@ -94,9 +85,9 @@ TEST(Placement, Reserved_and_unreadable_areas_and_those_of_a_node_are_left_out) 
                                   "reserve: [{table: coils, from: 0, to: 3}]\n"
                                   "unreadable: [{table: coils, from: 5, to: 6}]"))),
             "a 4, b 7, c 8");
-  const auto full = load(map_of("input_registers", "a: {type: INT}, b: {type: INT}",
-                                "reserve: [{table: input_registers, from: 0, to: 0xFEFE}]"),
-                         LockUse::renew);
+  const auto full = load_with_lock(map_of("input_registers", "a: {type: INT}, b: {type: INT}",
+                                          "reserve: [{table: input_registers, from: 0, to: 0xFEFE}]"),
+                                   LockUse::renew);
   EXPECT_EQ(text_of(full.diagnostics),
             "m.yaml:3:45: error: no place is left in input_registers for 'b', which needs 1 register; make "
             "reserved areas smaller, or remove points\n");
@@ -124,8 +115,8 @@ TEST(Placement, A_preset_tells_where_there_is_something) {
 }
 
 TEST(Placement, An_area_reserved_over_a_point_of_the_lock_is_told) {
-  const auto result = load(map_of("coils", "a: ", "reserve: [{table: coils, from: 2, to: 4}]"), LockUse::read,
-                           lock_of("coils 3 a\n"));
+  const auto result = load_with_lock(map_of("coils", "a: ", "reserve: [{table: coils, from: 2, to: 4}]"),
+                                     LockUse::read, lock_of("coils 3 a\n"));
   EXPECT_EQ(
       text_of(result.diagnostics),
       "m.yaml:3:19: error: 'a' (coils 3) is in the reserved area 2 to 4 (line 2); make the area smaller: "
@@ -158,25 +149,26 @@ TEST(Placement, A_point_that_goes_to_another_table_leaves_its_place_behind) {
 
 TEST(Placement, Who_only_reads_the_lock_needs_all_points_in_it_and_no_more) {
   const std::string lock = lock_of("coils 3 a\ncoils 4 gone\n");
-  const auto result = load(map_of("coils", "a: "), LockUse::read, lock);
+  const auto result = load_with_lock(map_of("coils", "a: "), LockUse::read, lock);
   EXPECT_EQ(text_of(result.diagnostics), "");
   EXPECT_EQ(places(result), "a 3");
-  EXPECT_EQ(text_of(load(map_of("coils", "a: , b: "), LockUse::read, lock_of("coils 3 a\n")).diagnostics),
-            "m.yaml:3:24: error: 'b' has no address in m.yaml.lock; run `coupler check m.yaml`, and keep the "
-            "new lock beside the map\n");
+  EXPECT_EQ(
+      text_of(load_with_lock(map_of("coils", "a: , b: "), LockUse::read, lock_of("coils 3 a\n")).diagnostics),
+      "m.yaml:3:24: error: 'b' has no address in m.yaml.lock; run `coupler check m.yaml`, and keep the "
+      "new lock beside the map\n");
 }
 
 TEST(Placement, A_lock_that_is_not_up_to_date_is_told_to_whom_wants_it_exact) {
   EXPECT_EQ(
-      text_of(load(map_of("coils", "a: , b: "), LockUse::exact,
-                   lock_of("coils 0 a\ncoils 1 b retired\ncoils 2 c\ncoils 3 d retired\n"))
+      text_of(load_with_lock(map_of("coils", "a: , b: "), LockUse::exact,
+                             lock_of("coils 0 a\ncoils 1 b retired\ncoils 2 c\ncoils 3 d retired\n"))
                   .diagnostics),
       "m.yaml.lock:3:1: error: 'b' is a point of the map again; run `coupler check m.yaml`, and commit the "
       "lock\n"
       "m.yaml.lock:4:1: error: the map has no 'c' without an address any more; run `coupler check "
       "m.yaml`, and commit the lock\n");
-  EXPECT_NE(load(map_of("coils", "a: "), LockUse::exact, lock_of("coils 0 a\n")).map, nullptr);
-  EXPECT_EQ(load(map_of("coils", "a: "), LockUse::exact).map, nullptr);
+  EXPECT_NE(load_with_lock(map_of("coils", "a: "), LockUse::exact, lock_of("coils 0 a\n")).map, nullptr);
+  EXPECT_EQ(load_with_lock(map_of("coils", "a: "), LockUse::exact).map, nullptr);
 }
 
 TEST(Placement, A_map_that_is_no_file_has_no_lock) {
@@ -187,7 +179,7 @@ TEST(Placement, A_map_that_is_no_file_has_no_lock) {
 
 TEST(Placement, Whoever_takes_the_address_of_a_retired_point_is_warned) {
   const std::string lock = lock_of("coils 0 a retired\ncoils 1 b retired\n");
-  const auto result = load(map_of("coils", "b: 1, c: 0"), LockUse::read, lock);
+  const auto result = load_with_lock(map_of("coils", "b: 1, c: 0"), LockUse::read, lock);
   EXPECT_EQ(text_of(result.diagnostics),
             "m.yaml:3:28: warning: 'c' is at coils 0, where 'a' was (m.yaml.lock, line 2); give it another "
             "address; or delete that line, if no client uses 'a' any more\n");
@@ -198,110 +190,6 @@ TEST(Placement, Numbers_that_the_file_does_not_show_are_not_taken_for_modicons) 
   renewed(map_of("holding_registers", "a: {type: INT}",
                  "reserve: [{table: holding_registers, from: 0, to: 40000}]"));
 }
-
-TEST(ServedText, It_has_the_addresses_and_all_else_as_it_was) {
-  const auto result = renewed(
-      "# A cell\n"
-      "name: m\n"
-      "mapping:\n"
-      "  coils:\n"
-      "    a:\n"
-      "    b: # the second\n"
-      "    c: ~\n"
-      "    \"d\": {}\n"
-      "    e: {description: left}   # of the door\n"
-      "    f: 17\n"
-      "  holding_registers:\n"
-      "    g:\n"
-      "      # wide\n"
-      "      type: DINT\n"
-      "      units: mm\n"
-      "    h: {type: SINT}\n"
-      "    i: {type: SINT, offset: low}\n"
-      "    j:\n"
-      "      type: BOOL\n");
-  EXPECT_EQ(result.map->map().text,
-            "# A cell\n"
-            "name: m\n"
-            "mapping:\n"
-            "  coils:\n"
-            "    a: 0\n"
-            "    b: 1 # the second\n"
-            "    c: 2\n"
-            "    \"d\": {address: 3}\n"
-            "    e: {address: 4, description: left}   # of the door\n"
-            "    f: 17\n"
-            "  holding_registers:\n"
-            "    g:\n"
-            "      # wide\n"
-            "      address: 0\n"
-            "      type: DINT\n"
-            "      units: mm\n"
-            "    h: {address: 2, offset: high, type: SINT}\n"
-            "    i: {address: 2, type: SINT, offset: low}\n"
-            "    j:\n"
-            "      address: 3\n"
-            "      bit: 0\n"
-            "      type: BOOL\n");
-}
-
-TEST(ServedText, It_is_the_file_if_that_leaves_nothing_out) {
-  const std::string text = "\xEF\xBB\xBF# with a mark\r\nname: m\r\nmapping: {coils: {a: 0}}\r\n";
-  EXPECT_EQ(renewed(text).map->map().text, text);
-}
-
-TEST(ServedText, A_map_that_it_would_be_too_long_for_is_refused) {
-  const std::string map = "name: m\nmapping: {coils: {a: }}\n#";
-  const std::string longest = map + std::string((std::size_t{16} << 20U) - map.size(), '#');
-  const auto result = load(longest, LockUse::renew);
-  EXPECT_EQ(result.map, nullptr);
-  EXPECT_THAT(text_of(result.diagnostics),
-              testing::StartsWith("m.yaml:2:19: error: the addresses that the map leaves out cannot be "
-                                  "filled in (the file has 16777218 bytes"));
-}
-
-struct Form {
-  std::string text;
-  std::string served;
-};
-
-class ServedForm : public testing::TestWithParam<Form> {};
-
-TEST_P(ServedForm, Is_the_same_map_without_a_lock) {
-  const auto result = renewed(GetParam().text);
-  ASSERT_NE(result.map, nullptr);
-  EXPECT_EQ(result.map->map().text, GetParam().served);
-  const MapPtr again = test::load_clean(std::string(result.map->map().text));
-  EXPECT_EQ(again->map().fingerprint, result.map->map().fingerprint);
-  EXPECT_EQ(again->map().text, result.map->map().text);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Forms, ServedForm,
-    testing::Values(
-        Form{R"({"name": "m", /* a { */ "mapping": {"coils": {"a" /* : */ : /* b */ null, "b": {}},
-  "holding_registers": {"c": {"type": "SINT"}, // c
-   "d": {"type": "BOOL",},}}})",
-             R"({"name": "m", /* a { */ "mapping": {"coils": {"a" /* : */ : /* b */ 0, "b": {"address": 1}},
-  "holding_registers": {"c": {"address": 0, "offset": "high", "type": "SINT"}, // c
-   "d": {"address": 0, "bit": 0, "type": "BOOL",},}}})"},
-        Form{"\xEF\xBB\xBF{\"name\": \"m\", \"mapping\": {\"coils\": {\"a\": null}}}",
-             "{\"name\": \"m\", \"mapping\": {\"coils\": {\"a\": 0}}}"},
-        Form{"name: m\r\nmapping:\r\n  coils:\r\n    a:\r\n    b:\r\n      units: x\r\n",
-             "name: m\r\nmapping:\r\n  coils:\r\n    a: 0\r\n    b:\r\n      address: 1\n      units: x\r\n"},
-        Form{"name: m\n\t\nmapping:\n  coils:\n    a:\n \t \n    b:\n\t# c\n\t",
-             "name: m\n\t\nmapping:\n  coils:\n    a: 0\n \t \n    b: 1\n\t# c\n\t"},
-        Form{"name: m\nmapping: {coils: {a: , 'b': , c: NULL}}",
-             "name: m\nmapping: {coils: {a: 0 , 'b': 1 , c: 2}}"},
-        Form{
-            "name: m\nmapping:\n  coils:\n    ? a\n    : units: x\n      count: 2\n    b:\n      ? units\n   "
-            "   : y\n",
-            "name: m\nmapping:\n  coils:\n    ? a\n    : address: 0\n      units: x\n      count: 2\n    b:\n"
-            "      address: 2\n      ? units\n      : y\n"},
-        Form{"name: m\naddressing: modicon\nmapping: {coils: {a: }, holding_registers: {b: {type: INT}}}",
-             "name: m\naddressing: modicon\nmapping: {coils: {a: 000001 }, holding_registers: {b: {address: "
-             "400001, "
-             "type: INT}}}"}));
 
 }  // namespace
 }  // namespace coupler
