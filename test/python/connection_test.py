@@ -1,13 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """The client in Python: connecting, comparing maps, and devices that do not do their part."""
 import socket
+import sys
 import threading
 import unittest
+from unittest import mock
 
 import made
 from press import OfADevice
 
 SHORT = 0.2  # seconds, where silence is to be noticed
+
+
+class Pymodbus(OfADevice):
+    def test_without_it_the_message_says_how_to_install_it(self):
+        with mock.patch.dict(sys.modules, {"pymodbus.client": None}):
+            self.assertRaisesRegex(ImportError, "pip install", self.press)
 
 
 class Connection(OfADevice):
@@ -137,11 +145,19 @@ class OfANode(OfADevice):
             with self.assertNoLogs("cell_client", "WARNING"), cell:
                 self.assertEqual(cell.speed.read(), 1)
 
+    @made.LIVE
+    def test_the_command_in_the_message_shows_the_differences(self):
+        with self.node(self.TEXT.replace("lamp: 0", "lamp: 1")) as node:
+            command = self.raises("OtherMap", self.at_node(self.TEXT, node).connect).split("`")[1]
+            self.assertEqual(command.split()[:3], ["coupler", "diff", "MAP"])
+            self.assertIn("lamp: 0 -> 1", self.coupler("diff", "cell.yaml", *command.split()[3:]).stdout)
+
     def test_what_only_the_node_refuses_is_an_exception(self):
         with self.node(self.TEXT) as node, self.at_node(self.TEXT.replace("max: 10", "max: 99"), node) as cell:
             self.assertEqual(self.raises("ExceptionReply", cell.speed.write, 50), "speed: exception 03 (illegal data value)")
             self.assertEqual(cell.speed.read(), 0)
 
+    @made.LIVE
     def test_the_map_may_come_from_the_node(self):
         with self.node(self.TEXT) as node:
             self.assertEqual(self.coupler("generate", f"tcp://127.0.0.1:{node.port}", "--python").returncode, 0)

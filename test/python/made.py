@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `coupler generate` makes of a map, for the tests of the client in Python. COUPLER and NODE are the programs,
-SOURCE_DIR is this tree."""
+SOURCE_DIR is this tree, LIVE says that COUPLER can ask a device."""
 import importlib.util
 import json
 import os
@@ -22,6 +22,8 @@ except ImportError:
     print("skipped: pymodbus is missing; run scripts/install-packages test")
     sys.exit(77)
 print(f"pymodbus {pymodbus.__version__}, Python {sys.version.split()[0]}")
+
+LIVE = unittest.skipUnless(os.environ.get("LIVE") in ("1", "ON"), "needs libmodbus")
 
 
 class Made(unittest.TestCase):

@@ -207,8 +207,9 @@ class Client:
         found = int.from_bytes(struct.pack(">4H", *area[3:7]), "big")
         if found == self.fingerprint:
             return
+        host = f"[{self.address}]" if ":" in self.address else self.address
         why = (f"the map differs from the device's: fingerprint {self.fingerprint:016x} here, {found:016x} in the device; "
-               f"`coupler diff MAP tcp://{self.address}:{self.port}` shows the differences")
+               f"`coupler diff MAP tcp://{host}:{self.port}/{self.unit}` shows the differences")
         if self.verify is Verify.REQUIRE:
             raise OtherMap(f"{why}. Nothing is read or written. Generate this file again from the map that the device has, or "
                            "accept it with verify=Verify.WARN")

@@ -25,7 +25,11 @@ import time
 from dataclasses import dataclass
 from typing import Any, Generic, NoReturn, TypeVar
 
-from pymodbus.client import ModbusTcpClient
+try:
+    from pymodbus.client import ModbusTcpClient
+except ImportError as missing:
+    raise ImportError("pymodbus 3 or newer is needed; install it with `apt install python3-pymodbus` or `pip install "
+                      "'pymodbus>=3'`") from missing
 
 T = TypeVar("T")
 _IntEnum = enum.IntEnum
