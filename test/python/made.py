@@ -40,7 +40,7 @@ class Made(unittest.TestCase):
         path = self.folder / f"{name}.yaml"
         path.write_text(text, encoding="utf-8")
         done = self.coupler("generate", path.name, *options, "--name", name)
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.returncode, 0, done.stderr)
         return path
 
     def client(self, text, name="cell"):

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The client in Python against the test vectors, at a device of the test and at coupler-node."""
+"""The client in Python against the test vectors, at a device of the test and at coupler-node.
+RANDOM_MAPS, a folder: the random maps in it, too."""
+import os
+import pathlib
 import struct
 import unittest
 
@@ -149,6 +152,17 @@ class Vectors(made.Made):
         last = "{address: 65535, type: INT}"  # the last addresses are a node's own
         for text in (EVERY_TYPE.replace(last, last.replace("65535", "65279")), SHAPES, ALLOWED):
             self.check_node(text)
+
+    @unittest.skipUnless("RANDOM_MAPS" in os.environ, "test/random/run makes them")
+    def test_random_maps(self):
+        maps = sorted(pathlib.Path(os.environ["RANDOM_MAPS"]).glob("random_*.yaml"))
+        self.assertGreaterEqual(len(maps), 10)
+        for path in maps:
+            with self.subTest(map=path.name):
+                (self.folder / "cell.yaml.lock").unlink(missing_ok=True)
+                text = path.read_text(encoding="utf-8")
+                self.check_reading(text)
+                self.check_writing(text)
 
 
 if __name__ == "__main__":
