@@ -6,7 +6,7 @@ coupler=$1 out=$2
 rm -rf "$out"
 for map in "${@:3}"; do
   name=$(basename "${map//-/_}" .yaml)
-  for kind in "" --docs --vectors; do
+  for kind in "" --docs --python --vectors; do
     # shellcheck disable=SC2086
     "$coupler" generate "$map" $kind --name "$name" --out "$out" --quiet
   done

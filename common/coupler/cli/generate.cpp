@@ -18,6 +18,7 @@
 #include "coupler/docs/escape.hpp"
 #include "coupler/generate/code.hpp"
 #include "coupler/generate/output.hpp"
+#include "coupler/generate/python.hpp"
 #include "coupler/test_vectors/json.hpp"
 
 namespace coupler::cli {
@@ -32,6 +33,7 @@ struct Arguments {
   std::string source_url;
   bool docs = false;
   bool vectors = false;
+  bool python = false;
   bool quiet = false;
   bool locked = false;
 };
@@ -88,6 +90,13 @@ Exit write(const Arguments& arguments, const std::vector<generate::File>& files)
   return ok;
 }
 
+Exit write_python(const Arguments& arguments, const generate::Provenance& provenance, const Map& map) {
+  if (!generate::is_name(provenance.name))
+    return complain("generate", bad_call, fmt::format("'{}' is not a valid name in Python", provenance.name),
+                    "give another one with --name: letters, digits and underscores, beginning with a letter");
+  return write(arguments, {{provenance.name + "_client.py", generate::python_client(map, provenance)}});
+}
+
 Exit run(const Arguments& arguments) {
   if (!is_url_part(arguments.source_url))
     return complain("generate", bad_call, fmt::format("'{}' cannot be part of a URL", arguments.source_url),
@@ -105,6 +114,7 @@ Exit run(const Arguments& arguments) {
   if (arguments.vectors)
     return write(arguments,
                  {{as_file_name(name) + "_vectors.json", test_vectors::json(map, source, COUPLER_VERSION)}});
+  if (arguments.python) return write_python(arguments, {as_file_name(name), source, COUPLER_VERSION}, map);
   const generate::Provenance provenance{name, source, COUPLER_VERSION};
   if (generate::is_identifier(name)) return write(arguments, generate::generate(map, provenance));
   const auto remedy =
@@ -121,20 +131,25 @@ Exit run(const Arguments& arguments) {
 void add_generate(Program& program, Exit& exit) {
   auto command = program.add_command(
       "generate",
-      "Make C++ from a map: a constant table, a node, a driver, a typed client, hooks for a firmware.");
+      "Make C++ from a map: a constant table, a node, a driver, a typed client, hooks for a firmware; or a "
+      "client in Python.");
   const auto arguments = std::make_shared<Arguments>();
   command.add_option("MAP", arguments->map, map_help).required().type_name("");
   auto out = command
                  .add_option("--out", arguments->out,
-                             "Folder for the files, which is created if it does not exist; --docs and "
-                             "--vectors default to the current one")
+                             "Folder for the files, which is created if it does not exist; --docs, --python "
+                             "and --vectors default to the current one")
                  .type_name("DIR");
   command
       .add_option("--name", arguments->name,
-                  "Name of the files and of the C++ namespace; default: the map's name")
+                  "Name of the files, of the C++ namespace and of the Python class; default: the map's name")
       .type_name("NAME");
-  auto docs = command.add_flag("--docs", arguments->docs,
-                               "In place of C++: NAME.md and NAME.html, the register map for people");
+  auto python = command.add_flag("--python", arguments->python,
+                                 "In place of C++: NAME_client.py, a client in one file on top of pymodbus");
+  auto docs = command
+                  .add_flag("--docs", arguments->docs,
+                            "In place of C++: NAME.md and NAME.html, the register map for people")
+                  .excludes(python);
   command
       .add_option("--source-url", arguments->source_url,
                   "With --docs: the URL of the folder that the map is in; links go to PREFIX/MAP#L12")
@@ -143,7 +158,8 @@ void add_generate(Program& program, Exit& exit) {
   command
       .add_flag("--vectors", arguments->vectors,
                 "In place of C++: NAME_vectors.json, values of every point with their registers or bits")
-      .excludes(docs);
+      .excludes(docs)
+      .excludes(python);
   command.add_flag("--locked", arguments->locked,
                    "Do not write the map's lock; one that is missing or not up to date is an error");
   command.add_flag("--quiet", arguments->quiet, "Do not list the files");
@@ -152,11 +168,12 @@ void add_generate(Program& program, Exit& exit) {
       "makes device_map.hpp and .cpp, device_client.hpp and .cpp, device_hooks.hpp, device_core.hpp, "
       "device_node.cpp and device_driver.cpp. Files that would not change are not touched.\n"
       "  coupler generate device.yaml --docs\nmakes device.md and device.html.\n"
+      "  coupler generate device.yaml --python\nmakes device_client.py with the class DeviceClient.\n"
       "  coupler generate device.yaml --vectors\nmakes device_vectors.json.\n"
       "In a CMake build, coupler_add_map(device device.yaml) does this and builds the "
       "programs.");
   command.callback([arguments, out, &exit] {
-    if (!out.given() && !arguments->docs && !arguments->vectors) out.refuse_missing();
+    if (!out.given() && !arguments->docs && !arguments->python && !arguments->vectors) out.refuse_missing();
     exit = run(*arguments);
   });
 }

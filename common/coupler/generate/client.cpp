@@ -58,15 +58,6 @@ Client::~Client() {{ disconnect(); }}
 }}  // namespace coupler::maps::{name}
 )";
 
-std::string_view kind(Access access) {
-  switch (access) {
-    case Access::read: return "Input";
-    case Access::write: return "Command";
-    case Access::read_write: return "Output";
-  }
-  return {};
-}
-
 }  // namespace
 
 std::string client_header(const Map& map, const Provenance& provenance) {
@@ -76,7 +67,7 @@ std::string client_header(const Map& map, const Provenance& provenance) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Point& point = map.points[i];
     declarations += fmt::format("  /// {}\n  ::coupler::client::{}<{}> {};\n", documentation(point),
-                                kind(point.access), cpp_type(point), names[i]);
+                                point_class(point.access), cpp_type(point), names[i]);
     visits += fmt::format("    use({}, this->{});\n", literal(point.name), names[i]);
   }
   return fmt::format(header_form, fmt::arg("name", provenance.name),

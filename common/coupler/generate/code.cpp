@@ -43,9 +43,6 @@ constexpr std::string_view keywords[] = {
     "unsigned",    "using",    "virtual",    "void",      "volatile",  "wchar_t",      "while",
     "xor",         "xor_eq"};
 
-constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-constexpr bool is_name_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
-
 }  // namespace
 
 std::string literal(std::string_view text) {
@@ -84,10 +81,12 @@ std::string comment(std::string_view text) {
   return out;
 }
 
+bool is_name(std::string_view name) {
+  return !name.empty() && is_letter(name.front()) && std::all_of(name.begin(), name.end(), is_name_character);
+}
+
 bool is_identifier(std::string_view name) {
-  return !name.empty() && is_letter(name.front()) &&
-         std::all_of(name.begin(), name.end(), is_name_character) &&
-         !std::binary_search(std::begin(keywords), std::end(keywords), name);
+  return is_name(name) && !std::binary_search(std::begin(keywords), std::end(keywords), name);
 }
 
 }  // namespace coupler::generate

@@ -26,7 +26,13 @@ std::string literal_lines(std::string_view text, std::string_view indent);
 /// (the compiler warns of them) go.
 std::string comment(std::string_view text);
 
-/// It can name a namespace in generated code: letters, digits and underscores, a letter first, no keyword.
+constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+constexpr bool is_name_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
+
+/// Letters, digits and underscores, a letter first.
+bool is_name(std::string_view name);
+
+/// It can name a namespace in generated code: is_name(), and no keyword.
 bool is_identifier(std::string_view name);
 
 /// "Table::coils"

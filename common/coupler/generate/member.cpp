@@ -22,18 +22,6 @@ constexpr std::string_view taken[] = {
     "each_point", "errno",  "linux", "major",   "map",    "minor",   "online",
     "options",    "stderr", "stdin", "stdout",  "unix",   "use",     "wait_online"};
 
-/// A name that is not in `used`, and now is.
-std::string unique_identifier(std::string_view name, std::set<std::string>& used) {
-  std::string out(name);
-  std::replace_if(
-      out.begin(), out.end(),
-      [](char c) { return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')); },
-      '_');
-  while (!is_identifier(out) || used.count(out) != 0) out += '_';
-  used.insert(out);
-  return out;
-}
-
 std::string_view cpp_number(Type type) {
   switch (type) {
     case Type::BOOL: return "bool";
@@ -78,18 +66,45 @@ std::string value_range(const Point& point) {
 
 }  // namespace
 
-std::vector<std::string> members(const Map& map) {
-  std::set<std::string> used(std::begin(taken), std::end(taken));
-  std::vector<std::string> names;
-  for (const Point& point : map.points) names.push_back(unique_identifier(point.name, used));
+std::vector<std::string> identifiers(const std::vector<std::string_view>& names,
+                                     Span<const std::string_view> taken, bool (*usable)(std::string_view)) {
+  std::set<std::string, std::less<>> used(taken.begin(), taken.end());
+  std::vector<std::string> out;
+  for (const std::string_view name : names) {
+    std::string& one = out.emplace_back(name);
+    std::replace_if(
+        one.begin(), one.end(), [](char c) { return !is_name_character(c); }, '_');
+    while (!usable(one) || used.count(one) != 0) one += '_';
+    used.insert(one);
+  }
+  return out;
+}
+
+std::vector<std::string_view> names_of(const Map& map) {
+  std::vector<std::string_view> names;
+  for (const Point& point : map.points) names.push_back(point.name);
   return names;
 }
 
-std::vector<std::string> value_names(const Point& point) {
-  std::set<std::string> used(std::begin(taken), std::end(taken));
-  std::vector<std::string> names;
-  for (const NamedValue& named : point.values) names.push_back(unique_identifier(named.name, used));
+std::vector<std::string_view> names_of(const Point& point) {
+  std::vector<std::string_view> names;
+  for (const NamedValue& named : point.values) names.push_back(named.name);
   return names;
+}
+
+std::string_view point_class(Access access) {
+  switch (access) {
+    case Access::read: return "Input";
+    case Access::write: return "Command";
+    case Access::read_write: return "Output";
+  }
+  return {};
+}
+
+std::vector<std::string> members(const Map& map) { return identifiers(names_of(map), taken, is_identifier); }
+
+std::vector<std::string> value_names(const Point& point) {
+  return identifiers(names_of(point), taken, is_identifier);
 }
 
 std::string cpp_number(const Point& point) { return std::string(cpp_number(point.format.type)); }

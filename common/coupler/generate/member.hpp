@@ -3,14 +3,27 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "coupler/map/map.hpp"
 
 namespace coupler::generate {
 
-/// An identifier for each point, in their order: its name, '/' as '_', and '_' behind it as often as needed
-/// to be no word of C++, nothing that the client has already, and no other point's.
+/// An identifier for each name, in their order: what identifiers cannot hold as '_', and '_' behind it as
+/// often as needed to be `usable`, none of `taken`, and no other's.
+std::vector<std::string> identifiers(const std::vector<std::string_view>& names,
+                                     Span<const std::string_view> taken, bool (*usable)(std::string_view));
+
+/// The names of a map's points, and of a point's values.
+std::vector<std::string_view> names_of(const Map& map);
+std::vector<std::string_view> names_of(const Point& point);
+
+/// The class of a client's point: "Input", "Command", "Output".
+std::string_view point_class(Access access);
+
+/// An identifier of C++ for each point, in their order: its name, '/' as '_', and '_' behind it as often as
+/// needed to be no word of C++, nothing that the client has already, and no other point's.
 std::vector<std::string> members(const Map& map);
 
 /// The same for each of its named values.

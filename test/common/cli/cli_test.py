@@ -308,6 +308,27 @@ class Generate(Cli):
         self.assertIn("'hall/cell'", done.stderr)
         self.assertIn("--name", done.stderr)
 
+    def test_makes_a_client_in_python_where_it_is_called(self):
+        done = self.coupler("generate", self.file("cell.yaml", GOOD), "--python")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "cell_client.py: written\n", ""))
+        self.assertIn("\nclass CellClient(Client):\n", (self.folder / "cell_client.py").read_text(encoding="utf-8"))
+
+    def test_names_a_client_in_python_after_the_map(self):
+        self.coupler("generate", self.file("cell.yaml", GOOD.replace("cell", "hall/cell")), "--python")
+        self.assertIn("\nclass HallCellClient(", (self.folder / "hall_cell_client.py").read_text(encoding="utf-8"))
+        self.coupler("generate", "cell.yaml", "--python", "--name", "class")  # a word of C++, and none of a file
+        self.assertIn("\nclass ClassClient(", (self.folder / "class_client.py").read_text(encoding="utf-8"))
+        done = self.coupler("generate", "cell.yaml", "--python", "--name", "2nd-cell")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("'2nd-cell'", done.stderr)
+        self.assertIn("--name", done.stderr)
+
+    def test_makes_one_thing_in_place_of_cpp(self):
+        for other in ("--docs", "--vectors"):
+            done = self.coupler("generate", self.file("cell.yaml", GOOD), "--python", other)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn("--python", done.stderr)
+
     def test_writes_nothing_for_a_bad_map(self):
         done = self.coupler("generate", self.file("cell.yaml", BAD), "--out", "out")
         self.assertEqual((done.returncode, done.stdout), (1, ""))

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/generate/python.hpp"
+
+#include <array>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coupler/generate/code.hpp"
+#include "coupler/generate/member.hpp"
+#include "coupler/map/printable.hpp"
+#include "coupler/map/typed_value.hpp"
+#include "coupler/plan/planner.hpp"
+
+namespace coupler::generate {
+namespace {
+
+using codec::Type;
+
+// Words of Python; and what a client has, or a member of an IntEnum, which is an int.
+constexpr std::string_view taken_by_client[] = {
+    "False", "None",   "True",   "address", "and",         "as",       "assert", "async",
+    "await", "break",  "class",  "connect", "continue",    "def",      "del",    "disconnect",
+    "elif",  "else",   "except", "finally", "fingerprint", "for",      "from",   "global",
+    "if",    "import", "in",     "is",      "lambda",      "nonlocal", "not",    "online",
+    "or",    "pass",   "points", "port",    "raise",       "read_all", "return", "timeout",
+    "try",   "unit",   "verify", "while",   "with",        "yield"};
+constexpr std::string_view taken_by_int[] = {
+    "False",      "None",       "True",     "and",       "as",         "as_integer_ratio",
+    "assert",     "async",      "await",    "bit_count", "bit_length", "break",
+    "class",      "conjugate",  "continue", "def",       "del",        "denominator",
+    "elif",       "else",       "except",   "finally",   "for",        "from",
+    "from_bytes", "global",     "if",       "imag",      "import",     "in",
+    "is",         "is_integer", "lambda",   "mro",       "name",       "nonlocal",
+    "not",        "numerator",  "or",       "pass",      "raise",      "real",
+    "return",     "to_bytes",   "try",      "value",     "while",      "with",
+    "yield"};
+
+/// A str of Python, in one line of printable characters.
+std::string python_literal(std::string_view text) {
+  std::string out = "\"";
+  for (std::size_t at = 0; at < text.size();) {
+    const Character c = character_at(text, at);
+    const std::string_view bytes = text.substr(at, c.size);
+    at += c.size;
+    if (bytes == "\"" || bytes == "\\")
+      out.append("\\").append(bytes);
+    else if (!c.valid || is_control(c.code) || turns_direction(c.code))
+      out += fmt::format("\\U{:08x}", static_cast<std::uint32_t>(c.code));
+    else
+      out += bytes;
+  }
+  return out + '"';
+}
+
+std::string python_type(const Point& point) {
+  std::string one = "int";
+  switch (point.format.type) {
+    case Type::BOOL: one = "bool"; break;
+    case Type::STRING: one = "str"; break;
+    case Type::REAL:
+    case Type::LREAL: one = "float"; break;
+    default:
+      if (point.scale.present()) one = "float";
+  }
+  return point.count == 1 ? one : fmt::format("list[{}]", one);
+}
+
+/// As the driver writes one value: coupler/host/core/write_batch.cpp.
+int write_function(const Point& point, const Limits& limits) {
+  if (is_partial(point) && limits.mask_write) return 22;
+  const bool single =
+      range(point).count() == 1 && point.host.write_function != HostOptions::WriteFunction::multiple;
+  if (point.table == Table::coils) return single ? 5 : 15;
+  return single ? 6 : 16;
+}
+
+/// The number that the point's registers hold for a bound of the map.
+std::string bound(const Point& point, double number) {
+  std::array<std::uint16_t, 4> registers{};  // no number has more
+  codec::encode_nearest(number, point.format, point.scale, registers.data());
+  return codec::decimal(codec::published(registers.data(), point.format, point.scale));
+}
+
+/// What the values of a register point are, as arguments of Spec.
+std::string format_arguments(const Point& point) {
+  const codec::Format& format = point.format;
+  std::string out;
+  if (codec::registers(format) > 1) out += fmt::format(", size={}", codec::registers(format));
+  if (point.count > 1) out += fmt::format(", count={}", point.count);
+  if (codec::order_text(format) != "AB") out += fmt::format(", order=\"{}\"", codec::order_text(format));
+  if (is_partial(point)) out += fmt::format(", mask=0x{:04X}", codec::mask(format));
+  if (format.type == Type::STRING)
+    out += fmt::format(", length={}, encoding=\"{}\"", format.length,
+                       format.encoding == codec::Encoding::utf8 ? "utf-8" : to_string(format.encoding));
+  if (point.scale.present())
+    out += fmt::format(", gain={}, offset={}", codec::decimal(point.scale.gain),
+                       codec::decimal(point.scale.offset));
+  return out;
+}
+
+/// Which values may be written.
+std::string allowed_arguments(const Point& point, std::string_view member) {
+  std::string out;
+  const auto [min, max, nonfinite] = point.bounds;
+  if (!point.units.empty()) out += ", units=" + python_literal(point.units);
+  if (min != Bounds::no_min) out += ", least=" + bound(point, min);
+  if (max != Bounds::no_max) out += ", most=" + bound(point, max);
+  if (nonfinite) out += ", nonfinite=True";
+  if (limits_values(point)) out += ", allowed=" + python_literal(allowed_text(point));
+  if (!point.values.empty()) out += fmt::format(", names=values.{}", member);
+  return out;
+}
+
+std::string spec(const Limits& limits, const Point& point, std::string_view member) {
+  std::string out = fmt::format("{}, \"{}\", {}, \"{}\"", python_literal(point.name), to_string(point.table),
+                                point.address, to_string(point.format.type));
+  if (!holds_bits(point.table))
+    out += format_arguments(point);
+  else if (point.count > 1)
+    out += fmt::format(", count={}", point.count);
+  if (is_writable(point)) out += fmt::format(", write_with={}", write_function(point, limits));
+  if (point.read_address) out += fmt::format(", read_address={}", *point.read_address);
+  if (point.host.verify_write) out += ", verify_write=True";
+  return out + allowed_arguments(point, member);
+}
+
+/// The requests that read every point, whatever the rates: nobody polls.
+std::string requests(const Map& map) {
+  std::vector<Point> points(map.points.begin(), map.points.end());
+  for (Point& point : points) point.host.rate = 0;
+  Map at_one_rate = map;
+  at_one_rate.points = points;
+  std::string out;
+  for (const plan::GroupPlan& group : plan::make_read_plan(at_one_rate))
+    for (const plan::ReadSpan& span : group.spans) {
+      out += fmt::format("        (\"{}\", {}, {}, (", to_string(span.table), span.range.start(),
+                         span.range.count());
+      for (const std::uint32_t point : span.points) out += python_literal(map.points[point].name) + ", ";
+      out.replace(out.size() - (span.points.size() > 1 ? 2 : 1), std::string::npos, ")),\n");
+    }
+  return out;
+}
+
+std::string value_classes(const Map& map, const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Point& point = map.points[i];
+    if (point.values.empty()) continue;
+    out += fmt::format("\n    class {}(_IntEnum):\n", names[i]);
+    const auto members = identifiers(names_of(point), taken_by_int, is_name);
+    for (std::size_t k = 0; k < members.size(); ++k)
+      out += fmt::format("        {} = {}\n", members[k], point.values[k].value);
+  }
+  if (out.empty()) return out;
+  return "\n\nclass values:\n    \"\"\"What the map calls the values of its points.\"\"\"\n" + out;
+}
+
+/// Keys of the map that need the driver or the client in C++, which have a thread of their own.
+std::string keys_left_out(const Map& map) {
+  std::string out;
+  const auto add = [&](bool has, std::string_view key) {
+    if (has) out.append(out.empty() ? "" : ", ").append(key);
+  };
+  bool deadman = false;
+  for (const Point& point : map.points) deadman |= point.host.deadman.present();
+  add(deadman, "deadman");
+  add(map.on_reconnect == OnReconnect::restore, "on_reconnect");
+  add(map.on_shutdown == OnShutdown::safe, "on_shutdown");
+  add(map.coupler_watchdog.present(), "watchdog (of the coupler)");
+  if (out.empty()) return out;
+  return "    # The map has keys that this client does not carry out, as nothing is written by itself: " +
+         out + ".\n";
+}
+
+constexpr auto class_form = R"(
+
+class {class_name}(Client):
+    """The coupler of the map {map}."""
+
+{left_out}    fingerprint = 0x{fingerprint:016x}
+    _plan = (
+{requests}    )
+    _request_gap = {request_gap}
+    _connect_delay = {connect_delay}
+
+    def __init__(self, address: str{address}, port: int = {port}, *, unit: int = {unit}, timeout: float = {timeout},
+                 verify: Verify = Verify.REQUIRE) -> None:
+        super().__init__(address, port, unit, timeout, verify)
+{points})";
+
+std::string seconds(std::chrono::milliseconds duration) {
+  return codec::decimal(std::chrono::duration<double>(duration).count());
+}
+
+}  // namespace
+
+std::string python_class(std::string_view name) {
+  std::string out;
+  bool begins = true;
+  for (const char c : name) {
+    if (c != '_') out += begins && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    begins = c == '_';
+  }
+  return out + "Client";
+}
+
+std::string python_client(const Map& map, const Provenance& provenance) {
+  const auto names = identifiers(names_of(map), taken_by_client, is_name);
+  std::string points;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Point& point = map.points[i];
+    const std::string_view kind = point_class(point.access);
+    points += fmt::format("        #: {}\n        self.{}: {}[{}] = {}(self, Spec(\n            {}))\n",
+                          printable(documentation(point)), names[i], kind, python_type(point), kind,
+                          spec(map.limits, point, names[i]));
+  }
+  const std::string address =
+      map.connection.address.empty() ? std::string() : " = " + python_literal(map.connection.address);
+  return fmt::format(
+             "# {} as a client in Python, fingerprint {:016x}.\n"
+             "# Generated by coupler {}: do not edit, change the map.\n",
+             printable(provenance.source), map.fingerprint, provenance.version)
+      .append(python_body())
+      .append(value_classes(map, names))
+      .append(fmt::format(
+          class_form, fmt::arg("class_name", python_class(provenance.name)), fmt::arg("map", map.name),
+          fmt::arg("left_out", keys_left_out(map)), fmt::arg("fingerprint", map.fingerprint),
+          fmt::arg("requests", requests(map)), fmt::arg("request_gap", seconds(map.limits.request_gap)),
+          fmt::arg("connect_delay", seconds(map.limits.connect_delay)), fmt::arg("address", address),
+          fmt::arg("port", map.connection.port), fmt::arg("unit", map.connection.unit),
+          fmt::arg("timeout", seconds(map.connection.timeout)), fmt::arg("points", points)));
+}
+
+}  // namespace coupler::generate

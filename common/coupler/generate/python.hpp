@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// A client in Python, one file on top of pymodbus.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "coupler/generate/generate.hpp"
+
+namespace coupler::generate {
+
+/// NAME_client.py: the class NAMEClient, an attribute for each point. `provenance.name` has letters, digits
+/// and underscores, a letter first; words of C++ may be.
+std::string python_client(const Map& map, const Provenance& provenance);
+
+/// "HallPressClient" of "hall_press".
+std::string python_class(std::string_view name);
+
+/// The part of the file that no map changes.
+std::string_view python_body();
+
+}  // namespace coupler::generate

@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: Apache-2.0
+# Behind values.py in a generated file, and before what the map makes.
+
+
+class Point:
+    """What the points of a client have in common."""
+
+    def __init__(self, client: Client, spec: Spec) -> None:
+        self.spec = spec
+        self._client = client
+        client._points[spec.name] = self
+
+
+class Input(Point, Generic[T]):
+    """A point that can be read."""
+
+    def read(self) -> T:
+        """Asks the device for the value."""
+        return self._client._read_point(self.spec)
+
+
+class Command(Point, Generic[T]):
+    """A point that can be written."""
+
+    def write(self, value: T) -> None:
+        """Writes the value, and returns when the device has taken it."""
+        self._client._write_point(self.spec, self.spec.encode(value))
+
+
+class Output(Input[T], Command[T]):
+    """A point that can be read and written."""
+
+
+@functools.lru_cache(maxsize=None)
+def _names_of_unit(method: str) -> tuple[str, ...]:
+    """pymodbus calls the unit id `slave` at first and `device_id` since 3.10. Where a call takes any name (FC 22 of the first
+    releases) it is `unit` or `slave`, and the other one has no meaning."""
+    parameters = inspect.signature(getattr(ModbusTcpClient, method)).parameters
+    return tuple(name for name in ("device_id", "slave") if name in parameters) or ("unit", "slave")
+
+
+class Client:
+    """The connection to one coupler."""
+
+    fingerprint: int
+    # Requests that read every point: table, address, count, names.
+    _plan: tuple[tuple[str, int, int, tuple[str, ...]], ...] = ()
+    _request_gap = 0.0    # seconds between a reply and the next request
+    _connect_delay = 0.0  # seconds between connecting and the first request
+
+    def __init__(self, address: str, port: int, unit: int, timeout: float, verify: Verify) -> None:
+        self.address, self.port, self.unit, self.timeout, self.verify = address, port, unit, timeout, verify
+        self._points: dict[str, Any] = {}
+        self._lock = threading.RLock()
+        self._wanted = False
+        self._modbus: Any = None
+        self._next_request = 0.0
+        self._one_by_one: set[tuple[str, ...]] = set()  # the device rejects these in one request
+
+    @property
+    def points(self) -> dict[str, Any]:
+        """All points by their names in the map."""
+        return dict(self._points)
+
+    @property
+    def online(self) -> bool:
+        """There is a connection, as far as is known, and the maps fit."""
+        return self._modbus is not None
+
+    def connect(self) -> None:
+        """Connects, and compares the maps."""
+        with self._lock:
+            self._wanted = True
+            self._connected()
+
+    def disconnect(self) -> None:
+        """Ends the connection. Outputs stay as they are."""
+        with self._lock:
+            self._wanted = False
+            self._drop()
+
+    def read_all(self) -> dict[str, Any]:
+        """The values of all points that can be read, by their names in the map."""
+        values: dict[str, Any] = {}
+        with self._lock:
+            self._connected()
+            for table, address, count, names in self._plan:
+                values.update(self._read_together(table, address, count, names))
+        return values
+
+    def __enter__(self: Any) -> Any:
+        self.connect()
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.disconnect()
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if isinstance(self.__dict__.get(name), Point):
+            raise AttributeError(f"{name} is a point; write to it with {name}.write(value)")
+        super().__setattr__(name, value)
+
+    def _read_point(self, spec: Spec) -> Any:
+        with self._lock:
+            self._connected()
+            try:
+                return spec.decode(self._read(spec.table, spec.read_from, spec.count * spec.size))
+            except ExceptionReply as error:
+                raise ExceptionReply(error.code, f"{spec.name}: ") from None
+
+    def _read_together(self, table: str, first: int, count: int, names: tuple[str, ...]) -> dict[str, Any]:
+        if names not in self._one_by_one:
+            try:
+                words = self._read(table, first, count)
+            except ExceptionReply as error:
+                if error.code not in _REJECTED:
+                    raise ExceptionReply(error.code, f"{', '.join(names)}: ") from None
+                self._one_by_one.add(names)
+            else:
+                values = {}
+                for spec in (self._points[name].spec for name in names):
+                    at = spec.read_from - first
+                    values[spec.name] = spec.decode(words[at:at + spec.count * spec.size])
+                return values
+        return {name: self._read_point(self._points[name].spec) for name in names}
+
+    def _write_point(self, spec: Spec, words: list[int]) -> None:
+        with self._lock:
+            self._connected()
+            try:
+                self._write(spec, words)
+                if spec.verify_write:
+                    self._verify(spec, words)
+            except ExceptionReply as error:
+                raise ExceptionReply(error.code, f"{spec.name}: ") from None
+
+    def _write(self, spec: Spec, words: list[int]) -> None:
+        if spec.mask != 0xFFFF and spec.write_with == 22:
+            self._ask("mask_write_register", 22, address=spec.address, and_mask=spec.mask ^ 0xFFFF, or_mask=words[0])
+            return
+        if spec.mask != 0xFFFF:
+            words = [self._read(spec.table, spec.read_from, 1)[0] & ~spec.mask | words[0]]
+        if spec.write_with == 5:
+            self._ask("write_coil", 5, address=spec.address, value=bool(words[0]))
+        elif spec.write_with == 15:
+            self._ask("write_coils", 15, address=spec.address, values=[bool(word) for word in words])
+        elif spec.write_with == 6:
+            self._ask("write_register", 6, address=spec.address, value=words[0])
+        else:
+            self._ask("write_registers", 16, address=spec.address, values=words)
+
+    def _verify(self, spec: Spec, words: list[int]) -> None:
+        found = [word & spec.mask for word in self._read(spec.table, spec.read_from, len(words))]
+        if found != words:
+            raise NotTaken(f"{spec.name}: {spec.decode(words)!r} was written and acknowledged, but {spec.decode(found)!r} "
+                           "reads back")
+
+    def _read(self, table: str, address: int, count: int) -> list[int]:
+        method, function, place = _READS[table]
+        values = getattr(self._ask(method, function, address=address, count=count), place)
+        if len(values) < count:
+            self._drop()
+            raise Lost(f"malformed reply: {len(values)} of {count} values")
+        return [int(value) for value in values[:count]]
+
+    def _connected(self) -> None:
+        """There is a connection to a device with this map afterwards."""
+        if self._modbus is not None:
+            return
+        if not self._wanted:
+            raise NotConnected("not connected; call connect() first, or use the client in a `with` statement")
+        where = f"{self.address} port {self.port}"
+        try:
+            # No repeated requests: pymodbus would connect for them by itself, and nobody would compare the maps.
+            modbus = ModbusTcpClient(self.address, port=self.port, timeout=self.timeout, retries=0)
+            if hasattr(modbus, "params"):
+                modbus.params.timeout = self.timeout  # 3.0 cuts it to whole seconds
+            is_open = modbus.connect()
+        except (OSError, ValueError) as error:
+            raise NotConnected(f"cannot connect to {where}: {error}; check the address") from error
+        if not is_open:
+            raise NotConnected(f"cannot connect to {where}; check that the device runs, and its address and port (the log of "
+                               "pymodbus has the reason)")
+        self._modbus = modbus
+        self._next_request = time.monotonic() + self._connect_delay
+        self._one_by_one.clear()
+        try:
+            self._compare_maps()
+        except BaseException:
+            self._drop()
+            raise
+
+    def _compare_maps(self) -> None:
+        if self.verify is Verify.OFF:
+            return
+        try:
+            area = self._read("input_registers", _IDENTITY, 13)
+        except ExceptionReply as error:
+            if error.code not in _UNIT_AWAY:
+                return  # a foreign coupler
+            raise NotConnected(self._silence(f"the gateway answers, but unit {self.unit} does not: {error}")) from error
+        except Lost as error:
+            why = f"connected, but unit {self.unit} does not answer the request for its identity: {error}"
+            raise NotConnected(self._silence(why)) from error
+        if area[:3] != _MAGIC:
+            return  # a foreign coupler
+        found = int.from_bytes(struct.pack(">4H", *area[3:7]), "big")
+        if found == self.fingerprint:
+            return
+        host = f"[{self.address}]" if ":" in self.address else self.address
+        why = (f"the map differs from the device's: fingerprint {self.fingerprint:016x} here, {found:016x} in the device; "
+               f"`coupler diff MAP tcp://{host}:{self.port}/{self.unit}` shows the differences")
+        if self.verify is Verify.REQUIRE:
+            raise OtherMap(f"{why}. Nothing is read or written. Generate this file again from the map that the device has, or "
+                           "accept it with verify=Verify.WARN")
+        _log.warning("%s", why)
+
+    def _silence(self, why: str) -> str:
+        return (f"{why}; check that the device runs, and that 'unit' is its unit id. If it is a foreign coupler that ignores "
+                "addresses it does not have, give verify=Verify.OFF")
+
+    def _ask(self, method: str, function: int, **request: Any) -> Any:
+        """Makes a request of pymodbus and waits for the answer, for the timeout at most."""
+        time.sleep(max(0.0, self._next_request - time.monotonic()))
+        call = getattr(self._modbus, method)
+        began = time.monotonic()
+        try:
+            reply = call(**request, **{name: self.unit for name in _names_of_unit(method)})
+        except BaseException as error:
+            # Its late answer must never be taken for that to the next request.
+            self._drop()
+            if not isinstance(error, Exception):
+                raise
+            raise self._lost(began, error) from error  # whatever pymodbus ran into
+        self._next_request = time.monotonic() + self._request_gap
+        code = getattr(reply, "exception_code", 0)
+        if code:
+            if code in _UNIT_AWAY:
+                self._drop()  # another unit may come back: the maps are compared again
+            raise ExceptionReply(code)
+        if isinstance(reply, Exception) or reply.isError() or reply.function_code != function:
+            self._drop()
+            raise self._lost(began, reply)
+        return reply
+
+    def _lost(self, began: float, why: Any) -> Lost:
+        if time.monotonic() - began >= 0.99 * self.timeout:
+            return Lost(f"no reply within {1000 * self.timeout:.0f} ms")
+        return Lost(f"connection lost: {why}")
+
+    def _drop(self) -> None:
+        modbus, self._modbus = self._modbus, None
+        if modbus is not None:
+            modbus.close()

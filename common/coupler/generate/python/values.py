@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A client of one coupler, made from its map, on top of pymodbus 3.
+
+The last class of this file has an attribute for each point of the map. Here it is called PressClient:
+
+    with PressClient("192.168.1.17") as press:
+        press.speed.write(80)                    # returns when the device has taken the value
+        print(press.pressure.read())             # asks the device
+        print(press.read_all())                  # every point, in as few requests as possible
+
+connect() compares the maps. When the connection breaks, the call in progress raises an error, and the next one connects
+again. Nothing is read or written by itself. All may be called from any thread. Every error is a CouplerError.
+"""
+from __future__ import annotations
+
+import enum
+import functools
+import inspect
+import logging
+import math
+import operator
+import struct
+import threading
+import time
+from dataclasses import dataclass
+from typing import Any, Generic, NoReturn, TypeVar
+
+try:
+    from pymodbus.client import ModbusTcpClient
+except ImportError as missing:
+    raise ImportError("pymodbus 3 or newer is needed; install it with `apt install python3-pymodbus` or `pip install "
+                      "'pymodbus>=3'`") from missing
+
+T = TypeVar("T")
+_IntEnum = enum.IntEnum
+_log = logging.getLogger(__name__)
+
+# Exception codes of the MODBUS Application Protocol, 7.
+_EXCEPTIONS = {
+    1: "illegal function", 2: "illegal data address", 3: "illegal data value", 4: "server device failure", 5: "acknowledge",
+    6: "server device busy", 8: "memory parity error", 10: "gateway path unavailable",
+    11: "gateway target failed to respond"}
+_REJECTED = (2, 3)       # of a range that the device does not have, or that is too long for it
+_UNIT_AWAY = (10, 11)
+_IDENTITY = 0xFF00       # input registers of a node of OpenCoupler: docs/identity.md
+_MAGIC = [0x4F43, 0x504C, 1]
+
+_READS = {  # of a table: the call of pymodbus, its function code, where the answer has the values
+    "coils": ("read_coils", 1, "bits"), "discrete_inputs": ("read_discrete_inputs", 2, "bits"),
+    "holding_registers": ("read_holding_registers", 3, "registers"),
+    "input_registers": ("read_input_registers", 4, "registers")}
+_LETTERS = {  # of struct; CHAR is its code
+    "BYTE": "B", "WORD": "H", "DWORD": "I", "LWORD": "Q", "SINT": "b", "INT": "h", "DINT": "i", "LINT": "q",
+    "USINT": "B", "UINT": "H", "UDINT": "I", "ULINT": "Q", "REAL": "f", "LREAL": "d", "CHAR": "B"}
+_BITS_ONLY = ("BYTE", "WORD", "DWORD", "LWORD", "CHAR")  # which bounds do not concern
+_MOST = {"f": struct.unpack(">f", b"\x7f\x7f\xff\xff")[0], "d": struct.unpack(">d", b"\x7f\xef" + 6 * b"\xff")[0]}
+
+
+class CouplerError(Exception):
+    """What can go wrong with a coupler."""
+
+
+class NotConnected(CouplerError):
+    """There is no connection, and nothing was sent."""
+
+
+class OtherMap(NotConnected):
+    """The device has another map than this file."""
+
+
+class Lost(CouplerError):
+    """No valid answer came. A write may have been carried out or not."""
+
+
+class ExceptionReply(CouplerError):
+    """The device answered with an exception."""
+
+    def __init__(self, code: int, what: str = "") -> None:
+        self.code = code
+        super().__init__(f"{what}exception {code:02X} ({_EXCEPTIONS.get(code, 'unknown exception')})")
+
+
+class NotTaken(CouplerError):
+    """The device acknowledged a write, but something else reads back."""
+
+
+class Refused(CouplerError, ValueError):
+    """Not a value of the point; nothing was sent."""
+
+
+class Verify(enum.Enum):
+    """What to do if the device has another map."""
+
+    REQUIRE = "require"  # do not talk to it
+    WARN = "warn"        # log it and go on
+    OFF = "off"          # do not ask
+
+
+def _reordered(words: list[int], order: str) -> list[int]:
+    """Registers, the most significant first, as they stand in the device, and back: each order undoes itself."""
+    if order in ("CDAB", "DCBA"):
+        words = words[::-1]
+    return [(word & 0xFF) << 8 | word >> 8 for word in words] if order in ("BA", "BADC", "DCBA") else words
+
+
+def _words(data: bytes, order: str) -> list[int]:
+    return _reordered(list(struct.unpack(f">{len(data) // 2}H", data)), order)
+
+
+def _bytes(words: list[int], order: str) -> bytes:
+    return struct.pack(f">{len(words)}H", *_reordered(words, order))
+
+
+@dataclass(frozen=True)
+class Spec:
+    """A point as the map describes it. Addresses are zero-based."""
+
+    name: str
+    table: str
+    address: int
+    type: str
+    size: int = 1                      # registers or bits of one value
+    count: int = 1                     # values; more than one: an array
+    order: str = "AB"
+    mask: int = 0xFFFF                 # which bits of the register are the point's
+    write_with: int = 0                # function code
+    read_address: int | None = None    # where it reads back, if not at `address`
+    verify_write: bool = False         # read back after a write
+    length: int = 0                    # bytes of a text
+    encoding: str = ""
+    gain: float = 1.0
+    offset: float = 0.0
+    units: str = ""
+    least: float = -math.inf           # `min` and `max` of the map, as the registers hold them
+    most: float = math.inf
+    nonfinite: bool = False            # NaN and the infinities may be written
+    allowed: str = "a finite number"   # which values may be written, in words
+    names: Any = None                  # of its values, an IntEnum
+
+    @property
+    def read_from(self) -> int:
+        return self.address if self.read_address is None else self.read_address
+
+    @property
+    def scaled(self) -> bool:
+        return self.gain != 1 or self.offset != 0
+
+    def decode(self, words: list[int]) -> Any:
+        """The value in `count * size` registers or bits."""
+        values = [self._decode_one(words[at:at + self.size]) for at in range(0, self.count * self.size, self.size)]
+        return values if self.count > 1 else values[0]
+
+    def encode(self, value: Any) -> list[int]:
+        """The registers or bits, those of other points 0. Raises Refused."""
+        if self.count == 1:
+            return self._encode_one(value)
+        try:
+            values = list(value)
+        except TypeError:
+            self.refuse(f"{value!r} is one value; give {self.count}")
+        if isinstance(value, (str, bytes)) or len(values) != self.count:
+            self.refuse(f"{value!r} has {len(values)} values; give {self.count}")
+        return [word for one in values for word in self._encode_one(one)]
+
+    def refuse(self, why: str) -> NoReturn:
+        raise Refused(f"{self.name}: refused: {why}")
+
+    def _decode_one(self, words: list[int]) -> Any:
+        if self.type == "BOOL":
+            return words[0] & self.mask != 0
+        if self.type == "STRING":
+            data = _bytes(words, self.order)[:self.length].split(b"\0")[0]
+            text = data.decode(self.encoding, "replace")
+            return text.replace("\ufffd", "?") if self.encoding == "ascii" else text
+        raw = self._raw(words)
+        if self.scaled:
+            return float(raw) * self.gain + self.offset
+        return raw if self._name_of(raw) is None else self._name_of(raw)
+
+    def _name_of(self, raw: int) -> Any:
+        """A member of `names`, or None: the device may have values without a name."""
+        return None if self.names is None else next((name for name in self.names if name == raw), None)
+
+    def _raw(self, words: list[int]) -> Any:
+        data = _bytes(words, self.order)
+        if self.mask != 0xFFFF:
+            data = bytes([words[0] >> 8 if self.mask == 0xFF00 else words[0] & 0xFF])
+        return struct.unpack(">" + _LETTERS[self.type], data)[0]
+
+    def _encode_one(self, value: Any) -> list[int]:
+        if self.type == "BOOL":
+            if isinstance(value, (str, bytes)) or value not in (0, 1):
+                self.refuse(f"{value!r} is neither True nor False")
+            return [(1 if self.mask == 0xFFFF else self.mask) if value else 0]
+        if self.type == "STRING":
+            return _words(self._text(value).ljust(2 * self.size, b"\0"), self.order)
+        letter, number = _LETTERS[self.type], self._number(value)
+        raw = self._unscaled(letter, number) if self.scaled else self._checked(letter, number)
+        data = struct.pack(">" + letter, raw)
+        words = [data[0] << 8 if self.mask == 0xFF00 else data[0]] if len(data) == 1 else _words(data, self.order)
+        self._check_allowed(words)
+        return words
+
+    def _text(self, value: Any) -> bytes:
+        if not isinstance(value, str):
+            self.refuse(f"{value!r} is not text")
+        if "\0" in value:
+            self.refuse("a text with a NUL character would end there; leave the character out")
+        try:
+            data = value.encode(self.encoding)
+        except UnicodeEncodeError:
+            self.refuse(f"{value!r} cannot be written in {self.encoding}; leave out what it does not have")
+        if len(data) > self.length:
+            self.refuse(f"{value!r} is too long; give at most {self.length} bytes of {self.encoding}")
+        return data
+
+    def _number(self, value: Any) -> int | float:
+        """Also of the number types of other libraries."""
+        if not isinstance(value, (bool, str, bytes)):
+            try:
+                return operator.index(value)
+            except TypeError:
+                try:
+                    return float(value)
+                except (TypeError, ValueError):
+                    pass
+        self.refuse(f"{value!r} is not a number")
+
+    def _checked(self, letter: str, number: int | float) -> int | float:
+        if letter in "fd":
+            try:
+                struct.pack(">" + letter, number)
+                return number
+            except (OverflowError, struct.error):
+                self.refuse(f"{number} does not fit into {self.type}")
+        if isinstance(number, float) and not number.is_integer():
+            self.refuse(f"{number} is not a whole number, as {self.type} needs")
+        least, most = self._ends(letter)
+        if not least <= number <= most:
+            self.refuse(f"{number} does not fit into {self.type} ({least} to {most})")
+        return int(number)
+
+    @staticmethod
+    def _ends(letter: str) -> tuple[Any, Any]:
+        if letter in "fd":
+            return -_MOST[letter], _MOST[letter]
+        bits = 8 * struct.calcsize(">" + letter)
+        return (-(1 << bits - 1), (1 << bits - 1) - 1) if letter.islower() else (0, (1 << bits) - 1)
+
+    def _unscaled(self, letter: str, number: int | float) -> int | float:
+        """The raw number whose published value is the nearest."""
+        try:
+            value = float(number)
+        except OverflowError:
+            value = math.inf if number > 0 else -math.inf
+        least, most = (float(end) for end in self._ends(letter))
+        range_ = "{:g} to {:g}".format(*sorted((least * self.gain + self.offset, most * self.gain + self.offset)))
+        if math.isnan(value):
+            self.refuse(f"not a number; send {range_}{self._unit()}")
+        raw = (value - self.offset) / self.gain
+        half = 0.0 if letter in "fd" else 0.5
+        # The greatest number of 64 bits has no double: `most` is then the first one beyond.
+        above = raw > most if letter in "fd" else raw >= most + half
+        if above or (raw <= least - half and raw != least):
+            self.refuse(f"{value:g}{self._unit()} is out of range; send {range_}{self._unit()}")
+        if letter in "fd":
+            return raw
+        whole = int(raw)
+        return whole + (1 if raw - whole >= 0.5 else -1 if raw - whole <= -0.5 else 0)  # half away from zero
+
+    def _check_allowed(self, words: list[int]) -> None:
+        """As what the registers would hold, so that 21.7 is not above `max: 21.7` of a REAL."""
+        if self.type in _BITS_ONLY:
+            return
+        raw = self._raw(words)
+        value = float(raw) * self.gain + self.offset
+        if not math.isfinite(value):
+            if not self.nonfinite:
+                self.refuse(f"a number that is not finite (NaN or infinity); send {self.allowed}")
+        elif not self.least <= value <= self.most:
+            side = "below the minimum" if value < self.least else "above the maximum"
+            self.refuse(f"{value:g}{self._unit()} is {side}; send {self.allowed}")
+        elif self.names is not None and self._name_of(raw) is None:
+            self.refuse(f"{raw} is not one of its values; send {self.allowed}")
+
+    def _unit(self) -> str:
+        return f" {self.units}" if self.units else ""

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The client in Python: which values it refuses, and names that could be in each other's way."""
+import enum
+import json
+import keyword
+import struct
+import unittest
+
+import made
+from press import PRESS, OfADevice
+
+
+class Values(OfADevice):
+    def test_a_value_that_is_none_of_its_point_is_refused_in_words(self):
+        press = self.connected(PRESS + """\
+    mode:  {address: 20, type: UINT, values: {0: "off", 1: idle, 2: auto}}
+    bar:   {address: 21, type: INT, scale: 0.1, units: bar, min: 0, max: 21.7}
+    real:  {address: 22, type: REAL, max: 21.7}
+    any:   {address: 24, type: REAL, allow_nonfinite: true}
+    code:  {address: 26, type: STRING, length: 4, encoding: ascii}
+""")
+        for point, value, why in (
+                (press.speed, 7000, "speed: refused: 7000 % is out of range; send 0 to 6553.5 %"),
+                (press.speed, float("nan"), "not a number; send 0 to 6553.5 %"), (press.speed, 10 ** 400, "out of range"),
+                (press.speed, "80", "'80' is not a number"), (press.speed, True, "True is not a number"),
+                (press.total, -1, "-1 does not fit into UDINT (0 to 4294967295)"),
+                (press.total, 1.5, "1.5 is not a whole number, as UDINT needs"), (press.total, float("inf"), "UDINT"),
+                (press.part, 256, "256 does not fit into USINT (0 to 255)"),
+                (press.valve, 2, "2 is neither True nor False"), (press.valve, "on", "neither"), (press.flag, None, "neither"),
+                (press.lamps, [True], "give 3"), (press.lamps, True, "give 3"), (press.lamps, "101", "give 3"),
+                (press.lamps, [True, False, 2], "neither"),
+                (press.label, "seven..", "'seven..' is too long; give at most 6 bytes of utf-8"),
+                (press.label, "€€€", "too long"),
+                (press.label, "a\0b", "leave the character out"), (press.label, b"abc", "not text"),
+                (press.label, "\ud800", "cannot be written in utf-8"), (press.code, "é", "cannot be written in ascii"),
+                (press.bar, 21.8, "21.8 bar is above the maximum; send 0 to 21.7 bar"),
+                (press.bar, -0.1, "-0.1 bar is below the minimum; send 0 to 21.7 bar"),
+                (press.mode, 3, "3 is not one of its values; send off (0), idle (1) or auto (2)"),
+                (press.real, 21.8, "21.8 is above the maximum; send at most 21.7"),
+                (press.real, float("nan"), "not finite"), (press.any, 1e39, "1e+39 does not fit into REAL")):
+            self.assertIn(why, self.raises("Refused", point.write, value))
+        self.assertEqual(self.device.requests, [])
+        with self.assertRaises(ValueError):
+            press.speed.write(7000)
+        for point, value in ((press.bar, 21.7), (press.real, 21.7), (press.any, float("inf")), (press.speed, 6553.54),
+                             (press.total, 7.0), (press.valve, 1), (press.lamps, (True, False, True))):
+            point.write(value)
+        press.mode.write(self.module.values.mode.auto)
+        self.assertIs(press.mode.read(), self.module.values.mode.auto)
+        self.device.tables["holding_registers"][20] = 9  # what has no name is a number
+        self.assertEqual((press.mode.read(), isinstance(press.mode.read(), enum.Enum)), (9, False))
+
+    def test_a_scale_is_that_of_python(self):
+        """test/golden/make-scale: halves, ends of types, numbers without a double."""
+        self.press()
+        cases = json.loads((made.SOURCE / "test/golden/scale.json").read_text(encoding="utf-8"))
+        cases = [case for case in cases if (float.fromhex(case["gain"]), float.fromhex(case["offset"])) != (1, 0)]
+        self.assertGreater(len(cases), 500)
+        for case in cases:
+            size = {"I": 1, "U": 1, "D": 2, "L": 4, "R": 2}[case["type"].replace("UD", "D").replace("UL", "L")[0]]
+            spec = self.module.Spec("a", "holding_registers", 0, case["type"], size=size, order="ABCD" if size > 1 else "AB",
+                                    gain=float.fromhex(case["gain"]), offset=float.fromhex(case["offset"]), nonfinite=True)
+            if "error" in case:
+                self.raises("Refused", spec.encode, float.fromhex(case["value"]))
+            else:
+                self.assertEqual(spec.encode(float.fromhex(case["value"])), case["registers"], case)
+                self.assertEqual(spec.decode(case["registers"]), float.fromhex(case["published"]), case)
+
+    def test_a_text_with_bytes_that_are_none_of_its_encoding_is_read(self):
+        press = self.connected()
+        self.device.tables["holding_registers"][8:11] = struct.unpack("<3H", b"a\xffb\0cd")
+        self.assertEqual(press.label.read(), "a\ufffdb")
+
+    def test_a_point_cannot_be_replaced_by_a_value(self):
+        press = self.press()
+        with self.assertRaisesRegex(AttributeError, r"speed\.write\(value\)"):
+            press.speed = 80
+
+
+class Names(OfADevice):
+    def test_words_of_python_and_of_the_client_get_an_underscore(self):
+        client = self.press()
+        own = [name for name in dir(client) if not name.startswith("_") and name not in client.points]
+        words = [word for word in keyword.kwlist + own if word != "online"]  # a topic of the driver: no point has that name
+        plain = ["read", "write", "self", "values", "Client", "Spec", "Output", "int", "str", "match", "property", "class_"]
+        points = "".join(f"    {name}: {i}\n" for i, name in enumerate([*words, *plain, "arm/left", "arm_left"]))
+        client = self.connected(f"name: press\nmapping:\n  coils:\n{points}")
+        client.read_all()
+        for name in {*words} - {"class"}:
+            self.assertIs(getattr(client, f"{name}_"), client.points[name])
+        for name in {*plain} - {"class_"}:
+            self.assertIs(getattr(client, name), client.points[name])
+        names = {vars(client)[name].spec.name for name in ("class_", "class__", "arm_left", "arm_left_")}
+        self.assertEqual(names, {"class", "class_", "arm/left", "arm_left"})
+
+    def test_names_of_values_may_be_words_of_python_or_of_int(self):
+        words = [word for word in {*keyword.kwlist, *dir(int), *dir(enum.IntEnum), "mro", "name", "value", "names"}
+                 if word.isidentifier() and not word.startswith("_")]
+        values = ", ".join(f'{i}: "{word}"' for i, word in enumerate(words))
+        point = f"{{type: INT, values: {{{values}}}"
+        press = self.connected(f"name: press\nmapping:\n  holding_registers:\n    enum: {point}, address: 0}}\n"
+                               f"    IntEnum: {point}, address: 1}}\n")
+        for i, word in enumerate(words):
+            member = getattr(self.module.values.IntEnum, word, None)
+            member = member if isinstance(member, enum.Enum) else getattr(self.module.values.IntEnum, f"{word}_")
+            press.enum.write(member)
+            self.assertEqual((int(member), press.enum.read()), (i, i))
+
+    def test_texts_of_the_map_cannot_leave_their_place(self):
+        press = self.press('name: press\nmapping:\n  holding_registers:\n    a: {address: 0, type: INT, min: 0, '
+                           'units: "\\"\\\\ \\"\\"\\" \\u202e\\n{}", description: "\\"\\"\\" \\\\\\nimport nothing"}\n')
+        self.assertEqual(press.a.spec.units, '"\\ """ \u202e\n{}')
+
+
+if __name__ == "__main__":
+    unittest.main(warnings="ignore")
