@@ -15,6 +15,8 @@ namespace {
 constexpr Exporter formats[] = {
     {"csv", "a table of points, for spreadsheets and for `coupler import csv`", write_csv},
     {"home-assistant", "the modbus integration's part of configuration.yaml", write_home_assistant},
+    {"st", "types, variables and function blocks in Structured Text, for a PLC that reads the device",
+     write_structured_text},
     {"telegraf", "a section [[inputs.modbus]] of telegraf.conf", write_telegraf},
     {"wireshark", "a dissector (Lua) that names the points in captures", write_wireshark},
 };

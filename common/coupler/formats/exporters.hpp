@@ -53,6 +53,11 @@ Export write_csv(const Map& map);
 /// sensors, registers sensors.
 Export write_home_assistant(const Map& map);
 
+/// Structured Text (IEC 61131-3) for the PLC at the other end: structures of typed variables, arrays for the
+/// registers of each request, function blocks between the two, constants for requests, addresses and names of
+/// values.
+Export write_structured_text(const Map& map);
+
 /// A section [[inputs.modbus]] for Telegraf, in the plugin's "request" style: one request for each table and
 /// byte order, which Telegraf splits into as many reads as it needs.
 Export write_telegraf(const Map& map);

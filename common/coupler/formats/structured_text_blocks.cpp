@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "coupler/formats/structured_text.hpp"
+#include "coupler/plan/planner.hpp"
+
+namespace coupler::formats::structured_text {
+namespace {
+
+using modbus::Function;
+
+Function read_function(Table table) {
+  switch (table) {
+    case Table::coils: return Function::read_coils;
+    case Table::discrete_inputs: return Function::read_discrete_inputs;
+    case Table::input_registers: return Function::read_input_registers;
+    case Table::holding_registers: break;
+  }
+  return Function::read_holding_registers;
+}
+
+/// Writing it does more than to set it, or the map wants it by itself.
+bool is_written_alone(const Point& point) {
+  return point.counter.present() || point.latched.present() ||
+         point.host.write_function == HostOptions::WriteFunction::single;
+}
+
+Function write_function(const Block& block, const Map& map) {
+  const bool bits = holds_bits(block.table);
+  const bool multiple =
+      block.range.count() > 1 || std::any_of(block.points.begin(), block.points.end(), [&](std::uint32_t i) {
+        return map.points[i].host.write_function == HostOptions::WriteFunction::multiple;
+      });
+  if (multiple) return bits ? Function::write_multiple_coils : Function::write_multiple_registers;
+  return bits ? Function::write_single_coil : Function::write_single_register;
+}
+
+}  // namespace
+
+std::vector<Block> read_blocks(const Map& map) {
+  std::vector<Block> blocks;
+  for (const plan::GroupPlan& group : plan::make_read_plan(map))
+    for (const plan::ReadSpan& span : group.spans)
+      blocks.push_back({span.table, span.range, read_function(span.table), group.rate, span.points, {}});
+  return blocks;
+}
+
+std::vector<Block> write_blocks(const Map& map) {
+  std::vector<Block> blocks;
+  const Point* last = nullptr;
+  for (std::uint32_t i = 0; i < map.points.size(); ++i) {
+    const Point& point = map.points[i];
+    if (!is_writable(point)) continue;
+    const modbus::Range place = range(point);
+    if (last != nullptr && last->table == point.table) {
+      Block& block = blocks.back();
+      const std::uint32_t most = holds_bits(point.table) ? map.limits.write_bits : map.limits.write_registers;
+      const std::uint32_t count = std::max(block.range.end(), place.end()) - block.range.start();
+      const bool follows = place.start() == block.range.end() && !is_written_alone(*last) &&
+                           !is_written_alone(point) && count <= most;
+      if (follows || place.start() < block.range.end()) {
+        block.range = modbus::Range::of(block.range.start(), count);
+        block.points.push_back(i);
+        last = &point;
+        continue;
+      }
+    }
+    blocks.push_back({point.table, place, Function::write_multiple_registers, 0, {i}, {}});
+    last = &point;
+  }
+  for (Block& block : blocks) block.function = write_function(block, map);
+  return blocks;
+}
+
+}  // namespace coupler::formats::structured_text
