@@ -147,6 +147,7 @@ int main_with(const Map* built_in, int argc, char** argv) {
   Settings settings = arguments.settings;
   // A node that was given its name (by roslaunch, say) may have its map in its parameters. Otherwise the map
   // gives the name, and the parameters are those of that name.
+  std::optional<Ros1Node> node;
   if (arguments.names_the_node) {
     if (!init_ros(arguments.for_ros, "coupler_driver")) return wrong_call;
     const auto parameters = read_parameters(ros::NodeHandle("~"));
@@ -155,9 +156,11 @@ int main_with(const Map* built_in, int argc, char** argv) {
       return wrong_input;
     }
     settings = overlay(*parameters, arguments.settings);
+    Shutdown::request_on_signals();
+    node.emplace();  // its diagnostics say that a map is waited for
   }
-  auto sources = find_maps(built_in, settings, ros1_dialect,
-                           [](Level /*level*/, const std::string& text) { print_message(text); });
+  const auto print = [](Level /*level*/, const std::string& text) { print_message(text); };
+  auto sources = find_maps(built_in, settings, ros1_dialect, print, node ? &*node : nullptr);
   if (!sources) return sources.error();
   const std::string name =
       node_name(arguments.settings.name.value_or(std::string(sources->front().map.name)));
@@ -166,8 +169,8 @@ int main_with(const Map* built_in, int argc, char** argv) {
   if (!devices) return devices.error();
   // roscpp would shut down in a thread of its own, while this one still uses it.
   Shutdown::request_on_signals();
-  Ros1Node node;
-  return drive(*devices, node);
+  if (!node) node.emplace();
+  return drive(*devices, *node);
 }
 
 }  // namespace coupler::host

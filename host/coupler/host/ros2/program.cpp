@@ -84,8 +84,9 @@ class Program {
   }
 
   void find(const Settings& settings) {
-    auto sources = find_maps(built_in_, settings, ros2_dialect,
-                             [this](Level level, const std::string& text) { log(level, text); });
+    auto sources = find_maps(
+        built_in_, settings, ros2_dialect, [this](Level level, const std::string& text) { log(level, text); },
+        node_ ? &*node_ : nullptr);
     if (!sources) throw Exit{sources.error()};
     sources_ = std::move(*sources);
   }
