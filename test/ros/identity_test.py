@@ -3,9 +3,11 @@
 import re
 import unittest
 
+from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Bool, UInt16
 
 from support import process, testing
+from support.latest import LatestDiagnostics
 from support.ports import free_port
 
 MAP = """
@@ -100,6 +102,21 @@ class Identity(testing.RosTest):
         driver.wait_for("waiting for the map of 127.0.0.1")
         node = process.Node(process.write_map(press()), port)
         self.addCleanup(node.end)
+        self.assert_works(driver)
+
+    def test_a_driver_with_a_name_says_in_the_diagnostics_which_map_it_waits_for_and_that_it_has_come(self):
+        port = free_port()
+        diagnostics = LatestDiagnostics("io:")
+        self.addCleanup(diagnostics.close)
+        driver = self.driver("_address:=127.0.0.1", f"_port:={port}", "__name:=io")
+        entry = diagnostics.says("Connection refused", "map", DiagnosticStatus.WARN)
+        self.assertIn(f"waiting for the map of 127.0.0.1 port {port}", entry.message)
+        self.assertEqual(entry.hardware_id, f"127.0.0.1:{port} unit 1")
+        self.assertEqual(set(diagnostics.known), {"map"})
+        node = process.Node(process.write_map(press()), port)
+        self.addCleanup(node.end)
+        diagnostics.says(f"read from 127.0.0.1 port {port}", "map", DiagnosticStatus.OK)
+        diagnostics.says("online", "press connection", DiagnosticStatus.OK)
         self.assert_works(driver)
 
 

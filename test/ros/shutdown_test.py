@@ -106,6 +106,11 @@ class Shutdown(unittest.TestCase):
             driver.wait_for("waiting for the map of 127.0.0.1")
             self.assert_ends_soon(driver)
 
+    def test_while_a_node_that_was_given_its_name_waits_for_a_nodes_map(self):
+        with process.Driver("__name:=io", "_address:=127.0.0.1", f"_port:={free_port()}") as driver:
+            driver.wait_for("waiting for the map of 127.0.0.1")
+            self.assert_ends_soon(driver)
+
     def test_while_there_is_no_master(self):
         master = os.environ["ROS_MASTER_URI"]
         os.environ["ROS_MASTER_URI"] = f"http://localhost:{free_port()}"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """/diagnostics as robot monitors read it, and the stamps of what the driver says: of the system's clock, or of /clock where
 use_sim_time says so. Values go by neither."""
+import socket
 import threading
 import time
 
@@ -14,6 +15,7 @@ from support import process, testing
 from support.device import Device
 from support.parameters import BOOL, Parameters, parameter
 from support.patience import NO_TIMEOUT
+from support.ports import free_port
 from support.topics import Publisher, Subscription, qos
 
 MAP = """
@@ -73,6 +75,27 @@ class Diagnostics(DiagnosticsTest):
         self.start()
         for _ in range(3):
             self.all.wait_for(lambda one: one.status)
+
+
+class Waiting(DiagnosticsTest):
+    def wait_for_warning(self, port):
+        [entry] = self.all.wait_for(lambda one: one.status and one.status[0].level == DiagnosticStatus.WARN).status
+        self.assertEqual(entry.name, f"coupler_127_0_0_1_{port}_driver: map")
+        self.assertEqual(entry.hardware_id, f"127.0.0.1:{port} unit 1")
+        self.assertIn(f"waiting for the map of 127.0.0.1 port {port}", entry.message)
+
+    def test_that_the_driver_waits_for_a_map_is_said_again_and_again(self):
+        port = free_port()
+        self.driver("--address", "127.0.0.1", "--port", port)
+        for _ in range(3):
+            self.wait_for_warning(port)
+
+    def test_it_is_said_while_a_device_that_accepts_does_not_answer(self):
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            port = silent.getsockname()[1]
+            self.driver("--address", "127.0.0.1", "--port", port, "--timeout", NO_TIMEOUT)
+            for _ in range(3):
+                self.wait_for_warning(port)
 
 
 class Stamps(DiagnosticsTest):

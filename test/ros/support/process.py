@@ -14,6 +14,7 @@ from support.patience import PATIENCE
 
 BUILD = pathlib.Path(os.environ["COUPLER_BUILD_DIR"])
 SERVING = re.compile(r"serving .* on \S+:(\d+)")
+NAME = "__name:="  # gives the node its name
 
 # `nohup ./check` leaves it ignored, and a node that is started so takes no SIGHUP.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
@@ -113,10 +114,13 @@ class Driver(Process):
 
 
 def driver_arguments(arguments):
-    """`_key:=value` is ROS 1's spelling of `--key=value`; a driver for ROS 2 takes the latter only."""
+    """`_key:=value` is ROS 1's spelling of `--key=value`, and `__name:=io` that of a remapping; a driver for ROS 2 takes its
+    own only."""
     if os.environ.get("ROS_VERSION") != "2":
         return arguments
-    return [re.sub(r"^_([a-z]+):=", r"--\1=", str(one)) for one in arguments]
+    names = [f"__node:={one[len(NAME):]}" for one in map(str, arguments) if one.startswith(NAME)]
+    others = [re.sub(r"^_([a-z]+):=", r"--\1=", one) for one in map(str, arguments) if not one.startswith(NAME)]
+    return others + [word for name in names for word in ("--ros-args", "-r", name)]
 
 
 class Node(Process):

@@ -15,6 +15,7 @@
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/host/core/schedule.hpp"
 #include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/ros/diagnostics.hpp"
 #include "coupler/host/ros/program.hpp"
 #include "coupler/map/diagnostic.hpp"
 #include "coupler/map/loader/load.hpp"
@@ -31,7 +32,8 @@ using LogFunction = std::function<void(Level, const std::string&)>;
 /// Finds one map at a time. The settings must outlive what it finds.
 class MapFinder {
  public:
-  MapFinder(const Dialect& dialect, const LogFunction& log) : dialect_(dialect), log_(log) {}
+  MapFinder(const Dialect& dialect, const LogFunction& log, Node* node)
+      : dialect_(dialect), log_(log), node_(node) {}
 
   /// PATH, or NAME=PATH for a device that is not to have its map's name. The result views `entry`.
   Source from_entry(std::string_view entry) {
@@ -87,24 +89,30 @@ class MapFinder {
   }
 
   /// The map that the node serves, if any; an error after a shutdown.
-  tl::expected<std::optional<ServedMap>, int> wait_for_map(Transport& transport, const std::string& where) {
+  tl::expected<std::optional<ServedMap>, int> wait_for_map(Transport& transport, const std::string& where,
+                                                           MapDiagnostics& diagnostics) {
     Backoff backoff;
     std::string logged;
     while (!Shutdown::requested) {
       // A device that hangs must not hold up the shutdown for its timeout.
       auto attempt = std::async(std::launch::async, [&transport] { return fetch_served_map(transport); });
-      while (attempt.wait_for(shutdown_check_interval) != std::future_status::ready)
+      while (attempt.wait_for(shutdown_check_interval) != std::future_status::ready) {
         if (Shutdown::requested) transport.interrupt();
+        diagnostics.publish_if_due();
+      }
       auto served = attempt.get();
       if (served) return std::move(*served);
       if (Shutdown::requested) break;
-      const std::string why = to_string(served.error());
-      if (why != logged)
-        log_(Level::warning, fmt::format("waiting for the map of {}: {}; trying again", where, why));
-      logged = why;
+      const std::string waiting =
+          fmt::format("waiting for the map of {}: {}; trying again", where, to_string(served.error()));
+      if (waiting != logged) log_(Level::warning, waiting);
+      logged = waiting;
+      diagnostics.say(Level::warning, waiting);
       const Time again = std::chrono::steady_clock::now() + backoff.next();
-      while (!Shutdown::requested && std::chrono::steady_clock::now() < again)
+      while (!Shutdown::requested && std::chrono::steady_clock::now() < again) {
+        diagnostics.publish_if_due();
         std::this_thread::sleep_for(shutdown_check_interval);
+      }
     }
     return tl::make_unexpected(0);
   }
@@ -116,13 +124,16 @@ class MapFinder {
     asked.connection.address = address;
     const std::string where = fmt::format("{} port {}", asked.connection.address, asked.connection.port);
     ModbusTransport transport(asked.connection);
-    const auto served = wait_for_map(transport, where);
+    MapDiagnostics diagnostics(asked.connection, node_);
+    diagnostics.say(Level::warning, "waiting for the map of " + where);
+    const auto served = wait_for_map(transport, where, diagnostics);
     if (!served) return tl::make_unexpected(served.error());
     if (!*served)
       return fail(wrong_input, where + " serves no map: it is a foreign coupler; give its map by --map MAP");
     const auto owner = load_node_map((*served)->text, (*served)->head, load_served_map);
     if (!owner)
       return fail(wrong_input, fmt::format("the map of {} cannot be used: {}", where, owner.error()));
+    diagnostics.say(Level::info, "read from " + where);
     // The address where the node was found counts, not the one in its map.
     Map map = (*owner)->map();
     map.connection.address = address;
@@ -144,6 +155,7 @@ class MapFinder {
 
   const Dialect& dialect_;
   const LogFunction& log_;
+  Node* node_;
 };
 
 /// What is wrong with settings that name several maps, or an empty text.
@@ -178,8 +190,9 @@ std::string find_error(const Devices& devices) {
 }  // namespace
 
 tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const Settings& settings,
-                                                    const Dialect& dialect, const LogFunction& log) {
-  MapFinder finder(dialect, log);
+                                                    const Dialect& dialect, const LogFunction& log,
+                                                    Node* node) {
+  MapFinder finder(dialect, log, node);
   std::vector<MapSource> sources;
   if (settings.maps.empty()) {
     auto source = finder.from_settings(built_in, settings);

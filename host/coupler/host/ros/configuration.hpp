@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "coupler/host/core/sink.hpp"
+#include "coupler/host/ros/node.hpp"
 #include "coupler/host/ros/options.hpp"
 #include "coupler/host/ros/settings.hpp"
 #include "coupler/map/owned_map.hpp"
@@ -24,10 +24,12 @@ struct MapSource {
 /// Finds the maps: the built-in one, those of the files that the settings name (at least one), or, if they
 /// name an address only, the one that the node there serves. That one is waited for until
 /// Shutdown::requested. Errors and waits are logged; the error is the exit code, 0 after a shutdown. The maps
-/// may view the settings.
-tl::expected<std::vector<MapSource>, int> find_maps(
-    const Map* built_in, const Settings& settings, const Dialect& dialect,
-    const std::function<void(Level, const std::string&)>& log);
+/// may view the settings. A `node` that is there already gets an entry in its diagnostics for a map that is
+/// waited for, and publishes them meanwhile; otherwise null.
+tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const Settings& settings,
+                                                    const Dialect& dialect,
+                                                    const std::function<void(Level, const std::string&)>& log,
+                                                    Node* node);
 
 /// Whether a node must be asked for the map.
 bool is_map_of_a_node(const Map* built_in, const Settings& settings);

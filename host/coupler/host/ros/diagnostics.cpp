@@ -35,6 +35,23 @@ DiagnosticEntry entry_of(Health health) { return {health.level, std::move(health
 
 }  // namespace
 
+MapDiagnostics::MapDiagnostics(const Connection& device, Node* node) : node_(node) {
+  entry_->hardware_id = fmt::format("{}:{} unit {}", device.address, device.port, device.unit);
+  if (node_ != nullptr) node_->add_diagnostics("map", [entry = entry_] { return *entry; });
+}
+
+void MapDiagnostics::say(Level level, const std::string& text) {
+  entry_->level = level;
+  entry_->message = text;
+}
+
+void MapDiagnostics::publish_if_due() {
+  const Time now = std::chrono::steady_clock::now();
+  if (node_ == nullptr || now < due_) return;
+  due_ = now + diagnostics_interval;
+  node_->publish_diagnostics();
+}
+
 Diagnostics::Diagnostics(const Map& map, Node& node)
     : map_(map),
       hardware_id_(fmt::format("{} {}:{} unit {}", map.name, map.connection.address, map.connection.port,

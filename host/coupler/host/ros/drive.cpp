@@ -25,7 +25,6 @@ namespace coupler::host {
 namespace {
 
 constexpr auto report_interval = std::chrono::milliseconds(100);
-constexpr auto diagnostics_interval = std::chrono::seconds(1);
 
 std::string topic(const Map& map, std::string_view point) { return fmt::format("{}/{}", map.name, point); }
 

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the nodes of both ROSes are made of: templates over the types of their messages and services.
+// What the nodes of both ROSes are made of: templates over the types of their messages, publishers and
+// services.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "coupler/host/core/publish_policy.hpp"
 #include "coupler/host/ros/node.hpp"
+#include "coupler/host/ros/status.hpp"
 
 namespace coupler::host {
 
@@ -93,6 +97,43 @@ template <class Response>
 void fill(Response& response, const Calls::Answer& answer) {
   response.success = answer.success;
   response.message = answer.text;
+}
+
+/// Fills an entry of diagnostic_msgs/DiagnosticArray, but for its name.
+template <class Status>
+void fill(Status& status, const DiagnosticEntry& entry) {
+  status.level = entry.level == Level::info      ? Status::OK
+                 : entry.level == Level::warning ? Status::WARN
+                                                 : Status::ERROR;
+  status.message = entry.message;
+  status.hardware_id = entry.hardware_id;
+  for (const auto& [key, value] : entry.values) {
+    auto& added = status.values.emplace_back();
+    added.key = key;
+    added.value = value;
+  }
+}
+
+/// For Node::advertise_online(): the publisher is one of std_msgs/Bool.
+template <class Message, class Publisher>
+std::function<void(bool)> online_with(Publisher publisher) {
+  return [publisher = std::move(publisher)](bool online) {
+    Message message;
+    message.data = online;
+    publisher.publish(message);
+  };
+}
+
+/// For Node::advertise_status(): the publisher is one of coupler_driver/Status, `now()` the time in messages.
+template <class Message, class Publisher, class Clock>
+Node::PublishStatus status_with(Publisher publisher, const Map& map, Clock now) {
+  return [publisher = std::move(publisher), now, status = std::make_shared<Status<Message>>(map)](
+             const DeviceSnapshot& device, const std::vector<PointQuality>& points, Time at) {
+    if (!status->update(device, points, at)) return false;
+    status->message().header.stamp = now();
+    publisher.publish(status->message());
+    return true;
+  };
 }
 
 /// Types names the service types of a ROS; `Adapter::serve<S>(name, function)` offers a service that calls

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/standard_files.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::host {
@@ -31,6 +32,17 @@ void Shutdown::request_on_signals() {
   on_signals([](int) {
     if (requested.exchange(true) && !driving) ::_exit(0);
   });
+}
+
+void begin_program() {
+  open_standard_files();
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // ROS's log is to be seen in a pipe and in the journal too
+  Shutdown::exit_on_signals();
+}
+
+int end_of(const Options& arguments) {
+  fmt::print(*arguments.exit_code == 0 ? stdout : stderr, "{}", arguments.text);
+  return *arguments.exit_code;
 }
 
 void print_message(std::string_view text) {

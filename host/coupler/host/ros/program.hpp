@@ -4,6 +4,7 @@
 #include <atomic>
 #include <string_view>
 
+#include "coupler/host/ros/options.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {
@@ -28,6 +29,12 @@ struct Shutdown {
   /// wait for a device or a ROS master that does not answer.
   static void request_on_signals();
 };
+
+/// What a driver does first. A signal exits until Shutdown::request_on_signals().
+void begin_program();
+
+/// Where the arguments end the program: prints their text, and returns the exit code.
+int end_of(const Options& arguments);
 
 /// To standard error, for what happens before there is a node; escaped as Node::log() does.
 void print_message(std::string_view text);

@@ -105,6 +105,10 @@ Outcome set_maps(Settings& settings, const std::string& text) {
   return {};
 }
 
+std::string nearest_setting(std::string_view name) {
+  return loader::nearest_or(name, setting_names(), "coupler_driver --help shows them");
+}
+
 template <class T>
 void prefer(std::optional<T>& field, const std::optional<T>& strong) {
   if (strong) field = strong;
@@ -187,8 +191,28 @@ bool is_setting(std::string_view name) {
 }
 
 std::string no_such_setting(std::string_view name) {
-  return "there is no such setting; " +
-         loader::nearest_or(name, setting_names(), "coupler_driver --help shows them");
+  return "there is no such setting; " + nearest_setting(name);
+}
+
+std::string unknown_parameter(std::string_view parameter, std::string_view name) {
+  return fmt::format("parameter {} is not a setting and does nothing; {}", parameter, nearest_setting(name));
+}
+
+tl::expected<Settings, std::string> settings_among(
+    std::string_view prefix,
+    const std::function<ParameterText(const SettingKey& key, const std::string& name)>& text_of) {
+  Settings settings;
+  for (const SettingKey& key : setting_keys) {
+    for (const std::string_view name : {key.alias, key.key}) {  // the key wins over its alias
+      if (name.empty()) continue;
+      const auto text = text_of(key, std::string(name));
+      if (!text) return tl::make_unexpected(fmt::format("parameter {}{}: {}", prefix, name, text.error()));
+      if (!*text) continue;
+      if (const auto done = set(settings, key.key, **text); !done)
+        return tl::make_unexpected(fmt::format("parameter {}{}", prefix, done.error()));
+    }
+  }
+  return settings;
 }
 
 Settings overlay(Settings weak, const Settings& strong) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,8 +46,19 @@ bool is_setting(std::string_view name);
 /// "there is no such setting; did you mean 'poll'?"
 std::string no_such_setting(std::string_view name);
 
+/// "parameter ~/pol is not a setting and does nothing; did you mean 'poll'?"; `name`: without its place.
+std::string unknown_parameter(std::string_view parameter, std::string_view name);
+
 /// Sets one setting from text. The error says what the value should have been.
 tl::expected<void, std::string> set(Settings& settings, std::string_view key, const std::string& text);
+
+/// The settings among the parameters of a place. `text_of` returns the text of the parameter of that name,
+/// nullopt where it is not given, or what is wrong with it. The error begins with the parameter's name,
+/// `prefix` before it.
+using ParameterText = tl::expected<std::optional<std::string>, std::string>;
+tl::expected<Settings, std::string> settings_among(
+    std::string_view prefix,
+    const std::function<ParameterText(const SettingKey& key, const std::string& name)>& text_of);
 
 /// What was set, as set() takes it; nullopt: not set.
 std::optional<std::string> text_of(const Settings& settings, std::string_view key);

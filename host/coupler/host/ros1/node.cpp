@@ -17,24 +17,12 @@
 #include <fmt/format.h>
 
 #include "coupler/host/ros/node_templates.hpp"
-#include "coupler/host/ros/status.hpp"
 #include "coupler/host/ros1/logger_service.hpp"
 #include "coupler/host/ros1/messages.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::host {
 namespace {
-
-using diagnostic_msgs::DiagnosticStatus;
-
-std::int8_t diagnostic_level(Level level) {
-  switch (level) {
-    case Level::info: return DiagnosticStatus::OK;
-    case Level::warning: return DiagnosticStatus::WARN;
-    case Level::error: break;
-  }
-  return DiagnosticStatus::ERROR;
-}
 
 /// Runs a callback where it arises, in ROS's network thread, instead of waking another thread for it: a third
 /// of the time from message to Modbus request. The callbacks must not wait for anything.
@@ -141,22 +129,12 @@ std::shared_ptr<void> Ros1Node::subscribe(const std::string& topic, const Map& m
 }
 
 std::function<void(bool)> Ros1Node::advertise_online(const std::string& topic) {
-  return [publisher = handle_.advertise<std_msgs::Bool>(topic, 1, true)](bool online) {
-    std_msgs::Bool message;
-    message.data = online;
-    publisher.publish(message);
-  };
+  return online_with<std_msgs::Bool>(handle_.advertise<std_msgs::Bool>(topic, 1, true));
 }
 
 Node::PublishStatus Ros1Node::advertise_status(const std::string& topic, const Map& map) {
-  const auto status = std::make_shared<Status<coupler_driver::Status>>(map);
-  return [status, publisher = handle_.advertise<coupler_driver::Status>(topic, 1, true)](
-             const DeviceSnapshot& device, const std::vector<PointQuality>& points, Time now) {
-    if (!status->update(device, points, now)) return false;
-    status->message().header.stamp = ros::Time::now();
-    publisher.publish(status->message());
-    return true;
-  };
+  using Message = coupler_driver::Status;
+  return status_with<Message>(handle_.advertise<Message>(topic, 1, true), map, ros::Time::now);
 }
 
 std::unique_ptr<ServiceThread> Ros1Node::make_service_thread() {
@@ -165,10 +143,7 @@ std::unique_ptr<ServiceThread> Ros1Node::make_service_thread() {
 
 void Ros1Node::add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) {
   diagnostics_.add(name, [make = std::move(make)](diagnostic_updater::DiagnosticStatusWrapper& status) {
-    const DiagnosticEntry entry = make();
-    status.summary(static_cast<unsigned char>(diagnostic_level(entry.level)), entry.message);
-    status.hardware_id = entry.hardware_id;
-    for (const auto& [key, value] : entry.values) status.add(key, value);
+    fill<diagnostic_msgs::DiagnosticStatus>(status, make());
   });
 }
 

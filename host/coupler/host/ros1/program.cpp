@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,12 +18,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "coupler/base/standard_files.hpp"
 #include "coupler/host/ros/configuration.hpp"
 #include "coupler/host/ros/drive.hpp"
 #include "coupler/host/ros1/arguments.hpp"
 #include "coupler/host/ros1/node.hpp"
-#include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::host {
@@ -72,31 +69,18 @@ std::optional<std::string> text_of(XmlRpc::XmlRpcValue& value) {
 /// The settings among the parameters of a namespace, of whichever type they were given. The error names the
 /// parameter.
 tl::expected<Settings, std::string> read_parameters(const ros::NodeHandle& handle) {
-  Settings settings;
-  for (const SettingKey& key : setting_keys) {
-    for (const std::string_view name : {key.alias, key.key}) {  // the key wins over its alias
-      XmlRpc::XmlRpcValue value;
-      if (name.empty() || !handle.getParam(std::string(name), value)) continue;
-      const auto text = text_of(value);
-      if (!text)
-        return tl::make_unexpected(
-            fmt::format("parameter {}: a value or a list is needed", handle.resolveName(std::string(name))));
-      if (const auto done = set(settings, key.key, *text); !done)
-        return tl::make_unexpected(fmt::format("parameter {}/{}", handle.getNamespace(), done.error()));
-    }
-  }
-  return settings;
+  const auto text = [&](const SettingKey& /*key*/, const std::string& name) -> ParameterText {
+    XmlRpc::XmlRpcValue value;
+    if (!handle.getParam(name, value)) return std::nullopt;
+    auto given = text_of(value);
+    if (!given) return tl::make_unexpected("a value or a list is needed");
+    return given;
+  };
+  return settings_among(handle.getNamespace() + "/", text);
 }
 
 /// Parameters of diagnostic_updater.
 constexpr std::array<std::string_view, 2> other_parameters{"diagnostic_period", "diagnostic_updater_fast"};
-
-void warn_of(const std::string& parameter, const std::string& name) {
-  const std::string line =
-      fmt::format("parameter {} is not a setting and does nothing; {}", parameter,
-                  loader::nearest_or(name, setting_names(), "coupler_driver --help shows them"));
-  ROS_WARN("%s", printable_lines(line).c_str());
-}
 
 /// Warns of each parameter in the tree that is not a setting: misspelt ones do nothing. `devices`: the names
 /// of several, whose settings stand below them.
@@ -109,7 +93,7 @@ void warn_of_unknown(XmlRpc::XmlRpcValue& tree, const std::string& place,
     if (std::find(devices.begin(), devices.end(), name) != devices.end())
       warn_of_unknown(value, parameter, {});
     else if (!is_setting(name))
-      warn_of(parameter, name);
+      ROS_WARN("%s", printable_lines(unknown_parameter(parameter, name)).c_str());
   }
 }
 
@@ -157,17 +141,13 @@ tl::expected<Devices, int> configure_all(std::vector<MapSource> sources, const A
 }  // namespace
 
 int main_with(const Map* built_in, int argc, char** argv) {
-  open_standard_files();
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // ROS_INFO is to be seen in a pipe and in the journal too
-  Shutdown::exit_on_signals();
+  begin_program();
   const Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
-  if (arguments.exit_code) {
-    fmt::print(*arguments.exit_code == 0 ? stdout : stderr, "{}", arguments.text);
-    return *arguments.exit_code;
-  }
+  if (arguments.exit_code) return end_of(arguments);
   Settings settings = arguments.settings;
   // A node that was given its name (by roslaunch, say) may have its map in its parameters. Otherwise the map
   // gives the name, and the parameters are those of that name.
+  std::optional<Ros1Node> node;
   if (arguments.names_the_node) {
     if (!init_ros(arguments.for_ros, "coupler_driver")) return wrong_call;
     const auto parameters = read_parameters(ros::NodeHandle("~"));
@@ -176,9 +156,11 @@ int main_with(const Map* built_in, int argc, char** argv) {
       return wrong_input;
     }
     settings = overlay(*parameters, arguments.settings);
+    Shutdown::request_on_signals();
+    node.emplace();  // its diagnostics say that a map is waited for
   }
-  auto sources = find_maps(built_in, settings, ros1_dialect,
-                           [](Level /*level*/, const std::string& text) { print_message(text); });
+  const auto print = [](Level /*level*/, const std::string& text) { print_message(text); };
+  auto sources = find_maps(built_in, settings, ros1_dialect, print, node ? &*node : nullptr);
   if (!sources) return sources.error();
   const std::string name =
       node_name(arguments.settings.name.value_or(std::string(sources->front().map.name)));
@@ -187,8 +169,8 @@ int main_with(const Map* built_in, int argc, char** argv) {
   if (!devices) return devices.error();
   // roscpp would shut down in a thread of its own, while this one still uses it.
   Shutdown::request_on_signals();
-  Ros1Node node;
-  return drive(*devices, node);
+  if (!node) node.emplace();
+  return drive(*devices, *node);
 }
 
 }  // namespace coupler::host

@@ -30,8 +30,7 @@ constexpr std::string_view help =
 /// How ROS 2 spells an assignment of ROS 1, `from:=to`.
 std::string in_ros2(std::string_view assignment) {
   if (starts_with(assignment, "__name:=")) return fmt::format("-r __node:={}", assignment.substr(8));
-  if (starts_with(assignment, "__")) return fmt::format("-r {}", assignment);
-  if (!starts_with(assignment, "_")) return fmt::format("-r {}", assignment);
+  if (starts_with(assignment, "__") || !starts_with(assignment, "_")) return fmt::format("-r {}", assignment);
   std::string parameter(assignment.substr(1));
   const std::size_t assign = parameter.find(":=");
   const std::size_t slash = parameter.rfind('/', assign);
@@ -101,6 +100,7 @@ Arguments parse_arguments(Span<char* const> arguments) {
 }
 
 std::string_view remedy_of(std::string_view refusal) {
+  if (has(refusal, "does not know this argument")) return "options of the driver come before --ros-args";
   if (has(refusal, "parameter override rule")) {
     if (!has(refusal, ":=")) return "write it as -p NAME:=VALUE, as in -p rate:=20";
     return "put a value that is not valid YAML into quotes, as in -p address:=\"'[::1]'\"";

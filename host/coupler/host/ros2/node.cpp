@@ -3,69 +3,92 @@
 
 #include <rcutils/logging.h>
 #include <coupler_driver/msg/status.hpp>
+#include <coupler_driver/srv/read.hpp>
+#include <coupler_driver/srv/write.hpp>
 #include <rcl_interfaces/msg/parameter_type.hpp>
+#include <std_srvs/srv/set_bool.hpp>
+#include <std_srvs/srv/trigger.hpp>
 
 #include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coupler/host/ros/node_templates.hpp"
-#include "coupler/host/ros/status.hpp"
 #include "coupler/host/ros2/messages.hpp"
 #include "coupler/host/ros2/rcl/service.hpp"
-#include "coupler/host/ros2/service_thread.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::host {
 namespace {
 
-using diagnostic_msgs::msg::DiagnosticStatus;
-
 constexpr std::size_t diagnostics_depth = 10;
 constexpr auto graph_watch_interval = std::chrono::seconds(2);
 
-std::uint8_t diagnostic_level(Level level) {
-  switch (level) {
-    case Level::info: return DiagnosticStatus::OK;
-    case Level::warning: return DiagnosticStatus::WARN;
-    case Level::error: break;
+struct Ros2Services {
+  using Write = coupler_driver::srv::Write;
+  using Read = coupler_driver::srv::Read;
+  using SetBool = std_srvs::srv::SetBool;
+  using Trigger = std_srvs::srv::Trigger;
+};
+
+class Ros2ServiceThread : public TypedServiceThread<Ros2ServiceThread, Ros2Services> {
+ public:
+  explicit Ros2ServiceThread(rcl::Node& node) : node_(node) {}
+  ~Ros2ServiceThread() override {
+    Ros2ServiceThread::stop();
+    if (thread_.joinable()) thread_.join();
   }
-  return DiagnosticStatus::ERROR;
-}
+  Ros2ServiceThread(const Ros2ServiceThread&) = delete;
+  Ros2ServiceThread& operator=(const Ros2ServiceThread&) = delete;
 
-int severity(Level level) {
-  switch (level) {
-    case Level::info: return RCUTILS_LOG_SEVERITY_INFO;
-    case Level::warning: return RCUTILS_LOG_SEVERITY_WARN;
-    case Level::error: break;
+  void start() override {
+    thread_ = std::thread([this] { run(); });
   }
-  return RCUTILS_LOG_SEVERITY_ERROR;
-}
-
-std::string_view policy_name(rmw_qos_policy_kind_t policy) {
-  switch (policy) {
-    case RMW_QOS_POLICY_DURABILITY: return "durability";
-    case RMW_QOS_POLICY_DEADLINE: return "deadline";
-    case RMW_QOS_POLICY_LIVELINESS: return "liveliness";
-    case RMW_QOS_POLICY_RELIABILITY: return "reliability";
-    default: return "QoS";
+  void stop() override {
+    {
+      const std::lock_guard lock(mutex_);
+      stopped_ = true;
+      calls_.clear();
+    }
+    changed_.notify_one();
   }
-}
 
-/// Shared, so that a function that holds it may be copied.
-template <class M>
-std::shared_ptr<rcl::Publisher<M>> make_publisher(rcl::Node& node, const std::string& topic,
-                                                  const rmw_qos_profile_t& qos,
-                                                  rcl::AnyPublisher::Events events) {
-  return std::make_shared<rcl::Publisher<M>>(node, topic, qos, std::move(events));
-}
+  template <class S, class Function>
+  void serve(const std::string& name, Function function) {
+    services_.push_back(rcl::offer<S>(node_, name, std::move(function), [this](std::function<void()> call) {
+      const std::lock_guard lock(mutex_);
+      if (stopped_) return;
+      calls_.push_back(std::move(call));
+      changed_.notify_one();
+    }));
+  }
 
-/// What TypedPublisher publishes with.
-template <class M>
-struct Owned {
-  std::shared_ptr<rcl::Publisher<M>> publisher;
-  void publish(const M& message) { publisher->publish(message); }
+ private:
+  void run() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      changed_.wait(lock, [this] { return stopped_ || !calls_.empty(); });
+      if (stopped_) return;
+      const auto call = std::move(calls_.front());
+      calls_.pop_front();
+      lock.unlock();
+      call();
+      lock.lock();
+    }
+  }
+
+  rcl::Node& node_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> calls_;
+  bool stopped_ = false;
+  std::vector<std::shared_ptr<void>> services_;
+  std::thread thread_;  // last: it uses the others
 };
 
 }  // namespace
@@ -80,8 +103,6 @@ Ros2Node::Ros2Node(rcl::Context& context, const std::string& name)
       diagnostics_(node_, "/diagnostics", rcl::reliable(diagnostics_depth), {{}, warn_subscriber(false)}) {
   node_.inbox().start();
 }
-
-Ros2Node::~Ros2Node() { Ros2Node::shut_down(); }
 
 void Ros2Node::declare_sim_time(bool use_sim_time) {
   ParameterServer::Descriptor descriptor;
@@ -101,15 +122,14 @@ std::unique_ptr<PointPublisher> Ros2Node::advertise(const std::string& topic, co
   return with_message<Ros2Messages>(point, [&](auto kind) -> std::unique_ptr<PointPublisher> {
     using Kind = decltype(kind);
     using Message = typename Kind::Message;
-    auto publisher = std::make_unique<TypedPublisher<Kind, Owned<Message>>>(point, index, subscribers);
-    const auto matched = [p = publisher.get()](int by) {
-      for (; by > 0; --by) p->add_subscriber();
-      for (; by < 0; ++by) p->remove_subscriber();
+    auto publisher =
+        std::make_unique<TypedPublisher<Kind, rcl::Publisher<Message>>>(point, index, subscribers);
+    const auto matched = [p = publisher.get()](bool came) {
+      came ? p->add_subscriber() : p->remove_subscriber();
     };
     const bool latch = point.host.latch;
-    publisher->set_publisher(
-        {make_publisher<Message>(node_, topic, latch ? rcl::latched() : rcl::reliable(point.host.queue_size),
-                                 {matched, warn_subscriber(!latch)})});
+    const rmw_qos_profile_t qos = latch ? rcl::latched() : rcl::reliable(point.host.queue_size);
+    publisher->set_publisher({node_, topic, qos, {matched, warn_subscriber(!latch)}});
     return publisher;
   });
 }
@@ -120,7 +140,7 @@ std::shared_ptr<void> Ros2Node::subscribe(const std::string& topic, const Map& m
     using Kind = decltype(kind);
     using Message = typename Kind::Message;
     const std::size_t depth = std::size_t{writes_per_value} * map.points[index].host.queue_size;
-    return std::make_shared<rcl::Subscription<Message>>(
+    return rcl::subscribe<Message>(
         node_, topic, rcl::reliable(depth),
         [topic, &map, index, &handler](const Message& message) {
           receive<Kind>(message, topic, map, index, handler);
@@ -130,27 +150,17 @@ std::shared_ptr<void> Ros2Node::subscribe(const std::string& topic, const Map& m
 }
 
 std::function<void(bool)> Ros2Node::advertise_online(const std::string& topic) {
-  using Bool = Ros2Messages::Bool;
-  const auto publisher = make_publisher<Bool>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)});
-  online_topics_.push_back(publisher->topic());
-  return [publisher](bool online) {
-    Bool message;
-    message.data = online;
-    publisher->publish(message);
-  };
+  using Message = Ros2Messages::Bool;
+  const rcl::Publisher<Message> publisher(node_, topic, rcl::latched(), {{}, warn_subscriber(false)});
+  online_topics_.push_back(publisher.topic());
+  return online_with<Message>(publisher);
 }
 
 Node::PublishStatus Ros2Node::advertise_status(const std::string& topic, const Map& map) {
   using Message = coupler_driver::msg::Status;
-  const auto status = std::make_shared<Status<Message>>(map);
-  const auto publisher = make_publisher<Message>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)});
-  return [this, status, publisher](const DeviceSnapshot& device, const std::vector<PointQuality>& points,
-                                   Time now) {
-    if (!status->update(device, points, now)) return false;
-    status->message().header.stamp = clock_.now();
-    publisher->publish(status->message());
-    return true;
-  };
+  return status_with<Message>(
+      rcl::Publisher<Message>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)}), map,
+      [this] { return clock_.now(); });
 }
 
 std::unique_ptr<ServiceThread> Ros2Node::make_service_thread() {
@@ -158,24 +168,16 @@ std::unique_ptr<ServiceThread> Ros2Node::make_service_thread() {
 }
 
 void Ros2Node::add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) {
-  entries_.push_back({fmt::format("{}: {}", node_.name(), name), std::move(make)});
+  entries_.emplace_back(fmt::format("{}: {}", node_.name(), name), std::move(make));
 }
 
 void Ros2Node::publish_diagnostics() {
   diagnostic_msgs::msg::DiagnosticArray message;
   message.header.stamp = clock_.now();
   for (const auto& [name, make] : entries_) {
-    const DiagnosticEntry entry = make();
-    DiagnosticStatus& status = message.status.emplace_back();
-    status.level = diagnostic_level(entry.level);
+    auto& status = message.status.emplace_back();
     status.name = name;
-    status.message = entry.message;
-    status.hardware_id = entry.hardware_id;
-    for (const auto& [key, value] : entry.values) {
-      auto& added = status.values.emplace_back();
-      added.key = key;
-      added.value = value;
-    }
+    fill(status, make());
   }
   diagnostics_.publish(message);
 }
@@ -190,12 +192,12 @@ void Ros2Node::shut_down() {
 }
 
 rcl::OnIncompatible Ros2Node::warn_subscriber(bool could_latch) {
-  return [this, could_latch, warned = false](const std::string& topic, rmw_qos_policy_kind_t policy) mutable {
+  return [this, could_latch, warned = false](const std::string& topic, const std::string& policy) mutable {
     if (std::exchange(warned, true)) return;
-    const bool wants_latched = could_latch && policy == RMW_QOS_POLICY_DURABILITY;
+    const bool wants_latched = could_latch && policy == "durability";
     log(Level::warning,
         fmt::format("a subscriber of {} requests a {} that is not offered, and receives nothing; {}", topic,
-                    policy_name(policy),
+                    policy,
                     wants_latched
                         ? "subscribe with durability volatile, or set 'latch: true' for the point in the map"
                         : "subscribe with reliable, volatile, keep last"));
@@ -203,13 +205,13 @@ rcl::OnIncompatible Ros2Node::warn_subscriber(bool could_latch) {
 }
 
 rcl::OnIncompatible Ros2Node::warn_publisher() {
-  return [this, warned = false](const std::string& topic, rmw_qos_policy_kind_t policy) mutable {
+  return [this, warned = false](const std::string& topic, const std::string& policy) mutable {
     if (std::exchange(warned, true)) return;
     log(Level::warning,
         fmt::format(
             "a publisher of {} does not offer the {} that is needed, and none of its messages is written; "
             "publish with reliability reliable",
-            topic, policy_name(policy)));
+            topic, policy));
   };
 }
 
@@ -229,7 +231,10 @@ void Ros2Node::warn_of_duplicates() {
 }
 
 void Ros2Node::log(Level level, const std::string& text) {
-  node_.log(severity(level), printable_lines(text));
+  const int severity = level == Level::info      ? RCUTILS_LOG_SEVERITY_INFO
+                       : level == Level::warning ? RCUTILS_LOG_SEVERITY_WARN
+                                                 : RCUTILS_LOG_SEVERITY_ERROR;
+  node_.log(severity, printable_lines(text));
 }
 void Ros2Node::log_debug(const std::string& text) {
   node_.log(RCUTILS_LOG_SEVERITY_DEBUG, printable_lines(text));

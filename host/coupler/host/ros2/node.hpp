@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coupler/host/ros/graph_watch.hpp"
@@ -22,9 +23,6 @@ class Ros2Node : public Node {
  public:
   /// It is in the graph from now on, and its parameters can be read. Throws rcl::Error.
   Ros2Node(rcl::Context& context, const std::string& name);
-  ~Ros2Node() override;
-  Ros2Node(const Ros2Node&) = delete;
-  Ros2Node& operator=(const Ros2Node&) = delete;
 
   std::string full_name() const { return node_.full_name(); }
   ParameterServer& parameters() { return *parameters_; }
@@ -59,12 +57,8 @@ class Ros2Node : public Node {
   std::unique_ptr<ParameterServer> parameters_;
   std::shared_ptr<void> type_descriptions_;
   rcl::Publisher<diagnostic_msgs::msg::DiagnosticArray> diagnostics_;
-  struct Entry {
-    std::string name;
-    std::function<DiagnosticEntry()> make;
-  };
-  std::vector<Entry> entries_;
-  std::vector<std::string> online_topics_;  ///< with their namespaces
+  std::vector<std::pair<std::string, std::function<DiagnosticEntry()>>> entries_;  ///< by name
+  std::vector<std::string> online_topics_;                                         ///< with their namespaces
   DuplicateWarnings duplicates_;
   std::optional<PeriodicThread> graph_watch_;  // last: it uses the others. The middleware may take its time
 };

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros2/parameter_server.hpp"
 
-#include <rcl_interfaces/msg/parameter_type.hpp>
+#include <rcl_interfaces/srv/describe_parameters.hpp>
+#include <rcl_interfaces/srv/get_parameter_types.hpp>
+#include <rcl_interfaces/srv/get_parameters.hpp>
+#include <rcl_interfaces/srv/list_parameters.hpp>
+#include <rcl_interfaces/srv/set_parameters.hpp>
+#include <rcl_interfaces/srv/set_parameters_atomically.hpp>
 
 #include <algorithm>
 #include <set>
@@ -9,8 +14,12 @@
 
 #include <fmt/format.h>
 
+#include "coupler/host/ros2/rcl/service.hpp"
+
 namespace coupler::host {
 namespace {
+
+namespace srv = rcl_interfaces::srv;
 
 constexpr std::size_t events_depth = 1000;  ///< as of every node
 
@@ -33,20 +42,43 @@ ParameterServer::ParameterServer(rcl::Node& node, const MessageClock& clock, rcl
     : node_(node),
       clock_(clock),
       events_(node, "/parameter_events", rcl::reliable(events_depth), {{}, std::move(incompatible)}) {
-  offer<Describe>("describe_parameters", &ParameterServer::describe);
-  offer<Types>("get_parameter_types", &ParameterServer::types);
-  offer<Get>("get_parameters", &ParameterServer::get);
-  offer<List>("list_parameters", &ParameterServer::list);
-  offer<SetEach>("set_parameters", &ParameterServer::set_each);
-  offer<SetAll>("set_parameters_atomically", &ParameterServer::set_all);
+  offer<srv::DescribeParameters>("describe_parameters", [this](const auto& request, auto& response) {
+    for (const std::string& name : request.names) {
+      const auto found = declared_.find(name);
+      if (found == declared_.end()) return response.descriptors.clear();  // as rclcpp where one is unknown
+      response.descriptors.push_back(found->second.descriptor);
+    }
+  });
+  offer<srv::GetParameterTypes>("get_parameter_types", [this](const auto& request, auto& response) {
+    for (const std::string& name : request.names) response.types.push_back(value_of(name).type);
+  });
+  offer<srv::GetParameters>("get_parameters", [this](const auto& request, auto& response) {
+    for (const std::string& name : request.names) response.values.push_back(value_of(name));
+  });
+  offer<srv::ListParameters>("list_parameters", [this](const auto& request, auto& response) {
+    std::set<std::string> prefixes;
+    for (const auto& [name, declared] : declared_) {
+      if (!is_listed(name, request.prefixes, request.depth)) continue;
+      response.result.names.push_back(name);
+      if (const std::size_t dot = name.rfind('.'); dot != std::string::npos)
+        prefixes.insert(name.substr(0, dot));
+    }
+    response.result.prefixes.assign(prefixes.begin(), prefixes.end());
+  });
+  offer<srv::SetParameters>("set_parameters", [this](const auto& request, auto& response) {
+    for (const Parameter& parameter : request.parameters) response.results.push_back(set({parameter}));
+  });
+  offer<srv::SetParametersAtomically>(
+      "set_parameters_atomically",
+      [this](const auto& request, auto& response) { response.result = set(request.parameters); });
 }
 
-template <class S>
-void ParameterServer::offer(const char* name, Answer<S> answer) {
-  services_.push_back(std::make_shared<rcl::PromptService<S>>(
-      node_, fmt::format("~/{}", name), [this, answer](const auto& request, auto& response) {
+template <class S, class Answer>
+void ParameterServer::offer(const char* name, Answer answer) {
+  services_.push_back(
+      rcl::offer<S>(node_, fmt::format("~/{}", name), [this, answer](const auto& request, auto& response) {
         const std::lock_guard lock(mutex_);
-        (this->*answer)(request, response);
+        answer(request, response);
       }));
 }
 
@@ -73,40 +105,9 @@ void ParameterServer::publish_event(const std::string& name, const Value& value,
   events_.publish(event);
 }
 
-void ParameterServer::describe(const Describe::Request& request, Describe::Response& response) {
-  for (const std::string& name : request.names) {
-    const auto found = declared_.find(name);
-    if (found == declared_.end()) {
-      response.descriptors.clear();  // as rclcpp answers where one is unknown
-      return;
-    }
-    response.descriptors.push_back(found->second.descriptor);
-  }
-}
-
-void ParameterServer::types(const Types::Request& request, Types::Response& response) {
-  for (const std::string& name : request.names) {
-    const auto found = declared_.find(name);
-    response.types.push_back(found == declared_.end() ? std::uint8_t{} : found->second.value.type);
-  }
-}
-
-void ParameterServer::get(const Get::Request& request, Get::Response& response) {
-  for (const std::string& name : request.names) {
-    const auto found = declared_.find(name);
-    response.values.push_back(found == declared_.end() ? Value() : found->second.value);
-  }
-}
-
-void ParameterServer::list(const List::Request& request, List::Response& response) {
-  std::set<std::string> prefixes;
-  for (const auto& [name, declared] : declared_) {
-    if (!is_listed(name, request.prefixes, request.depth)) continue;
-    response.result.names.push_back(name);
-    if (const std::size_t dot = name.rfind('.'); dot != std::string::npos)
-      prefixes.insert(name.substr(0, dot));
-  }
-  response.result.prefixes.assign(prefixes.begin(), prefixes.end());
+ParameterServer::Value ParameterServer::value_of(const std::string& name) const {
+  const auto found = declared_.find(name);
+  return found == declared_.end() ? Value() : found->second.value;
 }
 
 ParameterServer::Result ParameterServer::check(const Parameter& parameter) const {
@@ -127,27 +128,20 @@ ParameterServer::Result ParameterServer::check(const Parameter& parameter) const
   return result;
 }
 
-void ParameterServer::set(const Parameter& parameter) {
-  Declared& declared = declared_.at(parameter.name);
-  declared.value = parameter.value;
-  declared.change(parameter.value);
-  publish_event(parameter.name, parameter.value, false);
-}
-
-void ParameterServer::set_each(const SetEach::Request& request, SetEach::Response& response) {
-  for (const Parameter& parameter : request.parameters) {
-    response.results.push_back(check(parameter));
-    if (response.results.back().successful) set(parameter);
+ParameterServer::Result ParameterServer::set(const std::vector<Parameter>& parameters) {
+  Result result;
+  result.successful = true;
+  for (const Parameter& parameter : parameters) {
+    result = check(parameter);
+    if (!result.successful) return result;
   }
-}
-
-void ParameterServer::set_all(const SetAll::Request& request, SetAll::Response& response) {
-  response.result.successful = true;
-  for (const Parameter& parameter : request.parameters) {
-    response.result = check(parameter);
-    if (!response.result.successful) return;
+  for (const Parameter& parameter : parameters) {
+    Declared& declared = declared_.at(parameter.name);
+    declared.value = parameter.value;
+    declared.change(parameter.value);
+    publish_event(parameter.name, parameter.value, false);
   }
-  for (const Parameter& parameter : request.parameters) set(parameter);
+  return result;
 }
 
 }  // namespace coupler::host

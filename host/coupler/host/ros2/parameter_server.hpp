@@ -5,12 +5,6 @@
 #include <rcl_interfaces/msg/parameter_descriptor.hpp>
 #include <rcl_interfaces/msg/parameter_event.hpp>
 #include <rcl_interfaces/msg/set_parameters_result.hpp>
-#include <rcl_interfaces/srv/describe_parameters.hpp>
-#include <rcl_interfaces/srv/get_parameter_types.hpp>
-#include <rcl_interfaces/srv/get_parameters.hpp>
-#include <rcl_interfaces/srv/list_parameters.hpp>
-#include <rcl_interfaces/srv/set_parameters.hpp>
-#include <rcl_interfaces/srv/set_parameters_atomically.hpp>
 
 #include <functional>
 #include <map>
@@ -20,7 +14,7 @@
 #include <vector>
 
 #include "coupler/host/ros2/message_clock.hpp"
-#include "coupler/host/ros2/rcl/service.hpp"
+#include "coupler/host/ros2/rcl/node.hpp"
 #include "coupler/host/ros2/rcl/topics.hpp"
 
 namespace coupler::host {
@@ -48,24 +42,14 @@ class ParameterServer {
   using Parameter = rcl_interfaces::msg::Parameter;
   using Result = rcl_interfaces::msg::SetParametersResult;
 
-  template <class S>
-  using Answer = void (ParameterServer::*)(const typename S::Request&, typename S::Response&);
-  template <class S>
-  void offer(const char* name, Answer<S> answer);
-  using Describe = rcl_interfaces::srv::DescribeParameters;
-  using Types = rcl_interfaces::srv::GetParameterTypes;
-  using Get = rcl_interfaces::srv::GetParameters;
-  using List = rcl_interfaces::srv::ListParameters;
-  using SetEach = rcl_interfaces::srv::SetParameters;
-  using SetAll = rcl_interfaces::srv::SetParametersAtomically;
-  void describe(const Describe::Request& request, Describe::Response& response);
-  void types(const Types::Request& request, Types::Response& response);
-  void get(const Get::Request& request, Get::Response& response);
-  void list(const List::Request& request, List::Response& response);
-  void set_each(const SetEach::Request& request, SetEach::Response& response);
-  void set_all(const SetAll::Request& request, SetAll::Response& response);
+  /// Offers a service that calls answer(request, response) with the mutex locked.
+  template <class S, class Answer>
+  void offer(const char* name, Answer answer);
+  /// An unknown parameter has none.
+  Value value_of(const std::string& name) const;
   Result check(const Parameter& parameter) const;
-  void set(const Parameter& parameter);
+  /// All of them or none.
+  Result set(const std::vector<Parameter>& parameters);
   void publish_event(const std::string& name, const Value& value, bool is_new);
 
   rcl::Node& node_;

@@ -21,13 +21,9 @@ namespace {
 
 using Kind = GivenParameter::Kind;
 
-template <class Values>
-std::string list_of(const Values& values) {
-  return fmt::format("{}", fmt::join(values.values, values.values + values.size, ","));
-}
-
-std::string list_of(const rcutils_string_array_t& values) {
-  return fmt::format("{}", fmt::join(values.data, values.data + values.size, ","));
+template <class T>
+std::string list_of(const T* values, std::size_t size) {
+  return fmt::format("{}", fmt::join(values, values + size, ","));
 }
 
 GivenParameter given(std::string name, const rcl_variant_t& value) {
@@ -39,10 +35,10 @@ GivenParameter given(std::string name, const rcl_variant_t& value) {
     return {std::move(name), Kind::real, fmt::to_string(*value.double_value)};
   if (value.string_value != nullptr) return {std::move(name), Kind::text, value.string_value};
   GivenParameter list{std::move(name), Kind::list, {}};
-  if (value.string_array_value != nullptr) list.text = list_of(*value.string_array_value);
-  if (value.integer_array_value != nullptr) list.text = list_of(*value.integer_array_value);
-  if (value.double_array_value != nullptr) list.text = list_of(*value.double_array_value);
-  if (value.bool_array_value != nullptr) list.text = list_of(*value.bool_array_value);
+  if (const auto* all = value.string_array_value) list.text = list_of(all->data, all->size);
+  if (const auto* all = value.integer_array_value) list.text = list_of(all->values, all->size);
+  if (const auto* all = value.double_array_value) list.text = list_of(all->values, all->size);
+  if (const auto* all = value.bool_array_value) list.text = list_of(all->values, all->size);
   return list;
 }
 
@@ -176,10 +172,8 @@ std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
       if (is_setting(setting) || is_ROSs_own(one.name)) continue;
       const std::string_view behind_slash = setting.substr(setting.rfind('/') + 1);
       if (behind_slash != setting && is_setting(behind_slash)) {
-        std::string corrected = one.name;
-        corrected[one.name.rfind('/')] = '.';
-        lines.push_back(
-            fmt::format("parameter {} is ROS 1's spelling and does nothing; write {}", one.name, corrected));
+        lines.push_back(fmt::format("parameter {} is ROS 1's spelling and does nothing; write {}.{}",
+                                    one.name, one.name.substr(0, one.name.rfind('/')), behind_slash));
         continue;
       }
       const std::string_view behind_dot = setting.substr(setting.rfind('.') + 1);
@@ -190,8 +184,7 @@ std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
         continue;
       }
       if (is_for_all(section.node) && loader::nearest(setting, names).empty()) continue;
-      lines.push_back(fmt::format("parameter {} is not a setting and does nothing; {}", one.name,
-                                  loader::nearest_or(setting, names, "coupler_driver --help shows them")));
+      lines.push_back(unknown_parameter(one.name, setting));
     }
   }
   const bool has_own = std::any_of(sections_.begin(), sections_.end(),
@@ -205,21 +198,15 @@ std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
 
 tl::expected<Settings, std::string> settings_among(const std::vector<GivenParameter>& parameters,
                                                    std::string_view prefix) {
-  Settings settings;
-  for (const SettingKey& key : setting_keys) {
-    for (const std::string_view name : {key.alias, key.key}) {  // the key wins over its alias
-      const std::string full = fmt::format("{}{}", prefix, name);
-      const auto last = std::find_if(parameters.rbegin(), parameters.rend(),
-                                     [&](const GivenParameter& one) { return one.name == full; });
-      if (name.empty() || last == parameters.rend() || (last->text.empty() && last->kind == Kind::text))
-        continue;
-      if (const std::string wrong = wrong_kind(key, *last); !wrong.empty())
-        return tl::make_unexpected(fmt::format("parameter {}: {}", full, wrong));
-      if (const auto done = set(settings, key.key, last->text); !done)
-        return tl::make_unexpected(fmt::format("parameter {}{}", prefix, done.error()));
-    }
-  }
-  return settings;
+  return settings_among(prefix, [&](const SettingKey& key, const std::string& name) -> ParameterText {
+    const std::string full = fmt::format("{}{}", prefix, name);
+    const auto last = std::find_if(parameters.rbegin(), parameters.rend(),
+                                   [&](const GivenParameter& one) { return one.name == full; });
+    if (last == parameters.rend() || (last->text.empty() && last->kind == Kind::text)) return std::nullopt;
+    if (std::string wrong = wrong_kind(key, *last); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    return last->text;
+  });
 }
 
 void declare_settings(ParameterServer& server, const Settings& settings) {

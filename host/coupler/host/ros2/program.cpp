@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/program.hpp"
 
-#include <cstdio>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "coupler/base/standard_files.hpp"
 #include "coupler/host/ros/configuration.hpp"
 #include "coupler/host/ros/drive.hpp"
 #include "coupler/host/ros2/arguments.hpp"
@@ -50,10 +48,6 @@ class Program {
         given_(GivenParameters::of(context_.arguments())) {}
 
   int run() {
-    if (const auto unknown = context_.unknown_arguments(); !unknown.empty())
-      fail(wrong_call,
-           fmt::format("{}: ROS 2 does not know this argument; options of the driver come before --ros-args",
-                       unknown.front()));
     Ros2Node& node = node_.emplace(context_, choose_node_name());
     const auto parameters = given_.for_node(node.full_name());
     node.declare_sim_time(value_or_fail(wants_sim_time(parameters)));
@@ -76,12 +70,7 @@ class Program {
 
  private:
   /// On the terminal; once there is a node, on /rosout, too.
-  void log(Level level, const std::string& text) {
-    if (node_)
-      node_->log(level, text);
-    else
-      print_message(text);
-  }
+  void log(Level level, const std::string& text) { node_ ? node_->log(level, text) : print_message(text); }
 
   [[noreturn]] void fail(int exit_code, const std::string& why) {
     log(Level::error, why);
@@ -95,8 +84,9 @@ class Program {
   }
 
   void find(const Settings& settings) {
-    auto sources = find_maps(built_in_, settings, ros2_dialect,
-                             [this](Level level, const std::string& text) { log(level, text); });
+    auto sources = find_maps(
+        built_in_, settings, ros2_dialect, [this](Level level, const std::string& text) { log(level, text); },
+        node_ ? &*node_ : nullptr);
     if (!sources) throw Exit{sources.error()};
     sources_ = std::move(*sources);
   }
@@ -128,27 +118,19 @@ class Program {
 }  // namespace
 
 int main_with(const Map* built_in, int argc, char** argv) {
-  open_standard_files();
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  Shutdown::exit_on_signals();
+  begin_program();
   Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
-  if (arguments.exit_code) {
-    fmt::print(*arguments.exit_code == 0 ? stdout : stderr, "{}", arguments.text);
-    return *arguments.exit_code;
-  }
+  if (arguments.exit_code) return end_of(arguments);
   Shutdown::request_on_signals();
   try {
     return Program(built_in, std::move(arguments)).run();
   } catch (const Exit& exit) {
     return exit.exit_code;
   } catch (const rcl::Error& error) {
-    if (error.result() != RCL_RET_INVALID_ROS_ARGS) {
-      print_message(error.what());
-      return wrong_input;
-    }
-    const std::string_view remedy = remedy_of(error.what());
+    const bool is_wrong_call = error.result() == RCL_RET_INVALID_ROS_ARGS;
+    const std::string_view remedy = is_wrong_call ? remedy_of(error.what()) : std::string_view();
     print_message(fmt::format("{}{}{}", error.what(), remedy.empty() ? "" : "; ", remedy));
-    return wrong_call;
+    return is_wrong_call ? wrong_call : wrong_input;
   }
 }
 

@@ -6,19 +6,12 @@
 #include <rcl/version.h>
 #endif
 
+// RCL_VERSION_MAJOR is 0 in #if where it is not defined.
+
 // An event when a subscription comes or goes, and ~/get_type_description: from Iron (6) on.
-#if defined(RCL_VERSION_MAJOR) && RCL_VERSION_MAJOR >= 6
-#define COUPLER_RCL_HAS_MATCHED_EVENTS 1
-#define COUPLER_RCL_HAS_TYPE_DESCRIPTIONS 1
-#else
-#define COUPLER_RCL_HAS_MATCHED_EVENTS 0
-#define COUPLER_RCL_HAS_TYPE_DESCRIPTIONS 0
-#endif
+#define COUPLER_RCL_HAS_MATCHED_EVENTS (RCL_VERSION_MAJOR >= 6)
+#define COUPLER_RCL_HAS_TYPE_DESCRIPTIONS (RCL_VERSION_MAJOR >= 6)
 
 // rcl_node_init() publishes /rosout by itself up to Iron (6); from Jazzy on who makes the node does
 // (ros2/rcl#1065).
-#if defined(RCL_VERSION_MAJOR) && RCL_VERSION_MAJOR >= 7
-#define COUPLER_RCL_LEAVES_ROSOUT_TO_US 1
-#else
-#define COUPLER_RCL_LEAVES_ROSOUT_TO_US 0
-#endif
+#define COUPLER_RCL_LEAVES_ROSOUT_TO_US (RCL_VERSION_MAJOR >= 7)

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// What calls of rcl return, and the structs that they begin and end.
 #pragma once
 
 #include <rcl/error_handling.h>
 #include <rcl/types.h>
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace coupler::rcl {
 
@@ -23,8 +26,7 @@ inline std::string take_error_text() {
 /// What could not be made at the start, and why.
 class Error : public std::runtime_error {
  public:
-  Error(const std::string& what, rcl_ret_t result)
-      : std::runtime_error(what + ": " + take_error_text()), result_(result) {}
+  Error(const std::string& text, rcl_ret_t result) : std::runtime_error(text), result_(result) {}
   rcl_ret_t result() const { return result_; }
 
  private:
@@ -33,12 +35,29 @@ class Error : public std::runtime_error {
 
 /// Throws if `result` is a failure; `what`: "cannot make the node press_driver".
 inline void check(rcl_ret_t result, const std::string& what) {
-  if (result != RCL_RET_OK) throw Error(what, result);
+  if (result != RCL_RET_OK) throw Error(what + ": " + take_error_text(), result);
 }
 
 /// For destructors: nothing can be done about a failure there.
 inline void ignore(rcl_ret_t result) {
   if (result != RCL_RET_OK) rcl_reset_error();
 }
+
+/// A struct of rcl, which `fini` ends. rcl takes one that was never initialized, too.
+template <class T>
+class Handle {
+ public:
+  Handle(T zero, std::function<rcl_ret_t(T*)> fini) : value_(zero), fini_(std::move(fini)) {}
+  ~Handle() { ignore(fini_(&value_)); }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+
+  T* get() { return &value_; }
+  const T* get() const { return &value_; }
+
+ private:
+  T value_;
+  std::function<rcl_ret_t(T*)> fini_;
+};
 
 }  // namespace coupler::rcl

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "coupler/host/ros2/rcl/error.hpp"
+
 namespace coupler::rcl {
 namespace {
 
@@ -10,6 +12,18 @@ namespace {
 constexpr int turn = 32;
 
 }  // namespace
+
+void Inbox::Source::begin(const std::string& failure) {
+  const auto note_of = [](const void* self, std::size_t /*how_many*/) {
+    const_cast<Source*>(static_cast<const Source*>(self))->note();
+  };
+  check(follow_(note_of, this), failure);
+}
+
+Inbox::Source::~Source() {
+  ignore(follow_(nullptr, nullptr));
+  inbox_.remove(*this);
+}
 
 void Inbox::add(Source& source) {
   {
@@ -41,7 +55,7 @@ void Inbox::stop() {
 void Inbox::empty(Source& source) {
   source.noted_ = false;  // first: what comes from now on is noted again
   int left = turn;
-  while (source.take())
+  while (source.take_())
     if (--left == 0) return source.note();
 }
 

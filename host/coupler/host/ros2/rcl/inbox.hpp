@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <rcl/event_callback.h>
+#include <rcl/types.h>
+
 #include <atomic>
 #include <condition_variable>
-#include <cstddef>
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
+#include <utility>
 
 namespace coupler::rcl {
 
@@ -16,36 +20,38 @@ namespace coupler::rcl {
 /// each of some thousand entities at each wake-up.)
 class Inbox {
  public:
-  /// What the inbox takes from.
+  /// What the inbox takes from, as long as it exists.
   class Source {
    public:
-    explicit Source(Inbox& inbox) : inbox_(inbox) {}
+    /// `set_callback`: rcl's function for it. `take` takes one thing, in the inbox's thread; false: there is
+    /// nothing. Throws Error.
+    template <class Entity>
+    Source(Inbox& inbox, const Entity* entity,
+           rcl_ret_t (*set_callback)(const Entity*, rcl_event_callback_t, const void*),
+           std::function<bool()> take, const std::string& failure)
+        : inbox_(inbox),
+          follow_([=](auto... callback) { return set_callback(entity, callback...); }),
+          take_(std::move(take)) {
+      begin(failure);
+    }
+    /// `take` does not run then, and is not called any more.
+    ~Source();
     Source(const Source&) = delete;
     Source& operator=(const Source&) = delete;
 
+   private:
+    friend class Inbox;
+    void begin(const std::string& failure);
     /// There is something. Any thread may call.
     void note() {
       if (!noted_.exchange(true)) inbox_.add(*this);
     }
 
-   protected:
-    /// note() as a callback of rcl, whose argument must be self().
-    static void note_of(const void* self, std::size_t /*how_many*/) {
-      const_cast<Source*>(static_cast<const Source*>(self))->note();
-    }
-    const void* self() const { return static_cast<const Source*>(this); }
-    /// After leave().
-    virtual ~Source() = default;
-    /// For the destructor of a derived class: take() does not run, and is not called any more.
-    void leave() { inbox_.remove(*this); }
-    /// Takes one thing, in the inbox's thread; false: there is nothing.
-    virtual bool take() = 0;
-
-   private:
-    friend class Inbox;
     Inbox& inbox_;
+    std::function<rcl_ret_t(rcl_event_callback_t, const void*)> follow_;
+    std::function<bool()> take_;
     std::atomic<bool> noted_{false};
-    bool left_ = false;  ///< leave() was called
+    bool left_ = false;  ///< it is being destroyed
   };
 
   ~Inbox() { stop(); }
@@ -64,7 +70,7 @@ class Inbox {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Source*> noted_;
-  const Source* current_ = nullptr;  ///< its take() runs
+  const Source* current_ = nullptr;  ///< its `take` runs
   bool ended_ = false;
   std::thread thread_;
 };

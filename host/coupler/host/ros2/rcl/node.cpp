@@ -25,76 +25,60 @@ void log_one_at_a_time(const rcutils_log_location_t* location, int severity, con
   rcl_logging_multiple_output_handler(location, severity, name, timestamp, format, arguments);
 }
 
-/// rcl_init() copies them.
-class InitOptions {
- public:
-  InitOptions() : options_(rcl_get_zero_initialized_init_options()) {
-    check(rcl_init_options_init(&options_, rcl_get_default_allocator()), "cannot initialize ROS 2");
-  }
-  ~InitOptions() { ignore(rcl_init_options_fini(&options_)); }
-  InitOptions(const InitOptions&) = delete;
-  InitOptions& operator=(const InitOptions&) = delete;
-  const rcl_init_options_t* get() const { return &options_; }
+rcl_ret_t end(rcl_context_t* context) {
+  ignore(rcl_logging_fini());
+  ignore(rcl_shutdown(context));
+  return rcl_context_fini(context);
+}
 
- private:
-  rcl_init_options_t options_;
-};
+/// Those after --ros-args that ROS does not know are an error.
+void refuse_unknown(const rcl_arguments_t& parsed, const std::vector<std::string>& arguments) {
+  if (rcl_arguments_get_count_unparsed_ros(&parsed) <= 0) return;
+  int* indices = nullptr;
+  const rcl_allocator_t allocator = rcl_get_default_allocator();
+  check(rcl_arguments_get_unparsed_ros(&parsed, allocator, &indices), "cannot read the arguments of ROS 2");
+  const std::string& first = arguments[static_cast<std::size_t>(indices[0])];
+  allocator.deallocate(indices, allocator.state);
+  throw Error(first + ": ROS 2 does not know this argument", RCL_RET_INVALID_ROS_ARGS);
+}
 
 }  // namespace
 
 Context::Context(const std::vector<std::string>& arguments)
-    : given_(arguments), context_(rcl_get_zero_initialized_context()) {
+    : context_(rcl_get_zero_initialized_context(), end) {
   std::vector<const char*> words;
-  words.reserve(given_.size());
-  for (const std::string& word : given_) words.push_back(word.c_str());
-  const InitOptions options;
-  check(rcl_init(static_cast<int>(words.size()), words.data(), options.get(), &context_),
-        "cannot start ROS 2");
+  words.reserve(arguments.size());
+  for (const std::string& word : arguments) words.push_back(word.c_str());
   const rcl_allocator_t allocator = rcl_get_default_allocator();
-  check(rcl_logging_configure_with_output_handler(&context_.global_arguments, &allocator, log_one_at_a_time),
+  Handle<rcl_init_options_t> options(rcl_get_zero_initialized_init_options(), rcl_init_options_fini);
+  check(rcl_init_options_init(options.get(), allocator), "cannot initialize ROS 2");
+  check(rcl_init(static_cast<int>(words.size()), words.data(), options.get(), get()), "cannot start ROS 2");
+  check(rcl_logging_configure_with_output_handler(&this->arguments(), &allocator, log_one_at_a_time),
         "cannot start the log of ROS 2");
+  refuse_unknown(this->arguments(), arguments);
 }
 
-Context::~Context() {
-  ignore(rcl_logging_fini());
-  ignore(rcl_shutdown(&context_));
-  ignore(rcl_context_fini(&context_));
-}
-
-std::vector<std::string> Context::unknown_arguments() const {
-  std::vector<std::string> unknown;
-  const int count = rcl_arguments_get_count_unparsed_ros(&context_.global_arguments);
-  if (count <= 0) return unknown;
-  int* indices = nullptr;
-  const rcl_allocator_t allocator = rcl_get_default_allocator();
-  check(rcl_arguments_get_unparsed_ros(&context_.global_arguments, allocator, &indices),
-        "cannot read the arguments of ROS 2");
-  for (int i = 0; i < count; ++i) unknown.push_back(given_[static_cast<std::size_t>(indices[i])]);
-  allocator.deallocate(indices, allocator.state);
-  return unknown;
-}
-
-Node::Node(Context& context, const std::string& name) : node_(rcl_get_zero_initialized_node()) {
+Node::Node(Context& context, const std::string& name)
+    : node_(rcl_get_zero_initialized_node(), rcl_node_fini) {
   const rcl_node_options_t options = rcl_node_get_default_options();
-  check(rcl_node_init(&node_, name.c_str(), "", context.get(), &options), "cannot make the node " + name);
+  check(rcl_node_init(get(), name.c_str(), "", context.get(), &options), "cannot make the node " + name);
   // The log goes to /rosout, too, unless --disable-rosout-logs was given.
 #if COUPLER_RCL_LEAVES_ROSOUT_TO_US
   if (rcl_logging_rosout_enabled())
-    check(rcl_logging_rosout_init_publisher_for_node(&node_), "cannot publish the topic /rosout");
+    check(rcl_logging_rosout_init_publisher_for_node(get()), "cannot publish the topic /rosout");
 #endif
 }
 
 Node::~Node() {
   inbox_.stop();
 #if COUPLER_RCL_LEAVES_ROSOUT_TO_US
-  if (rcl_logging_rosout_enabled()) ignore(rcl_logging_rosout_fini_publisher_for_node(&node_));
+  if (rcl_logging_rosout_enabled()) ignore(rcl_logging_rosout_fini_publisher_for_node(get()));
 #endif
-  ignore(rcl_node_fini(&node_));
 }
 
 void Node::log(int severity, const std::string& text) const {
   static const rcutils_log_location_t here{"coupler_driver", "", 0};
-  rcutils_log(&here, severity, rcl_node_get_logger_name(&node_), "%s", text.c_str());
+  rcutils_log(&here, severity, rcl_node_get_logger_name(get()), "%s", text.c_str());
 }
 
 void Node::log_failure(const std::string& what) {
@@ -102,11 +86,19 @@ void Node::log_failure(const std::string& what) {
   if (line) log(RCUTILS_LOG_SEVERITY_WARN, *line);
 }
 
+bool Node::has_taken(rcl_ret_t result, rcl_ret_t nothing, const char* failure, const char* name) {
+  if (result == nothing)
+    take_error_text();
+  else if (result != RCL_RET_OK)
+    log_failure(std::string(failure) + name);
+  return result == RCL_RET_OK;
+}
+
 std::vector<std::string> Node::publishers_of(const std::string& full_topic) const {
   std::vector<std::string> nodes;
   rcutils_allocator_t allocator = rcutils_get_default_allocator();
   rcl_topic_endpoint_info_array_t found = rcl_get_zero_initialized_topic_endpoint_info_array();
-  if (rcl_get_publishers_info_by_topic(&node_, &allocator, full_topic.c_str(), false, &found) != RCL_RET_OK) {
+  if (rcl_get_publishers_info_by_topic(get(), &allocator, full_topic.c_str(), false, &found) != RCL_RET_OK) {
     take_error_text();
     return nodes;
   }

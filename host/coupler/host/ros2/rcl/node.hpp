@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "coupler/base/line_limit.hpp"
+#include "coupler/host/ros2/rcl/error.hpp"
 #include "coupler/host/ros2/rcl/inbox.hpp"
 
 namespace coupler::rcl {
@@ -17,18 +18,12 @@ class Context {
  public:
   /// `arguments`: the program, "--ros-args" and what follows. Throws Error.
   explicit Context(const std::vector<std::string>& arguments);
-  ~Context();
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
 
-  rcl_context_t* get() { return &context_; }
-  const rcl_arguments_t& arguments() const { return context_.global_arguments; }
-  /// Those after --ros-args that ROS does not know.
-  std::vector<std::string> unknown_arguments() const;
+  rcl_context_t* get() { return context_.get(); }
+  const rcl_arguments_t& arguments() const { return context_.get()->global_arguments; }
 
  private:
-  std::vector<std::string> given_;
-  rcl_context_t context_;
+  Handle<rcl_context_t> context_;
 };
 
 /// A node, and the inbox of what is made in it. All of that must be destroyed before the node.
@@ -40,24 +35,27 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  rcl_node_t* get() { return &node_; }
-  const rcl_node_t* get() const { return &node_; }
+  rcl_node_t* get() { return node_.get(); }
+  const rcl_node_t* get() const { return node_.get(); }
   Inbox& inbox() { return inbox_; }
-  std::string name() const { return rcl_node_get_name(&node_); }
+  std::string name() const { return rcl_node_get_name(node_.get()); }
   /// "/cell/press_driver"
-  std::string full_name() const { return rcl_node_get_fully_qualified_name(&node_); }
+  std::string full_name() const { return rcl_node_get_fully_qualified_name(node_.get()); }
 
   /// To the terminal and to /rosout. Any thread may call. `severity`: rcutils' RCUTILS_LOG_SEVERITY.
   void log(int severity, const std::string& text) const;
   /// Of the last call in this thread that failed; at most one line a second.
   void log_failure(const std::string& what);
+  /// Of a call of rcl that takes something: `nothing` is its result where there was nothing, any other
+  /// failure is logged.
+  bool has_taken(rcl_ret_t result, rcl_ret_t nothing, const char* failure, const char* name);
 
   /// The nodes that publish the topic, with their namespaces; one entry for each publisher, those of this
   /// node too.
   std::vector<std::string> publishers_of(const std::string& full_topic) const;
 
  private:
-  rcl_node_t node_;
+  Handle<rcl_node_t> node_;
   LineLimit failures_;
   Inbox inbox_;
 };
