@@ -49,6 +49,15 @@ class Import(Cli):
         self.assertIn("is not a list of columns; write it as in", self.coupler("import", "csv", name, "--columns", "x").stderr)
         self.assertIn("are for tables", self.coupler("import", "origin", name, "--columns", "name=x").stderr)
 
+    def test_takes_one_device_of_a_file_with_several(self):
+        name = self.file("configuration.yaml", "modbus:\n" + "".join(
+            f"  - {{name: {hub}, type: tcp, host: plc, port: 502, binary_sensors: [{{name: door, address: 1}}]}}\n" for hub in ("a", "b")))
+        self.assertIn("the file has several hubs: a, b; give one of them with --device", self.coupler("import", "home-assistant", name).stderr)
+        self.assertIn("name: b\n", self.coupler("import", "home-assistant", name, "--device", "b").stdout)
+        done = self.coupler("import", "csv", self.file("a.csv", ONE), "--device", "b")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("--device is for files that may have several; leave it out", done.stderr)
+
     def test_refuses_what_it_cannot_read_and_writes_nothing(self):
         done = self.coupler("import", "unslave", self.file("a.json", "{"), "--out", "a.yaml")
         self.assertEqual((done.returncode, done.stdout), (1, ""))
