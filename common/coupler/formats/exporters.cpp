@@ -15,7 +15,8 @@ namespace {
 constexpr Exporter formats[] = {
     {"csv", "a table of points, for spreadsheets and for `coupler import csv`", write_csv},
     {"home-assistant", "the modbus integration's part of configuration.yaml", write_home_assistant},
-    {"telegraf", "a section [[inputs.modbus]] of telegraf.conf", write_telegraf},
+    {"telegraf", "a section [[inputs.modbus]] of telegraf.conf", write_telegraf,
+     write_telegraf_with_statistics},
     {"wireshark", "a dissector (Lua) that names the points in captures", write_wireshark},
 };
 

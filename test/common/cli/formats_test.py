@@ -105,6 +105,17 @@ class Export(Cli):
         self.assertEqual(self.coupler("export", name, "--to", "csv", "--out", "no/where.csv").returncode, 2)
         self.assertIn("MAP and --to FORMAT are required", self.coupler("export", name).stderr)
 
+    def test_adds_a_nodes_statistics_where_the_format_has_a_place_for_them(self):
+        name = self.file("cell.yaml", MAP)
+        self.assertIn('measurement = "cell_node"', self.coupler("export", name, "--to", "telegraf", "--node-statistics").stdout)
+        done = self.coupler("export", name, "--to", "csv", "--node-statistics")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("--node-statistics has no meaning for 'csv'; leave it out", done.stderr)
+        name = self.file("foreign.yaml", "name: f\nmapping: {input_registers: {a: {address: 0xFF00, type: INT}}}\n")
+        done = self.coupler("export", name, "--to", "telegraf", "--node-statistics")
+        self.assertNotIn("f_node", done.stdout)
+        self.assertIn("the map has points where a node has its statistics, so those are left out", done.stderr)
+
     def test_lists_its_formats(self):
         self.assertIn("csv ", self.coupler("export", "--list").stdout)
 
