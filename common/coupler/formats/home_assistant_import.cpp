@@ -165,15 +165,15 @@ class HubReader {
 
  private:
   void add_timeout() {
-    constexpr unsigned longest = 60;
-    const auto timeout = settings_.whole("timeout", 86'400);
-    if (!timeout || *timeout == 0) return;
+    constexpr double longest = 60;
+    const double timeout = settings_.number("timeout").value_or(0);
+    if (timeout <= 0) return;
     const Position at = settings_.find("timeout")->at;
-    if (*timeout > longest)
+    if (timeout > longest)
       settings_.problems().warning(
-          at, fmt::format("a timeout of {} s is read as 60 s, the longest of a map", *timeout),
+          at, fmt::format("a timeout of {} s is read as 60 s, the longest of a map", timeout),
           "no action is needed");
-    keys_.push_back(scalar("timeout", fmt::to_string(std::min(*timeout, longest)), at));
+    keys_.push_back(scalar("timeout", fmt::to_string(std::min(timeout, longest)), at));
   }
 
   void add_limits() {

@@ -189,7 +189,8 @@ unsigned SimulatedMemory::table_end(unsigned cell) const {
 
 SimulatedPlace SimulatedMemory::place_of(const SimulatedValue& value) const {
   if (shared_) {
-    if (value.type->key != "bits") return {Table::holding_registers, value.first};
+    const bool bits = value.type->key == "bits" && 16 * (value.first + value.count) <= 65536;
+    if (!bits) return {Table::holding_registers, value.first};
     return {value.writable ? Table::coils : Table::discrete_inputs, 16 * value.first};
   }
   std::size_t table = 0;

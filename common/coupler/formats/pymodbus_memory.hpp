@@ -59,7 +59,8 @@ class SimulatedMemory {
   bool shared() const { return shared_; }
   /// In blocks of their own the cells of the coils come first, then discrete inputs, input registers and
   /// holding registers. In a shared block all tables show all cells; bits are taken for coils or, if they
-  /// cannot be written, for discrete inputs, the rest for holding registers.
+  /// cannot be written, for discrete inputs, the rest, and bits that no request reaches, for holding
+  /// registers.
   SimulatedPlace place_of(const SimulatedValue& value) const;
   /// The cells that stand in one table with this one end here.
   unsigned table_end(unsigned cell) const;

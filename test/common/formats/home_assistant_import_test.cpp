@@ -44,6 +44,13 @@ TEST(HomeAssistantImport, A_hub_is_where_the_device_is_and_how_it_is_treated) {
   EXPECT_EQ(imported.said, "");
 }
 
+TEST(HomeAssistantImport, A_timeout_may_be_a_fraction_and_is_no_longer_than_a_map_takes) {
+  const std::string sensors = "sensors: [{name: s, address: 3}]";
+  EXPECT_THAT(hub(sensors, "timeout: 0.5, ").text(), HasSubstr("timeout: 0.5\n"));
+  EXPECT_THAT(hub(sensors, "timeout: 90, ").text(), HasSubstr("timeout: 60\n"));
+  EXPECT_THAT(hub(sensors, "timeout: 90, ").said, HasSubstr("a timeout of 90 s is read as 60 s"));
+}
+
 TEST(HomeAssistantImport, Of_a_whole_configuration_only_modbus_is_read) {
   const Imported imported("home-assistant", R"(default_config:
 automation: !include automations.yaml

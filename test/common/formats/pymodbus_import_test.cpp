@@ -76,6 +76,16 @@ TEST(PymodbusImport, A_value_that_the_file_does_not_say_is_none) {
             "    hr_uint16_3: {address: 3, type: UINT, access: read}\n");
 }
 
+TEST(PymodbusImport, Bits_that_no_request_for_bits_reaches_are_a_register) {
+  const std::string text =
+      Imported("pymodbus",
+               device(R"("write": [4095, 4096], "bits": [4095, {"addr": 4096, "value": 5}])", true, 5000))
+          .text();
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("coils:\n    bits_65520: {address: 65520, count: 16}"),
+                    HasSubstr("holding_registers:\n    bits_4096: {address: 4096, type: WORD, initial: 5}")));
+}
+
 TEST(PymodbusImport, A_value_may_be_written_if_all_its_registers_may) {
   EXPECT_THAT(
       Imported("pymodbus", device(R"("write": [4, 6, 7], "uint32": [[4, 7]])")).text(),
