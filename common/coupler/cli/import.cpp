@@ -137,8 +137,9 @@ Exit run(const Arguments& arguments) {
     return complain("import", bad_call, "--columns and --addressing are for tables",
                     fmt::format("leave them out: '{}' says both itself", importer->name));
   if (!importer->has_devices && !options.device.empty())
-    return complain("import", bad_call, "--device is for files that may have several",
-                    fmt::format("leave it out: a file of '{}' has one, or units; see --unit", importer->name));
+    return complain(
+        "import", bad_call, "--device is for files that may have several",
+        fmt::format("leave it out: a file of '{}' has one, or units; see --unit", importer->name));
   const std::string file = arguments.file == "-" ? "<stdin>" : arguments.file;
   const auto text = read_file(arguments.file);
   if (!text) {
