@@ -18,6 +18,7 @@ struct Arguments {
   std::string map;
   std::string to;
   std::string out;
+  bool node_statistics = false;
   bool list = false;
 };
 
@@ -40,10 +41,15 @@ Exit run(const Arguments& arguments) {
   if (exporter == nullptr)
     return complain("export", bad_call, fmt::format("'{}' is not a format that can be written", arguments.to),
                     "give one of " + names_of_formats());
+  if (arguments.node_statistics && exporter->write_with_statistics == nullptr)
+    return complain("export", bad_call,
+                    fmt::format("--node-statistics has no meaning for '{}'", exporter->name),
+                    "leave it out, or write --to telegraf");
   const MapArgument argument = get_map(arguments.map);
   print(argument.loaded.diagnostics);
   if (!argument.loaded.map) return argument.exit;
-  const formats::Export exported = exporter->write(argument.map());
+  const formats::Export exported = arguments.node_statistics ? exporter->write_with_statistics(argument.map())
+                                                             : exporter->write(argument.map());
   print(exported.warnings.diagnostics(arguments.map));
   if (arguments.out.empty()) {
     std::fputs(exported.text.c_str(), stdout);
@@ -63,6 +69,8 @@ void add_export(Program& program, Exit& exit) {
   command.add_option("--to", arguments->to, "What to write: see --list").type_name("FORMAT");
   command.add_option("--out", arguments->out, "Where to write it; default: standard output")
       .type_name("FILE");
+  command.add_flag("--node-statistics", arguments->node_statistics,
+                   "With --to telegraf, for a map that coupler-node serves: its statistics, too");
   command.add_flag("--list", arguments->list, "Print the formats");
   command.footer(
       "Example:\n  coupler export device.yaml --to csv --out device.csv\n"

@@ -117,7 +117,7 @@ Exit write(const Arguments& arguments, const formats::ImportResult& result) {
 Exit run(const Arguments& arguments) {
   if (arguments.list) {
     for (const formats::Importer& importer : formats::importers())
-      fmt::print("{:<10}  {}\n", importer.name, importer.summary);
+      fmt::print("{:<14}  {}\n", importer.name, importer.summary);
     return ok;
   }
   if (arguments.file.empty())
@@ -136,6 +136,10 @@ Exit run(const Arguments& arguments) {
   if (!importer->is_table && (!arguments.columns.empty() || arguments.addressing != "zero_based"))
     return complain("import", bad_call, "--columns and --addressing are for tables",
                     fmt::format("leave them out: '{}' says both itself", importer->name));
+  if (!importer->has_devices && !options.device.empty())
+    return complain(
+        "import", bad_call, "--device is for files that may have several",
+        fmt::format("leave it out: a file of '{}' has one, or units; see --unit", importer->name));
   const std::string file = arguments.file == "-" ? "<stdin>" : arguments.file;
   const auto text = read_file(arguments.file);
   if (!text) {
@@ -165,6 +169,10 @@ void add_import(Program& program, Exit& exit) {
   auto unit = command.add_option("--unit", arguments->unit, "Only this unit of the file")
                   .in_range(0, 255)
                   .type_name("N");
+  command
+      .add_option("--device", arguments->options.device,
+                  "Only this one of several: a device of pymodbus' simulator, a hub of Home Assistant")
+      .type_name("NAME");
   command
       .add_option(
           "--addressing", arguments->addressing,

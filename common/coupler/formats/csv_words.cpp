@@ -2,11 +2,20 @@
 #include "coupler/formats/csv_words.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <vector>
 
+#include <fmt/format.h>
+
+#include "coupler/map/loader/problems.hpp"
 #include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::formats {
 namespace {
+
+constexpr std::string_view names_of_tables =
+    "write coils, discrete_inputs, input_registers or holding_registers";
 
 struct Word {
   std::string_view said;  ///< in lower case, letters and digits only
@@ -34,6 +43,8 @@ constexpr Word columns[] = {
     {"memoryarea", "table"},
     {"function", "table"},
     {"functioncode", "table"},
+    {"functioncodes", "table"},
+    {"modbusfunction", "table"},
     {"fc", "table"},
     {"datatype", "type"},
     {"dtype", "type"},
@@ -72,24 +83,22 @@ constexpr Word accesses[] = {
     {"rw", "read_write"},   {"readwrite", "read_write"},
 };
 
-struct TableWord {
+struct NameOfTable {
   std::string_view said;
   Table meant;
 };
-constexpr TableWord table_words[] = {
+constexpr NameOfTable table_words[] = {
     {"coil", Table::coils},
     {"coils", Table::coils},
     {"co", Table::coils},
     {"do", Table::coils},
     {"0x", Table::coils},
-    {"fc1", Table::coils},
     {"digitaloutput", Table::coils},
     {"discreteinput", Table::discrete_inputs},
     {"discreteinputs", Table::discrete_inputs},
     {"discrete", Table::discrete_inputs},
     {"di", Table::discrete_inputs},
     {"1x", Table::discrete_inputs},
-    {"fc2", Table::discrete_inputs},
     {"digitalinput", Table::discrete_inputs},
     {"contact", Table::discrete_inputs},
     {"inputstatus", Table::discrete_inputs},
@@ -97,16 +106,37 @@ constexpr TableWord table_words[] = {
     {"inputregisters", Table::input_registers},
     {"ir", Table::input_registers},
     {"3x", Table::input_registers},
-    {"fc4", Table::input_registers},
     {"analoginput", Table::input_registers},
     {"holdingregister", Table::holding_registers},
     {"holdingregisters", Table::holding_registers},
     {"holding", Table::holding_registers},
     {"hr", Table::holding_registers},
     {"4x", Table::holding_registers},
-    {"fc3", Table::holding_registers},
     {"analogoutput", Table::holding_registers},
 };
+
+/// Function codes of Modbus V1.1b3, section 6, and Modicon's first digit of an area, by number.
+struct Code {
+  unsigned number;
+  Table table;
+  bool writes;
+};
+constexpr Code codes[] = {{1, Table::coils, false},
+                          {2, Table::discrete_inputs, false},
+                          {3, Table::holding_registers, false},
+                          {4, Table::input_registers, false},
+                          {5, Table::coils, true},
+                          {6, Table::holding_registers, true},
+                          {15, Table::coils, true},
+                          {16, Table::holding_registers, true},
+                          {22, Table::holding_registers, true},
+                          {23, Table::holding_registers, false}};
+
+const Code* find_code(std::uint64_t number) {
+  const auto* found =
+      std::find_if(std::begin(codes), std::end(codes), [&](const Code& c) { return c.number == number; });
+  return found == std::end(codes) ? nullptr : found;
+}
 
 /// "R/W" -> "rw", "Data type" -> "datatype"
 std::string letters_and_digits(std::string_view text) {
@@ -115,6 +145,65 @@ std::string letters_and_digits(std::string_view text) {
                             [](char c) { return !loader::is_letter(c) && !loader::is_digit(c); }),
              word.end());
   return word;
+}
+
+/// "03/16" and "0x03, 0x10" as their numbers; empty if anything else is between them.
+std::vector<std::string_view> numbers_of(std::string_view text) {
+  std::vector<std::string_view> numbers;
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(" /,;+&"), text.size()));
+    if (text.empty()) return numbers;
+    numbers.push_back(text.substr(0, text.find_first_of(" /,;+&")));
+    if (!loader::parse_unsigned(numbers.back())) return {};
+    text.remove_prefix(numbers.back().size());
+  }
+}
+
+/// Behind "FC" or "function code"; the text itself if neither stands there.
+std::string_view without_fc(std::string_view text) {
+  const std::string low = loader::lower(text);
+  for (const std::string_view word : {"function code", "function", "fc"})
+    if (low.compare(0, word.size(), word) == 0) return text.substr(word.size());
+  return text;
+}
+
+TableWord table_of_codes(const std::vector<std::string_view>& numbers, std::string_view text) {
+  TableWord word;
+  word.only_writes = true;
+  for (const std::string_view number : numbers) {
+    const Code* code = find_code(*loader::parse_unsigned(number));
+    if (code == nullptr)
+      return {std::nullopt, false,
+              fmt::format("{} is not a function code that reads or writes a table", loader::shown(number)),
+              "write 1, 2, 3 or 4, or 5, 6, 15 or 16; a hexadecimal one as 0x10"};
+    if (word.table && *word.table != code->table)
+      return {
+          std::nullopt, false,
+          fmt::format("{} is {} and {}", loader::shown(text), to_string(*word.table), to_string(code->table)),
+          "give each of the two a row of its own"};
+    word.table = code->table;
+    word.only_writes = word.only_writes && code->writes;
+  }
+  return word;
+}
+
+/// A number alone is a function code to one, and Modicon's area to another.
+TableWord ambiguous(std::string_view text, std::uint64_t number) {
+  const Code* code = find_code(number);
+  const auto area = table_of_modicon(fmt::format("{}0001", number));
+  std::string meanings;
+  if (code != nullptr) meanings = fmt::format("{} as a function code", to_string(code->table));
+  if (area)
+    meanings +=
+        fmt::format("{}{} as an area ({}x)", meanings.empty() ? "" : " and ", to_string(*area), number);
+  if (meanings.empty())
+    return {std::nullopt, false, fmt::format("{} is not a table", loader::shown(text)),
+            std::string(names_of_tables)};
+  std::string remedy;
+  if (code != nullptr) remedy = fmt::format("write FC{}", number);
+  if (area) remedy += fmt::format("{} {}x", remedy.empty() ? "write" : " or", number);
+  return {std::nullopt, false, fmt::format("{} alone is {}", loader::shown(text), meanings),
+          remedy + ", or call the column FC if it has function codes"};
 }
 
 }  // namespace
@@ -128,11 +217,23 @@ std::string column_of(std::string_view heading) {
   return key;
 }
 
-std::optional<Table> parse_table(std::string_view text) {
+bool is_of_function_codes(std::string_view heading) {
+  const std::string word = letters_and_digits(heading);
+  return word == "fc" || word == "function" || word == "functioncode" || word == "functioncodes" ||
+         word == "modbusfunction";
+}
+
+TableWord read_table(std::string_view text, bool function_codes) {
   const std::string word = letters_and_digits(text);
   for (const auto& [said, meant] : table_words)
-    if (word == said) return meant;
-  return std::nullopt;
+    if (word == said) return {meant, false, "", ""};
+  const std::string_view bare = without_fc(text);
+  const auto numbers = numbers_of(bare);
+  if (!numbers.empty() && (function_codes || bare.size() != text.size()))
+    return table_of_codes(numbers, text);
+  if (numbers.size() == 1) return ambiguous(text, *loader::parse_unsigned(numbers[0]));
+  return {std::nullopt, false, fmt::format("{} is not a table", loader::shown(text)),
+          std::string(names_of_tables)};
 }
 
 std::optional<Table> table_of_modicon(std::string_view address) {

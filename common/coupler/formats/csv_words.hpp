@@ -14,8 +14,20 @@ namespace coupler::formats {
 /// it is none of the words that are known.
 std::string column_of(std::string_view heading);
 
-/// "holding_registers", "Holding Register", "HR", "4x", "FC3".
-std::optional<Table> parse_table(std::string_view text);
+/// The heading is of function codes: numbers below it are those.
+bool is_of_function_codes(std::string_view heading);
+
+/// The table that a cell names, or why it names none.
+struct TableWord {
+  std::optional<Table> table;
+  bool only_writes = false;  ///< it is a function code that does
+  std::string what;
+  std::string remedy;
+};
+
+/// "holding_registers", "Holding Register", "HR", "4x", "FC3", "FC 03/16". In a column of function codes
+/// numbers alone are such, elsewhere they have two meanings.
+TableWord read_table(std::string_view text, bool function_codes);
 
 /// The table that a Modicon address of five or six digits begins with: "40001".
 std::optional<Table> table_of_modicon(std::string_view address);

@@ -17,7 +17,8 @@ constexpr Exporter formats[] = {
     {"home-assistant", "the modbus integration's part of configuration.yaml", write_home_assistant},
     {"st", "types, variables and function blocks in Structured Text, for a PLC that reads the device",
      write_structured_text},
-    {"telegraf", "a section [[inputs.modbus]] of telegraf.conf", write_telegraf},
+    {"telegraf", "a section [[inputs.modbus]] of telegraf.conf", write_telegraf,
+     write_telegraf_with_statistics},
     {"wireshark", "a dissector (Lua) that names the points in captures", write_wireshark},
 };
 

@@ -41,6 +41,8 @@ struct Exporter {
   std::string_view name;  ///< at the command line
   std::string_view summary;
   Export (*write)(const Map& map);  ///< the same text for the same map
+  Export (*write_with_statistics)(const Map& map) =
+      nullptr;  ///< and of the node's statistics, if it has them
 };
 
 // A function for each format.
@@ -59,8 +61,12 @@ Export write_home_assistant(const Map& map);
 Export write_structured_text(const Map& map);
 
 /// A section [[inputs.modbus]] for Telegraf, in the plugin's "request" style: one request for each table and
-/// byte order, which Telegraf splits into as many reads as it needs.
+/// byte order, which Telegraf splits into as many reads as it needs. Names of values are a
+/// [[processors.enum]].
 Export write_telegraf(const Map& map);
+
+/// The same, with the statistics of the node that serves the map, as a measurement of their own.
+Export write_telegraf_with_statistics(const Map& map);
 
 /// A dissector in Lua for Wireshark and tshark: below their own lines for Modbus/TCP it names the map's
 /// points and values, in requests and, matched by connection and transaction id, in replies.

@@ -98,7 +98,29 @@ struct Entities {
   std::string binary_sensors;
   std::string switches;
   std::string sensors;
+  std::string templates;  ///< of `template:`, since `modbus:` has no names of values
 };
+
+/// The id that Home Assistant gives a sensor of that name, unless another one has it.
+std::string entity_id(const std::string& name) {
+  std::string id;
+  for (const char c : loader::lower(name)) {
+    if (loader::is_letter(c) || loader::is_digit(c))
+      id += c;
+    else if (!id.empty() && id.back() != '_')
+      id += '_';
+  }
+  while (!id.empty() && id.back() == '_') id.pop_back();
+  return "sensor." + id;
+}
+
+/// The sensor's number as its name; a number without one stays.
+std::string state_template(const Point& point, const std::string& sensor) {
+  std::string names;
+  for (const NamedValue& each : point.values)
+    names += fmt::format("{}'{}': '{}'", names.empty() ? "" : ", ", each.value, each.name);
+  return fmt::format("{{{{ {{{}}}.get(states('{}'), states('{}')) }}}}", names, sensor, sensor);
+}
 
 class EntityWriter {
  public:
@@ -119,8 +141,12 @@ class EntityWriter {
  private:
   static constexpr std::string_view indent = "        ";
 
+  static std::string name_of(const Point& point, std::uint16_t element) {
+    return point.count > 1 ? fmt::format("{} {}", point.name, element) : std::string(point.name);
+  }
+
   std::string head(const Point& point, std::uint16_t element, modbus::Range place) {
-    const auto name = point.count > 1 ? fmt::format("{} {}", point.name, element) : std::string(point.name);
+    const std::string name = name_of(point, element);
     const unsigned address = place.start() + static_cast<unsigned>(element) * codec::registers(point.format);
     return fmt::format("      - name: {}\n{}unique_id: {}\n{}slave: {}\n{}address: {}\n{}scan_interval: {}\n",
                        text(name), indent, ids_.make(unique_id(map_, name), point.name), indent,
@@ -166,6 +192,16 @@ class EntityWriter {
     if (point.scale.gain != 1) out += fmt::format("{}scale: {}\n", indent, point.scale.gain);
     if (point.scale.offset != 0) out += fmt::format("{}offset: {}\n", indent, point.scale.offset);
     if (!point.units.empty()) out += fmt::format("{}unit_of_measurement: {}\n", indent, text(point.units));
+    if (!point.values.empty()) add_template(name_of(point, element), point);
+  }
+
+  void add_template(const std::string& sensor, const Point& point) {
+    const std::string id = entity_id(sensor);
+    const std::string name = sensor + " name";
+    entities_.templates += fmt::format("      - name: {}\n{}unique_id: {}\n{}state: {}\n{}availability: {}\n",
+                                       text(name), indent, ids_.make(unique_id(map_, name), point.name),
+                                       indent, text(state_template(point, id)), indent,
+                                       text(fmt::format("{{{{ has_value('{}') }}}}", id)));
   }
 
   void add_warnings(const Point& point) {
@@ -184,7 +220,8 @@ class EntityWriter {
       warnings_.add("holding registers become sensors, which cannot be written",
                     "use the action modbus.write_register", point.name);
     if (!point.values.empty())
-      warnings_.add("names of values are left out", "make template sensors that name them", point.name);
+      warnings_.add("names of values become template sensors, which read a sensor by its entity id",
+                    "correct the ids under 'template:' if Home Assistant has given others", point.name);
     if (point.format.type == Type::REAL || point.format.type == Type::LREAL)
       warnings_.add("floats are rounded to 6 decimals", "change 'precision' if that is too few", point.name);
     if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
@@ -225,6 +262,7 @@ Export write_home_assistant(const Map& map) {
   if (!entities.binary_sensors.empty()) out.text += "    binary_sensors:\n" + entities.binary_sensors;
   if (!entities.switches.empty()) out.text += "    switches:\n" + entities.switches;
   if (!entities.sensors.empty()) out.text += "    sensors:\n" + entities.sensors;
+  if (!entities.templates.empty()) out.text += "template:\n  - sensor:\n" + entities.templates;
   return out;
 }
 

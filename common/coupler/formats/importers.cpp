@@ -29,6 +29,9 @@ constexpr Importer formats[] = {
 #ifdef COUPLER_WITH_PUGIXML
     {"modbuspal", "a ModbusPal project (.xmpp)", read_modbuspal},
 #endif
+    {"home-assistant", "the key modbus: of Home Assistant's configuration.yaml", read_home_assistant, false,
+     true},
+    {"pymodbus", "the JSON of pymodbus' simulator", read_pymodbus, false, true},
 };
 
 constexpr std::size_t longest = 100;  // for a name that was changed: a topic stays readable

@@ -35,6 +35,7 @@ struct ImportOptions {
   std::optional<unsigned> unit;  ///< only this one; for a file that does not say any, the map's unit
   loader::Addressing addressing = loader::Addressing::zero_based;  ///< what a table's addresses count
   std::vector<ColumnNames> columns{};                              ///< headings that no word is known for
+  std::string device{};                                            ///< of a file with several: its name there
 };
 
 /// Reads UTF-8 text without control characters or byte order mark. What makes the file unusable is an error,
@@ -46,7 +47,8 @@ struct Importer {
   std::string_view name;  ///< at the command line
   std::string_view summary;
   ReadForeign read;
-  bool is_table = false;  ///< of any encoding, with ImportOptions::addressing and columns
+  bool is_table = false;     ///< of any encoding, with ImportOptions::addressing and columns
+  bool has_devices = false;  ///< that ImportOptions::device chooses from
 };
 
 // A function for each format.
@@ -56,11 +58,21 @@ struct Importer {
 std::vector<ForeignUnit> read_csv(std::string_view text, const ImportOptions& options,
                                   loader::Problems& problems);
 
+/// Home Assistant's `modbus:`, in a whole configuration.yaml or alone: what its entities read and write, in a
+/// map for each unit id of a hub.
+std::vector<ForeignUnit> read_home_assistant(std::string_view text, const ImportOptions& options,
+                                             loader::Problems& problems);
+
 /// ModbusPal's projects (.xmpp): the coils and holding registers of its slaves. Registers are UINT; those
 /// that an automation feeds as SINT16, SINT32 or FLOAT32 are INT, DINT or REAL. The DTD and other external
 /// entities are never read.
 std::vector<ForeignUnit> read_modbuspal(std::string_view text, const ImportOptions& options,
                                         loader::Problems& problems);
+
+/// The configuration of pymodbus' simulator (JSON), or one device of it: what its registers hold, which
+/// tables show them, and which may be written. Points are named after type and address.
+std::vector<ForeignUnit> read_pymodbus(std::string_view text, const ImportOptions& options,
+                                       loader::Problems& problems);
 
 /// The files of ros-modbus-device-driver (bitmeal), and maps of this project, which are written in one style.
 /// Comments are left out with a warning.

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/identity.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::formats {
@@ -103,8 +104,6 @@ void add_warnings(const Point& point, ConversionWarnings& warnings) {
     warnings.add("Telegraf only reads, so writing is left out", "no action is needed", point.name);
   if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
     warnings.add("texts are read as UTF-8", "convert the field where it is shown", point.name);
-  if (!point.values.empty())
-    warnings.add("names of values are left out", "name them where the field is shown", point.name);
   if (point.count > 1)
     warnings.add("arrays become several fields, whose names end in _0, _1, ...", "no action is needed",
                  point.name);
@@ -171,9 +170,66 @@ void add_warnings(const Map& map, ConversionWarnings& warnings) {
   warn_of_node_and_driver_keys(map, warnings);
 }
 
-}  // namespace
+/// The names of a field's values, in a second field: what is computed with stays a number.
+std::string mapping_of(const std::string& field, const std::string& dest, const std::string& names) {
+  return fmt::format(
+      "\n  [[processors.enum.mapping]]\n    fields = [{}]\n    dest = {}\n"
+      "    [processors.enum.mapping.value_mappings]\n{}",
+      literal(field), literal(dest), names);
+}
 
-Export write_telegraf(const Map& map) {
+std::string names_of(const Point& point) {
+  std::string names;
+  for (const NamedValue& each : point.values)
+    names += fmt::format("      \"{}\" = {}\n", each.value, literal(each.name));
+  return names;
+}
+
+std::string processor_of(std::string_view measurement, const std::string& mappings) {
+  if (mappings.empty()) return {};
+  return fmt::format("\n[[processors.enum]]\n  namepass = [{}]\n", literal(measurement)) + mappings;
+}
+
+std::string statistics_field(std::uint16_t at, std::string_view name, std::string_view type) {
+  return fmt::format("      {{ address = {}, name = \"{}\", type = \"{}\" }},\n",
+                     identity::reserved.start() + at, name, type);
+}
+
+/// A request of its own for the part of the identity area that changes.
+std::string statistics_request(const Map& map, const std::string& measurement) {
+  std::vector<std::pair<std::uint16_t, std::string>> fields = {
+      {identity::at_watchdog_state, statistics_field(identity::at_watchdog_state, "watchdog", "UINT16")},
+      {identity::at_watchdog_left,
+       statistics_field(identity::at_watchdog_left, "watchdog_left_ms", "UINT16")},
+      {identity::at_uptime, statistics_field(identity::at_uptime, "uptime_s", "UINT32")}};
+  for (const identity::Counter& counter : identity::counters)
+    fields.emplace_back(counter.at, statistics_field(counter.at, counter.key, "UINT32"));
+  std::sort(fields.begin(), fields.end());
+  std::string text;
+  for (const auto& [at, field] : fields) text += field;
+  return fmt::format(
+             "\n  [[inputs.modbus.request]]\n    slave_id = {}\n    byte_order = \"ABCD\"\n    register = "
+             "\"input\"\n"
+             "    measurement = {}\n    fields = [\n",
+             map.connection.unit, literal(measurement)) +
+         text + "    ]\n";
+}
+
+std::string watchdog_names() {
+  std::string names;
+  for (std::size_t i = 0; i < identity::watchdog_states.size(); ++i)
+    names += fmt::format("      \"{}\" = \"{}\"\n", i, identity::watchdog_states[i]);
+  return names;
+}
+
+/// A map with points there is not a node's.
+bool has_identity_area(const Map& map) {
+  return std::none_of(map.points.begin(), map.points.end(), [](const Point& point) {
+    return point.table == Table::input_registers && range(point).end() > identity::reserved.start();
+  });
+}
+
+Export write(const Map& map, bool statistics) {
   Export out;
   add_warnings(map, out.warnings);
   Requests requests;
@@ -183,19 +239,41 @@ Export write_telegraf(const Map& map) {
   // Single points first: they have their own names, and elements of arrays give way.
   std::stable_partition(points.begin(), points.end(), [](const Point* point) { return point->count == 1; });
   UniqueNames names(out.warnings);
+  std::vector<std::pair<std::string, const Point*>> named;
   for (const Point* point : points) {
     add_warnings(*point, out.warnings);
     std::string& fields = requests[{point->table, byte_order_of(*point)}];
     for (std::uint16_t element = 0; element < point->count; ++element) {
-      const std::string name =
-          point->count > 1 ? fmt::format("{}_{}", point->name, element) : std::string(point->name);
-      fields += fmt::format("      {{ {} }},{}\n", field_of(*point, element, names.make(name, point->name)),
+      const std::string field =
+          names.make(point->count > 1 ? fmt::format("{}_{}", point->name, element) : std::string(point->name),
+                     point->name);
+      fields += fmt::format("      {{ {} }},{}\n", field_of(*point, element, field),
                             element == 0 ? comment_of(*point) : "");
+      if (!point->values.empty()) named.emplace_back(field, point);
     }
   }
+  std::string mappings;
+  for (const auto& [field, point] : named)
+    mappings += mapping_of(field, names.make(field + "_name", point->name), names_of(*point));
   out.text = "# Made by `coupler export --to telegraf`.\n" + connection_of(map);
   for (const auto& [key, fields] : requests) out.text += request_of(map, key.first, key.second, fields);
+  const std::string measurement = fmt::format("{}_node", map.name);
+  if (statistics && !has_identity_area(map)) {
+    out.warnings.add("the map has points where a node has its statistics, so those are left out",
+                     "leave --node-statistics out: the device is not a node");
+    statistics = false;
+  }
+  if (statistics) out.text += statistics_request(map, measurement);
+  out.text += processor_of(map.name, mappings);
+  if (statistics)
+    out.text += processor_of(measurement, mapping_of("watchdog", "watchdog_name", watchdog_names()));
   return out;
 }
+
+}  // namespace
+
+Export write_telegraf(const Map& map) { return write(map, false); }
+
+Export write_telegraf_with_statistics(const Map& map) { return write(map, true); }
 
 }  // namespace coupler::formats

@@ -49,6 +49,15 @@ class Import(Cli):
         self.assertIn("is not a list of columns; write it as in", self.coupler("import", "csv", name, "--columns", "x").stderr)
         self.assertIn("are for tables", self.coupler("import", "origin", name, "--columns", "name=x").stderr)
 
+    def test_takes_one_device_of_a_file_with_several(self):
+        name = self.file("configuration.yaml", "modbus:\n" + "".join(
+            f"  - {{name: {hub}, type: tcp, host: plc, port: 502, binary_sensors: [{{name: door, address: 1}}]}}\n" for hub in ("a", "b")))
+        self.assertIn("the file has several hubs: a, b; give one of them with --device", self.coupler("import", "home-assistant", name).stderr)
+        self.assertIn("name: b\n", self.coupler("import", "home-assistant", name, "--device", "b").stdout)
+        done = self.coupler("import", "csv", self.file("a.csv", ONE), "--device", "b")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("--device is for files that may have several; leave it out", done.stderr)
+
     def test_refuses_what_it_cannot_read_and_writes_nothing(self):
         done = self.coupler("import", "unslave", self.file("a.json", "{"), "--out", "a.yaml")
         self.assertEqual((done.returncode, done.stdout), (1, ""))
@@ -95,6 +104,17 @@ class Export(Cli):
         self.assertIn("'excel' is not a format that can be written; give one of csv", done.stderr)
         self.assertEqual(self.coupler("export", name, "--to", "csv", "--out", "no/where.csv").returncode, 2)
         self.assertIn("MAP and --to FORMAT are required", self.coupler("export", name).stderr)
+
+    def test_adds_a_nodes_statistics_where_the_format_has_a_place_for_them(self):
+        name = self.file("cell.yaml", MAP)
+        self.assertIn('measurement = "cell_node"', self.coupler("export", name, "--to", "telegraf", "--node-statistics").stdout)
+        done = self.coupler("export", name, "--to", "csv", "--node-statistics")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("--node-statistics has no meaning for 'csv'; leave it out", done.stderr)
+        name = self.file("foreign.yaml", "name: f\nmapping: {input_registers: {a: {address: 0xFF00, type: INT}}}\n")
+        done = self.coupler("export", name, "--to", "telegraf", "--node-statistics")
+        self.assertNotIn("f_node", done.stdout)
+        self.assertIn("the map has points where a node has its statistics, so those are left out", done.stderr)
 
     def test_lists_its_formats(self):
         self.assertIn("csv ", self.coupler("export", "--list").stdout)

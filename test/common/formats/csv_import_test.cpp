@@ -142,6 +142,52 @@ TEST(CsvImport, Headings_and_words_are_those_that_people_write) {
     EXPECT_THAT(text, HasSubstr(line));
 }
 
+// The codes are those of "Modbus Application Protocol V1.1b3", section 6.
+TEST(CsvImport, Numbers_in_a_column_of_function_codes_name_the_table) {
+  const std::pair<const char*, const char*> all[] = {
+      {"1", "coils:\n    a: 7"},
+      {"02", "discrete_inputs:\n    a: 7"},
+      {"FC03", "holding_registers:\n    a: {address: 7, type: INT}"},
+      {"fc 4", "input_registers:\n    a: {address: 7, type: INT}"},
+      {"0x03 / 0x10", "holding_registers:\n    a: {address: 7, type: INT}"},
+      {"01/05/15", "coils:\n    a: 7"},
+      {"6", "holding_registers:\n    a: {address: 7, type: INT, access: write}"},
+      {"5; 15", "coils:\n    a: {address: 7, access: write}"},
+      {"4x", "holding_registers:\n    a: {address: 7, type: INT}"},
+  };
+  for (const auto& [code, point] : all) {
+    const bool bits = std::string_view(point).find("INT") == std::string_view::npos;
+    const std::string type = bits ? "" : "INT";
+    for (const char* heading : {"FC", "Function Code"})
+      EXPECT_THAT(
+          Imported("csv", std::string(heading) + ",name,address,type\n\"" + code + "\",a,7," + type + "\n")
+              .text(),
+          HasSubstr(point))
+          << code;
+  }
+  EXPECT_THAT(Imported("csv", "fc,name,address,access\n15,a,7,rw\n").text(), HasSubstr("access: read_write"));
+  EXPECT_THAT(Imported("csv", "fc,name,address\n5,a,7\n").said,
+              HasSubstr("given:2:1: warning: '5' only writes, so the point gets 'access: write'"));
+}
+
+TEST(CsvImport, A_number_with_two_meanings_is_refused_with_both) {
+  const auto said = [](const std::string& heading, const std::string& cell) {
+    return Imported("csv", heading + ",name,address,type\n\"" + cell + "\",a,7,INT\n").said;
+  };
+  EXPECT_THAT(said("table", "3"),
+              HasSubstr("given:2:1: error: '3' alone is holding_registers as a function code and "
+                        "input_registers as an area (3x); write FC3 or 3x, or call the column FC if it has"));
+  EXPECT_THAT(said("area", "4"),
+              HasSubstr("input_registers as a function code and holding_registers as an area (4x)"));
+  EXPECT_THAT(said("table", "1"), HasSubstr("coils as a function code and discrete_inputs as an area (1x)"));
+  EXPECT_THAT(said("table", "2"), HasSubstr("'2' alone is discrete_inputs as a function code; write FC2"));
+  EXPECT_THAT(said("table", "0"), HasSubstr("'0' alone is coils as an area (0x); write 0x"));
+  EXPECT_THAT(said("fc", "3/4"),
+              HasSubstr("'3/4' is holding_registers and input_registers; give each of the two a row"));
+  EXPECT_THAT(said("fc", "7"), HasSubstr("'7' is not a function code that reads or writes a table"));
+  EXPECT_THAT(said("table", "9"), HasSubstr("'9' is not a table; write coils"));
+}
+
 TEST(CsvImport, A_column_unit_with_text_is_units_and_with_numbers_the_unit_id) {
   EXPECT_THAT(Imported("csv", "table,name,address,type,Unit\nhr,a,0,INT,bar\nhr,b,1,INT,\n").text(),
               HasSubstr("a: {address: 0, type: INT, units: bar}"));

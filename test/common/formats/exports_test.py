@@ -2,13 +2,15 @@
 """What Telegraf and Home Assistant would read with the configurations that `coupler export` writes. Neither is in
 Debian, so their rules are followed here as their own sources state them:
   Telegraf        plugins/inputs/modbus: sample_request.conf (keys, types), configuration_request.go (what check()
-                  refuses), type_conversions*.go (byte orders)
+                  refuses), type_conversions*.go (byte orders); plugins/processors/enum
   Home Assistant  homeassistant/components/modbus: __init__.py (schemas), validators.py (struct_validator), entity.py
                   (swaps, unpacking, scale); docs: source/_integrations/modbus.markdown
 COUPLER is the program, SOURCE_DIR the tree."""
 import os
+import re
 import struct
 import subprocess
+import tempfile
 import tomllib
 import unittest
 from pathlib import Path
@@ -46,9 +48,9 @@ def memory(image):
     return registers
 
 
-def exported(file, to):
-    done = subprocess.run([os.environ["COUPLER"], "export", str(file), "--to", to], capture_output=True, text=True,
-                          encoding="utf-8", check=True)
+def exported(file, to, *options):
+    done = subprocess.run([os.environ["COUPLER"], "export", str(file), "--to", to, *options], capture_output=True,
+                          text=True, encoding="utf-8", check=True)
     return done.stdout
 
 
@@ -86,7 +88,8 @@ class Telegraf(unittest.TestCase):
 
     def test_takes_the_keys_that_the_plugin_has(self):
         for file in all_maps():
-            plugins = tomllib.loads(exported(file, "telegraf"))["inputs"]["modbus"]
+            config = tomllib.loads(exported(file, "telegraf"))
+            plugins = config["inputs"]["modbus"]
             self.assertEqual(len(plugins), 1)
             plugin = plugins[0]
             self.assertLessEqual(set(plugin), {"name", "controller", "timeout", "interval", "configuration_type", "request", "workarounds"})
@@ -107,6 +110,51 @@ class Telegraf(unittest.TestCase):
                     self.check_field(field, request)
                     self.assertNotIn((request["register"], field["name"]), seen)
                     seen.add((request["register"], field["name"]))
+            self.check_names(config, {name for _, name in seen})
+
+    def check_names(self, config, fields):
+        """plugins/processors/enum: README.md, enum.go. A number is looked up by its decimal text."""
+        for processor in config.get("processors", {}).get("enum", []):
+            self.assertEqual(set(processor), {"namepass", "mapping"})
+            for mapping in processor["mapping"]:
+                self.assertEqual(set(mapping), {"fields", "dest", "value_mappings"})
+                self.assertLessEqual(set(mapping["fields"]), fields)
+                self.assertNotIn(mapping["dest"], fields)
+                self.assertTrue(all(str(int(value)) == value for value in mapping["value_mappings"]))
+
+    def test_names_values_in_a_second_field(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder, "m.yaml")
+            file.write_text("name: m\nmapping:\n  holding_registers:\n    mode: {address: 0, type: INT, values: {-1: fault, 2: run}}\n"
+                            "    modes: {address: 1, type: UINT, count: 2, values: {0: 'off', 1: 'on'}}\n"
+                            "    mode_name: {address: 9, type: INT}\n", encoding="utf-8")
+            [processor] = tomllib.loads(exported(file, "telegraf"))["processors"]["enum"]
+        self.assertEqual(processor, {"namepass": ["m"], "mapping": [
+            {"fields": ["mode"], "dest": "mode_name_2", "value_mappings": {"-1": "fault", "2": "run"}},
+            {"fields": ["modes_0"], "dest": "modes_0_name", "value_mappings": {"0": "off", "1": "on"}},
+            {"fields": ["modes_1"], "dest": "modes_1_name", "value_mappings": {"0": "off", "1": "on"}}]})
+
+    def test_reads_the_nodes_statistics_where_docs_identity_has_them(self):
+        table = (Path(os.environ["SOURCE_DIR"]) / "docs/identity.md").read_text(encoding="utf-8")
+        config = tomllib.loads(exported(MAP, "telegraf", "--node-statistics"))
+        request = config["inputs"]["modbus"][0]["request"][-1]
+        self.assertEqual({key: request[key] for key in ("register", "byte_order", "measurement")},
+                         {"register": "input", "byte_order": "ABCD", "measurement": "cell/north_node"})
+        fields = {field["name"]: (field["address"], field["type"]) for field in request["fields"]}
+        rows = dict(re.findall(r"^\| 0x(FF..) \| \d[^|]*\| ([^|]+) \|$", table, re.M))
+        for name, start in (("watchdog", "watchdog: 0 not"), ("watchdog_left_ms", "watchdog: time left"), ("uptime_s", "uptime"),
+                            ("requests", "requests answered"), ("exceptions", "of these, with"), ("connections", "connections accepted"),
+                            ("hardware_errors", "hardware errors"), ("watchdog_trips", "times that"), ("events_lost", "events lost"),
+                            ("exceptions_01", "exceptions 01"), ("connections_refused", "connections refused"),
+                            ("connections_evicted", "connections closed to make"), ("foreign_units", "requests for another"),
+                            ("connections_bad_frames", "connections closed for what they sent"),
+                            ("connections_timed_out", "connections closed for what they did not")):
+            [place] = [int(at, 16) for at, holds in rows.items() if holds.startswith(start)]
+            self.assertEqual(fields.pop(name), (place, "UINT16" if name.startswith("watchdog") and name != "watchdog_trips" else "UINT32"))
+        self.assertEqual({name: at for name, (at, _) in fields.items()},
+                         {"exceptions_02": 0xFF1D, "exceptions_03": 0xFF1F, "exceptions_04": 0xFF21})
+        self.assertEqual(config["processors"]["enum"][-1]["mapping"][0]["value_mappings"],
+                         {"0": "not configured", "1": "idle", "2": "armed", "3": "expired"})
 
     def check_field(self, field, request):
         if request["register"] in ("coil", "discrete"):
@@ -208,6 +256,23 @@ class HomeAssistant(unittest.TestCase):
         self.assertEqual(values, expected | {"level": "21.5", "abcd": "3.140000", "cdab": "-0.100000", "long_badc": "1.250000",
                                              "pair 0": "1.5", "pair 1": "-2.0", "pair 2": "2.5", "label": "Anlage",
                                              "plain": "Kuhler"})
+
+    def test_names_values_in_template_sensors(self):
+        """docs: source/_integrations/template.markdown; an entity's id is the slug of its name (homeassistant.util.slugify)."""
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder, "m.yaml")
+            file.write_text("name: m\nmapping:\n  holding_registers:\n    Arm/Mode: {address: 0, type: INT, values: {-1: fault, 2: run}}\n",
+                            encoding="utf-8")
+            config = yaml.safe_load(exported(file, "home-assistant"))
+        self.assertEqual(config["modbus"][0]["sensors"][0]["name"], "Arm/Mode")
+        [[sensor]] = [part["sensor"] for part in config["template"]]
+        self.assertEqual({key: sensor[key] for key in ("name", "unique_id", "availability")},
+                         {"name": "Arm/Mode name", "unique_id": "m_arm_mode_name",
+                          "availability": "{{ has_value('sensor.arm_mode') }}"})
+        expression = re.fullmatch(r"\{\{ (.*) \}\}", sensor["state"])[1]  # Jinja's are Python's here
+        for state, shown in (("-1", "fault"), ("2", "run"), ("7", "7")):
+            states = {"sensor.arm_mode": state}.__getitem__
+            self.assertEqual(eval(expression, {"states": states}), shown)  # pylint: disable=eval-used
 
     def test_switches_coils_and_reads_them_back(self):
         hub = self.hub(MAP)

@@ -66,11 +66,24 @@ TEST(Import, A_broken_file_is_a_map_that_loads_or_an_error_whatever_is_broken) {
   const std::string xml =
       "<modbuspal_project><slave id=\"1\"><coils><coil address=\"0\" "
       "name=\"x\"/></coils></slave></modbuspal_project>";
+  const std::string yaml =
+      "modbus:\n - name: h\n   type: tcp\n   host: !secret x\n   sensors:\n    - {name: s, address: 3, "
+      "count: 1, "
+      "data_type: custom, structure: \">xB\"}\n   switches:\n   - {name: t, address: 3, verify: {address: "
+      "4}}\n";
+  const std::string simulator =
+      "{\"setup\": {\"co size\": 9, \"di size\": 9, \"ir size\": 9, \"hr size\": 9, \"shared blocks\": "
+      "true}, "
+      "\"write\": [3], \"uint16\": [3, [5, 7]], \"repeat\": [{\"addr\": [3, 4], \"to\": [1, 2]}]}";
   std::mt19937 random(1);  // NOLINT: the same every time
   constexpr std::string_view bytes = "{}[]\"',;:<>&/\\\n\t 0a-#!";
   for (int round = 0; round < 3000; ++round) {
     for (const formats::Importer& importer : formats::importers()) {
-      std::string text = importer.name == "csv" ? good : importer.name == "modbuspal" ? xml : json;
+      std::string text = importer.name == "csv"              ? good
+                         : importer.name == "modbuspal"      ? xml
+                         : importer.name == "home-assistant" ? yaml
+                         : importer.name == "pymodbus"       ? simulator
+                                                             : json;
       for (int change = 0; change < 3; ++change)
         text[random() % text.size()] = bytes[random() % bytes.size()];
       if (round % 3 == 0) text.resize(random() % text.size());
