@@ -10,17 +10,23 @@
 #include "coupler/codec/number.hpp"
 #include "coupler/codec/text.hpp"
 #include "coupler/generate/code.hpp"
+#include "coupler/generate/macros.hpp"
 
 namespace coupler::generate {
 namespace {
 
 using codec::Type;
 
-// Other members of a client, and macros of the C library's headers.
-constexpr std::string_view taken[] = {
-    "Client",     "EOF",    "NULL",  "Session", "assert", "connect", "disconnect",
-    "each_point", "errno",  "linux", "major",   "map",    "minor",   "online",
-    "options",    "stderr", "stdin", "stdout",  "unix",   "use",     "wait_online"};
+// Other members of a client, and the macros that programs use most.
+constexpr std::string_view taken[] = {"Client",     "EOF", "NULL",   "Session", "connect", "disconnect",
+                                      "each_point", "map", "online", "options", "use",     "wait_online"};
+
+/// What no point and no value is called.
+std::set<std::string> reserved() {
+  std::set<std::string> names(std::begin(taken), std::end(taken));
+  names.insert(small_macros().begin(), small_macros().end());
+  return names;
+}
 
 /// A name that is not in `used`, and now is.
 std::string unique_identifier(std::string_view name, std::set<std::string>& used) {
@@ -79,14 +85,14 @@ std::string value_range(const Point& point) {
 }  // namespace
 
 std::vector<std::string> members(const Map& map) {
-  std::set<std::string> used(std::begin(taken), std::end(taken));
+  std::set<std::string> used = reserved();
   std::vector<std::string> names;
   for (const Point& point : map.points) names.push_back(unique_identifier(point.name, used));
   return names;
 }
 
 std::vector<std::string> value_names(const Point& point) {
-  std::set<std::string> used(std::begin(taken), std::end(taken));
+  std::set<std::string> used = reserved();
   std::vector<std::string> names;
   for (const NamedValue& named : point.values) names.push_back(unique_identifier(named.name, used));
   return names;
