@@ -102,6 +102,23 @@ class Page(unittest.TestCase):
                             ("00002", "lamp"), ("10003", "lamp_feedback"), ("300004", "presses")):
             self.assertEqual(self.search(text), [point], text)
 
+    def test_keeps_a_range_of_addresses_in_one_line_and_shows_the_orders_of_the_map(self):
+        for size in (DESKTOP, PHONE):
+            self.open("press", size=size)
+            heights = self.browser.driver.execute_script("""
+                const lines = (cell) => { const range = document.createRange(); range.selectNode(cell.firstChild);
+                                          return new Set([...range.getClientRects()].map(box => box.top)).size; };
+                return [...document.querySelectorAll("td.address, td.modicon")].map(lines);""")
+            self.assertEqual(set(heights), {1})
+            drawings = self.browser.driver.find_elements(By.CSS_SELECTOR, ".drawing svg")
+            self.assertEqual(len(drawings), 5)
+            self.assertIn("register 9: C 56 D 78; register 10: A 12 B 34",
+                          [each.get_attribute("aria-label") for each in drawings])
+            self.assertFalse(self.browser.driver.execute_script(
+                "return document.documentElement.scrollWidth > document.documentElement.clientWidth"))
+            self.browser.driver.execute_script("document.querySelector('#order').scrollIntoView()")
+            self.screenshot(f"order-{size[0]}")
+
     def test_says_so_when_nothing_is_found(self):
         self.open("example")
         self.assertEqual(self.search("nowhere"), [])

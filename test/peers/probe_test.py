@@ -114,6 +114,26 @@ def a_unit_is_found(folder, checks):
     nothing_was_written(device, checks)
 
 
+def nothing_makes_no_draft(folder, checks):
+    """It answers each read with an exception: 02, as most do."""
+    device = foreign_server.Device({})
+    draft = folder / "nothing.yaml"
+    with foreign_server.serving(device) as port:
+        found = probe(f"127.0.0.1:{port}/1", "--to", "199", "--out", draft)
+        report = found.stdout.splitlines()
+        checks.equal("nothing: exit status", found.returncode, 3)
+        checks.equal("nothing: no draft", draft.exists(), False)
+        checks.equal("nothing: the report ends with the remedy", report[-1],
+                     "the device shows nothing: no address from 0 to 199 can be read; try another unit, as --units 1-247; "
+                     "all addresses, by --from 0 --to 65535; each address, by --stride 1")
+        checks.equal("nothing: the error", re.findall(r"error: (.*?);", found.stderr),
+                     [f"{draft} is not written: a map needs a point, and none was found"])
+        alone = probe(f"127.0.0.1:{port}/1", "--to", "199", "--stride", "1")
+        checks.equal("nothing: the report was asked for", (alone.returncode, alone.stderr.count("error")), (0, 0))
+        checks.equal("nothing: each address was tried", "--stride" in alone.stdout.splitlines()[-1], False)
+    nothing_was_written(device, checks)
+
+
 def closed_connections_end_nothing(folder, checks):
     device = foreign_server.Device({"input_registers": {at: at for at in [*range(0, 30), *range(40, 60)]}}, closes=True)
     draft = folder / "closes.yaml"
@@ -212,6 +232,7 @@ def main():
                     pool.submit(the_largest_count_is_found, 3, folder, checks),
                     pool.submit(the_largest_count_is_found, 2, folder, checks),
                     pool.submit(a_unit_is_found, folder, checks),
+                    pool.submit(nothing_makes_no_draft, folder, checks),
                     pool.submit(closed_connections_end_nothing, folder, checks),
                     pool.submit(a_known_value_is_found_in_each_order, folder, checks),
                     pool.submit(ctrl_c_shows_what_was_found, checks),

@@ -112,6 +112,7 @@ Document make_document(const Map& map, Span<const int> lines, Provenance provena
     document.points.push_back(describe(map.points[i], i < lines.size() ? lines[i] : 0));
   document.mbpoll = mbpoll_commands(map);
   document.ros = ros_commands(map, provenance.file);
+  document.drawings = drawings_of(map);
   document.picture = plan::picture(map, plan::make_read_plan(map), {true, "#point-"});
   document.provenance = std::move(provenance);
   return document;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupler/base/span.hpp"
+#include "coupler/docs/drawing.hpp"
 #include "coupler/docs/point_description.hpp"
 #include "coupler/map/map.hpp"
 
@@ -45,6 +46,7 @@ struct Document {
   std::vector<PointDescription> points;  ///< as Map::points
   std::vector<Command> mbpoll;
   std::vector<Command> ros;
+  std::vector<Drawing> drawings;
   std::string picture;  ///< the address spaces as an SVG element; its points link to "#point-NAME"
 };
 

@@ -170,6 +170,21 @@ std::string html_rows(const Document& document) {
   return out + "</tbody>\n</table>\n";
 }
 
+/// How values stand in registers.
+std::string drawings(const Document& document) {
+  if (document.drawings.empty()) return {};
+  std::string out =
+      "<section id=\"order\">\n<h2>Bytes and bits</h2>\n<p class=\"note\">Registers as a reply has them, the "
+      "high "
+      "byte of each first.</p>\n<div class=\"drawings\">\n";
+  for (const Drawing& drawing : document.drawings)
+    out += fmt::format(
+        "<div><h3>{}</h3>\n<p>{}</p>\n<div class=\"drawing\" tabindex=\"0\" role=\"region\" "
+        "aria-label=\"Drawing of {}\">\n{}</div></div>\n",
+        html(drawing.title), html(drawing.explanation), html(drawing.title), as_svg(drawing));
+  return out + "</div>\n</section>\n";
+}
+
 std::string facts(const Document& document) {
   std::string out = "<section id=\"device\">\n<h2>The device</h2>\n<div class=\"groups\">\n";
   for (const FactGroup& group : document.facts) {
@@ -205,10 +220,11 @@ std::string html_page(const Document& document) {
          fmt::format(
              "<body>\n<a class=\"skip\" href=\"#points\">Skip to the "
              "points</a>\n<header>\n<h1>{}</h1>\n<p>{}</p>\n"
-             "<nav><a href=\"#list\">Points</a> <a href=\"#spaces\">Address spaces</a> "
+             "<nav><a href=\"#list\">Points</a> <a href=\"#spaces\">Address spaces</a> {}"
              "<a href=\"#device\">The device</a> <a href=\"#use\">How to read "
              "it</a></nav>\n</header>\n<main>\n",
-             html(document.name), made_from(document)) +
+             html(document.name), made_from(document),
+             document.drawings.empty() ? "" : "<a href=\"#order\">Bytes and bits</a> ") +
          "<section id=\"list\">\n<h2>Points</h2>\n" + search(document) + html_rows(document) +
          "<p class=\"note\">Address counts from 0, as requests carry it. Modicon counts from 1 behind the "
          "digit "
@@ -217,8 +233,8 @@ std::string html_page(const Document& document) {
          "<section id=\"spaces\">\n<h2>Address spaces</h2>\n<div class=\"picture\" tabindex=\"0\" "
          "role=\"region\" "
          "aria-label=\"Picture of the address spaces\">\n" +
-         document.picture + "</div>\n</section>\n" + facts(document) + use(document) + "</main>\n<script>\n" +
-         std::string(page_script()) + "</script>\n</body>\n</html>\n";
+         document.picture + "</div>\n</section>\n" + drawings(document) + facts(document) + use(document) +
+         "</main>\n<script>\n" + std::string(page_script()) + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace coupler::docs

@@ -24,6 +24,13 @@ std::string both(const std::string& a, std::string_view between, const std::stri
   return a + std::string(between) + b;
 }
 
+/// Of several addresses, that no line ends between the two.
+std::string unbroken(const std::string& addresses) {
+  std::string out;
+  for (const char c : addresses) out += c == ' ' ? std::string("&nbsp;") : std::string(1, c);
+  return out;
+}
+
 /// The name, which is a ROS name and so safe in backticks, and where it stands in the map.
 std::string name_cell(const Document& document, const PointDescription& point) {
   const std::string link = source_link(document, point);
@@ -37,8 +44,9 @@ std::string access_cell(const Document&, const PointDescription& point) {
 
 constexpr std::array columns{
     Column{"point", false, name_cell},
-    Column{"address", true, [](auto&, auto& point) { return both(point.address, ", ", point.part); }},
-    Column{"Modicon", true, [](auto&, auto& point) { return point.modicon; }},
+    Column{"address", true,
+           [](auto&, auto& point) { return both(unbroken(point.address), ", ", point.part); }},
+    Column{"Modicon", true, [](auto&, auto& point) { return unbroken(point.modicon); }},
     Column{"type", false, [](auto&, auto& point) { return both(point.type, ", ", point.text); }},
     Column{"count", true, [](auto&, auto& point) { return point.count; }},
     Column{"order", false, [](auto&, auto& point) { return point.order; }},
@@ -113,6 +121,11 @@ std::string markdown_page(const Document& document) {
   for (const FactGroup& group : document.facts)
     for (const Fact& fact : group.facts)
       out += fmt::format("| {} | {} |\n", fact.label, markdown(fact.value));
+  if (!document.drawings.empty())
+    out += "\n## Bytes and bits\n\nRegisters as a reply has them, the high byte of each first.\n";
+  for (const Drawing& drawing : document.drawings)
+    out += fmt::format("\n**{}.** {}\n\n```text\n{}```\n", markdown(drawing.title),
+                       markdown(drawing.explanation), as_text(drawing));
   out += "\n## How to read it\n";
   put_commands("With mbpoll:", document.mbpoll, out);
   put_commands("From ROS:", document.ros, out);

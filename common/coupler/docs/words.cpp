@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/codec/bit_string.hpp"
 #include "coupler/codec/number.hpp"
 #include "coupler/codec/value.hpp"
 #include "coupler/map/allowed_values.hpp"
@@ -35,7 +36,7 @@ std::string one_value(const Point& point, const std::uint16_t* registers) {
   }
   if (point.scale.present()) return number(codec::published(registers, point.format, point.scale));
   if (const auto name = name_of_value(point, registers); !name.empty()) return std::string(name);
-  return codec::to_string(codec::decode(registers, point.format));
+  return codec::text_of(codec::decode(registers, point.format), point.format.type);
 }
 
 /// In std_msgs; empty: bits, which have a message of this project.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -79,6 +80,11 @@ std::string comment(std::string_view text) {
     at += c.size;
   }
   return out;
+}
+
+std::string code(std::int64_t value) {
+  constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
+  return value == least ? fmt::format("{} - 1", least + 1) : fmt::to_string(value);
 }
 
 bool is_name(std::string_view name) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -42,6 +43,8 @@ std::string enumerator(E value) {
 }
 
 inline std::string code(std::string_view text) { return literal(text); }
+/// The least one is an expression: C++ has no negative literals.
+std::string code(std::int64_t value);
 inline std::string code(std::chrono::milliseconds duration) { return fmt::format("{}ms", duration.count()); }
 inline std::string code(std::chrono::microseconds duration) { return fmt::format("{}us", duration.count()); }
 inline std::string code(std::chrono::nanoseconds duration) { return fmt::format("{}ns", duration.count()); }

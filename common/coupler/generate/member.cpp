@@ -10,17 +10,23 @@
 #include "coupler/codec/number.hpp"
 #include "coupler/codec/text.hpp"
 #include "coupler/generate/code.hpp"
+#include "coupler/generate/macros.hpp"
 
 namespace coupler::generate {
 namespace {
 
 using codec::Type;
 
-// Other members of a client, and macros of the C library's headers.
-constexpr std::string_view taken[] = {
-    "Client",     "EOF",    "NULL",  "Session", "assert", "connect", "disconnect",
-    "each_point", "errno",  "linux", "major",   "map",    "minor",   "online",
-    "options",    "stderr", "stdin", "stdout",  "unix",   "use",     "wait_online"};
+// Other members of a client, and the macros that programs use most.
+constexpr std::string_view taken[] = {"Client",     "EOF", "NULL",   "Session", "connect", "disconnect",
+                                      "each_point", "map", "online", "options", "use",     "wait_online"};
+
+/// An identifier for each name; none is one of `taken` or of small_macros().
+std::vector<std::string> cpp_names(const std::vector<std::string_view>& names) {
+  std::vector<std::string_view> reserved(std::begin(taken), std::end(taken));
+  reserved.insert(reserved.end(), small_macros().begin(), small_macros().end());
+  return identifiers(names, reserved, is_identifier);
+}
 
 std::string_view cpp_number(Type type) {
   switch (type) {
@@ -101,11 +107,9 @@ std::string_view point_class(Access access) {
   return {};
 }
 
-std::vector<std::string> members(const Map& map) { return identifiers(names_of(map), taken, is_identifier); }
+std::vector<std::string> members(const Map& map) { return cpp_names(names_of(map)); }
 
-std::vector<std::string> value_names(const Point& point) {
-  return identifiers(names_of(point), taken, is_identifier);
-}
+std::vector<std::string> value_names(const Point& point) { return cpp_names(names_of(point)); }
 
 std::string cpp_number(const Point& point) { return std::string(cpp_number(point.format.type)); }
 

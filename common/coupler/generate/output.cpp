@@ -23,14 +23,23 @@ bool holds(const fs::path& path, std::string_view content) {
   return in && found == content;
 }
 
-tl::unexpected<std::string> cannot_write(const fs::path& path, const std::error_code& why) {
-  return tl::unexpected(fmt::format("cannot write {}: {}", path.string(), why.message()));
+/// The file that `path` is, or would be: a symbolic link stays one, and what it leads to is replaced. A link
+/// is read from its own folder, as the kernel does.
+fs::path target_of(fs::path path, std::error_code& failed) {
+  constexpr int most_links = 40;  // as Linux follows
+  for (int links = 0; fs::is_symlink(fs::symlink_status(path, failed)); ++links) {
+    if (links == most_links) {
+      failed = std::make_error_code(std::errc::too_many_symbolic_link_levels);
+      return path;
+    }
+    path = path.parent_path() / fs::read_symlink(path, failed);
+  }
+  if (failed == std::errc::no_such_file_or_directory) failed.clear();
+  return path;
 }
 
-}  // namespace
-
-tl::expected<Outcome, std::string> write_if_changed(const fs::path& path, std::string_view content) {
-  if (holds(path, content)) return Outcome::unchanged;
+/// The error is that of the system. `path` is not a link.
+std::error_code replace(const fs::path& path, std::string_view content) {
   // Two builds may generate into one folder at the same time: each has its own temporary file.
   const fs::path temporary = fmt::format("{}.{}.new", path.string(), ::getpid());
   errno = 0;
@@ -46,8 +55,22 @@ tl::expected<Outcome, std::string> write_if_changed(const fs::path& path, std::s
   if (failed) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    return cannot_write(path, failed);
   }
+  return failed;
+}
+
+tl::unexpected<std::string> cannot_write(const fs::path& path, const std::error_code& why) {
+  return tl::unexpected(fmt::format("cannot write {}: {}", path.string(), why.message()));
+}
+
+}  // namespace
+
+tl::expected<Outcome, std::string> write_if_changed(const fs::path& path, std::string_view content) {
+  if (holds(path, content)) return Outcome::unchanged;
+  std::error_code failed;
+  const fs::path target = target_of(path, failed);
+  if (!failed) failed = replace(target, content);
+  if (failed) return cannot_write(path, failed);
   return Outcome::written;
 }
 

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/schema/schema.hpp"
 
+#include <cstdint>
+#include <utility>
+
 #include "coupler/base/version.hpp"
+#include "coupler/codec/format.hpp"
 #include "coupler/map/loader/names.hpp"
+#include "coupler/map/table.hpp"
+#include "coupler/schema/point_rules.hpp"
 #include "coupler/schema/value_schema.hpp"
 
 namespace coupler::schema {
@@ -52,8 +58,7 @@ Json property(const Key& key) {
 
 /// Which keys a point's type needs, and which it has no use for.
 Json rule_for_types(const Key& key) {
-  const Json type{{"properties", {{"type", {{"pattern", any_name(loader::words(key.types))}}}}}};
-  Json rule{{"if", type}, {"else", {{"properties", {{key.name, false}}}}}};
+  Json rule{{"if", type_is(loader::words(key.types))}, {"else", {{"properties", {{key.name, false}}}}}};
   const Json needed = Json::array({key.name});
   if (key.required) rule["then"] = {{"required", needed}};
   if (!key.required_with.empty()) rule["then"] = {{"dependencies", {{key.required_with, needed}}}};
@@ -80,23 +85,60 @@ Json object_of(Section section) {
     object["if"] = {{"required", {"type"}}};
     object["then"] = {{"allOf", std::move(rules)}};
   }
+  if (Json::array_t own = point_rules(section); !own.empty()) object["allOf"] = std::move(own);
   return object;
 }
 
-/// The same for all addresses of a map. "minimum" and "maximum" say nothing of a point that is not a number.
-/// Editors suggest these keys from their real place.
-Json every_address(Json range) {
-  range["doNotSuggest"] = true;
-  const Json keys{{"address", range}, {"read_address", range}};
+/// The same for all addresses of a table. "minimum" and the like say nothing of a point that is not a number.
+Json every_address_of(Table table, Json range) {
   Json point = range;
-  point["properties"] = keys;
-  const Json table{{"additionalProperties", std::move(point)}};
-  Json places{{"mapping", {{"doNotSuggest", true}, {"additionalProperties", table}}}};
-  const Json area{{"properties", {{"from", range}, {"to", range}}}};
+  point["properties"] = {{"address", range}, {"read_address", range}};
+  Json places{
+      {"mapping", {{"properties", {{to_string(table), {{"additionalProperties", std::move(point)}}}}}}}};
+  const Json here{{"properties", {{"table", {{"const", to_string(table)}}}}}};
+  const Json area{{"if", here}, {"then", {{"properties", {{"from", range}, {"to", range}}}}}};
   for (const Key& key : loader::all_keys())
-    if (key.inside == Section::area)
-      places[std::string(key.name)] = {{"doNotSuggest", true}, {"items", area}};
+    if (key.inside == Section::area) places[std::string(key.name)] = {{"items", area}};
   return {{"properties", std::move(places)}};
+}
+
+/// Up to four digits are a number of the table, five and six begin with the table's digit. In front of a
+/// number of coils that is a 0, which JSON does not show.
+Json modicon_range(Table table) {
+  const std::int64_t digit = std::string_view("0134")[index(table)] - '0';
+  if (digit == 0) return {{"minimum", 1}, {"maximum", 65536}};
+  Json ranges = Json::array({{{"not", {{"type", "number"}}}}});
+  for (const auto& [before, most] :
+       {std::pair<std::int64_t, std::int64_t>{0, 9999}, {10000, 9999}, {100000, 65536}})
+    ranges.push_back({{"minimum", digit * before + 1}, {"maximum", digit * before + most}});
+  return {{"anyOf", std::move(ranges)}};
+}
+
+/// A value of several registers has its first one before the last.
+Json room_for_types() {
+  Json rules = Json::array();
+  for (const unsigned size : {2U, 4U}) {
+    std::vector<std::string_view> types;
+    for (const auto& each : enumeration_of<codec::Type>.words)
+      if (codec::width(each.value) == 16 * size) types.push_back(each.word);
+    const Json most{{"maximum", 65536 - size}};
+    rules.push_back(
+        {{"if", type_is(types)}, {"then", {{"properties", {{"address", most}, {"read_address", most}}}}}});
+  }
+  Json tables = Json::object();
+  for (const Table table : {Table::input_registers, Table::holding_registers})
+    tables[std::string(to_string(table))] = {{"additionalProperties", {{"allOf", rules}}}};
+  return {{"properties", {{"mapping", {{"properties", std::move(tables)}}}}}};
+}
+
+/// Unless `defaults` says when values are published, a point must, for these keys.
+Json publishing() {
+  const Json needed{{"dependencies", {{"deadband", {"publish"}}, {"max_interval", {"publish"}}}}};
+  Json places = Json::object();
+  for (const Table table : tables) places[std::string(to_string(table))] = {{"additionalProperties", needed}};
+  const Json given{{"required", {"defaults"}}, {"properties", {{"defaults", {{"required", {"publish"}}}}}}};
+  const Json mapping{{"properties", std::move(places)}};
+  return {{"if", {{"not", given}}}, {"then", {{"properties", {{"mapping", mapping}}}}}};
 }
 
 }  // namespace
@@ -108,8 +150,16 @@ std::string map_schema() {
   schema.update(object_of(Section::map));
   schema["if"] = {{"properties", {{"addressing", {{"const", "modicon"}, {"doNotSuggest", true}}}}},
                   {"required", {"addressing"}}};
-  schema["then"] = every_address({{"minimum", 1}});
-  schema["else"] = every_address({{"maximum", 65535}});
+  Json modicon = Json::array();
+  Json zero_based = Json::array({unsuggested(room_for_types())});
+  for (const Table table : tables) {
+    modicon.push_back(unsuggested(every_address_of(table, modicon_range(table))));
+    zero_based.push_back(unsuggested(every_address_of(table, {{"maximum", 65535}})));
+  }
+  schema["then"] = {{"allOf", std::move(modicon)}};
+  schema["else"] = {{"allOf", std::move(zero_based)}};
+  schema["allOf"] = Json::array({unsuggested(publishing())});
+  schema["definitions"] = definitions();
   return schema.dump(2) + '\n';
 }
 

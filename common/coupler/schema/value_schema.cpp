@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/schema/value_schema.hpp"
 
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "coupler/codec/type_name.hpp"
@@ -73,7 +77,8 @@ Json preset() {
 }
 
 Json time(const Key& key) {
-  const Json with_unit = text(duration, "write a number with its unit: us, ms, s or min");
+  Json with_unit = text(duration_up_to(key.most), "write a number with its unit: us, ms, s or min");
+  if (key.least > 0) with_unit["not"] = {{"pattern", duration_below(key.least)}};
   if (key.kind == ValueKind::seconds) {
     Json bare = number("number", key);
     bare["maximum"] = loader::most_bare_seconds;
@@ -82,7 +87,66 @@ Json time(const Key& key) {
   return key.least > 0 ? with_unit : any_of({with_unit, {{"const", 0}}});
 }
 
+struct Unit {
+  std::string_view name;
+  double seconds;
+};
+constexpr Unit units[] = {{"us", 1e-6}, {"ms", 1e-3}, {"s", 1}, {"min", 60}};
+
+/// The whole numbers below it, without leading zeros but for 0 itself.
+std::string whole_below(const std::string& number) {
+  std::string pattern;
+  const auto add = [&](const std::string& each) { pattern += (pattern.empty() ? "" : "|") + each; };
+  if (number.size() > 1) add(fmt::format("[0-9]{{1,{}}}", number.size() - 1));
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    const std::size_t rest = number.size() - i - 1;
+    const char least = i == 0 && rest > 0 ? '1' : '0';
+    const char smaller = static_cast<char>(number[i] - 1);
+    if (smaller < least) continue;
+    add(fmt::format("{}[{}-{}]{}", number.substr(0, i), least, smaller,
+                    rest == 0 ? "" : fmt::format("[0-9]{{{}}}", rest)));
+  }
+  return pattern;
+}
+
+/// The exponent, if it is a power of ten.
+std::optional<int> power_of_ten(double number) {
+  const double exponent = std::log10(number);
+  if (std::fabs(exponent - std::round(exponent)) > 1e-9) return std::nullopt;
+  return static_cast<int>(std::lround(exponent));
+}
+
 }  // namespace
+
+std::string duration_up_to(double most) {
+  std::string pattern;
+  for (const Unit& unit : units) {
+    const double limit = most / unit.seconds;
+    const double whole = std::floor(limit + 1e-9);
+    const std::string number = fmt::format("{:.0f}", whole);
+    const std::string below = whole_below(number);
+    // Between two whole numbers of a unit this takes too much.
+    const bool is_whole = std::fabs(limit - whole) < 1e-9 * limit;
+    const std::string at = fmt::format("0*{}(\\.{}*)?", number, is_whole ? "0" : "[0-9]");
+    const std::string lower = below.empty() ? "" : fmt::format("0*({})(\\.[0-9]*)?|\\.[0-9]+|", below);
+    const std::string fraction = below.empty() ? "|\\.[0-9]+" : "";
+    pattern += fmt::format("{}({}{}{}){}", pattern.empty() ? "" : "|", lower, at, fraction, unit.name);
+  }
+  return "^(" + pattern + ")$";
+}
+
+std::string duration_below(double least) {
+  std::string pattern = "0*\\.?0*(us|ms|s|min)";
+  for (const Unit& unit : units) {
+    const auto exponent = power_of_ten(least / unit.seconds);
+    if (!exponent) continue;
+    if (*exponent >= 0)
+      pattern += fmt::format("|0*[0-9]{{0,{}}}(\\.[0-9]*)?{}", *exponent, unit.name);
+    else
+      pattern += fmt::format("|0*\\.0{{{}}}[0-9]*{}", -*exponent, unit.name);
+  }
+  return "^(" + pattern + ")$";
+}
 
 Json value_schema(const Key& key) {
   switch (key.kind) {

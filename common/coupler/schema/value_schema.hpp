@@ -32,8 +32,11 @@ constexpr std::string_view ros_name = "^[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*$"
 constexpr std::string_view ros_name_rule =
     "a name begins with a letter and has letters, digits and '_', with '/' between parts";
 
-/// A number with its unit, as "500ms".
-constexpr std::string_view duration = R"(^([0-9]+\.?[0-9]*|\.[0-9]+)(us|ms|s|min)$)";
+/// A number with its unit, as "500ms", of at most so many seconds.
+std::string duration_up_to(double most);
+
+/// Of those, the ones that are shorter than so many seconds, which is more than 0. In minutes, only 0.
+std::string duration_below(double least);
 
 /// No name, port or range; what else is wrong with an address, the loader says.
 constexpr std::string_view ip_address =

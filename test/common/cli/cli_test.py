@@ -177,6 +177,15 @@ class Lock(Cli):
         self.assertNotIn("written", self.coupler("check", "cell.yaml").stdout)
         self.assertEqual((self.folder / "cell.yaml.lock").stat().st_mtime, 1)
 
+    def test_that_is_a_symbolic_link_stays_one(self):
+        (self.folder / "kept").mkdir()
+        (self.folder / "cell.yaml.lock").symlink_to("kept/lock")
+        self.assertEqual(self.coupler("check", self.file("cell.yaml", OPEN)).returncode, 0)
+        self.coupler("check", self.file("cell.yaml", OPEN + "    bell:\n"))
+        self.assertTrue((self.folder / "cell.yaml.lock").is_symlink())
+        self.assertEqual(self.lock(), ["coils 0 lamp", "coils 1 horn", "coils 2 bell"])
+        self.assertEqual([path.name for path in (self.folder / "kept").iterdir()], ["lock"])
+
     def test_of_a_map_that_leaves_nothing_out_is_not_there(self):
         self.coupler("check", self.file("cell.yaml", GOOD))
         self.assertFalse((self.folder / "cell.yaml.lock").exists())

@@ -53,7 +53,7 @@ TEST(Markdown, A_text_cannot_end_the_block_of_commands) {
   std::istringstream lines(page);
   std::size_t fences = 0;
   for (std::string line; std::getline(lines, line);) fences += line.rfind("```", 0) == 0 ? 1U : 0U;
-  EXPECT_EQ(fences, 4U) << "two blocks";
+  EXPECT_EQ(fences, 8U) << "two drawings, two blocks of commands";
 }
 
 TEST(Markdown, Each_address_space_has_a_table_of_its_points) {
@@ -65,8 +65,11 @@ TEST(Markdown, Each_address_space_has_a_table_of_its_points) {
       markdown_page(make_document(map->map(), lines, {"cell.yaml", "cell.yaml", "1.2.3"}));
   EXPECT_THAT(page, HasSubstr("\n## Coils (2)\n"));
   EXPECT_THAT(page, HasSubstr("\n## Discrete inputs (0)\n"));
-  EXPECT_THAT(page, HasSubstr("| [`level`](<cell.yaml#L6>) | 6 – 7 | 40007 – 40008 | REAL | ABCD | m\\|s | "
-                              "read, write | `std_msgs/Float32` |\n"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "| [`level`](<cell.yaml#L6>) | 6&nbsp;–&nbsp;7 | 40007&nbsp;–&nbsp;40008 | REAL | ABCD | m\\|s | "
+          "read, write | `std_msgs/Float32` |\n"));
 }
 
 }  // namespace

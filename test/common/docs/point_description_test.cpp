@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "coupler/docs/words.hpp"
 
 namespace coupler::docs {
@@ -48,6 +50,15 @@ TEST(PointDescription, The_order_is_as_long_as_the_value) {
   Point coil = point_of(Type::BOOL);
   coil.table = Table::coils;
   EXPECT_EQ(describe(coil, 0).order, "");
+}
+
+TEST(PointDescription, Bit_strings_are_in_hexadecimal_with_all_digits) {
+  const std::array<std::uint16_t, 2> registers{0x0012, 0xABCD};
+  Point point = point_of(Type::DWORD);
+  point.initial = registers;
+  EXPECT_EQ(describe(point, 0).initial, "0x0012ABCD");
+  point.format.type = Type::UDINT;
+  EXPECT_EQ(describe(point, 0).initial, "1223629");
 }
 
 TEST(PointDescription, The_range_is_that_of_the_published_value) {

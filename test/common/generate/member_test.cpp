@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "coupler/generate/macros.hpp"
 #include "test/fakes/map_builder.hpp"
 
 namespace coupler::generate {
@@ -20,6 +21,30 @@ TEST(Member, A_name_that_cannot_be_a_member_gets_one_that_can) {
                          .add(Table::coils, "online_", 4, Type::BOOL)
                          .build();
   EXPECT_THAT(members(map->map()), ElementsAre("arm_left", "arm_left_", "register_", "online_", "online__"));
+}
+
+TEST(Member, A_name_in_capital_letters_stays_and_macros_of_that_name_are_put_aside) {
+  const MapPtr map = fakes::MapBuilder()
+                         .add(Table::coils, "PUMP", 0, Type::BOOL)
+                         .add(Table::coils, "EAGAIN", 1, Type::BOOL)
+                         .add(Table::coils, "errno", 2, Type::BOOL)
+                         .build();
+  EXPECT_THAT(members(map->map()), ElementsAre("PUMP", "EAGAIN", "errno_"));
+  const WithoutMacros lines = without_macros({"PUMP", "door", "EAGAIN", "PUMP"});
+  EXPECT_EQ(
+      lines.before,
+      "\n// Macros of other headers may have these names. They are put aside here, and are back below.\n"
+      "#pragma push_macro(\"EAGAIN\")\n#undef EAGAIN\n#pragma push_macro(\"PUMP\")\n#undef PUMP\n");
+  EXPECT_EQ(lines.after, "\n#pragma pop_macro(\"EAGAIN\")\n#pragma pop_macro(\"PUMP\")\n");
+}
+
+TEST(Member, Names_as_most_are_cost_no_line) {
+  for (const char* name : {"pump", "left_arm_2", "Pump", "PumpOn", "sign", "state", "hall"})
+    EXPECT_FALSE(could_be_macro(name)) << name;
+  for (const char* name : {"I", "K1", "NaN", "PRIx64", "E2BIG", "T_ROOM", "si_pid", "linux"})
+    EXPECT_TRUE(could_be_macro(name)) << name;
+  EXPECT_EQ(without_macros({"pump", "Pump"}).before, "");
+  EXPECT_EQ(without_macros({"pump", "Pump"}).after, "");
 }
 
 TEST(Member, The_type_is_that_of_the_value) {

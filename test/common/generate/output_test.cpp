@@ -60,6 +60,40 @@ TEST_F(Output, Nothing_else_remains_in_the_folder) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
 }
 
+TEST_F(Output, A_symbolic_link_stays_one_and_what_it_leads_to_is_replaced) {
+  fs::create_directories(folder / "real" / "deep");
+  fs::create_directory(folder / "links");
+  // Two links, both relative; the second one passes a folder that is a link itself.
+  fs::create_directory_symlink("../real/deep", folder / "links" / "there");
+  fs::create_symlink("there/../b", folder / "links" / "a");
+  ASSERT_TRUE(write_if_changed(folder / "real" / "b", "one"));
+  std::ifstream reader(folder / "real" / "b");
+  EXPECT_EQ(write_if_changed(folder / "links" / "a", "two"), Outcome::written);
+  EXPECT_TRUE(fs::is_symlink(folder / "links" / "a"));
+  EXPECT_EQ(read(folder / "real" / "b"), "two");
+  EXPECT_EQ((std::string{std::istreambuf_iterator<char>(reader), {}}), "one") << "not in one step";
+  EXPECT_EQ(write_if_changed(folder / "links" / "a", "two"), Outcome::unchanged);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "links"), {}), 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "real"), {}), 2);
+}
+
+TEST_F(Output, A_symbolic_link_to_a_file_that_is_missing_makes_it) {
+  fs::create_directory(folder / "real");
+  fs::create_symlink(folder / "real" / "b", folder / "a");
+  EXPECT_EQ(write_if_changed(folder / "a", "one"), Outcome::written);
+  EXPECT_TRUE(fs::is_symlink(folder / "a"));
+  EXPECT_EQ(read(folder / "real" / "b"), "one");
+}
+
+TEST_F(Output, Symbolic_links_in_a_circle_are_an_error) {
+  fs::create_symlink("b", folder / "a");
+  fs::create_symlink("a", folder / "b");
+  const auto written = write_if_changed(folder / "a", "one");
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error(),
+            "cannot write " + (folder / "a").string() + ": Too many levels of symbolic links");
+}
+
 TEST_F(Output, A_missing_folder_is_named_in_the_error) {
   const auto written = write_if_changed(folder / "missing" / "a", "one");
   ASSERT_FALSE(written);

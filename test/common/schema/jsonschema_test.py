@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -22,14 +23,13 @@ BAD = SOURCE / "test/maps/bad"
 SCHEMA = json.loads(subprocess.run([os.environ["COUPLER"], "schema"], check=True, capture_output=True).stdout)
 VALIDATOR = jsonschema.Draft7Validator(SCHEMA)
 
+# What the schema does not see, by the reason. Maps of test/maps/bad.
 UNSEEN = {name + ".yaml" for name in (
     # between points, or between a point and a limit
     "overlap overlap_of_parts overlap_of_access overlap_of_inputs overlap_of_a_wired_input point_name_is_taken "
     "line_in_two_points point_exceeds_the_limits string_is_too_long_to_write preset_area "
-    # between keys of a point
-    "line_option_given_twice line_option_without_a_line array_with_hardware array_initial initial_does_not_fit "
-    # in the digits of an address
-    "modicon_of_another_table modicon_past_65536 modicon_numbers_read_from_zero "
+    # in the digits of an address: JSON has numbers
+    "modicon_past_65536 modicon_numbers_read_from_zero "
     # between entries of a list
     "allow_is_half allow_is_the_other_half "
     # between the watchdog and the preset
@@ -42,6 +42,55 @@ UNSEEN = {name + ".yaml" for name in (
     "address_is_missing lock_does_not_know_it lock_of_a_merge lock_is_outgrown "
     # in the text: gone when it is read as YAML
     "anchor tag tag_of_a_map tag_of_quoted_text key_is_null duplicate_key duplicate_table").split()} | {"json_surrogate_escape.json"}
+
+# Of test/maps/mistakes.
+UNSEEN_MISTAKES = {
+    "in the lock, or for want of one": ["holding_registers: {type: INT}"],
+    "between the tables: one that is empty is good beside another": [
+        r"file: name: press\nmapping: {}\n", r"file: name: press\nmapping:\n  coils:\n"],
+    "between points": [r"holding_registers: {address: 0, type: float}\n    q: {address: 1, type: int16}"],
+    "in the text: a key that is there twice is gone when it is read as YAML": ["top: name: belt"],
+}
+
+# A point of each type with each of these keys, and of some types beside each of CONTEXTS: the schema refuses what the
+# loader refuses, and nothing else.
+TYPES = {"BOOL": "bit: 3", "BYTE": "offset: low", "SINT": "offset: low", "USINT": "offset: high", "CHAR": "offset: high",
+         "STRING": "length: 6", **{name: "" for name in "WORD DWORD LWORD INT DINT LINT UINT UDINT ULINT REAL LREAL".split()}}
+BITS_OF_A_WORD = f"[{', '.join(['on'] * 16)}]"
+KEYS = """bit: 3|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|order: AB|order: CDAB|scale: 0|scale: 0.1|
+    scale: {gain: 0}|scale: {gain: 2, offset: -1}|scale: {offset: 5}|min: 1|min: 0.5|min: 40000|min: -1|max: 1e39|
+    values: {0: idle, 1: run}|initial: 1|initial: 0.5|initial: -1|initial: 300|initial: 70000|initial: 5e9|
+    initial: on|initial: true|initial: "on"|initial: "1"|initial: idle|initial: [1, 0]|initial: [on, off]|
+    initial: %s|initial: {}|count: 1|count: 2|count: 0|access: read|access: write|access: read_write|
+    iio: {device: a, channel: b}|pwm: {chip: a, channel: 0, period: 1ms}|pwm: {chip: a, channel: 0, period: 11s}|
+    iio: {device: "", channel: b}|counter: {of: q}|latched: {of: q}|deadband: 1|deadband: -1|publish: always|
+    max_interval: 1s|rate: 2|latch: on|queue_size: 3|write_function: single|write_function: multiple|
+    write_queue: every|priority: high|verify_write: yes|verify_write: no|deadman: {timeout: 1s, value: 1}|
+    deadman: {timeout: 1s, value: on}|deadman: {timeout: 1s, value: 0.5}|deadman: {timeout: 500us, value: 1}|
+    deadman: {timeout: 61min, value: 1}|deadman: {timeout: 1s}|read_address: 7|allow_nonfinite: true|safe: on|
+    safe: hold|safe: 1|safe: [on, off]|safe: 70000|line: GPIO1|line: 5|line: ""|line: {chip: a, offset: 1}|
+    line: {chip: a}|line: {name: b, offset: 2}|line: {name: b}|line: {}|line: {name: b, active_low: true}|
+    active_low: true|bias: pull_up|drive: open_drain|debounce: 5ms|debounce: 2min|debounce: 0|units: mm|
+    description: 5""" % BITS_OF_A_WORD
+CONTEXTS = ["count: 2", "access: read", "access: write", "scale: 0.5", "values: {0: idle, 100: run}", "publish: on_change",
+            "line: GPIO7", "iio: {device: d, channel: c}"]
+DIFFERENT_TYPES = {"BOOL", "SINT", "WORD", "INT", "REAL", "STRING"}
+# What no schema can say: it compares no numbers, adds none, and counts no list or text by another key's number.
+BETWEEN_KEYS = re.compile("is published from|is set to 0|is not one of its values|below 'min'|lists 16 values, the array has 2|"
+                          "function codes 5 and 6 write one")
+NO_NAME_OF_A_VALUE = "must be a number, not"  # beside `values`
+
+
+def points_to_compare():
+    """(table, the point's keys)"""
+    for table in ("coils", "discrete_inputs", "input_registers", "holding_registers"):
+        types = {f"type: {name}, {own}": name for name, own in TYPES.items()} if "registers" in table else {"": ""}
+        for head, name in types.items():
+            for key in re.split(r"\|\s*", KEYS):
+                for other in ["", *(CONTEXTS if table != "input_registers" and name in DIFFERENT_TYPES | {""} else [])]:
+                    texts = [text for text in ("address: 0", *head.split(", "), key, other) if text]
+                    if len({text.split(":")[0] for text in texts}) == len(texts):
+                        yield table, ", ".join(texts)
 
 
 def is_map(path):
@@ -61,10 +110,42 @@ def content(path):
     text = path.read_text(encoding="utf-8", errors="surrogateescape")
     if path.suffix == ".json":  # the loader allows comments
         text = re.sub(r"/\*.*?\*/|//[^\n\"]*$", "", text, flags=re.S | re.M)
+    return parsed(text)
+
+
+def parsed(text):
     try:
         return yaml12.load(text)
     except (yaml.YAMLError, ValueError):
         return None
+
+
+def mistakes():
+    """What is typed -> the map that it makes and what the loader says of it. The format is in README.md there."""
+    found = {}
+    for path in sorted((SOURCE / "test/maps/mistakes").glob("*.txt")):
+        for line in path.read_text(encoding="utf-8").splitlines():
+            if line.startswith("  > "):
+                found[typed][1].append(line[4:])
+            elif line and line[0] not in "# ":
+                typed = line
+                where, text = line.split(": ", 1)
+                text = text.replace("\\n", "\n").replace("\\t", "\t")
+                before = {"file": "", "top": "name: press\n", "mapping": "name: press\nmapping:\n  "}.get(
+                    where, f"name: press\nmapping:\n  {where}:\n    p: ")
+                found[typed] = (before + text + ("\nmapping: {coils: {valve: 0}}\n" if where == "top" else "\n"), [])
+    return found
+
+
+def loaded(maps):
+    """The errors of the loader, for each of the maps."""
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [Path(folder, f"{at}.yaml") for at in range(len(maps))]
+        for path, text in zip(paths, maps):
+            path.write_text(text, encoding="utf-8")
+        done = subprocess.run([os.environ["COUPLER"], "check", "--json", *paths], capture_output=True, check=False)
+    return [[each["what"] for each in json.loads(line)["diagnostics"] if each["severity"] == "error"]
+            for line in done.stdout.splitlines()]
 
 
 def problems(value):
@@ -89,6 +170,27 @@ class TheSchema(unittest.TestCase):
             if value is not None and not problems(value):
                 accepted.add(path.name)
         self.assertEqual(accepted, UNSEEN)
+
+    def test_refuses_every_mistake_that_it_can_see(self):
+        accepted = set()
+        table = mistakes()
+        self.assertGreater(len(table), 100)
+        for typed, (text, said) in table.items():
+            value = parsed(text)
+            if value is not None and any(line.startswith("error: ") for line in said) and not problems(value):
+                accepted.add(typed)
+        self.assertEqual(accepted, {typed for why in UNSEEN_MISTAKES.values() for typed in why})
+
+    def test_agrees_with_the_loader_about_a_key_of_a_point_beside_another(self):
+        points = list(points_to_compare())
+        self.assertGreater(len(points), 5000)
+        maps = [f"name: press\nsim: [{{square: 1s, to: q}}]\nmapping:\n  {table}:\n    p: {{{point}}}\n" +
+                ("    q: 9\n" if table == "discrete_inputs" else "  discrete_inputs: {q: 9}\n") for table, point in points]
+        for (table, point), text, said in zip(points, maps, loaded(maps)):
+            if any(BETWEEN_KEYS.search(each) or ("values:" in point and NO_NAME_OF_A_VALUE in each) for each in said):
+                continue
+            with self.subTest(f"{table}: {{{point}}}"):
+                self.assertEqual(VALIDATOR.is_valid(parsed(text)), not said, said)
 
     def test_explains_and_gives_the_default_of_keys(self):
         port = SCHEMA["properties"]["port"]

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <regex>
 
 #include "coupler/codec/type_name.hpp"
@@ -15,7 +16,9 @@ namespace coupler::schema {
 namespace {
 
 bool matches(const std::string& text, std::string_view pattern) {
-  return std::regex_match(text, std::regex(std::string(pattern)));
+  static std::map<std::string, std::regex> compiled;
+  const auto found = compiled.try_emplace(std::string(pattern), std::string(pattern)).first;
+  return std::regex_match(text, found->second);
 }
 
 TEST(Pattern, Of_names_takes_what_the_loader_takes) {
@@ -24,9 +27,38 @@ TEST(Pattern, Of_names_takes_what_the_loader_takes) {
 }
 
 TEST(Pattern, Of_durations_takes_what_the_loader_takes) {
+  const std::vector<std::string> forms{"1s",  "500ms", "2.5min", "40us",  ".5s", "1.s", "1",     "s",
+                                       "1 s", "-1s",   "1h",     "1..5s", "",    ".s",  "0001s", "1s "};
+  for (const std::string& text : forms)
+    EXPECT_EQ(matches(text, duration_up_to(3600)), loader::parse_duration(text).has_value()) << text;
+}
+
+TEST(Pattern, Of_durations_knows_the_longest) {
+  const std::vector<std::string> within{"3600s",        "3600.0s", "03600s",    "3599.999s",
+                                        "60min",        "59.9min", "3600000ms", "3599999.9ms",
+                                        "3600000000us", "999us",   "0s"};
+  const std::vector<std::string> beyond{"3601s",    "3600.1s",   "4000s",        "10000s",       "61min",
+                                        "60.01min", "3600001ms", "3600000001us", "99999999999us"};
+  for (const std::string& text : within) EXPECT_TRUE(matches(text, duration_up_to(3600))) << text;
+  for (const std::string& text : beyond) EXPECT_FALSE(matches(text, duration_up_to(3600))) << text;
+  EXPECT_TRUE(matches("60s", duration_up_to(60)));
+  EXPECT_FALSE(matches("60.5s", duration_up_to(60)));
+  EXPECT_TRUE(matches("1min", duration_up_to(60)));
+  EXPECT_FALSE(matches("1.5min", duration_up_to(60)));
+  EXPECT_TRUE(matches("10s", duration_up_to(10)));
+  EXPECT_TRUE(matches(".1min", duration_up_to(10)));
+  EXPECT_FALSE(matches("1min", duration_up_to(10)));
+}
+
+TEST(Pattern, Of_durations_knows_the_shortest) {
   for (const char* text :
-       {"1s", "500ms", "2.5min", "40us", ".5s", "1.s", "1", "s", "1 s", "-1s", "1h", "1..5s", ""})
-    EXPECT_EQ(matches(text, duration), loader::parse_duration(text).has_value()) << text;
+       {"0s", "0.0ms", "9ms", "9.99ms", "0.009s", ".0099s", "9999us", "9999.9us", "0min", "00s"})
+    EXPECT_TRUE(matches(text, duration_below(0.01))) << text;
+  for (const char* text :
+       {"10ms", "10.0ms", "010ms", "0.01s", ".01s", "0.1s", "1s", "10000us", "1min", "100ms"})
+    EXPECT_FALSE(matches(text, duration_below(0.01))) << text;
+  EXPECT_TRUE(matches("0.9us", duration_below(1e-6)));
+  EXPECT_FALSE(matches("1us", duration_below(1e-6)));
 }
 
 TEST(Pattern, Of_ip_addresses_takes_what_the_loader_takes_and_no_names) {

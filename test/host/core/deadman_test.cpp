@@ -11,12 +11,14 @@ using codec::Type;
 using std::chrono::milliseconds;
 
 struct DeadmanTest : test::DeviceTest {
-  void start_online() {
+  /// `names`: of the speeds.
+  void start_online(const std::vector<NamedValue>& names = {}) {
     fakes::MapBuilder builder;
     const auto stop = builder.keep({1});
     builder.add(Table::holding_registers, "speed", 5, Type::UINT, [&](Point& point) {
       point.access = Access::write;
       point.host.deadman = {milliseconds(200), stop};
+      point.values = names;
     });
     owned = builder.build();
     sink.emplace(owned->map());
@@ -36,7 +38,15 @@ TEST_F(DeadmanTest, A_command_that_falls_silent_is_replaced_once_and_reported) {
   EXPECT_EQ(speed(), 1);
   run_for(milliseconds(1000));
   EXPECT_EQ(writes(), 2U);
-  EXPECT_EQ(sink->reported("no message for speed in 200 ms"), 1);
+  EXPECT_EQ(sink->reported("no message for speed in 200 ms: its deadman value 1 is written"), 1);
+}
+
+TEST_F(DeadmanTest, The_report_says_what_its_value_is_called) {
+  const std::vector<NamedValue> names{{1, "crawl"}, {500, "run"}};
+  start_online(names);
+  push("speed", 500);
+  run_for(milliseconds(300));
+  EXPECT_EQ(sink->reported("no message for speed in 200 ms: its deadman value crawl is written"), 1);
 }
 
 TEST_F(DeadmanTest, Messages_keep_the_command) {

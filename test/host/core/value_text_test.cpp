@@ -123,6 +123,14 @@ TEST(ValueText, A_text_is_taken_as_it_stands) {
   EXPECT_THAT(error_of("abcde", text), HasSubstr("longer than 4 bytes"));
 }
 
+TEST(ValueText, Bit_strings_are_shown_in_hexadecimal_with_all_digits) {
+  EXPECT_EQ(format_value(Registers{0x00AF}.data(), point_of(codec::Type::WORD)), "0x00AF");
+  EXPECT_EQ(format_value(Registers{1, 0x2345}.data(), point_of(codec::Type::DWORD)), "0x00012345");
+  EXPECT_EQ(format_value(Registers{0, 0, 0, 9}.data(), point_of(codec::Type::LWORD)), "0x0000000000000009");
+  EXPECT_EQ(format_value(Registers{7, 0xFFFF}.data(), point_of(codec::Type::WORD, 2)), "[0x0007, 0xFFFF]");
+  EXPECT_EQ(format_value(Registers{0x0700}.data(), point_of(codec::Type::BYTE)), "0x07");
+}
+
 TEST(ValueText, What_is_shown_can_be_given_back) {
   for (const Point& point : {point_of(codec::Type::INT, 3), point_of(codec::Type::WORD),
                              point_of(codec::Type::LREAL), point_of(codec::Type::ULINT, 2)}) {

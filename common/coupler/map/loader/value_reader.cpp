@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/codec/value.hpp"
+#include "coupler/codec/bit_string.hpp"
 #include "coupler/map/loader/point_reader.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/typed_value.hpp"
@@ -104,21 +104,17 @@ std::optional<double> bare_number(const Entry& entry) {
 using codec::Type;
 using codec::Value;
 
-bool is_bit_string(Type type) {
-  return type == Type::BYTE || type == Type::WORD || type == Type::DWORD || type == Type::LWORD;
-}
-
 std::string expected(Type type) {
   if (type == Type::BOOL) return "on or off";
   if (type == Type::STRING) return "text";
-  if (is_bit_string(type))
+  if (codec::is_bit_string(type))
     return fmt::format("a number or a list of {} times true or false", codec::width(type));
   return "a number";
 }
 
 /// Element i is bit i.
 std::optional<Value> bits(const Entry& list, Type type) {
-  if (!is_bit_string(type) || list.children.size() != codec::width(type)) return std::nullopt;
+  if (!codec::is_bit_string(type) || list.children.size() != codec::width(type)) return std::nullopt;
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < list.children.size(); ++i) {
     const Entry& element = list.children[i];

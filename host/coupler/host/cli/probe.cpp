@@ -185,6 +185,14 @@ Exit run(const Arguments& arguments) {
   call->connection.unit = *findings.unit;
   std::fputs(probe_report(findings, call->task, call->connection, matches).c_str(), stdout);
   Exit exit = findings.broke_off ? failed : ok;
+  if (shows_nothing(findings)) {
+    if (arguments.out.empty()) return exit;
+    return complain(
+        "probe", failed, arguments.out + " is not written: a map needs a point, and none was found",
+        findings.is_complete
+            ? "look elsewhere, as the report says, or write what the device's manual names into a map"
+            : "run it again, to its end");
+  }
   if (!arguments.out.empty()) {
     const Exit written = write(arguments.out, scan::draft_map(findings, call->connection, matches));
     if (written != ok) exit = written;

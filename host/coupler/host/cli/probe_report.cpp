@@ -103,7 +103,26 @@ std::string orders_text(const std::vector<scan::Match>& matches) {
       to_string(*order, false), codec::bytes_swapped(*order), !codec::words_reversed(*order));
 }
 
+/// Where else something may be, for a device that shows nothing.
+std::string where_to_look(const Findings& findings, const scan::Task& task, const Connection& connection,
+                          bool untried) {
+  std::vector<std::string> places;
+  if (findings.units.size() > 1)
+    places.push_back(fmt::format("another unit, as {}", place(connection, findings.units[1])));
+  else
+    places.push_back("another unit, as --units 1-247");
+  if (task.window.start() > 0 || task.window.end() <= 65535)
+    places.push_back("all addresses, by --from 0 --to 65535");
+  if (untried && task.stride > 1) places.push_back("each address, by --stride 1");
+  return fmt::format("{}", fmt::join(places, "; "));
+}
+
 }  // namespace
+
+bool shows_nothing(const Findings& findings) {
+  return std::all_of(findings.tables.begin(), findings.tables.end(),
+                     [](const TableFindings& table) { return table.count(Seen::readable) == 0; });
+}
 
 std::string probe_report(const Findings& findings, const scan::Task& task, const Connection& connection,
                          const std::vector<scan::Match>& matches) {
@@ -121,6 +140,10 @@ std::string probe_report(const Findings& findings, const scan::Task& task, const
   for (const std::string& failure : findings.failures)
     text += fmt::format("  without an answer: {}\n", printable(failure));
   if (!findings.is_complete) text += "ended early: there may be more\n";
+  if (findings.is_complete && shows_nothing(findings))
+    return text + fmt::format("the device shows nothing: no address from {} to {} can be read; try {}\n",
+                              task.window.start(), task.window.last(),
+                              where_to_look(findings, task, connection, untried));
   if (untried && task.stride > 1)
     text += fmt::format("not tried: where blocks are refused, only one address in {}; --stride 1 tries all\n",
                         task.stride);

@@ -8,6 +8,9 @@
 
 namespace coupler::cli {
 
+/// No address that was tried can be read: there is nothing to draft.
+bool shows_nothing(const scan::Findings& findings);
+
 /// What a scan found, for people. `task` says what it looked for.
 std::string probe_report(const scan::Findings& findings, const scan::Task& task, const Connection& connection,
                          const std::vector<scan::Match>& matches);

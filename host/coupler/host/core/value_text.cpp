@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/codec/bit_string.hpp"
 #include "coupler/codec/scale.hpp"
 #include "coupler/codec/value.hpp"
 #include "coupler/map/typed_value.hpp"
@@ -129,7 +130,7 @@ std::string format_value(const std::uint16_t* registers, const Point& point) {
     if (holds_bits(point.table)) return at[0] != 0 ? "true" : "false";
     if (point.scale.present()) return scaled_text(at, point);
     if (const auto name = name_of_value(point, at); !name.empty()) return std::string(name);
-    return codec::to_string(codec::decode(at, point.format));
+    return codec::text_of(codec::decode(at, point.format), point.format.type);
   };
   if (point.count == 1) return one(registers);
   std::string list;

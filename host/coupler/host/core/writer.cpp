@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/host/core/value_text.hpp"
 #include "coupler/map/typed_value.hpp"
 
 namespace coupler::host {
@@ -15,6 +16,12 @@ using Outcome = WriteResult::Outcome;
 bool may_be_of_merging(modbus::Exception code) {
   return code == modbus::Exception::illegal_function || code == modbus::Exception::illegal_data_address ||
          code == modbus::Exception::illegal_data_value;
+}
+
+/// " idle", for the log. Nothing of an array or a text, which may be long.
+std::string deadman_value(const Point& point) {
+  if (point.count > 1 || point.format.type == codec::Type::STRING) return {};
+  return ' ' + format_value(point.host.deadman.value.data(), point);
 }
 
 }  // namespace
@@ -87,8 +94,9 @@ void Writer::fire_deadmen() {
       deadmen_.put_back(*point);
       return;
     }
-    sink_.on_report(Level::warning, fmt::format("no message for {} in {} ms: its deadman value is written",
-                                                name(*point), deadman.timeout.count()));
+    sink_.on_report(Level::warning,
+                    fmt::format("no message for {} in {} ms: its deadman value{} is written", name(*point),
+                                deadman.timeout.count(), deadman_value(map_.points[*point])));
   }
 }
 
