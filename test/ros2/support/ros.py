@@ -20,6 +20,7 @@ polled = rclpy.create_node("test", start_parameter_services=False, enable_rosout
 
 # Clients and events, by a thread.
 spun = rclpy.create_node("test_client", start_parameter_services=False, enable_rosout=False)
+_OWN = (polled.get_name(), spun.get_name())
 _executor = SingleThreadedExecutor()
 _executor.add_node(spun)
 
@@ -33,6 +34,17 @@ def _spin():
 
 _thread = threading.Thread(target=_spin, daemon=True)
 _thread.start()
+
+
+def other_nodes():
+    """The names of those that are not this process's."""
+    return [name for name in polled.get_node_names() if name not in _OWN]
+
+
+def has_other_subscriptions():
+    """They may be there for longer than their node."""
+    return any(info.node_name not in _OWN for topic, _ in polled.get_topic_names_and_types()
+               for info in polled.get_subscriptions_info_by_topic(topic))
 
 
 def shut_down():
