@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -55,6 +56,10 @@ Exit run(const Arguments& arguments) {
     std::fputs(exported.text.c_str(), stdout);
     return ok;
   }
+  std::error_code not_a_file;  // a device has none, and what is new is none yet
+  if (std::filesystem::equivalent(arguments.map, arguments.out, not_a_file))
+    return complain("export", bad_call, fmt::format("{} is the map itself", arguments.out),
+                    "name another file with --out");
   if (const auto outcome = generate::write_if_changed(arguments.out, exported.text); !outcome)
     return complain("export", bad_call, outcome.error(), "give a file that you may write with --out");
   return ok;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -36,6 +38,7 @@ struct Arguments {
   bool python = false;
   bool quiet = false;
   bool locked = false;
+  bool force = false;
 };
 
 fs::path folder_of(const Arguments& arguments) { return arguments.out.empty() ? "." : arguments.out; }
@@ -73,6 +76,15 @@ std::vector<generate::File> map_pages(const Arguments& arguments, const std::str
   return {{file + ".html", docs::html_page(document)}, {file + ".md", docs::markdown_page(document)}};
 }
 
+/// A file that somebody wrote: all that is generated says by whom.
+bool is_by_hand(const fs::path& path) {
+  if (!fs::is_regular_file(path)) return false;
+  std::ifstream in(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  return !text.empty() && text.find("by coupler ") == std::string::npos &&
+         text.find("\"made_by\": \"coupler ") == std::string::npos;
+}
+
 Exit write(const Arguments& arguments, const std::vector<generate::File>& files) {
   constexpr auto remedy = "give a folder that you may write to with --out";
   std::error_code failed;
@@ -82,6 +94,9 @@ Exit write(const Arguments& arguments, const std::vector<generate::File>& files)
                     fmt::format("cannot create the folder {}: {}", arguments.out, failed.message()), remedy);
   for (const generate::File& file : files) {
     const fs::path path = (folder_of(arguments) / file.name).lexically_normal();
+    if (!arguments.force && is_by_hand(path))
+      return complain("generate", bad_call, fmt::format("{} was not made by coupler", path.string()),
+                      "name another folder with --out, or replace it with --force");
     const auto outcome = generate::write_if_changed(path, file.content);
     if (!outcome) return complain("generate", bad_call, outcome.error(), remedy);
     if (!arguments.quiet)
@@ -162,6 +177,7 @@ void add_generate(Program& program, Exit& exit) {
       .excludes(python);
   command.add_flag("--locked", arguments->locked,
                    "Do not write the map's lock; one that is missing or not up to date is an error");
+  command.add_flag("--force", arguments->force, "Also replace files that coupler has not made");
   command.add_flag("--quiet", arguments->quiet, "Do not list the files");
   command.footer(
       "Example:\n  coupler generate device.yaml --out generated\n"

@@ -53,8 +53,16 @@ bool has_decimal_comma(std::string_view text) {
 
 class RowReader {
  public:
-  RowReader(const std::vector<Column>& columns, const ImportOptions& options, Problems& problems)
-      : columns_(columns), options_(options), problems_(problems) {}
+  RowReader(const std::vector<Column>& columns, const ImportOptions& options, const std::vector<Row>& rows,
+            Problems& problems)
+      : columns_(columns), options_(options), problems_(problems) {
+    const bool has_access = std::any_of(columns.begin(), columns.end(),
+                                        [](const Column& column) { return column.key == "access"; });
+    codes_are_access_ = !has_access && std::any_of(rows.begin() + 1, rows.end(), [this](const Row& row) {
+      const Codes codes = table_word(row, cell(row, "table")).codes;
+      return codes == Codes::write || codes == Codes::read_and_write;
+    });
+  }
 
   void read(const Row& row, std::vector<ForeignUnit>& units) {
     if (row.size() > columns_.size()) {
@@ -66,15 +74,17 @@ class RowReader {
     }
     const Cell* name = cell(row, "name");
     const Cell* table_cell = cell(row, "table");
-    bool only_writes = false;
-    const auto table = table_of(row, table_cell, only_writes);
+    Codes codes = Codes::none;
+    const auto table = table_of(row, table_cell, codes);
     if (!table) return;
     const loader::Position at = name != nullptr ? name->at : row.front().at;
     Entry point = section(name != nullptr ? name->text : "", at);
     for (std::size_t i = 0; i < row.size(); ++i)
       if (columns_[i].described != nullptr && !row[i].text.empty())
         add(columns_[i], row[i], row, *table, point);
-    if (only_writes && find(point, "access") == nullptr) {
+    if (codes_are_access_ && codes == Codes::read && is_writable(*table))
+      point.children.push_back(scalar("access", "read", table_cell->at));
+    if (codes == Codes::write && find(point, "access") == nullptr) {
       point.children.push_back(scalar("access", "write", table_cell->at));
       problems_.warning(
           table_cell->at,
@@ -88,21 +98,23 @@ class RowReader {
   }
 
  private:
-  /// `only_writes`: it stands there as a function code that does.
-  std::optional<Table> table_of(const Row& row, const Cell* given, bool& only_writes) const {
+  std::optional<Table> table_of(const Row& row, const Cell* given, Codes& codes) const {
     if (given == nullptr && options_.addressing == loader::Addressing::modicon)
       if (const Cell* address = cell(row, "address"))
         if (const auto table = table_of_modicon(address->text)) return table;
-    const bool codes =
-        given != nullptr && columns_[static_cast<std::size_t>(given - row.data())].function_codes;
-    const TableWord word = read_table(given != nullptr ? given->text : "", codes);
-    only_writes = word.only_writes;
+    const TableWord word = table_word(row, given);
+    codes = word.codes;
     if (!word.table) problems_.error(given != nullptr ? given->at : row.front().at, word.what, word.remedy);
     return word.table;
   }
 
+  TableWord table_word(const Row& row, const Cell* given) const {
+    if (given == nullptr) return read_table("", false);
+    return read_table(given->text, columns_[static_cast<std::size_t>(given - row.data())].function_codes);
+  }
+
   const Cell* cell(const Row& row, std::string_view key) const {
-    for (std::size_t i = 0; i < row.size(); ++i)
+    for (std::size_t i = 0; i < std::min(row.size(), columns_.size()); ++i)
       if (columns_[i].key == key && !row[i].text.empty()) return &row[i];
     return nullptr;
   }
@@ -157,6 +169,7 @@ class RowReader {
   const std::vector<Column>& columns_;
   const ImportOptions& options_;
   Problems& problems_;
+  bool codes_are_access_ = false;  ///< some have one that writes, and nothing else says what may be written
 };
 
 /// `safe` of a point with nothing behind it on a node: what the driver leaves. nullptr if no point has one.
@@ -201,7 +214,7 @@ std::vector<ForeignUnit> read_csv(std::string_view text, const ImportOptions& op
   if (problems.has_errors()) return {};
   tell_units_from_unit_ids(columns, rows);
   std::vector<ForeignUnit> units;
-  RowReader reader(columns, options, problems);
+  RowReader reader(columns, options, rows, problems);
   for (auto row = rows.begin() + 1; row != rows.end(); ++row) reader.read(*row, units);
   for (ForeignUnit& unit : units) add_on_shutdown(unit.map, problems);
   return units;

@@ -169,20 +169,20 @@ std::string_view without_fc(std::string_view text) {
 
 TableWord table_of_codes(const std::vector<std::string_view>& numbers, std::string_view text) {
   TableWord word;
-  word.only_writes = true;
   for (const std::string_view number : numbers) {
     const Code* code = find_code(*loader::parse_unsigned(number));
     if (code == nullptr)
-      return {std::nullopt, false,
+      return {std::nullopt, Codes::none,
               fmt::format("{} is not a function code that reads or writes a table", loader::shown(number)),
               "write 1, 2, 3 or 4, or 5, 6, 15 or 16; a hexadecimal one as 0x10"};
     if (word.table && *word.table != code->table)
       return {
-          std::nullopt, false,
+          std::nullopt, Codes::none,
           fmt::format("{} is {} and {}", loader::shown(text), to_string(*word.table), to_string(code->table)),
           "give each of the two a row of its own"};
     word.table = code->table;
-    word.only_writes = word.only_writes && code->writes;
+    const Codes does = code->writes ? Codes::write : Codes::read;
+    word.codes = word.codes == Codes::none || word.codes == does ? does : Codes::read_and_write;
   }
   return word;
 }
@@ -190,19 +190,19 @@ TableWord table_of_codes(const std::vector<std::string_view>& numbers, std::stri
 /// A number alone is a function code to one, and Modicon's area to another.
 TableWord ambiguous(std::string_view text, std::uint64_t number) {
   const Code* code = find_code(number);
-  const auto area = table_of_modicon(fmt::format("{}0001", number));
+  const auto area = number < 10 ? table_of_modicon(fmt::format("{}0001", number)) : std::nullopt;
   std::string meanings;
   if (code != nullptr) meanings = fmt::format("{} as a function code", to_string(code->table));
   if (area)
     meanings +=
         fmt::format("{}{} as an area ({}x)", meanings.empty() ? "" : " and ", to_string(*area), number);
   if (meanings.empty())
-    return {std::nullopt, false, fmt::format("{} is not a table", loader::shown(text)),
+    return {std::nullopt, Codes::none, fmt::format("{} is not a table", loader::shown(text)),
             std::string(names_of_tables)};
   std::string remedy;
   if (code != nullptr) remedy = fmt::format("write FC{}", number);
   if (area) remedy += fmt::format("{} {}x", remedy.empty() ? "write" : " or", number);
-  return {std::nullopt, false, fmt::format("{} alone is {}", loader::shown(text), meanings),
+  return {std::nullopt, Codes::none, fmt::format("{} alone is {}", loader::shown(text), meanings),
           remedy + ", or call the column FC if it has function codes"};
 }
 
@@ -226,13 +226,13 @@ bool is_of_function_codes(std::string_view heading) {
 TableWord read_table(std::string_view text, bool function_codes) {
   const std::string word = letters_and_digits(text);
   for (const auto& [said, meant] : table_words)
-    if (word == said) return {meant, false, "", ""};
+    if (word == said) return {meant, Codes::none, "", ""};
   const std::string_view bare = without_fc(text);
   const auto numbers = numbers_of(bare);
   if (!numbers.empty() && (function_codes || bare.size() != text.size()))
     return table_of_codes(numbers, text);
   if (numbers.size() == 1) return ambiguous(text, *loader::parse_unsigned(numbers[0]));
-  return {std::nullopt, false, fmt::format("{} is not a table", loader::shown(text)),
+  return {std::nullopt, Codes::none, fmt::format("{} is not a table", loader::shown(text)),
           std::string(names_of_tables)};
 }
 

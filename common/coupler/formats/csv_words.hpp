@@ -17,10 +17,13 @@ std::string column_of(std::string_view heading);
 /// The heading is of function codes: numbers below it are those.
 bool is_of_function_codes(std::string_view heading);
 
+/// What the function codes in a cell do; none: it has none.
+enum class Codes { none, read, write, read_and_write };
+
 /// The table that a cell names, or why it names none.
 struct TableWord {
   std::optional<Table> table;
-  bool only_writes = false;  ///< it is a function code that does
+  Codes codes = Codes::none;
   std::string what;
   std::string remedy;
 };

@@ -28,7 +28,11 @@ std::string keys_of(const Entry& entry) {
 
 /// The device that was asked for, or the only one; a file of one device is that device.
 const Entry* choose(const Entry& root, const std::string& wanted, Problems& problems) {
-  if (find(root, "setup") != nullptr) return &root;
+  if (find(root, "setup") != nullptr) {
+    if (wanted.empty()) return &root;
+    problems.error(root.at, "the file is one device, which has no name", "leave --device out");
+    return nullptr;
+  }
   const Entry* list = find(root, "device_list");
   if (list == nullptr || list->children.empty()) {
     problems.error(root.at, "there are no devices in the file",

@@ -107,6 +107,9 @@ void add_warnings(const Point& point, ConversionWarnings& warnings) {
   if (point.count > 1)
     warnings.add("arrays become several fields, whose names end in _0, _1, ...", "no action is needed",
                  point.name);
+  if (!point.values.empty())
+    warnings.add("names of values need Telegraf 1.35 or later",
+                 "with an older one delete the sections [[processors.enum]]", point.name);
 }
 
 /// Whether the point can be a field; warns if it cannot.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "coupler/codec/number.hpp"
@@ -75,13 +76,22 @@ std::string value_range(const Point& point) {
 std::vector<std::string> identifiers(const std::vector<std::string_view>& names,
                                      Span<const std::string_view> taken, bool (*usable)(std::string_view)) {
   std::set<std::string, std::less<>> used(taken.begin(), taken.end());
+  std::vector<bool> stays;  // what a name is already goes to no other one
+  for (const std::string_view name : names)
+    stays.push_back(usable(name) && used.insert(std::string(name)).second);
+  std::map<std::string, std::size_t> tried;  // how many '_' were behind the last one of that name
   std::vector<std::string> out;
-  for (const std::string_view name : names) {
-    std::string& one = out.emplace_back(name);
-    std::replace_if(
-        one.begin(), one.end(), [](char c) { return !is_name_character(c); }, '_');
-    while (!usable(one) || used.count(one) != 0) one += '_';
-    used.insert(one);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::string one(names[i]);
+    if (!stays[i]) {
+      std::replace_if(
+          one.begin(), one.end(), [](char c) { return !is_name_character(c); }, '_');
+      std::size_t& more = tried[one];
+      one.append(more, '_');
+      for (; !usable(one) || used.count(one) != 0; ++more) one += '_';
+      used.insert(one);
+    }
+    out.push_back(std::move(one));
   }
   return out;
 }

@@ -38,20 +38,23 @@ fs::path target_of(fs::path path, std::error_code& failed) {
   return path;
 }
 
-/// The error is that of the system. `path` is not a link.
-std::error_code replace(const fs::path& path, std::string_view content) {
-  // Two builds may generate into one folder at the same time: each has its own temporary file.
-  const fs::path temporary = fmt::format("{}.{}.new", path.string(), ::getpid());
+/// The error is that of the system.
+std::error_code write(const fs::path& path, std::string_view content) {
   errno = 0;
-  std::ofstream out(temporary, std::ios::binary);
+  std::ofstream out(path, std::ios::binary);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();
-  std::error_code failed;
-  if (!out) {
-    failed.assign(errno != 0 ? errno : EIO, std::generic_category());
-  } else {
-    fs::rename(temporary, path, failed);
-  }
+  if (out) return {};
+  return {errno != 0 ? errno : EIO, std::generic_category()};
+}
+
+/// `path` is not a link. A file that is there keeps who may read and write it.
+std::error_code replace(const fs::path& path, fs::file_status there, std::string_view content) {
+  // Two builds may generate into one folder at the same time: each has its own temporary file.
+  const fs::path temporary = fmt::format("{}.{}.new", path.string(), ::getpid());
+  std::error_code failed = write(temporary, content);
+  if (!failed && fs::is_regular_file(there)) fs::permissions(temporary, there.permissions(), failed);
+  if (!failed) fs::rename(temporary, path, failed);
   if (failed) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
@@ -68,8 +71,13 @@ tl::unexpected<std::string> cannot_write(const fs::path& path, const std::error_
 tl::expected<Outcome, std::string> write_if_changed(const fs::path& path, std::string_view content) {
   if (holds(path, content)) return Outcome::unchanged;
   std::error_code failed;
-  const fs::path target = target_of(path, failed);
-  if (!failed) failed = replace(target, content);
+  const fs::file_status there = fs::status(path, failed);
+  if (fs::is_other(there)) {  // a pipe or a device, such as /dev/stdout: it stays, too
+    failed = write(path, content);
+  } else {
+    const fs::path target = target_of(path, failed);
+    if (!failed) failed = replace(target, there, content);
+  }
   if (failed) return cannot_write(path, failed);
   return Outcome::written;
 }

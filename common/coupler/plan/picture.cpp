@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/printable.hpp"
 #include "coupler/plan/explain.hpp"
 #include "coupler/plan/picture_layout.hpp"
 #include "coupler/plan/read_span.hpp"
@@ -52,14 +53,17 @@ constexpr std::string_view patterns = R"(<defs>
 
 /// Names of points are safe, but a description is any text.
 std::string escaped(std::string_view text) {
+  std::string line(text);
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
   std::string out;
-  for (const char c : text) {
+  for (const char c : printable(line)) {
     switch (c) {
       case '&': out += "&amp;"; break;
       case '<': out += "&lt;"; break;
       case '>': out += "&gt;"; break;
       case '"': out += "&quot;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+      default: out += c;
     }
   }
   return out;

@@ -113,10 +113,17 @@ Json with_values(const Json& one, bool has_safe_value = true) {
   return {{"if", is_an_array()}, {"then", rule({{"anyOf", {one, list}}})}, {"else", rule(one)}};
 }
 
+/// A scale that changes the value; without one, `scale: 1` and a gain of 1 are the same.
+Json is_scaled() {
+  const Json nothing{{"type", "object"},
+                     {"properties", {{"gain", {{"const", 1}}}, {"offset", {{"const", 0}}}}}};
+  return has("scale", {{"not", {{"anyOf", {{{"const", 1}}, nothing}}}}});
+}
+
 Json values_rule(Type type) {
   Json plain = reference("point_of_" + name_of(type));
   if (!codec::is_scalable(type)) return plain;
-  Json rule{{"if", has("scale")}, {"then", reference("scaled_point")}, {"else", plain}};
+  Json rule{{"if", is_scaled()}, {"then", reference("scaled_point")}, {"else", plain}};
   if (!is_whole(type)) return rule;
   rule["else"] = {
       {"if", has("values")}, {"then", reference("named_point_of_" + name_of(type))}, {"else", plain}};
@@ -128,7 +135,7 @@ Json bounds_rule(Type type) {
   const auto [least, most] = codec::published_range(type, {});
   Json bound{{"type", "number"}, {"minimum", least}, {"maximum", most}};
   if (is_whole(type)) bound = values_of(type);
-  return {{"if", {{"not", has("scale")}}}, {"then", {{"properties", {{"min", bound}, {"max", bound}}}}}};
+  return {{"if", {{"not", is_scaled()}}}, {"then", {{"properties", {{"min", bound}, {"max", bound}}}}}};
 }
 
 Json order_rule(Type type) {
@@ -162,7 +169,7 @@ void add_rules_of_registers(Section section, Rules& rules) {
   Json scale = not_zero;
   scale["properties"] = {{"gain", not_zero}};
   rules.push_back(only("scale", std::move(scale)));
-  rules.push_back(when(has("scale"), only("values", false)));
+  rules.push_back(when(is_scaled(), only("values", false)));
   rules.push_back(not_both("counter", "iio"));
   if (section == Section::input_register) return;
   rules.push_back(not_both("counter", "pwm"));

@@ -153,8 +153,8 @@ Json value_schema(const Key& key) {
     case ValueKind::integer: return number("integer", key);
     case ValueKind::number: return number("number", key);
     case ValueKind::boolean: return boolean();
-    // A plain scalar that looks like a number is text to the loader.
-    case ValueKind::text: return {{"type", {"string", "number"}}};
+    // A plain scalar that looks like a number or a boolean is text to the loader.
+    case ValueKind::text: return {{"type", {"string", "number", "boolean"}}};
     case ValueKind::ros_name: return text(ros_name, ros_name_rule);
     case ValueKind::host:  // With a colon it is IPv6, which has two at least.
       return text(R"(^([\w.-]*|\[?[0-9A-Fa-f]*:[0-9A-Fa-f.]*:[0-9A-Fa-f:.]*(%[\w.-]+)?\]?)$)",
@@ -168,14 +168,15 @@ Json value_schema(const Key& key) {
     case ValueKind::address: return {{"type", "integer"}, {"minimum", 0}, {"maximum", most_modicon_address}};
     case ValueKind::value:
       return {{"type", {"string", "number", "boolean", "array"}},
-              {"items", {{"type", {"string", "number", "boolean"}}}}};
+              {"items", {{"type", {"string", "number", "boolean", "array"}}}}};  // an array of WORDs, as bits
     case ValueKind::list: return {{"type", "array"}, {"minItems", 1}, {"items", {{"type", "string"}}}};
     case ValueKind::names:
       return {{"type", "object"},
               {"minProperties", 1},
               {"patternProperties",
                {{"^(-?[0-9]+|0[xX][0-9A-Fa-f]+)$",
-                 text("^[A-Za-z][A-Za-z0-9_]*$", "use letters, digits and '_', a letter first")}}},
+                 any_of({text("^[A-Za-z][A-Za-z0-9_]*$", "use letters, digits and '_', a letter first"),
+                         {{"type", "boolean"}}})}}},
               {"additionalProperties", false}};
     case ValueKind::section:
     case ValueKind::points: break;
@@ -217,14 +218,10 @@ std::string any_name(const std::vector<std::string_view>& types) {
   for (const std::string_view type : types)
     for (const std::string_view name : codec::names_of(*codec::parse_type(type))) {
       pattern += pattern.empty() ? "^(" : "|";
-      char before = name.front();
-      for (const char c : codec::folded_type_name(name)) {
-        if (loader::is_digit(before) != loader::is_digit(c)) pattern += "[-_ ]?";
-        pattern += in_both_cases(c);
-        before = c;
-      }
+      // What codec::folded_type_name() takes away.
+      for (const char c : codec::folded_type_name(name)) pattern += "[-_ ]*" + in_both_cases(c);
     }
-  return pattern + ")$";
+  return pattern + ")[-_ ]*$";
 }
 
 }  // namespace coupler::schema

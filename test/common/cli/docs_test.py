@@ -47,6 +47,17 @@ class Docs(Cli):
         self.assertEqual(done.stdout, "out/cell.html: unchanged\nout/cell.md: unchanged\n")
         self.assertEqual((self.folder / "out/cell.html").stat().st_mtime_ns, before)
 
+    def test_replaces_no_file_that_somebody_wrote(self):
+        readme = self.file("README.md", "my own\n")
+        text = "name: README\nmapping: {coils: {a: 0}}\n"
+        done = self.docs(text=text)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("README.md was not made by coupler; name another folder with --out, or replace it with --force", done.stderr)
+        self.assertEqual(self.text(readme), "my own\n")
+        self.assertEqual(self.docs("--force", text=text).returncode, 0)
+        self.assertIn("by coupler", self.text(readme))
+        self.assertEqual(self.docs(text=text + "address: localhost\n").returncode, 0, "its own it replaces")
+
     def test_links_each_point_to_its_line_from_where_the_page_is(self):
         self.docs()
         self.assertIn("cell.yaml#L6", Links(self.text("cell.html")).targets)

@@ -103,6 +103,9 @@ class Export(Cli):
         self.assertEqual(done.returncode, 2)
         self.assertIn("'excel' is not a format that can be written; give one of csv", done.stderr)
         self.assertEqual(self.coupler("export", name, "--to", "csv", "--out", "no/where.csv").returncode, 2)
+        done = self.coupler("export", name, "--to", "csv", "--out", f"./{name}")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(f"./{name} is the map itself; name another file with --out", done.stderr)
         self.assertIn("MAP and --to FORMAT are required", self.coupler("export", name).stderr)
 
     def test_adds_a_nodes_statistics_where_the_format_has_a_place_for_them(self):

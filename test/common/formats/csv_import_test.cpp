@@ -170,6 +170,21 @@ TEST(CsvImport, Numbers_in_a_column_of_function_codes_name_the_table) {
               HasSubstr("given:2:1: warning: '5' only writes, so the point gets 'access: write'"));
 }
 
+// A table with 03 in one row and 03/06 in another says which of the two may be written.
+TEST(CsvImport, Where_some_codes_write_a_point_with_reading_ones_only_is_read_only) {
+  const Imported both("csv",
+                      "name,FC,address,type\nactual,03,1,INT\nset,03/06,2,INT\nalarm,01,5,\nt,04,3,INT\n");
+  EXPECT_EQ(both.said, "");
+  for (const char* line : {"actual: {address: 1, type: INT, access: read}", "set: {address: 2, type: INT}",
+                           "alarm: {address: 5, access: read}", "t: {address: 3, type: INT}"})
+    EXPECT_THAT(both.text(), HasSubstr(line));
+  // They name the table where none writes; and a column of its own says more.
+  EXPECT_THAT(Imported("csv", "name,FC,address,type\na,03,1,INT\n").text(),
+              HasSubstr("a: {address: 1, type: INT}"));
+  EXPECT_THAT(Imported("csv", "name,FC,address,type,access\na,03,1,INT,rw\nb,06,2,INT,\n").text(),
+              HasSubstr("a: {address: 1, type: INT, access: read_write}"));
+}
+
 TEST(CsvImport, A_number_with_two_meanings_is_refused_with_both) {
   const auto said = [](const std::string& heading, const std::string& cell) {
     return Imported("csv", heading + ",name,address,type\n\"" + cell + "\",a,7,INT\n").said;
@@ -186,6 +201,9 @@ TEST(CsvImport, A_number_with_two_meanings_is_refused_with_both) {
               HasSubstr("'3/4' is holding_registers and input_registers; give each of the two a row"));
   EXPECT_THAT(said("fc", "7"), HasSubstr("'7' is not a function code that reads or writes a table"));
   EXPECT_THAT(said("table", "9"), HasSubstr("'9' is not a table; write coils"));
+  EXPECT_THAT(said("table", "16"),
+              HasSubstr("'16' alone is holding_registers as a function code; write FC16, or call"));
+  EXPECT_THAT(said("table", "35"), HasSubstr("'35' is not a table; write coils"));
 }
 
 TEST(CsvImport, A_column_unit_with_text_is_units_and_with_numbers_the_unit_id) {

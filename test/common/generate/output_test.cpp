@@ -2,9 +2,11 @@
 #include "coupler/generate/output.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
+#include <future>
 #include <iterator>
 
 namespace coupler::generate {
@@ -83,6 +85,22 @@ TEST_F(Output, A_symbolic_link_to_a_file_that_is_missing_makes_it) {
   EXPECT_EQ(write_if_changed(folder / "a", "one"), Outcome::written);
   EXPECT_TRUE(fs::is_symlink(folder / "a"));
   EXPECT_EQ(read(folder / "real" / "b"), "one");
+}
+
+TEST_F(Output, A_pipe_is_written_to_and_stays) {
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  fs::create_symlink("pipe", folder / "a");
+  auto reader = std::async(std::launch::async, [this] { return read(folder / "pipe"); });
+  EXPECT_EQ(write_if_changed(folder / "a", "one"), Outcome::written);
+  EXPECT_EQ(reader.get(), "one");
+  EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
+}
+
+TEST_F(Output, A_file_keeps_its_permissions) {
+  ASSERT_TRUE(write_if_changed(folder / "a", "one"));
+  fs::permissions(folder / "a", fs::perms::owner_read | fs::perms::owner_write);
+  ASSERT_TRUE(write_if_changed(folder / "a", "two"));
+  EXPECT_EQ(fs::status(folder / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
 TEST_F(Output, Symbolic_links_in_a_circle_are_an_error) {

@@ -57,11 +57,11 @@ UNSEEN_MISTAKES = {
 TYPES = {"BOOL": "bit: 3", "BYTE": "offset: low", "SINT": "offset: low", "USINT": "offset: high", "CHAR": "offset: high",
          "STRING": "length: 6", **{name: "" for name in "WORD DWORD LWORD INT DINT LINT UINT UDINT ULINT REAL LREAL".split()}}
 BITS_OF_A_WORD = f"[{', '.join(['on'] * 16)}]"
-KEYS = """bit: 3|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|order: AB|order: CDAB|scale: 0|scale: 0.1|
+KEYS = """bit: 3|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|order: AB|order: CDAB|scale: 0|scale: 0.1|scale: 1|scale: {gain: 1}|
     scale: {gain: 0}|scale: {gain: 2, offset: -1}|scale: {offset: 5}|min: 1|min: 0.5|min: 40000|min: -1|max: 1e39|
     values: {0: idle, 1: run}|initial: 1|initial: 0.5|initial: -1|initial: 300|initial: 70000|initial: 5e9|
     initial: on|initial: true|initial: "on"|initial: "1"|initial: idle|initial: [1, 0]|initial: [on, off]|
-    initial: %s|initial: {}|count: 1|count: 2|count: 0|access: read|access: write|access: read_write|
+    initial: %s|initial: [%s, %s]|initial: {}|count: 1|count: 2|count: 0|access: read|access: write|access: read_write|
     iio: {device: a, channel: b}|pwm: {chip: a, channel: 0, period: 1ms}|pwm: {chip: a, channel: 0, period: 11s}|
     iio: {device: "", channel: b}|counter: {of: q}|latched: {of: q}|deadband: 1|deadband: -1|publish: always|
     max_interval: 1s|rate: 2|latch: on|queue_size: 3|write_function: single|write_function: multiple|
@@ -71,7 +71,7 @@ KEYS = """bit: 3|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|or
     safe: hold|safe: 1|safe: [on, off]|safe: 70000|line: GPIO1|line: 5|line: ""|line: {chip: a, offset: 1}|
     line: {chip: a}|line: {name: b, offset: 2}|line: {name: b}|line: {}|line: {name: b, active_low: true}|
     active_low: true|bias: pull_up|drive: open_drain|debounce: 5ms|debounce: 2min|debounce: 0|units: mm|
-    description: 5""" % BITS_OF_A_WORD
+    units: true|description: 5""" % ((BITS_OF_A_WORD,) * 3)
 CONTEXTS = ["count: 2", "access: read", "access: write", "scale: 0.5", "values: {0: idle, 100: run}", "publish: on_change",
             "line: GPIO7", "iio: {device: d, channel: c}"]
 DIFFERENT_TYPES = {"BOOL", "SINT", "WORD", "INT", "REAL", "STRING"}

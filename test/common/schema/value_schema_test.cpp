@@ -79,11 +79,12 @@ TEST(Pattern, Of_types_takes_every_name_that_the_loader_takes) {
   const std::string pattern = any_name(all);
   for (const codec::TypeName& other : codec::other_type_names())
     EXPECT_TRUE(matches(std::string(other.name), pattern)) << other.name;
-  for (const char* good : {"UINT", "uint", "UInt16", "float-32", "Unsigned 16", "uint8_t"})
+  for (const char* good : {"UINT", "uint", "UInt16", "float-32", "Unsigned 16", "uint8_t", "unsigned short",
+                           "D-WORD", " INT", "uint 1 6"})
     EXPECT_TRUE(matches(good, pattern)) << good;
   for (const codec::AmbiguousTypeName& each : codec::ambiguous_type_names())
     EXPECT_FALSE(matches(std::string(each.name), pattern)) << each.name;
-  for (const char* bad : {"", "int24", "uint 1 6", "UNIT"}) EXPECT_FALSE(matches(bad, pattern)) << bad;
+  for (const char* bad : {"", "int24", "UNIT"}) EXPECT_FALSE(matches(bad, pattern)) << bad;
   EXPECT_FALSE(matches("float32", any_name({"LREAL", "STRING"})));
 }
 
