@@ -76,9 +76,9 @@ std::string value_range(const Point& point) {
 std::vector<std::string> identifiers(const std::vector<std::string_view>& names,
                                      Span<const std::string_view> taken, bool (*usable)(std::string_view)) {
   std::set<std::string, std::less<>> used(taken.begin(), taken.end());
-  std::vector<bool> stays;  // what a name is already goes to no other one
-  for (const std::string_view name : names)
-    stays.push_back(usable(name) && used.insert(std::string(name)).second);
+  std::vector<bool> stays(names.size());  // what a name is already goes to no other one
+  for (std::size_t i = 0; i < names.size(); ++i)
+    stays[i] = usable(names[i]) && used.insert(std::string(names[i])).second;
   std::map<std::string, std::size_t> tried;  // how many '_' were behind the last one of that name
   std::vector<std::string> out;
   for (std::size_t i = 0; i < names.size(); ++i) {
