@@ -7,7 +7,6 @@
 
 #include "coupler/formats/home_assistant_points.hpp"
 #include "coupler/formats/map_tree.hpp"
-#include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::formats {
 namespace {
@@ -29,25 +28,18 @@ Targets targets_of(Settings& settings) {
   }
   std::size_t mode = 0;
   for (const Entry& each : given->children) {
-    const auto address = loader::parse_unsigned(each.text);
-    if (!address || *address > 65535 || mode == std::size(modes)) {
+    const auto address = whole_of(each, 65535, settings.problems());
+    if (!address || mode == std::size(modes)) {
       settings.problems().error(each.at, "'target_temp_register' is not an address or a list of seven",
                                 "write a number from 0 to 65535, or seven of them");
       return {};
     }
     if (std::none_of(out.begin(), out.end(), [&](const auto& other) { return other.second == *address; }))
-      out.emplace_back(fmt::format("_target_{}", modes[mode]), static_cast<unsigned>(*address));
+      out.emplace_back(fmt::format("_target_{}", modes[mode]), *address);
     ++mode;
   }
   if (out.size() == 1) out[0].first = "_target";
   return out;
-}
-
-/// A list of one address is one that is written with another function code.
-const Entry* address_of(Settings& modes) {
-  const Entry* given = modes.find("address");
-  const bool is_list = given != nullptr && given->kind == Entry::Kind::list && given->children.size() == 1;
-  return is_list ? &given->children[0] : given;
 }
 
 struct Modes {
@@ -73,15 +65,21 @@ void add_modes(const Modes& which, Entity& entity) {
       entity.add_numbers(value, prefixed ? value.key.substr(which.prefix.size()) : value.key, names);
     }
   const Table table = Entity::table_of("input_type", "holding", modes);
-  modes.ignore("write_registers");  // with which function code
-  const Entry* address = address_of(modes);
-  const auto number = address != nullptr ? loader::parse_unsigned(address->text) : std::nullopt;
-  if (!number || *number > 65535)
+  const bool write_registers = modes.flag("write_registers");
+  const Entry* address = modes.find("address");
+  // A list of one address is one that Home Assistant writes with function code 16.
+  const bool is_list =
+      address != nullptr && address->kind == Entry::Kind::list && address->children.size() == 1;
+  if (is_list) address = &address->children[0];
+  const auto number = address != nullptr ? whole_of(*address, 65535, settings.problems()) : std::nullopt;
+  if (number) {
+    FoundPoint found = entity.named(std::string(which.suffix), table, *number, which.use, names);
+    found.write_multiple = write_registers || is_list;
+    entity.add(std::move(found));
+  } else {
     settings.problems().error(given->at, fmt::format("'{}' has no address", which.key),
                               "give it one from 0 to 65535");
-  else
-    entity.add(
-        entity.named(std::string(which.suffix), table, static_cast<unsigned>(*number), which.use, names));
+  }
   modes.report_rest();
 }
 
@@ -92,6 +90,7 @@ class Temperatures {
         gain_(entity.settings().number("scale").value_or(1)),
         offset_(entity.settings().number("offset").value_or(0)),
         units_(entity.settings().text("temperature_unit", "C") == "F" ? "\u00B0F" : "\u00B0C"),
+        write_multiple_(entity.settings().flag("target_temp_write_registers")),
         values_(read_data_type(entity.settings())) {}
 
   void add(const std::string& suffix, Table table, unsigned address, PointUse use, std::string_view kind) {
@@ -101,6 +100,7 @@ class Temperatures {
       if (value.is_number)
         entity_.scale(found, settings.number(fmt::format("{}_temp_scale", kind)).value_or(gain_),
                       settings.number(fmt::format("{}_temp_offset", kind)).value_or(offset_));
+      found.write_multiple = write_multiple_;
       found.entry.children.push_back(scalar("units", units_, entity_.given().at, true));
       entity_.add(std::move(found));
     }
@@ -111,6 +111,7 @@ class Temperatures {
   double gain_;
   double offset_;
   std::string units_;
+  bool write_multiple_;  ///< the target
   std::vector<RegisterValue> values_;
 };
 
@@ -127,9 +128,13 @@ void add_climate(Entity& entity) {
   for (const Modes& modes : all_modes) add_modes(modes, entity);
   const unsigned on = settings.whole("hvac_on_value", 65535).value_or(1);
   const unsigned off = settings.whole("hvac_off_value", 65535).value_or(0);
-  if (const auto address = settings.whole("hvac_onoff_register", 65535))
-    entity.add(entity.named("_onoff", Table::holding_registers, *address, PointUse::both,
-                            {{off, "off"}, {on, "on"}}));
+  const bool write_registers = settings.flag("write_registers");  // of this register only
+  if (const auto address = settings.whole("hvac_onoff_register", 65535)) {
+    FoundPoint found = entity.named("_onoff", Table::holding_registers, *address, PointUse::both,
+                                    {{off, "off"}, {on, "on"}});
+    found.write_multiple = write_registers;
+    entity.add(std::move(found));
+  }
   if (const auto address = settings.whole("hvac_onoff_coil", 65535))
     entity.add(entity.point("_onoff", Table::coils, *address, PointUse::both));
   for (const std::string_view key : {"min_temp", "max_temp"})

@@ -90,10 +90,11 @@ void read_verify(FoundPoint& found, Entity& entity, const Names& commands) {
                 "compare with the number that the point publishes");
 }
 
-void add_light_part(std::string_view key, const std::string& suffix, PointUse use, Entity& entity) {
+void add_light_part(std::string_view key, const std::string& suffix, Entity& entity) {
   const auto address = entity.settings().whole(key, 65535);
-  if (!address) return;
-  FoundPoint part = entity.named(suffix, Table::holding_registers, *address, use, {});
+  if (!address || *address == 0) return;  // Home Assistant takes 0 for none
+  // It reads them in every update, even without `verify`, and writes them with function code 6.
+  FoundPoint part = entity.named(suffix, Table::holding_registers, *address, PointUse::both, {});
   part.entry.children.push_back(scalar("max", "100", entity.given().at));
   part.entry.children.push_back(scalar("units", "%", entity.given().at, true));
   entity.add(std::move(part));
@@ -110,6 +111,7 @@ void add_toggle(bool is_light, Entity& entity) {
     entity.lose("Home Assistant switches these on by writing 0, but a point has the coil's own state",
                 "write false to switch it on");
   FoundPoint found = entity.named("", table, entity.address(), PointUse::write, commands);
+  found.write_multiple = Entity::writes_multiple("write_type", settings);
   const bool verified = find(entity.given(), "verify") != nullptr;  // without a value, too
   settings.ignore("verify");
   if (verified)
@@ -117,11 +119,10 @@ void add_toggle(bool is_light, Entity& entity) {
   else
     entity.lose("without 'verify' the output is only written, so the point gets 'access: write'",
                 "remove it if the device can read it back");
-  const PointUse use = found.use;
   entity.add(std::move(found));
   if (!is_light) return;
-  add_light_part("brightness_address", "_brightness", use, entity);
-  add_light_part("color_temp_address", "_color_temp", use, entity);
+  add_light_part("brightness_address", "_brightness", entity);
+  add_light_part("color_temp_address", "_color_temp", entity);
   for (const std::string_view key : {"min_temp", "max_temp"})
     if (settings.find(key) != nullptr)
       entity.lose("the colour temperature at 0 % and at 100 % is not carried over",

@@ -5,7 +5,6 @@
 
 #include "coupler/formats/home_assistant_points.hpp"
 #include "coupler/formats/map_tree.hpp"
-#include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::formats {
 namespace {
@@ -28,9 +27,8 @@ constexpr Input inputs[] = {{"coil", Table::coils},
                             {"holdings", Table::holding_registers}};
 
 /// Of each platform, what only Home Assistant uses.
-constexpr std::string_view own_keys[] = {
-    "unique_id",        "device_class", "state_class",     "precision",
-    "lazy_error_count", "temp_step",    "write_registers", "target_temp_write_registers"};
+constexpr std::string_view own_keys[] = {"unique_id", "device_class",     "state_class",
+                                         "precision", "lazy_error_count", "temp_step"};
 
 }  // namespace
 
@@ -69,6 +67,11 @@ Table Entity::table_of(std::string_view key, std::string_view fallback, Settings
   settings.problems().error(settings.at(), fmt::format("'{}' is {}, which is not a table", key, shown(word)),
                             "write coil, discrete_input, input or holding");
   return Table::holding_registers;
+}
+
+bool Entity::writes_multiple(std::string_view key, Settings& settings) {
+  const Entry* word = settings.find(key);
+  return word != nullptr && (word->text == "coils" || word->text == "holdings");
 }
 
 std::string_view Entity::word_of(Table table) {
@@ -123,14 +126,14 @@ void Entity::add_numbers(const Entry& given, const std::string& name, Names& nam
   const bool is_list = given.kind == Entry::Kind::list;
   int n = 0;
   for (const Entry& each : is_list ? Span<const Entry>(given.children) : Span<const Entry>(&given, 1)) {
-    const auto number = loader::parse_unsigned(each.text);
-    if (!number || *number > 65535) {
+    const auto number = whole_of(each, 65535, settings_.problems());
+    if (!number) {
       settings_.problems().error(each.at, fmt::format("{} is not what a register can hold", shown(each.text)),
                                  "write a number from 0 to 65535");
       continue;
     }
     ++n;
-    names.emplace(static_cast<unsigned>(*number), n > 1 ? fmt::format("{}_{}", name, n) : name);
+    names.emplace(*number, n > 1 ? fmt::format("{}_{}", name, n) : name);
   }
 }
 

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -47,6 +51,18 @@ std::string_view data_type_of(Type type) {
     case Type::LREAL: return "float64";
     case Type::STRING: return "string";
     default: return "custom";  // bytes
+  }
+}
+
+/// Of types that Home Assistant only has as numbers: what its file says they are.
+std::string_view read_back_as(Type type) {
+  switch (type) {
+    case Type::WORD: return "UINT";
+    case Type::DWORD: return "UDINT";
+    case Type::LWORD: return "ULINT";
+    case Type::BYTE:
+    case Type::CHAR: return "USINT";
+    default: return "";
   }
 }
 
@@ -101,7 +117,7 @@ struct Entities {
   std::string templates;  ///< of `template:`, since `modbus:` has no names of values
 };
 
-/// The id that Home Assistant gives a sensor of that name, unless another one has it.
+/// The id that Home Assistant gives a sensor of that name, unless another one has it: then it adds _2, _3 …
 std::string entity_id(const std::string& name) {
   std::string id;
   for (const char c : loader::lower(name)) {
@@ -125,7 +141,7 @@ std::string state_template(const Point& point, const std::string& sensor) {
 class EntityWriter {
  public:
   EntityWriter(const Map& map, ConversionWarnings& warnings)
-      : map_(map), warnings_(warnings), ids_(warnings) {}
+      : map_(map), warnings_(warnings), ids_(warnings), sensor_ids_(warnings) {}
 
   Entities write() {
     for (const Point& point : map_.points) {
@@ -135,6 +151,8 @@ class EntityWriter {
       for (std::uint16_t element = 0; element < point.count; ++element) add(point, element);
       add_warnings(point);
     }
+    // Nothing asks for these by id, so the sensors have the first choice.
+    for (const auto& [id, point] : template_ids_) sensor_ids_.make(id, point);
     return std::move(entities_);
   }
 
@@ -192,12 +210,14 @@ class EntityWriter {
     if (point.scale.gain != 1) out += fmt::format("{}scale: {}\n", indent, point.scale.gain);
     if (point.scale.offset != 0) out += fmt::format("{}offset: {}\n", indent, point.scale.offset);
     if (!point.units.empty()) out += fmt::format("{}unit_of_measurement: {}\n", indent, text(point.units));
-    if (!point.values.empty()) add_template(name_of(point, element), point);
+    // Of each sensor, in the order of the file: so Home Assistant numbers those that are alike.
+    const std::string id = sensor_ids_.make(entity_id(name_of(point, element)), point.name);
+    if (!point.values.empty()) add_template(name_of(point, element), id, point);
   }
 
-  void add_template(const std::string& sensor, const Point& point) {
-    const std::string id = entity_id(sensor);
+  void add_template(const std::string& sensor, const std::string& id, const Point& point) {
     const std::string name = sensor + " name";
+    template_ids_.emplace_back(entity_id(name), point.name);
     entities_.templates += fmt::format("      - name: {}\n{}unique_id: {}\n{}state: {}\n{}availability: {}\n",
                                        text(name), indent, ids_.make(unique_id(map_, name), point.name),
                                        indent, text(state_template(point, id)), indent,
@@ -222,6 +242,12 @@ class EntityWriter {
     if (!point.values.empty())
       warnings_.add("names of values become template sensors, which read a sensor by its entity id",
                     "correct the ids under 'template:' if Home Assistant has given others", point.name);
+    if (const std::string_view type = read_back_as(point.format.type); !type.empty())
+      warnings_.add(fmt::format("an import reads {} back as {}", codec::to_string(point.format.type), type),
+                    "keep the map", point.name);
+    if (point.format.type == Type::STRING && point.format.length % 2 != 0)
+      warnings_.add("texts of odd length have a byte more there", "keep that byte 0, which ends the text",
+                    point.name);
     if (point.format.type == Type::REAL || point.format.type == Type::LREAL)
       warnings_.add("floats are rounded to 6 decimals", "change 'precision' if that is too few", point.name);
     if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
@@ -231,6 +257,8 @@ class EntityWriter {
   const Map& map_;
   ConversionWarnings& warnings_;
   UniqueNames ids_;
+  UniqueNames sensor_ids_;
+  std::vector<std::pair<std::string, std::string>> template_ids_;  ///< and their points
   Entities entities_;
 };
 

@@ -14,6 +14,34 @@ using loader::Entry;
 using loader::Problems;
 using loader::shown;
 
+namespace {
+
+/// What YAML 1.1, Home Assistant's, takes for octal: 010, but neither "010" in quotes nor 08.
+std::optional<unsigned> octal(const Entry& given, Problems& problems) {
+  constexpr std::size_t longest = 9;
+  const std::string& text = given.text;
+  if (given.quoted || text.size() < 2 || text.size() > longest || text[0] != '0' ||
+      text.find_first_not_of("01234567") != std::string::npos)
+    return std::nullopt;
+  unsigned number = 0;
+  for (const char digit : text) number = number * 8 + static_cast<unsigned>(digit - '0');
+  problems.warning(
+      given.at,
+      fmt::format("{} is an octal number in Home Assistant's YAML, so it is read as {}", text, number),
+      fmt::format("write {}, or the number that is meant without a zero before it", number));
+  return number;
+}
+
+}  // namespace
+
+std::optional<unsigned> whole_of(const Entry& given, unsigned most, Problems& problems) {
+  if (given.kind != Entry::Kind::scalar) return std::nullopt;
+  std::optional<std::uint64_t> number = octal(given, problems);
+  if (!number) number = loader::parse_unsigned(given.text);
+  if (!number || *number > most) return std::nullopt;
+  return static_cast<unsigned>(*number);
+}
+
 const Entry* Settings::find(std::string_view key) {
   used_.emplace(key);
   const Entry* entry = formats::find(given_, key);
@@ -31,8 +59,7 @@ std::string Settings::text(std::string_view key, std::string_view fallback) {
 std::optional<unsigned> Settings::whole(std::string_view key, unsigned most) {
   const Entry* entry = find(key);
   if (entry == nullptr) return std::nullopt;
-  const auto number = loader::parse_unsigned(entry->text);
-  if (entry->kind == Entry::Kind::scalar && number && *number <= most) return static_cast<unsigned>(*number);
+  if (const auto number = whole_of(*entry, most, problems_)) return number;
   problems_.error(entry->at, fmt::format("'{}' is not a whole number from 0 to {}", key, most),
                   "write such a number");
   return std::nullopt;
@@ -41,10 +68,20 @@ std::optional<unsigned> Settings::whole(std::string_view key, unsigned most) {
 std::optional<double> Settings::number(std::string_view key) {
   const Entry* entry = find(key);
   if (entry == nullptr) return std::nullopt;
+  if (const auto whole = octal(*entry, problems_)) return *whole;
   const auto number = loader::parse_number(entry->text);
   if (entry->kind == Entry::Kind::scalar && number) return number;
   problems_.error(entry->at, fmt::format("'{}' is not a number", key), "write a number");
   return std::nullopt;
+}
+
+bool Settings::flag(std::string_view key) {
+  const Entry* entry = find(key);
+  if (entry == nullptr) return false;
+  const auto value = loader::parse_boolean(entry->text);
+  if (entry->kind == Entry::Kind::scalar && value) return *value;
+  problems_.error(entry->at, fmt::format("'{}' is neither true nor false", key), "write true or false");
+  return false;
 }
 
 void Settings::report_rest() const {
@@ -106,6 +143,8 @@ std::vector<Entry> UnitPoints::take(loader::Position at) {
       keys.push_back(scalar("access", point.use == PointUse::read ? "read" : "write", place));
     if (point.read_address && *point.read_address != point.address)
       keys.push_back(scalar("read_address", fmt::to_string(*point.read_address), place));
+    if (point.write_multiple && is_writable(point.table) && point.use != PointUse::read)
+      keys.push_back(scalar("write_function", "multiple", place));
     if (point.interval > fastest && point.use != PointUse::write)
       keys.push_back(scalar("rate", rate(point.interval), place));
     make_section(mapping, to_string(point.table), place).children.push_back(std::move(point.entry));

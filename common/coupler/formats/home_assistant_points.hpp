@@ -35,6 +35,8 @@ class Settings {
   std::optional<unsigned> whole(std::string_view key, unsigned most);
   /// nullopt if it is not there; an error, and nullopt, if it is not a number.
   std::optional<double> number(std::string_view key);
+  /// False if it is not there; an error, and false, if it is neither true nor false.
+  bool flag(std::string_view key);
   /// Nothing is to be said of this one.
   void ignore(std::string_view key) { used_.emplace(key); }
   /// Warns of the keys that are left.
@@ -45,6 +47,9 @@ class Settings {
   loader::Problems& problems_;
   std::set<std::string, std::less<>> used_;
 };
+
+/// nullopt if it is not a whole number up to `most`. 010 is 8 as in Home Assistant's YAML, with a warning.
+std::optional<unsigned> whole_of(const loader::Entry& given, unsigned most, loader::Problems& problems);
 
 /// What Home Assistant does with a point.
 enum class PointUse : std::uint8_t { read, write, both };
@@ -58,7 +63,8 @@ struct FoundPoint {
   std::uint16_t mask = 0xFFFF;  ///< the bits that it has of a register
   PointUse use = PointUse::both;
   std::optional<unsigned> read_address{};
-  unsigned interval = 0;  ///< seconds between two reads; 0: it is not read by itself
+  bool write_multiple = false;  ///< Home Assistant writes it with function code 15 or 16
+  unsigned interval = 0;        ///< seconds between two reads; 0: it is not read by itself
 };
 
 /// The points of one unit id. Where two entities share a place the first one has it.
@@ -126,6 +132,8 @@ class Entity {
 
   /// "holding" or "coils", as `key` says it.
   static Table table_of(std::string_view key, std::string_view fallback, Settings& settings);
+  /// "holdings" and "coils": the table is written with function code 16 or 15.
+  static bool writes_multiple(std::string_view key, Settings& settings);
   /// The word for it: "holding".
   static std::string_view word_of(Table table);
 

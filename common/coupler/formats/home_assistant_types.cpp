@@ -28,20 +28,42 @@ constexpr TypeOf types[] = {
     {"int32", 'i', 4, "DINT"},   {"uint32", 'I', 4, "UDINT"},
     {"int64", 'q', 8, "LINT"},   {"uint64", 'Q', 8, "ULINT"},
     {"float32", 'f', 4, "REAL"}, {"float64", 'd', 8, "LREAL"},
-    {"int", 'h', 2, "INT"},      {"uint", 'H', 2, "UINT"},
     {"", 'l', 4, "DINT"},        {"", 'L', 4, "UDINT"},
     {"", 'b', 1, "SINT"},        {"", 'B', 1, "USINT"},
     {"float16", 'e', 2, ""},     {"", '?', 1, ""},
     {"", 'c', 1, "CHAR"},
 };
 
-/// "" (none), "byte", "word" or "word_byte" as an order of the map.
-std::string_view order_of(std::string_view swap, unsigned bytes) {
-  const bool swaps_bytes = swap == "byte" || swap == "word_byte";
-  if (bytes == 2) return swaps_bytes ? "BA" : "AB";
-  if (swap == "word") return "CDAB";
-  if (swap == "word_byte") return "DCBA";
-  return swaps_bytes ? "BADC" : "ABCD";
+/// What is done with the registers before they are a value.
+struct Swap {
+  bool words = false;  ///< the registers are reversed
+  bool bytes = false;  ///< the two bytes of each are
+
+  bool any() const { return words || bytes; }
+};
+
+std::string_view order_of(Swap swap, unsigned bytes) {
+  if (bytes == 2) return swap.bytes ? "BA" : "AB";
+  if (swap.words) return swap.bytes ? "DCBA" : "CDAB";
+  return swap.bytes ? "BADC" : "ABCD";
+}
+
+/// `swap`, or `reverse_order` of old versions. nullopt, with an error, if it is none.
+std::optional<Swap> read_swap(Settings& settings) {
+  const std::string swap = settings.text("swap", "none");
+  if (swap != "none" && swap != "byte" && swap != "word" && swap != "word_byte") {
+    settings.problems().error(settings.find("swap")->at, fmt::format("{} is not a swap", shown(swap)),
+                              "write none, byte, word or word_byte");
+    return std::nullopt;
+  }
+  const bool reversed = settings.flag("reverse_order");
+  if (reversed && swap != "none" && swap != "word") {
+    settings.problems().error(settings.find("reverse_order")->at,
+                              fmt::format("'reverse_order' means 'swap: word', but 'swap' is {}", swap),
+                              "remove one of the two");
+    return std::nullopt;
+  }
+  return Swap{reversed || swap == "word" || swap == "word_byte", swap == "byte" || swap == "word_byte"};
 }
 
 RegisterValue text_of(unsigned registers, unsigned bytes, bool swapped, loader::Position at) {
@@ -54,7 +76,7 @@ RegisterValue text_of(unsigned registers, unsigned bytes, bool swapped, loader::
   return value;
 }
 
-RegisterValue number_of(const TypeOf& type, unsigned count, std::string_view swap, loader::Position at) {
+RegisterValue number_of(const TypeOf& type, unsigned count, Swap swap, loader::Position at) {
   RegisterValue value;
   value.registers = count * type.bytes / 2;
   value.keys = {scalar("type", std::string(type.iec), at)};
@@ -67,7 +89,8 @@ RegisterValue number_of(const TypeOf& type, unsigned count, std::string_view swa
 /// Reads a `structure` such as ">xB" or ">hHf".
 class StructureReader {
  public:
-  StructureReader(const Entry& given, loader::Problems& problems) : given_(given), problems_(problems) {}
+  StructureReader(const Entry& given, Swap swap, loader::Problems& problems)
+      : given_(given), swap_(swap), problems_(problems) {}
 
   std::vector<RegisterValue> read(unsigned registers) {
     std::string_view text = given_.text;
@@ -86,10 +109,20 @@ class StructureReader {
     if (values_.size() > 1)
       for (std::size_t i = 0; i < values_.size(); ++i) values_[i].suffix = fmt::format("_{}", i);
     if (values_.empty()) refuse("it holds no value", "name the types of the values");
+    // The registers are swapped as a whole, so of several values each would be at another place.
+    if (swap_.any() && !is_one_number(registers)) {
+      refuse("'swap' changes the registers of more than one number",
+             "make each value an entity of its own, with 'data_type' and 'swap'");
+      return {};
+    }
     return std::move(values_);
   }
 
  private:
+  bool is_one_number(unsigned registers) const {
+    return numbers_ == 1 && values_.size() == 1 && values_[0].registers == registers;
+  }
+
   void refuse(const std::string& why, const std::string& remedy) {
     problems_.warning(given_.at, fmt::format("the structure {} is left out: {}", shown(given_.text), why),
                       remedy);
@@ -121,7 +154,9 @@ class StructureReader {
       if (type->bytes == 1) {
         for (unsigned i = 0; i < count; ++i) add_byte(*type);
       } else if (count > 0) {
-        add(number_of(*type, count, little_ ? "word_byte" : "", given_.at), count * type->bytes);
+        numbers_ += count;
+        add(number_of(*type, count, {little_ != swap_.words, little_ != swap_.bytes}, given_.at),
+            count * type->bytes);
       }
     }
   }
@@ -146,58 +181,85 @@ class StructureReader {
   }
 
   const Entry& given_;
+  Swap swap_;
   loader::Problems& problems_;
   bool little_ = false;
   bool good_ = true;
   unsigned at_ = 0;  ///< bytes
+  unsigned numbers_ = 0;
   std::vector<RegisterValue> values_;
 };
+
+/// `int`, `uint` and `float` of old versions have their width from `count`.
+std::optional<std::string> modern_name(const std::string& type, unsigned count, Settings& settings) {
+  if (type != "int" && type != "uint" && type != "float") return type;
+  if (count == 1 || count == 2 || count == 4) return type + fmt::to_string(16 * count);
+  settings.problems().error(settings.find("count")->at,
+                            fmt::format("'count' is {}, but '{}' has 1, 2 or 4 registers", count, type),
+                            fmt::format("correct it, or write {0}16, {0}32 or {0}64 without 'count'", type));
+  return std::nullopt;
+}
+
+/// nullptr, with the reason in the problems, if it is none or the map has none for it.
+const TypeOf* numeric_type(const std::string& given, std::optional<unsigned> count, Settings& settings) {
+  const auto name = modern_name(given, count.value_or(1), settings);
+  if (!name) return nullptr;
+  const auto* known = std::find_if(std::begin(types), std::end(types), [&](const TypeOf& each) {
+    return each.data_type == *name && !name->empty();
+  });
+  loader::Problems& problems = settings.problems();
+  const Entry* written = settings.find("data_type");
+  const loader::Position at = written != nullptr ? written->at : settings.at();
+  if (known == std::end(types)) {
+    problems.error(at, fmt::format("{} is not a data type", shown(given)),
+                   "write int16 to int64, uint16 to uint64, float32, float64, string or custom");
+    return nullptr;
+  }
+  if (count && *count != known->bytes / 2) {
+    problems.error(settings.find("count")->at,
+                   fmt::format("'count' is {}, but {} has {} register{}", *count, *name, known->bytes / 2,
+                               known->bytes == 2 ? "" : "s"),
+                   "remove 'count', or correct 'data_type'");
+    return nullptr;
+  }
+  if (known->iec.empty()) {
+    problems.warning(at, fmt::format("the map has no type for {}, so the entity is left out", shown(*name)),
+                     "read the register as WORD, or write float32 if there are two");
+    return nullptr;
+  }
+  return known;
+}
 
 }  // namespace
 
 std::vector<RegisterValue> read_data_type(Settings& settings) {
   const std::string type = settings.text("data_type", "int16");
-  std::string swap = settings.text("swap", "none");
   const auto count = settings.whole("count", modbus::max_read_registers);
   const Entry* structure = settings.find("structure");
   const auto slaves = settings.whole("slave_count", modbus::max_read_registers);
   const unsigned elements =
       1 + settings.whole("virtual_count", modbus::max_read_registers).value_or(slaves.value_or(0));
-  if (swap != "none" && swap != "byte" && swap != "word" && swap != "word_byte") {
-    settings.problems().error(settings.find("swap")->at, fmt::format("{} is not a swap", shown(swap)),
-                              "write none, byte, word or word_byte");
-    return {};
-  }
+  const auto swap = read_swap(settings);
+  if (!swap) return {};
   if (type == "custom") {
-    if (swap != "none")
-      settings.problems().warning(settings.find("swap")->at, "'swap' of a structure is not carried over",
-                                  "say the order in the structure: '>' or '<'");
-    if (structure != nullptr) return StructureReader(*structure, settings.problems()).read(count.value_or(1));
+    if (structure != nullptr)
+      return StructureReader(*structure, *swap, settings.problems()).read(count.value_or(1));
     settings.problems().error(settings.at(), "'data_type: custom' has no 'structure'",
                               "write one, such as '>h'");
     return {};
   }
   if (type == "string") {
     const unsigned registers = count.value_or(1);
-    return {text_of(registers, 2 * registers, swap == "byte", settings.at())};
+    if (swap->words && registers > 1) {
+      settings.problems().warning(settings.at(), "a text whose registers are reversed is left out",
+                                  "read the registers as UINT");
+      return {};
+    }
+    return {text_of(registers, 2 * registers, swap->bytes, settings.at())};
   }
-  const auto* known = std::find_if(std::begin(types), std::end(types), [&](const TypeOf& each) {
-    return each.data_type == type && !type.empty();
-  });
-  if (known == std::end(types)) {
-    settings.problems().error(settings.find("data_type")->at,
-                              fmt::format("{} is not a data type", shown(type)),
-                              "write int16 to int64, uint16 to uint64, float32, float64, string or custom");
-    return {};
-  }
-  if (known->iec.empty()) {
-    settings.problems().warning(
-        settings.find("data_type")->at,
-        fmt::format("the map has no type for {}, so the entity is left out", shown(type)),
-        "read the register as WORD");
-    return {};
-  }
-  return {number_of(*known, elements, swap, settings.at())};
+  const TypeOf* known = numeric_type(type, count, settings);
+  if (known == nullptr) return {};
+  return {number_of(*known, elements, *swap, settings.at())};
 }
 
 }  // namespace coupler::formats

@@ -194,6 +194,12 @@ class HomeAssistant(unittest.TestCase):
         self.assertEqual(len(hubs), 1)
         return hubs[0]
 
+    def config(self, points):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder, "m.yaml")
+            file.write_text("{name: m, mapping: {holding_registers: {" + points + "}}}", encoding="utf-8")
+            return yaml.safe_load(exported(file, "home-assistant"))
+
     def value(self, sensor, registers):
         kind, at = sensor["data_type"], 2 * sensor["address"]
         count = sensor["count"] if kind in ("custom", "string") else HA_TYPES[kind][1]
@@ -259,11 +265,7 @@ class HomeAssistant(unittest.TestCase):
 
     def test_names_values_in_template_sensors(self):
         """docs: source/_integrations/template.markdown; an entity's id is the slug of its name (homeassistant.util.slugify)."""
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder, "m.yaml")
-            file.write_text("name: m\nmapping:\n  holding_registers:\n    Arm/Mode: {address: 0, type: INT, values: {-1: fault, 2: run}}\n",
-                            encoding="utf-8")
-            config = yaml.safe_load(exported(file, "home-assistant"))
+        config = self.config("Arm/Mode: {address: 0, type: INT, values: {-1: fault, 2: run}}")
         self.assertEqual(config["modbus"][0]["sensors"][0]["name"], "Arm/Mode")
         [[sensor]] = [part["sensor"] for part in config["template"]]
         self.assertEqual({key: sensor[key] for key in ("name", "unique_id", "availability")},
@@ -273,6 +275,19 @@ class HomeAssistant(unittest.TestCase):
         for state, shown in (("-1", "fault"), ("2", "run"), ("7", "7")):
             states = {"sensor.arm_mode": state}.__getitem__
             self.assertEqual(eval(expression, {"states": states}), shown)  # pylint: disable=eval-used
+
+    def test_a_template_reads_the_register_of_its_own_point(self):
+        """helpers/entity_registry.py: of ids that are alike the later ones get _2, _3 ..."""
+        names = ["Mode", "mode", "a_b", "a/b", "a_b_2"]
+        points = [f"{name}: {{address: {i}, type: INT, values: {{{i}: v{i}}}}}" for i, name in enumerate(names)]
+        config = self.config(", ".join(points))
+        states = {}
+        for sensor in config["modbus"][0]["sensors"]:
+            slug = "sensor." + re.sub("[^a-z0-9]+", "_", sensor["name"].lower())
+            states[next(each for each in (slug, slug + "_2") if each not in states)] = str(sensor["address"])
+        for template in config["template"][0]["sensor"]:
+            shown = eval(template["state"][3:-3], {"states": states.__getitem__})  # pylint: disable=eval-used
+            self.assertEqual(shown, f"v{names.index(template['name'].removesuffix(' name'))}")
 
     def test_switches_coils_and_reads_them_back(self):
         hub = self.hub(MAP)

@@ -128,6 +128,39 @@ TEST(HomeAssistantExport, No_two_entities_have_one_id) {
   EXPECT_THAT(told("home-assistant", points), HasSubstr("get a number: lamp, lamp_2, arm_left; rename one"));
 }
 
+TEST(HomeAssistantExport, A_template_reads_the_sensor_that_gets_the_id) {
+  const std::string points =
+      "input_registers: {Mode: {address: 0, type: INT, values: {1: a}}, mode: {address: 1, type: INT, "
+      "values: "
+      "{1: b}}, pair: {address: 2, type: INT, count: 2}, pair_1: {address: 4, type: INT, values: {1: c}}}";
+  EXPECT_THAT(exported("home-assistant", points).text,
+              AllOf(HasSubstr("{{ {'1': 'a'}.get(states('sensor.mode'), states('sensor.mode')) }}"),
+                    HasSubstr("{{ {'1': 'b'}.get(states('sensor.mode_2'), states('sensor.mode_2')) }}"),
+                    HasSubstr("{{ has_value('sensor.pair_1_2') }}")));
+  EXPECT_THAT(told("home-assistant", points), HasSubstr("get a number: mode, pair_1, mode; rename one"));
+}
+
+TEST(HomeAssistantExport, A_template_that_has_a_sensors_id_is_told) {
+  EXPECT_THAT(told("home-assistant",
+                   "input_registers: {mode: {address: 0, type: INT, values: {1: a}}, mode_name: {address: 1, "
+                   "type: INT}}"),
+              HasSubstr("get a number: mode"));
+}
+
+TEST(HomeAssistantExport, What_an_import_reads_back_as_another_type_is_told) {
+  const std::string said = told(
+      "home-assistant",
+      "input_registers: {w: {address: 0, type: WORD}, d: {address: 1, type: DWORD}, l: {address: 3, type: "
+      "LWORD}, b: {address: 7, type: BYTE, offset: low}, c: {address: 7, type: CHAR, offset: high}, odd: "
+      "{address: 8, type: STRING, length: 5}, even: {address: 11, type: STRING, length: 4}, u: {address: "
+      "13, type: UINT}}");
+  for (const char* each :
+       {"an import reads WORD back as UINT: w; keep the map\n", "reads DWORD back as UDINT: d;",
+        "reads LWORD back as ULINT: l;", "reads BYTE back as USINT: b;", "reads CHAR back as USINT: c;",
+        "texts of odd length have a byte more there: odd; keep that byte 0, which ends the text\n"})
+    EXPECT_THAT(said, HasSubstr(each));
+}
+
 TEST(HomeAssistantExport, A_swapped_bit_8_is_the_lowest_on_the_wire) {
   EXPECT_THAT(
       exported("home-assistant", "input_registers: {b: {address: 1, type: BOOL, bit: 8, order: BA}}").text,

@@ -131,7 +131,7 @@ TEST(HomeAssistantImport, A_switch_is_read_back_where_it_is_verified) {
   };
   EXPECT_THAT(one("write_type: coil").text(), HasSubstr("s: {address: 3, access: write}"));
   EXPECT_THAT(one("write_type: coil").said, HasSubstr("without 'verify' the output is only written"));
-  EXPECT_THAT(one("write_type: coils, verify: ").text(), HasSubstr("coils:\n    s: 3\n"));
+  EXPECT_THAT(one("write_type: coil, verify: ").text(), HasSubstr("coils:\n    s: 3\n"));
   EXPECT_THAT(one("write_type: coil, verify: {address: 9, delay: 1}").text(),
               HasSubstr("s: {address: 3, read_address: 9}"));
   EXPECT_THAT(one("write_type: coil, verify: {input_type: discrete_input, address: 9}").text(),
@@ -169,9 +169,9 @@ TEST(HomeAssistantImport, Lights_fans_and_covers_are_their_registers) {
 TEST(HomeAssistantImport, A_climate_is_its_temperatures_and_modes) {
   const Imported imported =
       hub(R"(climates: [{name: c, address: 1, input_type: input, scale: 0.1, target_temp_register: 2,
-    hvac_mode_register: {address: 3, values: {state_off: 0, state_heat: [1, 4]}, write_registers: true},
+    hvac_mode_register: {address: 3, values: {state_off: 0, state_heat: [1, 4]}},
     hvac_action_register: {address: 4, input_type: input, values: {action_idle: 0}},
-    fan_mode_register: {address: [5], values: {state_fan_low: 1}},
+    fan_mode_register: {address: 5, values: {state_fan_low: 1}},
     swing_mode_register: {address: 6, values: {swing_mode_state_on: 1}},
     hvac_onoff_coil: 7, max_temp: 30}])");
   EXPECT_THAT(imported.text(),

@@ -12,14 +12,14 @@ namespace {
 
 using testing::HasSubstr;
 
-formats::Export exported(const std::string& text) {
+formats::Export dissector_of(const std::string& text) {
   const LoadResult loaded = load_map(text, "m");
   EXPECT_NE(loaded.map, nullptr) << lines_of(loaded.diagnostics);
   return loaded.map ? formats::write_wireshark(loaded.map->map()) : formats::Export{};
 }
 
 TEST(WiresharkExport, Is_a_table_of_the_points_and_then_the_same_for_every_map) {
-  const auto out = exported(
+  const auto out = dissector_of(
       "{name: Plant/A, unit: 3, port: 1502, mapping: {holding_registers: {\n"
       "  level: {address: 4, type: REAL, order: BADC, scale: 2, units: mm, read_address: 9}}}}");
   EXPECT_THAT(out.text,
@@ -33,13 +33,13 @@ TEST(WiresharkExport, Is_a_table_of_the_points_and_then_the_same_for_every_map) 
 }
 
 TEST(WiresharkExport, Texts_cannot_leave_their_quotes) {
-  const auto out = exported(
+  const auto out = dissector_of(
       R"x({name: m, mapping: {coils: {a: {address: 0, description: "say \"hi\" \\ then\n--]]os.exit()"}}}})x");
   EXPECT_THAT(out.text, HasSubstr(R"x(description = "say \"hi\" \\ then\010--]]os.exit()" },)x"));
 }
 
 TEST(WiresharkExport, What_only_the_node_knows_is_told) {
-  EXPECT_THAT(lines_of(exported("{name: m, mapping: {coils: {a: {address: 0, line: GPIO4}, b: 1}}}")
+  EXPECT_THAT(lines_of(dissector_of("{name: m, mapping: {coils: {a: {address: 0, line: GPIO4}, b: 1}}}")
                            .warnings.diagnostics("m")),
               HasSubstr("belong to the node and are left out: a;"));
 }
