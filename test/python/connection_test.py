@@ -44,6 +44,21 @@ class Connection(OfADevice):
             press.port = nobody_listens.getsockname()[1]
             self.assertIn(f"127.0.0.1 port {press.port};", self.raises("NotConnected", press.connect))
 
+    def test_verify_is_one_of_three_words(self):
+        press = self.press(verify="require")
+        self.assertIs(press.verify, self.module.Verify.REQUIRE)
+        self.device.identify(press.fingerprint ^ 1)
+        self.raises("OtherMap", press.connect)
+        press.verify = "off"
+        self.assertIs(press.verify, self.module.Verify.OFF)
+        for wrong in ("REQUIRE", "", None, True, 0):
+            with self.assertRaisesRegex(ValueError, "give 'require', 'warn' or 'off'") as caught:
+                self.press(verify=wrong)
+            self.assertNotIsInstance(caught.exception, self.module.CouplerError)
+            with self.assertRaises(ValueError):
+                press.verify = wrong
+        self.assertEqual(press.verify.value, "off")
+
     def test_silence_ends_after_the_timeout(self):
         press = self.press(timeout=SHORT)
         self.device.spoil = lambda pdu: None

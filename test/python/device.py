@@ -28,13 +28,13 @@ def packed(bits):
 
 class Device:
     """`requests` has what came: (function code, address, count). `spoil(pdu)` may give another answer: the bytes of a PDU,
-    None for silence, ConnectionError to close. `unmapped` are ranges of tables that it answers with exception 02."""
+    None for silence, ConnectionError to close. `frames(frame)` may give other bytes than the answer's frame. `unmapped` are ranges of tables that it answers with exception 02."""
 
     def __init__(self):
         self.tables = {table: [0] * 65536 for table in READS}
         self.requests, self.units, self.connections = [], set(), 0
         self.unmapped = [("input_registers", range(0xFF00, 0xFF0D))]
-        self.spoil = None
+        self.spoil = self.frames = None
         device = self
 
         class Handler(socketserver.BaseRequestHandler):
@@ -72,7 +72,8 @@ class Device:
             self.units.add(unit)
             answer = self.spoil(pdu) if self.spoil else self.answer(pdu)
             if answer is not None:
-                connection.sendall(struct.pack(">HHHB", transaction, 0, 1 + len(answer), unit) + answer)
+                frame = struct.pack(">HHHB", transaction, 0, 1 + len(answer), unit) + answer
+                connection.sendall(self.frames(frame) if self.frames else frame)
 
     def answer(self, pdu):
         function, address, count = struct.unpack(">BHH", pdu[:5])

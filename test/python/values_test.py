@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The client in Python: which values it refuses, and names that could be in each other's way."""
+import ast
 import enum
+import io
 import json
 import keyword
+import pickle
 import struct
+import tokenize
 import unittest
 
 import made
@@ -50,6 +54,20 @@ class Values(OfADevice):
         self.device.tables["holding_registers"][20] = 9  # what has no name is a number
         self.assertEqual((press.mode.read(), isinstance(press.mode.read(), enum.Enum)), (9, False))
 
+    def test_every_error_comes_back_from_pickle(self):
+        self.press()
+        module = self.module
+        errors = [kind("why") for kind in (module.CouplerError, module.NotConnected, module.OtherMap, module.Lost,
+                                           module.NotTaken, module.Refused)]
+        errors += [module.ExceptionReply(2), module.ExceptionReply(4, "speed: ")]
+        named = {kind for kind in vars(module).values() if isinstance(kind, type) and issubclass(kind, module.CouplerError)}
+        self.assertEqual({type(error) for error in errors}, named)
+        for error in errors:
+            for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+                again = pickle.loads(pickle.dumps(error, protocol))
+                self.assertIs(type(again), type(error))
+                self.assertEqual((str(again), getattr(again, "code", None)), (str(error), getattr(error, "code", None)))
+
     def test_a_scale_is_that_of_python(self):
         """test/golden/make-scale: halves, ends of types, numbers without a double."""
         self.press()
@@ -78,6 +96,28 @@ class Values(OfADevice):
 
 
 class Names(OfADevice):
+    def test_the_class_of_a_map_stands_in_nobodys_place(self):
+        """Such a class ends in Client: no other name of the file may, but the one that no map can make."""
+        self.press()
+        self.assertEqual([name for name in vars(self.module) if name.endswith("Client") and name[0] != "_"],
+                         ["Client", "CellClient"])
+        self.module, kind = self.client(PRESS, name="modbus_tcp")
+        self.assertEqual(kind.__name__, "ModbusTcpClient")
+        with kind("127.0.0.1", self.device.port) as press:
+            press.speed.write(80)
+            self.assertEqual(press.speed.read(), 80)
+
+    def test_the_name_of_a_map_file_is_no_encoding_and_no_code(self):
+        (self.folder / "x,coding=raw_unicode_escape,.yaml").write_text(
+            'name: press\nmapping:\n  coils:\n    a: {address: 0, description: "\\\\u000araise SystemExit #"}\n', encoding="utf-8")
+        done = self.coupler("generate", "x,coding=raw_unicode_escape,.yaml", "--python", "--name", "odd")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        data = (self.folder / "odd_client.py").read_bytes()
+        self.assertIn(b"\\u000araise SystemExit", data)
+        self.assertIn(b"coding=raw_unicode_escape", data)
+        self.assertEqual(tokenize.detect_encoding(io.BytesIO(data).readline)[0], "utf-8")
+        self.assertNotIn("SystemExit", ast.unparse(ast.parse(data)), "it is a comment")
+
     def test_words_of_python_and_of_the_client_get_an_underscore(self):
         client = self.press()
         own = [name for name in dir(client) if not name.startswith("_") and name not in client.points]

@@ -35,7 +35,7 @@ class Output(Input[T], Command[T]):
 def _names_of_unit(method: str) -> tuple[str, ...]:
     """pymodbus calls the unit id `slave` at first and `device_id` since 3.10. Where a call takes any name (FC 22 of the first
     releases) it is `unit` or `slave`, and the other one has no meaning."""
-    parameters = inspect.signature(getattr(ModbusTcpClient, method)).parameters
+    parameters = inspect.signature(getattr(_ModbusTcpClient, method)).parameters
     return tuple(name for name in ("device_id", "slave") if name in parameters) or ("unit", "slave")
 
 
@@ -48,8 +48,9 @@ class Client:
     _request_gap = 0.0    # seconds between a reply and the next request
     _connect_delay = 0.0  # seconds between connecting and the first request
 
-    def __init__(self, address: str, port: int, unit: int, timeout: float, verify: Verify) -> None:
-        self.address, self.port, self.unit, self.timeout, self.verify = address, port, unit, timeout, verify
+    def __init__(self, address: str, port: int, unit: int, timeout: float, verify: Verify | str) -> None:
+        self.address, self.port, self.unit, self.timeout = address, port, unit, timeout
+        self.verify = Verify(verify)
         self._points: dict[str, Any] = {}
         self._lock = threading.RLock()
         self._wanted = False
@@ -98,6 +99,8 @@ class Client:
     def __setattr__(self, name: str, value: Any) -> None:
         if isinstance(self.__dict__.get(name), Point):
             raise AttributeError(f"{name} is a point; write to it with {name}.write(value)")
+        if name == "verify":
+            value = Verify(value)  # a word that is none of it must not pass for another one
         super().__setattr__(name, value)
 
     def _read_point(self, spec: Spec) -> Any:
@@ -158,9 +161,6 @@ class Client:
     def _read(self, table: str, address: int, count: int) -> list[int]:
         method, function, place = _READS[table]
         values = getattr(self._ask(method, function, address=address, count=count), place)
-        if len(values) < count:
-            self._drop()
-            raise Lost(f"malformed reply: {len(values)} of {count} values")
         return [int(value) for value in values[:count]]
 
     def _connected(self) -> None:
@@ -172,7 +172,7 @@ class Client:
         where = f"{self.address} port {self.port}"
         try:
             # No repeated requests: pymodbus would connect for them by itself, and nobody would compare the maps.
-            modbus = ModbusTcpClient(self.address, port=self.port, timeout=self.timeout, retries=0)
+            modbus = _ModbusTcpClient(self.address, port=self.port, timeout=self.timeout, retries=0)
             if hasattr(modbus, "params"):
                 modbus.params.timeout = self.timeout  # 3.0 cuts it to whole seconds
             is_open = modbus.connect()
@@ -225,7 +225,8 @@ class Client:
         call = getattr(self._modbus, method)
         began = time.monotonic()
         try:
-            reply = call(**request, **{name: self.unit for name in _names_of_unit(method)})
+            # A copy: pymodbus 3.9 fills up the list of bits.
+            reply = call(**copy.deepcopy(request), **{name: self.unit for name in _names_of_unit(method)})
         except BaseException as error:
             # Its late answer must never be taken for that to the next request.
             self._drop()
@@ -233,15 +234,45 @@ class Client:
                 raise
             raise self._lost(began, error) from error  # whatever pymodbus ran into
         self._next_request = time.monotonic() + self._request_gap
+        if isinstance(reply, Exception):
+            self._drop()
+            raise self._lost(began, reply)
+        if not self._answers(reply, function, request):
+            self._drop()
+            raise Lost("malformed reply: the reply to another request")
         code = getattr(reply, "exception_code", 0)
         if code:
             if code in _UNIT_AWAY:
                 self._drop()  # another unit may come back: the maps are compared again
             raise ExceptionReply(code)
-        if isinstance(reply, Exception) or reply.isError() or reply.function_code != function:
+        if reply.isError():
             self._drop()
             raise self._lost(began, reply)
         return reply
+
+    def _answers(self, reply: Any, function: int, request: dict[str, Any]) -> bool:
+        """The reply is that to this request. pymodbus does not see to it: 3.0 compares no ids, and no release the rest."""
+        transaction = getattr(self._modbus, "transaction", None)
+        asked = getattr(transaction, "tid", getattr(transaction, "next_tid", None))  # later releases have the second
+        if asked is not None and reply.transaction_id != asked:
+            return False
+        if reply.function_code & 0x7F != function:
+            return False
+        if reply.function_code & 0x80:
+            return True  # an exception says no more
+        if function in (1, 2):
+            return len(reply.bits) == (request["count"] + 7) // 8 * 8
+        if function in (3, 4):
+            return len(reply.registers) == request["count"]
+        if reply.address != request["address"]:
+            return False
+        if function in (15, 16):
+            return reply.count == len(request["values"])
+        if function == 22:
+            return (reply.and_mask, reply.or_mask) == (request["and_mask"], request["or_mask"])
+        # 5 and 6; later releases have no `value`.
+        values = [reply.value] if hasattr(reply, "value") else reply.bits if function == 5 else reply.registers
+        return list(values) == [request["value"]]
 
     def _lost(self, began: float, why: Any) -> Lost:
         if time.monotonic() - began >= 0.99 * self.timeout:

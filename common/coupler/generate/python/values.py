@@ -13,6 +13,7 @@ again. Nothing is read or written by itself. All may be called from any thread. 
 """
 from __future__ import annotations
 
+import copy
 import enum
 import functools
 import inspect
@@ -26,7 +27,8 @@ from dataclasses import dataclass
 from typing import Any, Generic, NoReturn, TypeVar
 
 try:
-    from pymodbus.client import ModbusTcpClient
+    # Under a name of its own: the map `modbus_tcp` makes a class ModbusTcpClient.
+    from pymodbus.client import ModbusTcpClient as _ModbusTcpClient
 except ImportError as missing:
     raise ImportError("pymodbus 3 or newer is needed; install it with `apt install python3-pymodbus` or `pip install "
                       "'pymodbus>=3'`") from missing
@@ -76,8 +78,11 @@ class ExceptionReply(CouplerError):
     """The device answered with an exception."""
 
     def __init__(self, code: int, what: str = "") -> None:
-        self.code = code
+        self.code, self._what = code, what
         super().__init__(f"{what}exception {code:02X} ({_EXCEPTIONS.get(code, 'unknown exception')})")
+
+    def __reduce__(self) -> Any:  # for pickle, which else makes it of its text
+        return type(self), (self.code, self._what)
 
 
 class NotTaken(CouplerError):
@@ -94,6 +99,10 @@ class Verify(enum.Enum):
     REQUIRE = "require"  # do not talk to it
     WARN = "warn"        # log it and go on
     OFF = "off"          # do not ask
+
+    @classmethod
+    def _missing_(cls, value: object) -> NoReturn:
+        raise ValueError(f"verify={value!r}: give 'require', 'warn' or 'off'")
 
 
 def _reordered(words: list[int], order: str) -> list[int]:
