@@ -6,79 +6,25 @@ import json
 import math
 import os
 import re
-import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 from interpreter import FLOATS, Program, rounded
+from side import READ, WRITTEN, Side, coupler, exported, slots
 
 ROOT = Path(os.environ["SOURCE_DIR"])
 # blark takes some seconds for each.
 MAPS = [ROOT / "test/common/test_vectors/vectors.yaml", ROOT / "test/generate/manners.yaml", ROOT / "test/peers/dissector.yaml",
         ROOT / "config/example-node.yaml"]
 NAMED = {"mode": (-1, 0, 7)}  # of dissector.yaml: other values are not written
-READ = {1: "coils", 2: "discrete_inputs", 3: "holding_registers", 4: "input_registers"}
-WRITTEN = {5: "coils", 6: "holding_registers", 15: "coils", 16: "holding_registers"}
-
-
-def coupler(*arguments):
-    return subprocess.run([os.environ["COUPLER"], *map(str, arguments)], capture_output=True, text=True, encoding="utf-8",
-                          check=True)
-
-
-def exported(file):
-    return Program(coupler("export", file, "--to", "st").stdout)
 
 
 def vectors_of(file):
     with tempfile.TemporaryDirectory() as folder:
         coupler("generate", file, "--vectors", "--out", folder, "--name", "map", "--quiet")
         return json.loads((Path(folder) / "map_vectors.json").read_text(encoding="utf-8"))["points"]
-
-
-class Side:
-    """What is read, or what is written: variables, the image, and which request each part of it is."""
-
-    def __init__(self, program, verb, values, block, tables):
-        self.program = program
-        self.block, = [name for name in program.blocks if name.endswith(block)]
-        prefix = self.block.removesuffix(block)
-        self.values, self.image = program.variables[prefix + values], program.variables[f"{prefix}_{verb}_image"]
-        self.parts = []
-        for name, cells in self.image.items():
-            function, address, quantity = (program.constants[f"{prefix}_{verb}_{name}_{key}"].value
-                                           for key in ("function", "address", "quantity"))
-            self.parts.append((tables[function], address, quantity, cells))
-
-    def run(self):
-        return self.program.call(self.block, image=self.image, values=self.values)
-
-    def part(self, table, address, count):
-        """The cells that hold these addresses, which one request has, and where they begin there."""
-        found = [(cells, address - first) for at, first, quantity, cells in self.parts
-                 if at == table and first <= address and address + count <= first + quantity]
-        return found[0]
-
-    def put(self, table, address, raw, mask=0xFFFF):
-        cells, at = self.part(table, address, len(raw))
-        for i, value in enumerate(raw, at):
-            if isinstance(value, int):
-                cells[i // 8].value = cells[i // 8].value & ~(1 << i % 8) | value << i % 8
-            else:
-                cells[i].value = cells[i].value & ~mask | int(value, 16) & mask
-
-    def get(self, table, address, raw):
-        """As many as `raw` has, in its form."""
-        cells, at = self.part(table, address, len(raw))
-        return [cells[i // 8].value >> i % 8 & 1 if isinstance(value, int) else f"{cells[i].value:04X}"
-                for i, value in enumerate(raw, at)]
-
-    def fill(self, ones):
-        for cells in self.image.values():
-            for cell in cells:
-                cell.value = 2**(8 if cell.kind == "BYTE" else 16) - 1 if ones else 0
 
 
 def numbers(point, value):
@@ -90,10 +36,6 @@ def numbers(point, value):
     if point["type"] in FLOATS or "scale" in point:
         return [rounded("LREAL" if "scale" in point else point["type"], float(each)) for each in values]
     return [int(each) for each in values]
-
-
-def slots(variable):
-    return variable if isinstance(variable, list) else [variable]
 
 
 def mask_of(point):
@@ -218,6 +160,70 @@ class StructuredText(unittest.TestCase):
             for name, number in zip(("level", "mode", "flow"), (level, mode, value)):
                 side.values[name].value = number
             self.assertEqual(side.run()["refused"].value, refused, (level, mode, value))
+
+    def test_a_scaled_value_is_judged_by_the_registers_that_it_becomes(self):
+        program = self.made("holding_registers: {up: {address: 0, type: INT, scale: 0.1, min: 0.3, max: 20}, "
+                            "down: {address: 1, type: INT, scale: {gain: -0.1, offset: 2}, min: 0.3, max: 1.7}, "
+                            "flow: {address: 2, type: REAL, order: ABCD, scale: 0.1, min: 0.3, max: 20}, "
+                            "small: {address: 4, type: SINT, offset: low, scale: 0.5}, "
+                            "long: {address: 5, type: LINT, order: ABCD, scale: 0.5}}")
+        side = Side(program, "write", "_outputs", "_encode", WRITTEN)
+        whole, = side.image.values()
+        place = {"up": (0, 1), "down": (1, 1), "flow": (2, 2), "small": (4, 1), "long": (5, 4)}
+        for name, value, registers in (
+                ("up", 0.3, "0003"), ("up", 0.26, "0003"), ("up", 0.24, None), ("up", 20.0, "00C8"),
+                ("up", 20.04, "00C8"), ("up", 20.06, None), ("up", math.nan, None),
+                ("down", 0.3, "0011"), ("down", 0.26, "0011"), ("down", 0.24, None), ("down", 1.7, "0003"),
+                ("down", 1.74, "0003"), ("down", 1.76, None),
+                ("flow", 0.3, "40400000"), ("flow", 0.2999999, None), ("flow", 20.0, "43480000"),
+                ("flow", 20.00001, None),
+                ("small", 63.5, "007F"), ("small", 63.74, "007F"), ("small", 63.75, None), ("small", -64.24, "0080"),
+                ("small", -64.25, None),
+                ("long", -2.0**62, "8000000000000000"), ("long", 2.0**62 - 512, "7FFFFFFFFFFFFC00"),
+                ("long", 2.0**62, None)):
+            first, count = place[name]
+            cells = whole[first:first + count]
+            kept = side.values[name].value
+            before = "".join(f"{cell.value:04X}" for cell in cells)
+            side.values[name].value = value
+            self.assertEqual(side.run()["refused"].value, registers is None, (name, value))
+            self.assertEqual("".join(f"{cell.value:04X}" for cell in cells), registers or before, (name, value))
+            side.values[name].value = kept
+
+    def test_outputs_and_their_registers_begin_with_allowed_values(self):
+        program = self.made("coils: {lamps: {address: 3, count: 9, "
+                            "initial: [on, off, on, off, off, off, off, off, on]}, plain: 12}, "
+                            "holding_registers: {low: {address: 0, type: USINT, offset: low, min: 5}, "
+                            "high: {address: 0, type: USINT, offset: high, initial: 18}, "
+                            "mode: {address: 1, type: INT, values: {-2: back, 5: run}}, "
+                            "idle: {address: 2, type: INT, min: -5, max: 5}, "
+                            "cold: {address: 3, type: INT, count: 2, max: -3}, "
+                            "warm: {address: 5, type: INT, scale: {gain: 0.5, offset: 10}, min: 20}, "
+                            "shifted: {address: 6, type: INT, scale: {gain: 0.5, offset: 10}}, "
+                            "flow: {address: 7, type: REAL, order: ABCD, min: 1.5}}")
+        side = Side(program, "write", "_outputs", "_encode", WRITTEN)
+        values = {name: [slot.value for slot in slots(side.values[name])] for name in list(side.values)[1:]}
+        self.assertEqual(values, {"plain": [False], "low": [5], "high": [18], "mode": [-2], "idle": [0],
+                                  "cold": [-3, -3], "warm": [20.0], "shifted": [0.0], "flow": [1.5]})
+        expected = {"coils_3": [5, 1],
+                    "holding_registers_0": [0x1205, 0xFFFE, 0, 0xFFFD, 0xFFFD, 20, 0xFFEC, 0x3FC0, 0]}
+        for _ in range(2):  # before and after the first call
+            self.assertEqual({name: [cell.value for cell in cells] for name, cells in side.image.items()}, expected)
+            self.assertFalse(side.run()["refused"].value)
+
+    def test_bits_of_points_that_are_only_read_are_written_as_they_were_read(self):
+        program = self.made("holding_registers: {first: {address: 2, type: INT, access: read}, "
+                            "ready: {address: 3, type: BOOL, bit: 3, access: read}, "
+                            "run: {address: 3, type: BOOL, bit: 4}, "
+                            "high: {address: 4, type: USINT, offset: high, access: read}, "
+                            "low: {address: 4, type: USINT, offset: low}}")
+        read = Side(program, "read", "_inputs", "_decode", READ)
+        side = Side(program, "write", "_outputs", "_encode", WRITTEN)
+        for raw, written in ((["FFFF", "ABCD"], ["0008", "AB07"]), (["0000", "12CD"], ["0000", "1207"])):
+            read.put("holding_registers", 3, raw)
+            side.values["low"].value = 7
+            side.run(read_image=read.image)
+            self.assertEqual(side.get("holding_registers", 3, raw), written)
 
     def test_outputs_begin_with_the_maps_initial_values(self):
         program = self.made("coils: {lamps: {address: 0, count: 3, initial: [on, off, on]}}, "

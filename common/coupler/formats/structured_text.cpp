@@ -58,11 +58,6 @@ struct Text {
 
 std::string factor(double gain) { return gain < 0 ? fmt::format("({})", Text{}(gain)) : Text{}(gain); }
 
-bool is_finite(const Point& point, const std::uint16_t* registers) {
-  return !codec::is_scalable(point.format.type) ||
-         std::isfinite(codec::published(registers, point.format, point.scale));
-}
-
 /// The characters of a text, from the first in the registers on.
 std::string bytes_of(const Point& point) {
   std::string list;
@@ -125,6 +120,8 @@ std::string number(const Point& point, const std::uint16_t* registers) {
   return std::visit(Text{point.format.type}, codec::decode(registers, point.format));
 }
 
+std::string lreal(double value) { return Text{}(value); }
+
 std::string scaled(const std::string& raw, const codec::Scale& scale) {
   std::string text = raw;
   if (scale.gain != 1) text += " * " + factor(scale.gain);
@@ -143,15 +140,14 @@ std::string unscaled(const std::string& value, const codec::Scale& scale) {
 
 std::string initial_value(const Point& point) {
   const auto is_zero = [](std::uint16_t word) { return word == 0; };
+  if (point.initial.empty() && may_be_zero(point)) return {};
+  const std::vector<std::uint16_t> start = start_registers(point);
   const bool scaled = point.scale.present();  // its 0 may be the offset
-  if (point.initial.empty() || (!scaled && std::all_of(point.initial.begin(), point.initial.end(), is_zero)))
-    return {};
+  if (!scaled && std::all_of(start.begin(), start.end(), is_zero)) return {};
   if (point.format.type == Type::STRING) return "[" + bytes_of(point) + "]";
   std::string list;
   for (std::size_t i = 0; i < point.count; ++i) {
-    const std::uint16_t* registers = point.initial.data() + i * codec::registers(point.format);
-    if (!is_finite(point, registers)) return {};
-    list += (i == 0 ? "" : ", ") + number(point, registers);
+    list += (i == 0 ? "" : ", ") + number(point, start.data() + i * codec::registers(point.format));
   }
   return point.count == 1 ? list : "[" + list + "]";
 }

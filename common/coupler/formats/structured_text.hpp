@@ -34,12 +34,27 @@ std::string_view bits_of(codec::Type type);
 /// A number as the point publishes it, from its registers. Whole numbers have no point, others always do.
 std::string number(const Point& point, const std::uint16_t* registers);
 
+/// A literal of LREAL.
+std::string lreal(double value);
+
 /// "raw * 0.1 - 40.0", and the other way round: "(value + 40.0) / 0.1".
 std::string scaled(const std::string& raw, const codec::Scale& scale);
 std::string unscaled(const std::string& value, const codec::Scale& scale);
 
-/// What the variable is at start, ":= [1, 2]" without the ":=". Empty: nothing but zeros, or no such value.
+/// What the variable is at start, ":= [1, 2]" without the ":=". Empty: nothing but zeros.
 std::string initial_value(const Point& point);
+
+// Allowed values: structured_text_allowed.cpp
+
+/// The condition under which `variable`, one value, may be written. Of a scaled point it is about `raw`, an
+/// LREAL that is not rounded yet.
+std::string allowed(const Point& point, const std::string& variable);
+
+/// An output without `initial` can begin with 0.
+bool may_be_zero(const Point& point);
+
+/// The registers with which an output begins: `initial`, else 0, else the allowed value nearest to 0.
+std::vector<std::uint16_t> start_registers(const Point& point);
 
 // Requests: structured_text_blocks.cpp
 
@@ -58,6 +73,20 @@ std::vector<Block> read_blocks(const Map& map);
 /// Points that follow one another are written together; parts of one register always are.
 std::vector<Block> write_blocks(const Map& map);
 
+/// What a part of the write image is at start, from start_registers(); empty: nothing but zeros.
+std::string initial_image(const Block& block, const Map& map);
+
+/// Bits in a register that is written, of a point that is only read. A device takes whole registers.
+struct ReadOnlyBits {
+  std::uint32_t point;  ///< index into Map::points
+  std::uint16_t mask;
+  std::uint16_t address;
+  const Block* written;
+  const Block* read;  ///< nullptr: no request reads the register
+};
+std::vector<ReadOnlyBits> read_only_bits(const Map& map, const std::vector<Block>& reads,
+                                         const std::vector<Block>& writes);
+
 // Statements: structured_text_code.cpp
 
 /// What converts between REAL or LREAL and its bits.
@@ -74,11 +103,14 @@ struct Access {
   const FloatFunctions& functions;
 };
 
-/// From the image into the variable. What both use: i, bits_32, bits_64; not_finite and refused become TRUE.
+/// From the image into the variable. What both use: i, raw, bits_32, bits_64; not_finite and refused become
+/// TRUE.
 std::string decoding(const Access& access);
 /// From the variable into the image; other bits of a shared register stay. A value that must not be written
 /// leaves the image as it is.
 std::string encoding(const Access& access);
+/// From the parameter `read_image` into the image; nothing if no request reads them.
+std::string copying(const ReadOnlyBits& bits);
 
 // structured_text_float.cpp
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdint>
+#include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "coupler/formats/structured_text.hpp"
 #include "coupler/plan/planner.hpp"
@@ -72,6 +75,53 @@ std::vector<Block> write_blocks(const Map& map) {
   }
   for (Block& block : blocks) block.function = write_function(block, map);
   return blocks;
+}
+
+std::string initial_image(const Block& block, const Map& map) {
+  const bool bits = holds_bits(block.table);
+  std::vector<unsigned> cells(bits ? (block.range.count() + 7) / 8 : block.range.count());
+  for (const std::uint32_t i : block.points) {
+    std::uint32_t at = map.points[i].address - block.range.start();
+    for (const std::uint16_t word : start_registers(map.points[i])) {
+      if (bits)
+        cells[at / 8] |= static_cast<unsigned>(word) << at % 8;
+      else
+        cells[at] |= word;  // the bits of other points are zero in it
+      ++at;
+    }
+  }
+  if (std::all_of(cells.begin(), cells.end(), [](unsigned cell) { return cell == 0; })) return {};
+  constexpr std::size_t in_a_line = 12;
+  std::string list;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    list += fmt::format("{}16#{:0{}X}",
+                        i == 0               ? ""
+                        : i % in_a_line == 0 ? ",\n      "
+                                             : ", ",
+                        cells[i], bits ? 2 : 4);
+  return "[" + list + "]";
+}
+
+std::vector<ReadOnlyBits> read_only_bits(const Map& map, const std::vector<Block>& reads,
+                                         const std::vector<Block>& writes) {
+  std::vector<ReadOnlyBits> all;
+  for (std::uint32_t i = 0; i < map.points.size(); ++i) {
+    const Point& point = map.points[i];
+    if (is_writable(point) || !is_partial(point)) continue;
+    const auto has = [&](std::uint32_t address) {
+      return [&point, address](const Block& block) {
+        return block.table == point.table && block.range.start() <= address && address < block.range.end();
+      };
+    };
+    for (std::uint32_t address = range(point).start(); address < range(point).end(); ++address) {
+      const auto written = std::find_if(writes.begin(), writes.end(), has(address));
+      if (written == writes.end()) continue;
+      const auto read = std::find_if(reads.begin(), reads.end(), has(address));
+      all.push_back({i, codec::mask(point.format), static_cast<std::uint16_t>(address), &*written,
+                     read == reads.end() ? nullptr : &*read});
+    }
+  }
+  return all;
 }
 
 }  // namespace coupler::formats::structured_text

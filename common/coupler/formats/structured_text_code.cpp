@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -7,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "coupler/codec/number.hpp"
 #include "coupler/formats/structured_text.hpp"
 #include "coupler/map/allowed_values.hpp"
 
@@ -108,26 +106,15 @@ class Expressions {
     const std::string number = converted(to_string(format_.type), "LREAL", raw);
     return scaled(number, scale);
   }
-  /// The bits of the published value.
+  /// The bits of the published value; of a scaled one, those of `raw`.
   std::string raw_bits() const {
     const codec::Scale& scale = access_.point.scale;
     std::string raw = variable();
-    if (scale.present()) raw = converted("LREAL", to_string(format_.type), unscaled(raw, scale));
+    if (scale.present()) raw = converted("LREAL", to_string(format_.type), "raw");
     const FloatFunctions& functions = access_.functions;
     if (format_.type == Type::REAL) return fmt::format("{}({})", functions.from_real, raw);
     if (format_.type == Type::LREAL) return fmt::format("{}({})", functions.from_lreal, raw);
     return is_bit_string(format_.type) ? raw : converted(to_string(format_.type), bits_of(format_.type), raw);
-  }
-
-  /// The value nearest to a bound, as the point publishes it.
-  std::string bound(double value) const {
-    const Point& point = access_.point;
-    std::array<std::uint16_t, 4> registers{};
-    codec::encode_nearest(value, point.format, point.scale, registers.data());
-    const bool is_real = point.format.type == Type::REAL && !point.scale.present();
-    std::string text = number(point, registers.data());
-    if (is_real) text.insert(text.front() == '-' ? 1 : 0, "REAL#");
-    return text;
   }
 
  private:
@@ -230,19 +217,16 @@ void encode_element(const Point& point, const Expressions& at, Body& body) {
   std::string_view end = "END_IF;";
   if (!point.values.empty()) {
     std::string labels;
-    for (const NamedValue& named : point.values)
-      if (const auto value = static_cast<double>(named.value);
-          value >= point.bounds.min && value <= point.bounds.max)
-        labels += fmt::format("{}{}", labels.empty() ? "" : ", ", named.value);
+    for (const NamedValue& named : point.values)  // all are allowed: the loader sees to that
+      labels += fmt::format("{}{}", labels.empty() ? "" : ", ", named.value);
     body.open(fmt::format("CASE {} OF", at.variable()));
     body.open(labels + ":");
     encode_number(point, at, body);
     body.outdent();
     end = "END_CASE;";
   } else {
-    // A comparison with NaN is false.
-    body.open(fmt::format("IF ({0} >= {1}) AND ({0} <= {2}) THEN", at.variable(), at.bound(point.bounds.min),
-                          at.bound(point.bounds.max)));
+    if (point.scale.present()) body.add(fmt::format("raw := {};", unscaled(at.variable(), point.scale)));
+    body.open(fmt::format("IF {} THEN", allowed(point, at.variable())));
     encode_number(point, at, body);
   }
   body.middle("ELSE");
@@ -290,5 +274,14 @@ std::string statements(const Access& access, Text text, Element element) {
 
 std::string decoding(const Access& access) { return statements(access, decode_text, decode_element); }
 std::string encoding(const Access& access) { return statements(access, encode_text, encode_element); }
+
+std::string copying(const ReadOnlyBits& bits) {
+  if (bits.read == nullptr) return {};
+  const auto word = [&](std::string_view image, const Block& block) {
+    return fmt::format("{}.{}[{}]", image, block.name, bits.address - block.range.start());
+  };
+  return fmt::format("  {0} := ({0} AND NOT WORD#16#{1:04X}) OR ({2} AND WORD#16#{1:04X});\n",
+                     word("image", *bits.written), bits.mask, word("read_image", *bits.read));
+}
 
 }  // namespace coupler::formats::structured_text

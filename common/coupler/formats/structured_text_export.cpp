@@ -64,8 +64,11 @@ class Writer {
     const Side inputs = side("read", "inputs", st::read_blocks(map_));
     const Side outputs = side("write", "outputs", st::write_blocks(map_));
     add_float_functions();
-    for (const Side* each : {&inputs, &outputs})
-      if (!each->blocks.empty()) add_side(*each, each == &inputs);
+    const std::string copied = copy_read_only_bits(inputs, outputs);
+    if (!inputs.blocks.empty()) add_side(inputs, true);
+    if (!outputs.blocks.empty())
+      add_side(outputs, false, copied.empty() ? "" : fmt::format("  read_image : {};\n", inputs.image_type),
+               copied);
     add_constants(inputs, outputs);
     return head() + types_ + functions_ + blocks_ + constants_ + variables_of(inputs, outputs);
   }
@@ -104,6 +107,9 @@ class Writer {
       if (is_readable(point) && plan::why_not_read(map_, point))
         warnings_.add("points that no request can read are not among the inputs", "`coupler plan` says why",
                       point.name);
+      if (is_writable(point) && point.initial.empty() && !st::may_be_zero(point))
+        warnings_.add("outputs begin with the allowed value nearest to 0, since 0 is not allowed",
+                      "give 'initial' if they are to begin with another value", point.name);
       if (point.bounds.allow_nonfinite)
         warnings_.add("NaN and infinities are reported in place of being read or written",
                       "no action is needed if the device does without them", point.name);
@@ -132,20 +138,40 @@ class Writer {
         functions_ += st::float_functions(type, float_functions_) + "\n";
   }
 
+  /// The statements; what is only read would be written as 0 otherwise.
+  std::string copy_read_only_bits(const Side& inputs, const Side& outputs) {
+    std::string copied;
+    for (const st::ReadOnlyBits& bits : st::read_only_bits(map_, inputs.blocks, outputs.blocks)) {
+      const std::string_view name = map_.points[bits.point].name;
+      if (bits.read == nullptr)
+        warnings_.add(
+            "read-only bits and bytes that no request can read are written as 0 with their register",
+            "put them into the write image, which keeps them, before the first write", name);
+      else
+        warnings_.add("read-only bits and bytes of registers that are written are copied from the read image",
+                      fmt::format("hand it to {} as 'read_image', and read before the first write",
+                                  outputs.function_block),
+                      name);
+      copied += st::copying(bits);
+    }
+    return copied;
+  }
+
   /// The types and the function block of one direction.
-  void add_side(const Side& side, bool reads) {
+  void add_side(const Side& side, bool reads, const std::string& parameters = {}, std::string body = {}) {
     // In the map's order, which is that of the addresses.
     std::map<std::uint32_t, const st::Block*> block_of;
     std::string image;
     for (const st::Block& block : side.blocks) {
       for (const std::uint32_t i : block.points) block_of[i] = &block;
       const bool bits = holds_bits(block.table);
-      image += fmt::format("    {} : ARRAY [0..{}] OF {};  {}\n", block.name,
+      const std::string initial = reads ? std::string() : st::initial_image(block, map_);
+      image += fmt::format("    {} : ARRAY [0..{}] OF {}{}{};  {}\n", block.name,
                            bits ? (block.range.count() - 1) / 8 : block.range.count() - 1,
-                           bits ? "BYTE" : "WORD", st::comment(place_text(block.table, block.range)));
+                           bits ? "BYTE" : "WORD", initial.empty() ? "" : " := ", initial,
+                           st::comment(place_text(block.table, block.range)));
     }
     std::string members;
-    std::string body;
     for (const auto& [i, block] : block_of) {
       const Point& point = map_.points[i];
       const modbus::Range place = reads ? read_range(point) : range(point);
@@ -167,10 +193,11 @@ class Writer {
         declared("not_finite :=",
                  "not_finite : BOOL;  (* a number is NaN or infinite: its variable stays *)") +
         declared("refused :=", "refused : BOOL;  (* a value must not be written: its registers stay *)");
-    const std::string locals = declared("FOR i", "i : INT;") + declared("bits_32 :=", "bits_32 : DWORD;") +
+    const std::string locals = declared("FOR i", "i : INT;") + declared("  raw :=", "raw : LREAL;") +
+                               declared("bits_32 :=", "bits_32 : DWORD;") +
                                declared("bits_64 :=", "bits_64 : LWORD;");
-    blocks_ += fmt::format("FUNCTION_BLOCK {}\nVAR_IN_OUT\n  image : {};\n  values : {};\nEND_VAR\n",
-                           side.function_block, side.image_type, side.values_type);
+    blocks_ += fmt::format("FUNCTION_BLOCK {}\nVAR_IN_OUT\n  image : {};\n  values : {};\n{}END_VAR\n",
+                           side.function_block, side.image_type, side.values_type, parameters);
     if (!output.empty()) blocks_ += fmt::format("VAR_OUTPUT\n{}END_VAR\n", output);
     if (!locals.empty()) blocks_ += fmt::format("VAR\n{}END_VAR\n", locals);
     blocks_ += declared("not_finite :=", "not_finite := FALSE;") +
@@ -247,7 +274,8 @@ class Writer {
            "   1. Read into the read image, then call the function block that decodes: the inputs have the "
            "values.\n"
            "   2. Set the outputs, call the function block that encodes, then write the parts of the write "
-           "image. *)\n\n";
+           "image.\n"
+           "   At start the write image has the registers of the values with which the outputs begin. *)\n\n";
   }
 
   const Map& map_;

@@ -120,6 +120,62 @@ TEST(StructuredTextExport, No_text_ends_its_comment) {
   EXPECT_THAT(text, HasSubstr(R"((* coil 0; x * ) y ( * ) / * * / *\x0a\u202e *))"));
 }
 
+TEST(StructuredTextExport, Outputs_that_begin_with_another_value_than_0_are_told_unless_the_map_says_which) {
+  EXPECT_THAT(
+      told("holding_registers: {a: {address: 0, type: INT, min: 5}, b: {address: 1, type: INT, min: 5, "
+           "initial: 7}, c: {address: 2, type: INT, values: {1: on_, 2: off_}}, "
+           "d: {address: 3, type: INT, min: -1}, e: {address: 4, type: SINT, offset: low, scale: {offset: "
+           "500}}, "
+           "f: {address: 5, type: INT, min: 5, access: read}}"),
+      HasSubstr("outputs begin with the allowed value nearest to 0, since 0 is not allowed: a, c, e; give "
+                "'initial' if they are to begin with another value"));
+  EXPECT_THAT(told("holding_registers: {a: {address: 0, type: INT, scale: 0.1, max: 5}}"),
+              Not(HasSubstr("outputs begin")));
+}
+
+TEST(StructuredTextExport, The_write_image_begins_with_the_registers_of_the_outputs) {
+  const std::string text =
+      exported(
+          "coils: {a: {address: 7, initial: on}, b: 8}, holding_registers: {c: {address: 0, "
+          "type: INT, min: 5}, d: {address: 1, type: INT}, e: {address: 9, type: INT}}")
+          .text;
+  for (const char* line :
+       {"    coils_7 : ARRAY [0..0] OF BYTE := [16#01];", "    coils_7 : ARRAY [0..0] OF BYTE;",
+        "    holding_registers_0 : ARRAY [0..1] OF WORD := [16#0005, 16#0000];",
+        "    holding_registers_9 : ARRAY [0..0] OF WORD;"})
+    EXPECT_THAT(text, HasSubstr(line));
+}
+
+TEST(StructuredTextExport, Bits_that_are_only_read_are_copied_where_their_register_is_written_and_told) {
+  const std::string points =
+      "holding_registers: {ready: {address: 3, type: BOOL, bit: 3, access: read}, run: {address: 3, type: "
+      "BOOL, "
+      "bit: 4}, alone: {address: 4, type: BOOL, bit: 0, access: read}}";
+  EXPECT_THAT(exported(points).text,
+              AllOf(HasSubstr("  read_image : m_read_image_type;\nEND_VAR\n"),
+                    HasSubstr("  image.holding_registers_3[0] := (image.holding_registers_3[0] AND NOT "
+                              "WORD#16#0008) OR (read_image.holding_registers_3[0] AND WORD#16#0008);\n")));
+  EXPECT_THAT(
+      told(points),
+      HasSubstr("read-only bits and bytes of registers that are written are copied from the read image: "
+                "ready; hand it to m_encode as 'read_image', and read before the first write"));
+  EXPECT_THAT(exported("holding_registers: {a: {address: 3, type: BOOL, bit: 3, access: write}, "
+                       "b: {address: 3, type: BOOL, bit: 4}}")
+                  .text,
+              Not(HasSubstr("  read_image :")));
+}
+
+TEST(StructuredTextExport, Bits_that_no_request_can_read_are_told_to_be_written_as_0) {
+  const std::string points =
+      "holding_registers: {ready: {address: 3, type: BOOL, bit: 3, access: read, read_address: 20}, "
+      "run: {address: 3, type: BOOL, bit: 4, access: write}}";
+  EXPECT_THAT(exported(points).text, Not(HasSubstr("  read_image :")));
+  EXPECT_THAT(
+      told(points),
+      HasSubstr("read-only bits and bytes that no request can read are written as 0 with their register: "
+                "ready; put them into the write image, which keeps them, before the first write"));
+}
+
 TEST(StructuredTextExport, What_a_PLC_cannot_have_is_told_with_the_points) {
   EXPECT_THAT(
       told("holding_registers: {text: {address: 0, type: STRING, length: 4}, "
