@@ -14,17 +14,19 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-formats::Export exported(const std::string& points, const std::string& top = "name: m") {
+formats::Export structured_text(const std::string& points, const std::string& top = "name: m") {
   const LoadResult loaded = load_map("{" + top + ", mapping: {" + points + "}}", "m");
   EXPECT_NE(loaded.map, nullptr) << lines_of(loaded.diagnostics);
   return loaded.map ? formats::write_structured_text(loaded.map->map()) : formats::Export{};
 }
 
-std::string told(const std::string& points) { return lines_of(exported(points).warnings.diagnostics("m")); }
+std::string told(const std::string& points) {
+  return lines_of(structured_text(points).warnings.diagnostics("m"));
+}
 
 TEST(StructuredTextExport, A_value_is_declared_with_its_type_where_it_is_and_what_it_means) {
   EXPECT_THAT(
-      exported(
+      structured_text(
           "coils: {lamps: {address: 8, count: 3}}, input_registers: {"
           "level: {address: 4, type: DINT, scale: {gain: 0.5, offset: -40}, units: mm, description: tank}, "
           "code: {address: 7, type: CHAR, offset: high}, text: {address: 9, type: STRING, length: 5}}")
@@ -39,7 +41,7 @@ TEST(StructuredTextExport, A_value_is_declared_with_its_type_where_it_is_and_wha
 }
 
 TEST(StructuredTextExport, Requests_are_constants_that_a_PLC_can_use) {
-  const std::string text = exported(
+  const std::string text = structured_text(
                                "holding_registers: {a: {address: 3, type: INT}, b: {address: 4, type: REAL}, "
                                "c: {address: 9, type: INT}}",
                                "name: m, address: 10.0.0.7, port: 1502, unit: 3")
@@ -56,7 +58,7 @@ TEST(StructuredTextExport, Requests_are_constants_that_a_PLC_can_use) {
 
 TEST(StructuredTextExport, What_does_more_than_to_be_set_is_written_by_itself) {
   const std::string text =
-      exported(
+      structured_text(
           "coils: {a: 0, b: {address: 1, latched: {of: i, edge: rising}}, c: 2, "
           "d: {address: 3, write_function: multiple}, "
           "e: {address: 9, write_function: multiple}}, discrete_inputs: {i: {address: 0, line: GPIO4}}")
@@ -68,8 +70,8 @@ TEST(StructuredTextExport, What_does_more_than_to_be_set_is_written_by_itself) {
 
 TEST(StructuredTextExport, Requests_are_no_longer_than_the_device_takes) {
   const std::string text =
-      exported("holding_registers: {a: {address: 0, type: INT, count: 4}, b: {address: 4, type: INT}}",
-               "name: m, limits: {read_registers: 4, write_registers: 4}")
+      structured_text("holding_registers: {a: {address: 0, type: INT, count: 4}, b: {address: 4, type: INT}}",
+                      "name: m, limits: {read_registers: 4, write_registers: 4}")
           .text;
   EXPECT_THAT(text, AllOf(HasSubstr("m_read_holding_registers_0_quantity : UINT := 4;"),
                           HasSubstr("m_read_holding_registers_4_quantity : UINT := 1;"),
@@ -78,26 +80,27 @@ TEST(StructuredTextExport, Requests_are_no_longer_than_the_device_takes) {
 }
 
 TEST(StructuredTextExport, An_output_is_read_where_it_reads_back) {
-  EXPECT_THAT(exported("coils: {a: {address: 3, read_address: 515}}").text,
+  EXPECT_THAT(structured_text("coils: {a: {address: 3, read_address: 515}}").text,
               AllOf(HasSubstr("m_read_coils_515_address : UINT := 515;"),
                     HasSubstr("m_write_coils_3_address : UINT := 3;"), HasSubstr("a : BOOL;  (* coil 515 *)"),
                     HasSubstr("m_a_read_address : UINT := 515;")));
 }
 
 TEST(StructuredTextExport, A_map_without_64_bits_needs_no_type_of_64_bits) {
-  EXPECT_THAT(exported("holding_registers: {a: {address: 0, type: REAL}, b: {address: 2, type: UDINT}}").text,
-              AllOf(Not(HasSubstr("LREAL")), Not(HasSubstr("LWORD")), Not(HasSubstr("LINT"))));
+  EXPECT_THAT(
+      structured_text("holding_registers: {a: {address: 0, type: REAL}, b: {address: 2, type: UDINT}}").text,
+      AllOf(Not(HasSubstr("LREAL")), Not(HasSubstr("LWORD")), Not(HasSubstr("LINT"))));
 }
 
 TEST(StructuredTextExport, A_map_without_outputs_has_no_part_for_them) {
-  EXPECT_THAT(exported("discrete_inputs: {a: 0}").text,
+  EXPECT_THAT(structured_text("discrete_inputs: {a: 0}").text,
               AllOf(HasSubstr("m_decode"), Not(HasSubstr("m_encode")), Not(HasSubstr("m_outputs"))));
-  EXPECT_THAT(exported("coils: {a: {address: 0, access: write}}").text,
+  EXPECT_THAT(structured_text("coils: {a: {address: 0, access: write}}").text,
               AllOf(HasSubstr("m_encode"), Not(HasSubstr("m_decode"))));
 }
 
 TEST(StructuredTextExport, The_fingerprint_is_as_the_identity_area_has_it) {
-  EXPECT_THAT(exported("coils: {a: 0}").text,
+  EXPECT_THAT(structured_text("coils: {a: 0}").text,
               testing::ContainsRegex(
                   "input registers 65283 to 65286 [*][)]\n  m_fingerprint : ARRAY \\[0..3\\] OF WORD "
                   ":= \\[16#[0-9A-F]{4}, 16#[0-9A-F]{4}, 16#[0-9A-F]{4}, 16#[0-9A-F]{4}\\];"));
@@ -106,7 +109,7 @@ TEST(StructuredTextExport, The_fingerprint_is_as_the_identity_area_has_it) {
 TEST(StructuredTextExport, Names_are_identifiers_in_either_case_and_changes_are_told) {
   const std::string points = "coils: {Lamp: 0, lamp: 1, arm/left: 2, a__b: 3, While: 4, ton: 5}";
   for (const char* name : {" Lamp :", " lamp_2 :", " arm_left :", " a_b :", " While_value :", " ton_value :"})
-    EXPECT_THAT(exported(points).text, HasSubstr(name));
+    EXPECT_THAT(structured_text(points).text, HasSubstr(name));
   EXPECT_THAT(
       told(points),
       AllOf(HasSubstr("names that would be those of other points get a number: lamp;"),
@@ -116,7 +119,7 @@ TEST(StructuredTextExport, Names_are_identifiers_in_either_case_and_changes_are_
 
 TEST(StructuredTextExport, No_text_ends_its_comment) {
   const std::string text =
-      exported(R"(coils: {a: {address: 0, description: "x *) y (*) /* */ *\n\u202E"}})").text;
+      structured_text(R"(coils: {a: {address: 0, description: "x *) y (*) /* */ *\n\u202E"}})").text;
   EXPECT_THAT(text, HasSubstr(R"((* coil 0; x * ) y ( * ) / * * / *\x0a\u202e *))"));
 }
 
@@ -135,7 +138,7 @@ TEST(StructuredTextExport, Outputs_that_begin_with_another_value_than_0_are_told
 
 TEST(StructuredTextExport, The_write_image_begins_with_the_registers_of_the_outputs) {
   const std::string text =
-      exported(
+      structured_text(
           "coils: {a: {address: 7, initial: on}, b: 8}, holding_registers: {c: {address: 0, "
           "type: INT, min: 5}, d: {address: 1, type: INT}, e: {address: 9, type: INT}}")
           .text;
@@ -151,7 +154,7 @@ TEST(StructuredTextExport, Bits_that_are_only_read_are_copied_where_their_regist
       "holding_registers: {ready: {address: 3, type: BOOL, bit: 3, access: read}, run: {address: 3, type: "
       "BOOL, "
       "bit: 4}, alone: {address: 4, type: BOOL, bit: 0, access: read}}";
-  EXPECT_THAT(exported(points).text,
+  EXPECT_THAT(structured_text(points).text,
               AllOf(HasSubstr("  read_image : m_read_image_type;\nEND_VAR\n"),
                     HasSubstr("  image.holding_registers_3[0] := (image.holding_registers_3[0] AND NOT "
                               "WORD#16#0008) OR (read_image.holding_registers_3[0] AND WORD#16#0008);\n")));
@@ -159,8 +162,8 @@ TEST(StructuredTextExport, Bits_that_are_only_read_are_copied_where_their_regist
       told(points),
       HasSubstr("read-only bits and bytes of registers that are written are copied from the read image: "
                 "ready; hand it to m_encode as 'read_image', and read before the first write"));
-  EXPECT_THAT(exported("holding_registers: {a: {address: 3, type: BOOL, bit: 3, access: write}, "
-                       "b: {address: 3, type: BOOL, bit: 4}}")
+  EXPECT_THAT(structured_text("holding_registers: {a: {address: 3, type: BOOL, bit: 3, access: write}, "
+                              "b: {address: 3, type: BOOL, bit: 4}}")
                   .text,
               Not(HasSubstr("  read_image :")));
 }
@@ -169,7 +172,7 @@ TEST(StructuredTextExport, Bits_that_no_request_can_read_are_told_to_be_written_
   const std::string points =
       "holding_registers: {ready: {address: 3, type: BOOL, bit: 3, access: read, read_address: 20}, "
       "run: {address: 3, type: BOOL, bit: 4, access: write}}";
-  EXPECT_THAT(exported(points).text, Not(HasSubstr("  read_image :")));
+  EXPECT_THAT(structured_text(points).text, Not(HasSubstr("  read_image :")));
   EXPECT_THAT(
       told(points),
       HasSubstr("read-only bits and bytes that no request can read are written as 0 with their register: "
