@@ -36,15 +36,11 @@ _thread = threading.Thread(target=_spin, daemon=True)
 _thread.start()
 
 
-def other_nodes():
-    """The names of those that are not this process's."""
-    return [name for name in polled.get_node_names() if name not in _OWN]
-
-
-def has_other_subscriptions():
-    """They may be there for longer than their node."""
-    return any(info.node_name not in _OWN for topic, _ in polled.get_topic_names_and_types()
-               for info in polled.get_subscriptions_info_by_topic(topic))
+def other_subscribers():
+    """The DDS participants, one a process, that subscribe to something: but for this process. The first twelve bytes of an
+    endpoint's id are its participant's (DDSI-RTPS 2.3, 9.3.1.5)."""
+    return {bytes(info.endpoint_gid[:12]) for topic, _ in polled.get_topic_names_and_types()
+            for info in polled.get_subscriptions_info_by_topic(topic) if info.node_name not in _OWN}
 
 
 def shut_down():
