@@ -7,22 +7,11 @@
 #include <fmt/format.h>
 
 #include "coupler/formats/structured_text.hpp"
+#include "coupler/map/functions.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::formats::structured_text {
 namespace {
-
-using modbus::Function;
-
-Function read_function(Table table) {
-  switch (table) {
-    case Table::coils: return Function::read_coils;
-    case Table::discrete_inputs: return Function::read_discrete_inputs;
-    case Table::input_registers: return Function::read_input_registers;
-    case Table::holding_registers: break;
-  }
-  return Function::read_holding_registers;
-}
 
 /// Writing it does more than to set it, or the map wants it by itself.
 bool is_written_alone(const Point& point) {
@@ -30,14 +19,13 @@ bool is_written_alone(const Point& point) {
          point.host.write_function == HostOptions::WriteFunction::single;
 }
 
-Function write_function(const Block& block, const Map& map) {
-  const bool bits = holds_bits(block.table);
-  const bool multiple =
-      block.range.count() > 1 || std::any_of(block.points.begin(), block.points.end(), [&](std::uint32_t i) {
-        return map.points[i].host.write_function == HostOptions::WriteFunction::multiple;
-      });
-  if (multiple) return bits ? Function::write_multiple_coils : Function::write_multiple_registers;
-  return bits ? Function::write_single_coil : Function::write_single_register;
+modbus::Function write_function(const Block& block, const Map& map) {
+  using Wanted = HostOptions::WriteFunction;
+  const bool multiple = std::any_of(block.points.begin(), block.points.end(), [&](std::uint32_t i) {
+    return map.points[i].host.write_function == Wanted::multiple;
+  });
+  return coupler::write_function(block.table, block.range.count(),
+                                 multiple ? Wanted::multiple : Wanted::automatic);
 }
 
 }  // namespace
@@ -70,7 +58,7 @@ std::vector<Block> write_blocks(const Map& map) {
         continue;
       }
     }
-    blocks.push_back({point.table, place, Function::write_multiple_registers, 0, {i}, {}});
+    blocks.push_back({point.table, place, modbus::Function::write_multiple_registers, 0, {i}, {}});
     last = &point;
   }
   for (Block& block : blocks) block.function = write_function(block, map);

@@ -8,6 +8,7 @@
 
 #include "coupler/generate/code.hpp"
 #include "coupler/generate/member.hpp"
+#include "coupler/map/functions.hpp"
 #include "coupler/map/printable.hpp"
 #include "coupler/map/typed_value.hpp"
 #include "coupler/plan/planner.hpp"
@@ -66,13 +67,12 @@ std::string python_type(const Point& point) {
   return point.count == 1 ? one : fmt::format("list[{}]", one);
 }
 
-/// As the driver writes one value: coupler/host/core/write_batch.cpp.
-int write_function(const Point& point, const Limits& limits) {
-  if (is_partial(point) && limits.mask_write) return 22;
-  const bool single =
-      range(point).count() == 1 && point.host.write_function != HostOptions::WriteFunction::multiple;
-  if (point.table == Table::coils) return single ? 5 : 15;
-  return single ? 6 : 16;
+/// The function code that writes the point, which is alone in its request.
+int function_code(const Point& point, const Limits& limits) {
+  const bool masked = is_partial(point) && limits.mask_write;
+  return static_cast<int>(masked
+                              ? modbus::Function::mask_write_register
+                              : write_function(point.table, range(point).count(), point.host.write_function));
 }
 
 /// The number that the point's registers hold for a bound of the map.
@@ -119,7 +119,7 @@ std::string spec(const Limits& limits, const Point& point, std::string_view memb
     out += format_arguments(point);
   else if (point.count > 1)
     out += fmt::format(", count={}", point.count);
-  if (is_writable(point)) out += fmt::format(", write_with={}", write_function(point, limits));
+  if (is_writable(point)) out += fmt::format(", write_with={}", function_code(point, limits));
   if (point.read_address) out += fmt::format(", read_address={}", *point.read_address);
   if (point.host.verify_write) out += ", verify_write=True";
   return out + allowed_arguments(point, member);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "coupler/map/functions.hpp"
+
 namespace coupler::host {
 namespace {
 
@@ -66,7 +68,7 @@ WriteRequest WriteBatch::part_request(std::uint16_t before) const {
   const std::uint16_t value = writes_.front().registers[0];
   if (map_->limits.mask_write) return WriteRequest::mask(which.address, others, value);
   const auto word = static_cast<std::uint16_t>((before & others) | (value & mask));
-  if (which.host.write_function == Function::multiple)
+  if (write_function(which.table, 1, which.host.write_function) == modbus::Function::write_multiple_registers)
     return WriteRequest::registers(which.address, {&word, 1});
   return WriteRequest::register_value(which.address, word);
 }
@@ -76,10 +78,11 @@ WriteRequest WriteBatch::request(std::uint16_t before) const {
   const Point& first = point(writes_.front());
   const Write& only = writes_.front();
   if (is_partial(first)) return part_request(before);
-  const bool coils = first.table == Table::coils;
-  if (range_.count() == 1 && first.host.write_function != Function::multiple)
-    return coils ? WriteRequest::coil(first.address, only.bit(0))
-                 : WriteRequest::register_value(first.address, only.registers[0]);
+  const modbus::Function function = write_function(first.table, range_.count(), first.host.write_function);
+  if (function == modbus::Function::write_single_coil) return WriteRequest::coil(first.address, only.bit(0));
+  if (function == modbus::Function::write_single_register)
+    return WriteRequest::register_value(first.address, only.registers[0]);
+  const bool coils = function == modbus::Function::write_multiple_coils;
   std::array<std::uint16_t, modbus::max_write_bits> values{};
   for (const Write& write : writes_) {
     const Range own = range(point(write));

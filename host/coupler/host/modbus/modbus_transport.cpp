@@ -12,20 +12,11 @@
 
 #include "coupler/host/modbus/open_socket.hpp"
 #include "coupler/host/modbus/raw_exchange.hpp"
+#include "coupler/map/functions.hpp"
 #include "coupler/modbus/file_record.hpp"
 
 namespace coupler::host {
 namespace {
-
-modbus::Function function_that_reads(Table table) {
-  switch (table) {
-    case Table::coils: return modbus::Function::read_coils;
-    case Table::discrete_inputs: return modbus::Function::read_discrete_inputs;
-    case Table::input_registers: return modbus::Function::read_input_registers;
-    case Table::holding_registers: break;
-  }
-  return modbus::Function::read_holding_registers;
-}
 
 Error receive_error(int error, std::chrono::milliseconds timeout) {
   switch (error) {
@@ -121,14 +112,14 @@ Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
 }
 
 Result<> ModbusTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
-  const modbus::ReadRequest request(function_that_reads(table), range);
+  const modbus::ReadRequest request(read_function(table), range);
   const auto reply = ask(request);
   if (!reply) return tl::make_unexpected(reply.error());
   return result(modbus::take_bits(request, *reply, bits));
 }
 
 Result<> ModbusTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
-  const modbus::ReadRequest request(function_that_reads(table), range);
+  const modbus::ReadRequest request(read_function(table), range);
   const auto reply = ask(request);
   if (!reply) return tl::make_unexpected(reply.error());
   return result(modbus::take_registers(request, *reply, registers));
