@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -8,9 +7,8 @@
 
 #include "coupler/cli/commands.hpp"
 #include "coupler/cli/map_argument.hpp"
-#include "coupler/cli/report.hpp"
+#include "coupler/cli/output_argument.hpp"
 #include "coupler/formats/exporters.hpp"
-#include "coupler/generate/output.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -52,17 +50,11 @@ Exit run(const Arguments& arguments) {
   const formats::Export exported = arguments.node_statistics ? exporter->write_with_statistics(argument.map())
                                                              : exporter->write(argument.map());
   print(exported.warnings.diagnostics(arguments.map));
-  if (arguments.out.empty()) {
-    std::fputs(exported.text.c_str(), stdout);
-    return ok;
-  }
   std::error_code not_a_file;  // a device has none, and what is new is none yet
-  if (std::filesystem::equivalent(arguments.map, arguments.out, not_a_file))
+  if (!names_no_file(arguments.out) && std::filesystem::equivalent(arguments.map, arguments.out, not_a_file))
     return complain("export", bad_call, fmt::format("{} is the map itself", arguments.out),
                     "name another file with --out");
-  if (const auto outcome = generate::write_if_changed(arguments.out, exported.text); !outcome)
-    return complain("export", bad_call, outcome.error(), "give a file that you may write with --out");
-  return ok;
+  return write_out("export", arguments.out, exported.text);
 }
 
 }  // namespace
@@ -72,7 +64,7 @@ void add_export(Program& program, Exit& exit) {
   const auto arguments = std::make_shared<Arguments>();
   command.add_option("MAP", arguments->map, map_help).type_name("");
   command.add_option("--to", arguments->to, "What to write: see --list").type_name("FORMAT");
-  command.add_option("--out", arguments->out, "Where to write it; default: standard output")
+  command.add_option("--out", arguments->out, "Where to write it; default, and -: standard output")
       .type_name("FILE");
   command.add_flag("--node-statistics", arguments->node_statistics,
                    "With --to telegraf, for a map that coupler-node serves: its statistics, too");

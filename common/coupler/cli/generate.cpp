@@ -15,6 +15,7 @@
 
 #include "coupler/cli/commands.hpp"
 #include "coupler/cli/map_argument.hpp"
+#include "coupler/cli/output_argument.hpp"
 #include "coupler/cli/report.hpp"
 #include "coupler/docs/document.hpp"
 #include "coupler/docs/escape.hpp"
@@ -86,6 +87,7 @@ bool is_by_hand(const fs::path& path) {
 }
 
 Exit write(const Arguments& arguments, const std::vector<generate::File>& files) {
+  if (arguments.out == standard_output) return write_out("generate", arguments.out, files.front().content);
   constexpr auto remedy = "give a folder that you may write to with --out";
   std::error_code failed;
   fs::create_directories(folder_of(arguments), failed);
@@ -116,10 +118,14 @@ Exit run(const Arguments& arguments) {
   if (!is_url_part(arguments.source_url))
     return complain("generate", bad_call, fmt::format("'{}' cannot be part of a URL", arguments.source_url),
                     "write characters that a URL cannot hold as %XX");
+  const bool to_folder = arguments.out != standard_output;
+  if (!to_folder && !arguments.python && !arguments.vectors)
+    return complain("generate", bad_call, "standard output cannot hold several files",
+                    "name a folder with --out, or make a single file with --python or --vectors");
   const MapArgument argument = get_map(arguments.map, arguments.locked ? LockUse::exact : LockUse::renew);
   const LoadResult& loaded = argument.loaded;
   print(loaded.diagnostics);
-  std::fputs(lock_report(loaded.lock).c_str(), stdout);
+  std::fputs(lock_report(loaded.lock).c_str(), to_folder ? stdout : stderr);
   if (!loaded.map) return argument.exit;
   const std::string source =
       arguments.map == "-" ? "standard input" : fs::path(arguments.map).filename().string();
@@ -153,7 +159,8 @@ void add_generate(Program& program, Exit& exit) {
   auto out = command
                  .add_option("--out", arguments->out,
                              "Folder for the files, which is created if it does not exist; --docs, --python "
-                             "and --vectors default to the current one")
+                             "and --vectors default to the current one. - is standard output, with --python "
+                             "and --vectors")
                  .type_name("DIR");
   command
       .add_option("--name", arguments->name,

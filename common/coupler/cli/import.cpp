@@ -13,6 +13,7 @@
 #include <tl/expected.hpp>
 
 #include "coupler/cli/commands.hpp"
+#include "coupler/cli/output_argument.hpp"
 #include "coupler/cli/report.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/map/loader/source_text.hpp"
@@ -91,18 +92,15 @@ bool parse_columns(std::string_view text, std::vector<formats::ColumnNames>& col
 
 Exit write(const Arguments& arguments, const formats::ImportResult& result) {
   const bool several = result.maps.size() > 1;
-  if (several && arguments.out.empty()) {
+  if (several && names_no_file(arguments.out)) {
     std::string units;
     for (const formats::ImportedMap& map : result.maps)
       units += fmt::format("{}{}", units.empty() ? "" : ", ", map.unit.value_or(0));
     return complain("import", bad_call, fmt::format("{} has several units: {}", arguments.file, units),
                     "choose one with --unit, or write a map for each with --out");
   }
+  if (names_no_file(arguments.out)) return write_out("import", arguments.out, result.maps.front().text);
   for (const formats::ImportedMap& imported : result.maps) {
-    if (arguments.out.empty()) {
-      std::fputs(imported.text.c_str(), stdout);
-      continue;
-    }
     const fs::path path = path_of(arguments.out, imported, several);
     if (!arguments.force && holds_other_text(path, imported.text))
       return complain("import", bad_call, fmt::format("{} is already there", path.string()),
@@ -160,9 +158,10 @@ void add_import(Program& program, Exit& exit) {
   command.add_option("FORMAT", arguments->format, "Format of the file: see --list").type_name("");
   command.add_option("FILE", arguments->file, "The file; - is standard input").type_name("");
   command
-      .add_option("--out", arguments->out,
-                  "Where to write the map; default: standard output. If the file has several units, each "
-                  "gets a map: MAP_1.yaml ...")
+      .add_option(
+          "--out", arguments->out,
+          "Where to write the map; default, and -: standard output. If the file has several units, each "
+          "gets a map: MAP_1.yaml ...")
       .type_name("MAP");
   command.add_option("--name", arguments->options.name, "Name of the map; default: the file's")
       .type_name("NAME");

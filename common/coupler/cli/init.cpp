@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "coupler/cli/commands.hpp"
+#include "coupler/cli/output_argument.hpp"
 #include "coupler/cli/report.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/map/loader/load.hpp"
@@ -88,8 +89,10 @@ struct Arguments {
 };
 
 Exit init(const Arguments& arguments) {
-  const std::filesystem::path map = arguments.out.empty() ? arguments.starter.name + ".yaml" : arguments.out;
-  if (!arguments.force && std::filesystem::exists(map))
+  const bool to_file = arguments.out != standard_output;
+  const std::filesystem::path map =
+      names_no_file(arguments.out) ? arguments.starter.name + ".yaml" : arguments.out;
+  if (to_file && !arguments.force && std::filesystem::exists(map))
     return complain("init", bad_call, fmt::format("{} already exists", map.string()),
                     "name another file with --out, or replace it with --force");
   const std::string text = starter_map(arguments.starter);
@@ -98,6 +101,7 @@ Exit init(const Arguments& arguments) {
     print(loaded.diagnostics);
     return bad_input;
   }
+  if (!to_file) return write_out("init", arguments.out, text);
   for (const auto& [path, content] :
        {std::pair(map, text), std::pair(map.parent_path() / schema_name, schema::map_schema())}) {
     const auto outcome = generate::write_if_changed(path, content);
@@ -126,7 +130,10 @@ void add_init(Program& program, Exit& exit) {
   command.add_flag("--node", arguments->starter.node, "For a board with GPIO lines, served by coupler-node")
       .excludes(address)
       .excludes(preset);
-  command.add_option("--out", arguments->out, "The map's file (default: NAME.yaml)").type_name("FILE");
+  command
+      .add_option("--out", arguments->out,
+                  "The map's file (default: NAME.yaml); - is standard output, without the schema")
+      .type_name("FILE");
   command.add_flag("--force", arguments->force, "Replace an existing map");
   command.footer(
       "Example:\n  coupler init press --preset wago_750 --address 192.168.1.17\n  coupler init cell --node");
