@@ -2,8 +2,9 @@
 # The ROS driver's messages, and which ROS is looked for. Ros1.cmake or Ros2.cmake, if it is there, makes coupler_ros, which a
 # target links that includes headers of ROS, and sets COUPLER_WITH_ROS to its version.
 set(COUPLER_WITH_ROS OFF)
-set(messages BoolArray.msg PointStatus.msg Status.msg)
-set(services Read.srv Write.srv)
+set(messages BoolArray.msg BoolStamped.msg Float64Stamped.msg Int64Stamped.msg PointStatus.msg Scheduled.msg Status.msg
+  StringStamped.msg UInt64Stamped.msg)
+set(services Read.srv Schedule.srv Write.srv)
 set(left_out "no catkin, roscpp, std_srvs, diagnostic_updater or libmodbus, or COUPLER_ROS=OFF; scripts/install-packages build ros")
 if(COUPLER_ROS STREQUAL OFF OR NOT libmodbus_FOUND)
   set(COUPLER_ROS_VERSION OFF)

@@ -48,11 +48,24 @@ set(COUPLER_WITH_ROS 2)
 find_package(type_description_interfaces QUIET)  # not in Humble
 
 # The target that generates must have the name of the package.
-list(TRANSFORM messages PREPEND "${PROJECT_SOURCE_DIR}/host:msg/" OUTPUT_VARIABLE files)
-list(TRANSFORM services PREPEND "${PROJECT_SOURCE_DIR}/host:srv/")
+set(files)
+foreach(file IN LISTS messages services)
+  string(REGEX REPLACE ".*[.]" "" kind ${file})
+  file(READ ${PROJECT_SOURCE_DIR}/host/${kind}/${file} text)
+  # ROS 1 has words for these two messages.
+  string(REGEX REPLACE "(^|\n)time " "\\1builtin_interfaces/Time " own "${text}")
+  string(REGEX REPLACE "(^|\n)duration " "\\1builtin_interfaces/Duration " own "${own}")
+  if(own STREQUAL text)
+    list(APPEND files ${PROJECT_SOURCE_DIR}/host:${kind}/${file})
+  else()
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/interfaces/${kind}/${file} CONTENT "${own}" @ONLY)
+    list(APPEND files ${PROJECT_BINARY_DIR}/interfaces:${kind}/${file})
+  endif()
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host/${kind}/${file})
+endforeach()
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
-rosidl_generate_interfaces(${PROJECT_NAME} ${files} ${services} DEPENDENCIES std_msgs)
-ament_export_dependencies(rosidl_default_runtime std_msgs)
+rosidl_generate_interfaces(${PROJECT_NAME} ${files} DEPENDENCIES builtin_interfaces std_msgs)
+ament_export_dependencies(rosidl_default_runtime builtin_interfaces std_msgs)
 # The messages in every language, as catkin calls that; the target above leaves Python's out.
 rosidl_generator_py_get_typesupports(python)
 list(TRANSFORM python PREPEND ${PROJECT_NAME}_s__)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The node's whole engine on a stream of bytes: frames, requests, replies. The input is what a client sends.
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -19,6 +20,8 @@ using modbus::Bytes;
 using modbus::Function;
 
 constexpr std::uint16_t broken_line = 7;
+constexpr std::uint32_t epoch = 1;
+constexpr std::chrono::milliseconds time_between_requests{1};
 
 /// Hardware of which one output and one input are broken.
 class PartlyBrokenLines : public device::Lines {
@@ -86,7 +89,8 @@ void check_reply(const modbus::Frame& request, Bytes adu) {
   if (pdu[0] >= modbus::exception_bit) {
     require((pdu[0] | modbus::exception_bit) == (request.pdu[0] | modbus::exception_bit),
             "the function is the request's");
-    require(pdu.size() == 2 && pdu[1] >= 1 && pdu[1] <= 4, "an exception is 01, 02, 03 or 04");
+    require(pdu.size() == 2 && ((pdu[1] >= 1 && pdu[1] <= 4) || pdu[1] == 6),
+            "an exception is 01, 02, 03, 04 or 06");
     return;
   }
   require(pdu[0] == request.pdu[0], "the function is the request's");
@@ -122,6 +126,10 @@ void check_reply(const modbus::Frame& request, Bytes adu) {
       require(pdu.size() >= 7 && pdu[1] == request.pdu[1] && pdu[2] == request.pdu[2],
               "an identification is of the kind that was asked for");
       break;
+    case Function::schedule_output:
+      require(modbus::parse_schedule_reply(pdu).has_value(), "an output that is accepted has a number");
+      break;
+    case Function::wait_for_changes: require(false, "what waits is not answered here");
   }
 }
 
@@ -132,8 +140,12 @@ class Engine {
       : memory_(map),
         watchdog_(map.service.watchdog),
         links_(node_memory(map).links),
-        handler_(map, memory_.image, lines_, statistics_, watchdog_, links_),
-        server_(map.connection.unit, handler_, statistics_) {}
+        told_(memory_.image.bits().size()),
+        changes_(memory_.image, ring_, told_),
+        handler_(map, lines_, {memory_.image, statistics_, watchdog_, links_, changes_, schedule_}),
+        server_(map.connection.unit, handler_, statistics_) {
+    handler_.tell_changes(epoch, now_);
+  }
 
   /// Receives the stream in pieces of at most `piece` bytes, as the network may cut it, until it is at an end
   /// or no stream of frames any more.
@@ -160,25 +172,57 @@ class Engine {
  private:
   void answer(const modbus::Frame& request) {
     require(!request.pdu.empty() && request.pdu.size() <= modbus::max_pdu_size, "a PDU has 1 … 253 bytes");
+    now_ += time_between_requests;
+    handler_.tick(now_);  // what is scheduled for now
     const std::vector<std::uint16_t> before = memory_.cells;
-    std::array<std::uint8_t, modbus::max_adu_size> adu{};
-    const std::size_t size = server_.answer(request, session_, {}, adu);
-    if (size == 0) {
+    std::array<std::uint8_t, 2 * modbus::max_adu_size> adus{};
+    const std::size_t waited = session_.wait ? server_.end_wait(session_, now_, adus) : 0;
+    send(check_waited(waiting_, {adus.data(), waited}));
+    const std::size_t size = server_.answer(request, session_, now_, adus);
+    const Bytes adu(adus.data(), size);
+    if (session_.wait) {
+      require(size == 0, "what waits has no reply yet");
+      waiting_ = {request.transaction, request.unit, {}};
+      const std::size_t at_once = server_.answer_waiting(session_, now_, adus);
+      send(check_waited(waiting_, {adus.data(), at_once}));
+    } else if (size == 0) {
       require(request.unit >= 2 && request.unit <= 254, "only other units get silence");
     } else {
-      check_reply(request, Bytes(adu.data(), size));
+      check_reply(request, adu);
     }
     if (size == 0 || adu[modbus::mbap_size] >= modbus::exception_bit)
       require(memory_.cells == before, "what is not done leaves no trace");
-    sent_.insert(sent_.end(), adu.begin(), adu.begin() + size);
+    send(adu);
   }
 
+  /// The reply to a request that waited, which may be none.
+  Bytes check_waited(const modbus::Frame& request, Bytes adu) const {
+    if (adu.empty()) return adu;
+    require(adu.size() <= modbus::max_adu_size && modbus::get_u16(&adu[0]) == request.transaction &&
+                modbus::get_u16(&adu[4]) == adu.size() - 6 && adu[6] == request.unit,
+            "the header is the request's");
+    const auto reply = modbus::parse_changes_reply(adu.from(modbus::mbap_size));
+    require(reply.has_value(), "a reply tells of changes");
+    require(reply->epoch == epoch && reply->newest == changes_.ring().newest(), "it says where the node is");
+    require(!session_.wait, "it is given once");
+    return adu;
+  }
+
+  void send(Bytes adu) { sent_.insert(sent_.end(), adu.begin(), adu.end()); }
+
+  device::TimePoint now_{};
   device::OwnedImage memory_;
   PartlyBrokenLines lines_;
   device::Statistics statistics_;
   device::ClientSession session_;
+  modbus::Frame waiting_{};  ///< the request that waits, without its PDU
   device::OutputWatchdog watchdog_;
   std::vector<device::EdgePoints::Link> links_;
+  std::vector<device::ChangeRing::Entry> ring_{8};
+  std::vector<std::uint16_t> told_;
+  device::Changes changes_;
+  std::vector<device::ScheduledOutput> scheduled_{4};
+  device::OutputSchedule schedule_{scheduled_, &changes_};
   device::Handler handler_;
   device::Server server_;
   modbus::Framer framer_;

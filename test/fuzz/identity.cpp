@@ -102,8 +102,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::check_head(**head);
   const auto text = host::fetch_map_text(device, (*head)->map_size);
   fuzz::require(!text || text->size() == (*head)->map_size, "the text is as long as the device said");
-  const auto machine = host::read_machine(device);
-  for (const char c : machine ? host::to_string(*machine) : std::string())
+  const auto further = host::read_further(device);
+  for (const char c : further ? host::to_string(further->machine) : std::string())
     fuzz::require(c >= ' ' && c <= '~', "what is told of a machine is printable ASCII");
   return 0;
 }

@@ -40,7 +40,8 @@ void print(const char* text) {
 }
 
 void print_hex(Span<const std::uint8_t> bytes) {
-  static char text[2 * modbus::max_adu_size + 2];
+  if (bytes.empty()) return;
+  static char text[4 * modbus::max_adu_size + 2];
   char* end = text;
   for (const std::uint8_t byte : bytes) {
     *end++ = "0123456789abcdef"[byte >> 4];
@@ -93,11 +94,11 @@ class Firmware final : public maps::example::NodeCore {
   bool on_label(std::string_view label) override { return label != "root"; }
 };
 
-std::uint8_t reply[modbus::max_adu_size];
+std::uint8_t reply[2 * modbus::max_adu_size];
 
 /// The replies to a client's first requests, one after the other.
 void answer_all() {
-  constexpr std::uint8_t requests[][17] = {
+  constexpr std::uint8_t requests[][23] = {
       {0, 1, 0, 0, 0, 6, 1, 2, 0, 0, 0, 3},        // the three inputs
       {0, 2, 0, 0, 0, 6, 1, 5, 0, 0, 0xFF, 0},     // relay on
       {0, 3, 0, 0, 0, 6, 1, 1, 0, 0, 0, 4},        // the coils
@@ -110,11 +111,16 @@ void answer_all() {
       {0, 9, 0, 0, 0, 6, 1, 4, 0, 0, 0, 1},         // … and shows as the revision
       {0, 10, 0, 0, 0, 6, 1, 6, 0, 0, 0x07, 0xD0},  // speed 2000, which it refuses
       {0, 11, 0, 0, 0, 11, 1, 16, 0, 5, 0, 2, 4, 'r', 'o', 'o', 't'},  // "root" and what was there: "rootmed"
+      {0, 12, 0, 0, 0, 17, 1, 65, 1, 0x75, 0x30, 0, 0, 0, 7},          // changes since the start: the relay
+      {0, 13, 0, 0, 0, 17, 1, 65, 1, 0x75, 0x30, 0,
+       0, 0,  7, 0, 0, 0,  0, 0,  0, 0,    1},  // and since then: waits …
+      {0, 14, 0, 0, 0, 6, 1, 5, 0, 0, 0, 0},  // … for relay off, but is answered before what comes behind it
   };
   Ports ports;
   static Firmware node(ports);
   // Of a chip: its unique number, hashed, and a name that somebody gave it.
   node.handler().set_machine(identity::machine_of("board-1", 0x0011223344556677));
+  node.handler().tell_changes(7, TimePoint{});
   static modbus::Framer framer;
   ClientSession client;
   for (const auto& request : requests) {
@@ -123,6 +129,7 @@ void answer_all() {
     framer.filled(size);
     if (framer.next() != modbus::Framer::Outcome::frame) fail("the framer finds no frame");
     print_hex({reply, node.server().answer(framer.frame(), client, TimePoint{}, reply)});
+    print_hex({reply, node.server().answer_waiting(client, TimePoint{}, reply)});
   }
 }
 

@@ -11,6 +11,9 @@ import sys
 import time
 import unittest
 
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent)]
+from support.raw_client import RawClient, adu, read_changes, wait_for_changes  # noqa: E402
+
 BUILD = pathlib.Path(sys.argv.pop(1))
 NODE = ("192.0.2.2", 502)
 PATIENCE = 60
@@ -29,30 +32,12 @@ def mbpoll(*options, values=()):
     return [int(value) for value in read] if done.returncode == 0 else done.stdout + done.stderr
 
 
-def request(pdu, transaction=1):
-    return struct.pack(">HHHB", transaction, 0, len(pdu) + 1, 1) + pdu
-
-
 READ_COIL = b"\x01\x00\x00\x00\x01"
 
 
-class Client:
+class Client(RawClient):
     def __init__(self):
-        self.socket = socket.create_connection(NODE, PATIENCE)
-
-    def ask(self, pdu):
-        self.socket.sendall(request(pdu))
-        header = self.receive(7)
-        return self.receive(struct.unpack(">H", header[4:6])[0] - 1)
-
-    def receive(self, size):
-        data = b""
-        while len(data) < size:
-            more = self.socket.recv(size - len(data))
-            if not more:
-                raise EOFError
-            data += more
-        return data
+        super().__init__(NODE)
 
     def is_closed(self):
         """Once the node has closed it: reset or ended."""
@@ -60,9 +45,6 @@ class Client:
             return self.socket.recv(1) == b""
         except ConnectionResetError:
             return True
-
-    def close(self):
-        self.socket.close()
 
 
 class Lwip(unittest.TestCase):
@@ -101,6 +83,26 @@ class Lwip(unittest.TestCase):
         self.assertIn("Slave device or server failure", mbpoll("-t", 4, "-r", 0, values=[401]))
         self.assertEqual(mbpoll("-t", 4, "-r", 0), [255])
 
+    def test_clients_wait_for_changes(self):
+        def told(pdu):
+            reply = read_changes(pdu)
+            return reply.epoch, reply.newest, reply.lost, [change[:3] for change in reply.changes]
+
+        waiting, writer = self.client(), self.client()
+        writer.ask(b"\x05\x00\x00\x00\x00")
+        epoch, newest, *nothing = told(waiting.ask(wait_for_changes(0, 0)))
+        self.assertEqual(nothing, [0, []])
+        self.assertEqual(told(waiting.ask(wait_for_changes(epoch, newest, 10))), (epoch, newest, 0, []))
+        waiting.send(wait_for_changes(epoch, newest))
+        writer.ask(b"\x05\x00\x00\xFF\x00")  # the relay, whose contact is the button's pin
+        changes = told(waiting.receive())[3]
+        while len(changes) < 2:
+            changes += told(waiting.ask(wait_for_changes(epoch, newest + len(changes))))[3]
+        self.assertEqual(changes, [(1, 1, 0), (2, 1, 0)])
+        waiting.send(wait_for_changes(epoch, newest + 2), READ_COIL, first=7)
+        for transaction in (7, 8):
+            waiting.receive(transaction)
+
     def test_an_address_that_is_not_mapped_is_exception_02(self):
         self.assertIn("Illegal data address", mbpoll("-t", 4, "-r", 100))
 
@@ -123,9 +125,9 @@ class Lwip(unittest.TestCase):
 
     def test_many_requests_at_once_are_all_answered_in_their_order(self):
         client, count = self.client(), 2000
-        client.socket.sendall(b"".join(request(READ_COIL, i) for i in range(count)))
+        client.send(*[READ_COIL] * count, first=0)
         for i in range(count):
-            self.assertEqual(struct.unpack(">H", client.receive(10)[:2])[0], i)
+            client.receive(i)
 
     def test_a_client_that_does_not_read_is_closed_and_the_others_are_served(self):
         greedy = self.client()
@@ -133,7 +135,7 @@ class Lwip(unittest.TestCase):
         greedy.socket.settimeout(0.2)
         other = self.client()
         end = time.monotonic() + PATIENCE
-        identity = request(b"\x04\xFF\x00\x00\x30")
+        identity = adu(b"\x04\xFF\x00\x00\x30")
         with self.assertRaises(OSError) as closed:
             while time.monotonic() < end:
                 try:
@@ -144,7 +146,7 @@ class Lwip(unittest.TestCase):
 
     def test_half_a_frame_is_closed_though_bytes_keep_coming(self):
         client = self.client()
-        client.socket.sendall(request(READ_COIL)[:4])
+        client.socket.sendall(adu(READ_COIL)[:4])
         began = time.monotonic()
         for byte in b"\x00\x06\x01\x01\x00\x00":
             time.sleep(TIMEOUT / 4)

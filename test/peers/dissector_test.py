@@ -7,7 +7,6 @@ points and their values. What must stand there is packed by Python's struct, not
 """
 import pathlib
 import shutil
-import socket
 import struct
 import subprocess
 import sys
@@ -15,10 +14,6 @@ import tempfile
 
 import peer
 import tshark_test
-
-
-def request(transaction, pdu):
-    return tshark_test.adu(transaction, pdu)
 
 
 def registers(*values):
@@ -94,28 +89,24 @@ TRAFFIC = [
 
 def talk(port, first):
     """Each request on its own, then all of them in two segments, the first of which ends inside of one."""
-    with socket.create_connection(("127.0.0.1", port), timeout=peer.PATIENCE) as client, client.makefile("rb") as stream:
-        client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    with tshark_test.connected(port) as client:
         for index, (pdu, _, _) in enumerate(TRAFFIC):
-            client.sendall(request(first + index, pdu))
-            tshark_test.read_reply(stream)
-        everything = [request(first + len(TRAFFIC) + i, pdu) for i, (pdu, _, _) in enumerate(TRAFFIC)]
-        cut = 8  # behind the first byte of the ninth
-        segment = b"".join(everything[:cut]) + everything[cut][:1]
-        client.sendall(segment)
-        for _ in range(cut):  # so the first segment has arrived alone
-            tshark_test.read_reply(stream)
-        client.sendall(b"".join(everything)[len(segment):])
-        for _ in TRAFFIC[cut:]:
-            tshark_test.read_reply(stream)
+            client.ask(pdu, first + index)
+        first += len(TRAFFIC)
+        everything = b"".join(tshark_test.adu(pdu, first + i) for i, (pdu, _, _) in enumerate(TRAFFIC))
+        answered = 8  # of them by the first segment, which ends behind the first byte of the ninth
+        cut = sum(len(tshark_test.adu(pdu)) for pdu, _, _ in TRAFFIC[:answered]) + 1
+        client.socket.sendall(everything[:cut])
+        for i in range(answered):  # so the first segment has arrived alone
+            client.receive(first + i)
+        client.socket.sendall(everything[cut:])
+        for i in range(answered, len(TRAFFIC)):
+            client.receive(first + i)
 
 
 def shown(port, file, script):
     """By transaction id: what the request shows, what the reply shows."""
-    done = subprocess.run(
-        ["tshark", "-r", str(file), "-X", f"lua_script:{script}", "-o", f"coupler_cell_north.port:{port}",
-         "-o", f"mbtcp.tcp.port:{port}", "-V"],
-        capture_output=True, text=True, encoding="utf-8", check=True)
+    done = tshark_test.read(port, file, "-X", f"lua_script:{script}", "-o", f"coupler_cell_north.port:{port}", "-V")
     messages, points = {}, None
     for line in done.stdout.splitlines():
         text = line.strip()

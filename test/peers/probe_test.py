@@ -110,6 +110,9 @@ def a_unit_is_found(folder, checks):
         found = probe(f"127.0.0.1:{port}", "--units", "16-18", "--to", "99", "--out", draft, timeout=5)
         checks.equal("units: exit status", found.returncode, 0)
         checks.equal("units that answer", re.findall(r"units that answer: (.*)", found.stdout), ["17"])
+        printed = probe(f"127.0.0.1:{port}/17", "--to", "99", "--out", "-")
+        checks.equal("the draft on standard output", (printed.returncode, printed.stdout), (0, draft.read_text()))
+        checks.equal("the report beside it", re.findall(r"units that answer: (.*)", printed.stderr), ["17"])
         the_draft_is_good(draft, device, port, checks, unit=17)
     nothing_was_written(device, checks)
 

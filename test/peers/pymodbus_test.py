@@ -124,7 +124,7 @@ def the_node_identifies_itself(client, checks):
     regular = objects(2)
     further = client.read_input_registers(IDENTITY + 45, 37, 1).registers
     serial = "".join(f"{word:04x}" for word in further[1:5])
-    checks.equal("registers of further fields", further[0], 36)
+    checks.equal("registers of further fields", further[0], 39)
     hostname = b"".join(word.to_bytes(2, "big") for word in further[5:]).rstrip(b"\0").decode()
     checks.equal("hostname", hostname, socket.gethostname())
     checks.equal("FC 43/14 regular", regular, {**basic, 4: "peers", 5: fingerprint, 6: hostname})

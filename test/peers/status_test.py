@@ -24,7 +24,7 @@ except ImportError as error:
 
 MAP = pathlib.Path(__file__).resolve().parent / "watchdog.yaml"
 IDENTITY, FURTHER = 0xFF00, 0xFF2D
-OLD_SIZE, SIZE = 45, 82  # registers of the area: of the first nodes, and now
+OLD_SIZE, SIZE = 45, 85  # registers of the area: of the first nodes, and now
 
 FINGERPRINT = slice(3, 7)
 STATISTICS = {  # docs/identity.md: where each stands
@@ -32,7 +32,7 @@ STATISTICS = {  # docs/identity.md: where each stands
     "exceptions_01": 27, "exceptions_02": 29, "exceptions_03": 31, "exceptions_04": 33, "connections_refused": 35,
     "connections_evicted": 37, "foreign_units": 39, "connections_bad_frames": 41, "connections_timed_out": 43}
 KEYS = ["device", "time", "trouble", "node", "name", "version", "fingerprint", "map", "hostname", "serial", "watchdog",
-        "uptime_s", "statistics", "identification"]
+        "functions", "uptime_s", "statistics", "identification"]
 
 
 def status(coupler, *arguments):
@@ -82,6 +82,10 @@ def everything_is_shown(coupler, node, checks):
                      [identification[1], identification[2]])
         checks.equal("objects of FC 43/14", told["identification"]["ModelName"], told["fingerprint"])
         checks.equal("watchdog", told["watchdog"]["state"] in ("armed", "expired"), True)
+        checks.equal("its timeout", told["watchdog"]["timeout_ms"], seen[83] << 16 | seen[84])
+        checks.equal("function codes of its own", told["functions"],
+                     [65 + bit for bit in range(2) if seen[82] >> bit & 1])
+        checks.equal("it tells changes", 65 in told["functions"], True)
         # The program's own requests and connection come on top.
         for name, at in STATISTICS.items():
             if name not in ("requests", "connections", "watchdog_trips"):
@@ -91,7 +95,8 @@ def everything_is_shown(coupler, node, checks):
         text = status(coupler, f"tcp://127.0.0.1:{port}/1")
         checks.equal("exit status", (text.returncode, text.stderr), (0, ""))
         for line in (f"fingerprint +{told['fingerprint']}", f"hostname +{re.escape(socket.gethostname())}",
-                     r"watchdog +(armed, \d+ ms left|expired)", r"exception 02 \(illegal data address\) +1",
+                     r"watchdog +(armed, \d+ ms left|expired)", r"timeout of the watchdog +\d+ ms",
+                     r"function codes of its own +65 \(waiting for changes\).*", r"exception 02 \(illegal data address\) +1",
                      r"requests answered +\d+"):
             checks.equal(f"a line '{line}'", bool(re.search(rf"^  {line}$", text.stdout, re.M)), True)
 
@@ -128,7 +133,7 @@ def what_was_there_before_stays(coupler, node, checks):
         checks.equal("magic and layout version 1", head[:3], [0x4F43, 0x504C, 1])
         old = area(port, 0, OLD_SIZE)
         checks.equal("the first 11 registers, in a longer read", old[:11], head[:11])
-        checks.equal("registers of further fields", area(port, OLD_SIZE, 1), [36])
+        checks.equal("registers of further fields", area(port, OLD_SIZE, 1), [39])
         checks.equal("behind the last one", area(port, SIZE, 1), 2)
         checks.equal("across the end", area(port, OLD_SIZE, SIZE - OLD_SIZE + 1), 2)
     # What a node of the first version has; 0xFF2D is an exception 02 there.
@@ -139,10 +144,11 @@ def what_was_there_before_stays(coupler, node, checks):
     told = json.loads(done.stdout)
     checks.equal("exit status, a node of the first version", (done.returncode, text.returncode), (0, 0))
     checks.equal("what it does not have", (told["hostname"], told["serial"]), (None, None))
+    checks.equal("what it cannot do", (told["functions"], told["watchdog"]["timeout_ms"]), ([], None))
     checks.equal("what it has", told["fingerprint"], "".join(f"{word:04x}" for word in old[FINGERPRINT]))
     checks.equal("for people", bool(re.search(r"^  hostname +unknown$", text.stdout, re.M)), True)
     # A node of a later version: more fields than anybody knows here.
-    words = old + [40, 0, 0, 0, 7, 0x6162] + [0] * 31 + [0xFFFF] * 4
+    words = old + [43, 0, 0, 0, 7, 0x6162] + [0] * 31 + [0xFFFF] * 7
     device = foreign_server.Device({"input_registers": {IDENTITY + i: word for i, word in enumerate(words)}})
     with foreign_server.serving(device) as port:
         told = json.loads(status(coupler, f"127.0.0.1:{port}", "--json").stdout)

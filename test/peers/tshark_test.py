@@ -7,13 +7,15 @@
 import pathlib
 import shutil
 import signal
-import socket
 import struct
 import subprocess
 import sys
 import tempfile
 
 import peer
+
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent)]
+from support.raw_client import RawClient, adu  # noqa: E402
 
 
 def words(function, *fields, rest=b""):
@@ -36,41 +38,29 @@ REQUESTS = [
 ]
 
 
-def adu(transaction, pdu):
-    return struct.pack(">HHHB", transaction, 0, len(pdu) + 1, 1) + pdu
-
-
-def read_reply(stream):
-    header = stream.read(6)
-    return header + stream.read(struct.unpack(">H", header[4:])[0])
+def connected(port):
+    return RawClient(("127.0.0.1", port))
 
 
 def talk(port, first):
     """Each request on its own, then all of them in one segment. Returns the transactions."""
-    transactions = list(range(first, first + 2 * len(REQUESTS)))
-    with socket.create_connection(("127.0.0.1", port), timeout=peer.PATIENCE) as client, client.makefile("rb") as stream:
-        adus = [adu(t, REQUESTS[i % len(REQUESTS)]) for i, t in enumerate(transactions)]
-        for request in adus[:len(REQUESTS)]:
-            client.sendall(request)
-            read_reply(stream)
-        client.sendall(b"".join(adus[len(REQUESTS):]))
-        for _ in REQUESTS:
-            read_reply(stream)
-    return transactions
-
-
-def ask(port, request):
-    with socket.create_connection(("127.0.0.1", port), timeout=peer.PATIENCE) as client, client.makefile("rb") as stream:
-        client.sendall(request)
-        return read_reply(stream)
+    transactions = range(first, first + 2 * len(REQUESTS))
+    with connected(port) as client:
+        for transaction, request in zip(transactions, REQUESTS):
+            client.ask(request, transaction)
+        client.send(*REQUESTS, first=transactions[len(REQUESTS)])
+        for transaction in transactions[len(REQUESTS):]:
+            client.receive(transaction)
+    return list(transactions)
 
 
 def is_captured(port, file, number):
     """Whether an exchange with this transaction is in the file, and so is all that went before; asks for one if not."""
-    request = adu(number, words(8, 0, 0x4D4B))  # the reply is the same bytes
-    if file.exists() and file.read_bytes().count(request) >= 2:
+    pdu = words(8, 0, 0x4D4B)  # the reply is the same bytes
+    if file.exists() and file.read_bytes().count(adu(pdu, number)) >= 2:
         return True
-    ask(port, request)
+    with connected(port) as client:
+        client.ask(pdu, number)
     return False
 
 
@@ -93,10 +83,13 @@ def capture(port, file, traffic, checks):
             tshark.kill()
 
 
+def read(port, file, *options):
+    return subprocess.run(["tshark", "-r", str(file), "-o", f"mbtcp.tcp.port:{port}", *options],
+                          capture_output=True, text=True, encoding="utf-8", check=True)
+
+
 def dissect(port, file, *options):
-    done = subprocess.run(["tshark", "-r", str(file), "-o", f"mbtcp.tcp.port:{port}", *options],
-                          capture_output=True, text=True, check=True)
-    return [line for line in done.stdout.splitlines() if line.strip()]
+    return [line for line in read(port, file, *options).stdout.splitlines() if line.strip()]
 
 
 def main():

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Modbus/TCP device in a thread, with everything that a test may want to see or to spoil; and a raw client."""
-import socket
 import socketserver
 import struct
 import threading
+
+from raw_client import RawClient  # made.py has its folder in the path
 
 BITS = {1: "coils", 2: "discrete_inputs", 5: "coils", 15: "coils"}
 REGISTERS = {3: "holding_registers", 4: "input_registers", 6: "holding_registers", 16: "holding_registers",
@@ -104,26 +105,19 @@ class Device:
         return pdu if function == 22 else pdu[:5]
 
 
-class Raw:
+class Raw(RawClient):
     """What a device has, read by no library."""
 
     def __init__(self, port):
-        self._socket = socket.create_connection(("127.0.0.1", port), timeout=120)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self._socket.close()
+        super().__init__(("127.0.0.1", port))
 
     def get(self, table, address, count):
-        answer = self._ask(struct.pack(">BHH", READS[table], address, count))
+        answer = self.ask(struct.pack(">BHH", READS[table], address, count))
         if table in BITS.values():
             return [answer[2 + i // 8] >> i % 8 & 1 for i in range(count)]
         return list(struct.unpack(f">{count}H", answer[2:]))
 
-    def _ask(self, pdu):
-        self._socket.sendall(struct.pack(">HHHB", 1, 0, 1 + len(pdu), 1) + pdu)
-        answer = receive(self._socket, struct.unpack(">HHHB", receive(self._socket, 7))[2] - 1)
+    def ask(self, pdu, transaction=1):
+        answer = super().ask(pdu, transaction)
         assert answer[0] == pdu[0], f"{pdu.hex()} was answered {answer.hex()}"
         return answer

@@ -60,7 +60,7 @@ NodeEnd::NodeEnd(const Map& map, device::Hooks* hooks)
   context_.map = &map;
   context_.listener = *std::move(listener);
   context_.state = std::make_unique<device::SharedState>(map, device::TimePoint::clock::now());
-  if (hooks != nullptr) hooks->allow_setting();
+  if (hooks != nullptr) hooks->allow_setting(nullptr);
   if (hooks != nullptr)
     context_.hooked = std::make_unique<device::HookedPoints>(map, context_.state->image(), *hooks);
   context_.wiring = (*wiring)->take_over();

@@ -34,9 +34,6 @@ class FaultMatrix(testing.RosTest):
         self.online = self.topic("/plant/online", Bool)
         return driver
 
-    def expect_online(self, wanted):
-        self.online.wait_for(lambda _: self.online.values[-1] == wanted)
-
     @staticmethod
     def status_says_offline():
         status = next_message("/plant/status", Status)
@@ -64,7 +61,7 @@ class FaultMatrix(testing.RosTest):
                 self.device.answer, self.device.silent = self.device.serve, False
                 if name == "killed":
                     self.device.start()
-                self.expect_online(True)
+                self.online.becomes(True)
                 self.level_follows(level, value)
 
     # 2. A late reply is taken for the next
@@ -164,7 +161,7 @@ class FaultMatrix(testing.RosTest):
         level = self.topic("/plant/level", Int16)
         self.level_follows(level, 5)
         self.device.silent = True
-        self.expect_online(False)
+        self.online.becomes(False)
         wait_until(self.status_says_offline, "the status")
         level.stays_quiet()
 
@@ -179,7 +176,7 @@ class FaultMatrix(testing.RosTest):
         points = "".join(f"    p{i}: {{address: {100 * i}, type: INT}}\n" for i in range(30))
         self.start("  input_registers:\n" + points + "  coils: {lamp: 3}\n")
         lamp = self.publisher("/plant/lamp/write", Bool)
-        self.expect_online(True)
+        self.online.becomes(True)
         wait_until(lambda: len(self.device.requests) > 3, "polling")
         reads = []
         for number in range(1, 6):

@@ -22,7 +22,7 @@ timeout: {timeout}s
 mapping:
   coils: {{lamp: 3, lamps: {{address: 10, count: 3}}}}
   holding_registers:
-    level: {{address: 4, type: INT}}
+    level: {{address: 4, type: INT, stamped: true}}
     flags: {{address: 5, type: WORD}}
     trim: {{address: 6, type: INT, scale: 0.5, access: read}}
     order: {{address: 7, type: STRING, length: 4, access: write}}
@@ -31,12 +31,13 @@ TOPICS = {
     "lamp": "std_msgs/msg/Bool", "lamp/write": "std_msgs/msg/Bool",
     "lamps": "coupler_driver/msg/BoolArray", "lamps/write": "coupler_driver/msg/BoolArray",
     "level": "std_msgs/msg/Int16", "level/write": "std_msgs/msg/Int16",
+    "level/stamped": "coupler_driver/msg/Int64Stamped",
     "flags": "coupler_driver/msg/BoolArray", "flags/write": "coupler_driver/msg/BoolArray",
     "trim": "std_msgs/msg/Float64", "order/write": "std_msgs/msg/String",
-    "online": "std_msgs/msg/Bool", "status": "coupler_driver/msg/Status",
+    "online": "std_msgs/msg/Bool", "scheduled": "coupler_driver/msg/Scheduled", "status": "coupler_driver/msg/Status",
 }
 SERVICES = {"write": "coupler_driver/srv/Write", "read": "coupler_driver/srv/Read", "safe": "std_srvs/srv/Trigger",
-            "lamp/set": "std_srvs/srv/SetBool"}
+            "schedule": "coupler_driver/srv/Schedule", "lamp/set": "std_srvs/srv/SetBool"}
 
 
 def nodes():

@@ -19,8 +19,8 @@ timeout: 60
 mapping:
   coils: {lamp: 3}
   input_registers:
-    always: {address: 0, type: UINT}
-    last: {address: 1, type: UINT, publish: on_change, latch: true}
+    always: {address: 0, type: UINT, stamped: true}
+    last: {address: 1, type: UINT, publish: on_change, latch: true, stamped: true}
     array: {address: 2, type: UINT, count: 2, publish: on_change, latch: true, queue_size: 5}
 """
 
@@ -71,8 +71,8 @@ class Latched(testing.RosTest):
         self.assertLessEqual(set(volatile.values), {7, 11}, "11: it had come before the first reading")
 
     def test_the_policies_are_those_of_ros_2(self):
-        offered = {f"/kept/{name}": DurabilityPolicy.VOLATILE for name in ("always", "lamp")}
-        offered.update({f"/kept/{name}": DurabilityPolicy.TRANSIENT_LOCAL for name in ("last", "array", "online", "status")})
+        offered = {f"/kept/{name}": DurabilityPolicy.VOLATILE for name in ("always", "always/stamped", "lamp")}
+        offered.update({f"/kept/{name}": DurabilityPolicy.TRANSIENT_LOCAL for name in ("last", "last/stamped", "array", "online", "status")})
         offered["/diagnostics"] = DurabilityPolicy.VOLATILE
         for name, durability in offered.items():
             wait_until(lambda n=name: polled.get_publishers_info_by_topic(n), f"a publisher of {name}")

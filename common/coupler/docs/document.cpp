@@ -31,18 +31,21 @@ bool is_for_node(const Map& map) {
 
 FactGroup connection(const Map& map) {
   const Connection& at = map.connection;
-  return {"Connection",
-          {{"Address", at.address.empty() ? "not in the map" : std::string(at.address)},
-           {"Port", fmt::to_string(at.port)},
-           {"Unit id", fmt::to_string(at.unit)},
-           {"Timeout", words(at.timeout)},
-           {"Polled", fmt::format("{} Hz", map.polling.rate)},
-           {"Points that are read", map.poll == Poll::all ? "all" : "those that somebody listens to"},
-           {"After a reconnect", map.on_reconnect == OnReconnect::restore
-                                     ? "outputs are written again"
-                                     : "writes without a connection are lost"},
-           {"When the driver ends",
-            map.on_shutdown == OnShutdown::safe ? "outputs go to their safe values" : "outputs stay"}}};
+  FactGroup group{
+      "Connection",
+      {{"Address", at.address.empty() ? "not in the map" : std::string(at.address)},
+       {"Port", fmt::to_string(at.port)},
+       {"Unit id", fmt::to_string(at.unit)},
+       {"Timeout", words(at.timeout)},
+       {"Polled", fmt::format("{} Hz", map.polling.rate)},
+       {"Points that are read", map.poll == Poll::all ? "all" : "those that somebody listens to"},
+       {"After a reconnect", map.on_reconnect == OnReconnect::restore
+                                 ? "outputs are written again"
+                                 : "writes without a connection are lost"},
+       {"When the driver ends",
+        map.on_shutdown == OnShutdown::safe ? "outputs go to their safe values" : "outputs stay"}}};
+  if (!map.changes) group.facts.push_back({"Changes that it announces", "not listened to"});
+  return group;
 }
 
 FactGroup limits(const Map& map) {

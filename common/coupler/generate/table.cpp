@@ -71,7 +71,7 @@ constexpr Map map{{
     {{{listen}, {allow_name}, {watchdog}, {readback}}},  // listen, allow, watchdog, readback
     {on_reconnect}, {on_shutdown}, {unreadable_name},
     {coupler_watchdog},  // timeout, recovery, feed every, arm, feed, reset, how it shows that it has expired
-    {poll},
+    {poll}, {changes},
 }};
 
 }}  // namespace coupler::maps::{name}
@@ -225,7 +225,8 @@ std::string table_source(const Map& map, const Provenance& provenance) {
       arg("sequences", sequences(map.coupler_watchdog)),
       arg("coupler_watchdog", coupler_watchdog(map.coupler_watchdog)),
       arg("on_reconnect", enumerator(map.on_reconnect)), arg("on_shutdown", enumerator(map.on_shutdown)),
-      arg("poll", enumerator(map.poll)), arg("listen", literal(map.service.listen)),
+      arg("poll", enumerator(map.poll)), arg("changes", map.changes),
+      arg("listen", literal(map.service.listen)),
       arg("allow_name", map.service.allow.empty() ? "{}" : "allow"),
       arg("watchdog", aggregate(map.service.watchdog)), arg("readback", map.service.readback),
       arg("text", literal_lines(map.text, "    ")), arg("map_name", literal(map.name)),

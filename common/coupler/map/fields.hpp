@@ -85,7 +85,8 @@ constexpr auto fields_of(const Limits*) {
 constexpr auto fields_of(const Map*) {
   return std::make_tuple(field("on_reconnect", &Map::on_reconnect, "on-reconnect-changed"),
                          field("on_shutdown", &Map::on_shutdown, "on-shutdown-changed"),
-                         field("poll", &Map::poll, "poll-changed"));
+                         field("poll", &Map::poll, "poll-changed"),
+                         field("changes", &Map::changes, "changes-changed"));
 }
 
 /// And `allow`.
@@ -111,6 +112,7 @@ constexpr auto fields_of(const HostOptions*) {
                          field("deadband", &H::deadband, "publish-changed", reading),
                          field("max_interval", &H::max_interval, "publish-changed", reading),
                          field("latch", &H::latch, "latch-changed", reading),
+                         field("stamped", &H::stamped, "stamped-changed", reading),
                          field("queue_size", &H::queue_size, "queue-size-changed"),
                          field("write_function", &H::write_function, "write-changed", writing),
                          field("write_queue", &H::write_queue, "write-changed", writing),

@@ -21,7 +21,7 @@ static_assert(are_in_the_report(),
               "A counter behind the report is a further field: nodes that do not have it are out there");
 
 constexpr std::size_t hostname_registers = std::tuple_size_v<decltype(Machine::hostname)> / 2;
-static_assert(at_hostname + hostname_registers <= size);
+static_assert(at_hostname + hostname_registers <= at_functions);
 
 }  // namespace
 
@@ -67,24 +67,37 @@ std::string_view hostname_of(const Machine& machine) {
   return {machine.hostname.data(), static_cast<std::size_t>(end - machine.hostname.begin())};
 }
 
-void write_machine(const Machine& machine, std::uint16_t* area) {
+void write_further(const Further& further, std::uint16_t* area) {
   area[at_further] = further_size;
+  const Machine& machine = further.machine;
   codec::encode(machine.serial, Order::ABCD, area + at_serial);
   for (std::size_t i = 0; i < machine.hostname.size(); i += 2)
     area[at_hostname + i / 2] =
         static_cast<std::uint16_t>(static_cast<std::uint8_t>(machine.hostname[i]) << 8 |
                                    static_cast<std::uint8_t>(machine.hostname[i + 1]));
+  area[at_functions] = static_cast<std::uint16_t>(
+      (further.functions.tells_changes ? Functions::tells_changes_bit : 0) |
+      (further.functions.schedules_outputs ? Functions::schedules_outputs_bit : 0));
+  codec::encode(further.watchdog_timeout, Order::ABCD, area + at_watchdog_timeout);
 }
 
-Machine read_machine(Span<const std::uint16_t> further) {
+Further read_further(Span<const std::uint16_t> further) {
   constexpr std::size_t name = at_hostname - at_serial;
-  Machine machine;
+  constexpr std::size_t functions = at_functions - at_serial;
+  constexpr std::size_t timeout = at_watchdog_timeout - at_serial;
+  Further read;
+  Machine& machine = read.machine;
   if (further.size() >= name) machine.serial = codec::decode<std::uint64_t>(further.data(), Order::ABCD);
   for (std::size_t i = name; i < std::min(further.size(), name + hostname_registers); ++i) {
     machine.hostname[2 * (i - name)] = static_cast<char>(further[i] >> 8);
     machine.hostname[2 * (i - name) + 1] = static_cast<char>(further[i] & 0xFF);
   }
-  return machine;
+  if (further.size() > functions)
+    read.functions = {(further[functions] & Functions::tells_changes_bit) != 0,
+                      (further[functions] & Functions::schedules_outputs_bit) != 0};
+  if (further.size() >= timeout + 2)
+    read.watchdog_timeout = codec::decode<std::uint32_t>(&further[timeout], Order::ABCD);
+  return read;
 }
 
 FileRecord record_at(std::uint32_t first, std::uint32_t map_size) {

@@ -46,10 +46,12 @@ enum : std::uint16_t {
   at_foreign_units = 39,  ///< requests for another unit id
   at_bad_frames = 41,     ///< connections closed for what they sent
   at_timeouts = 43,       ///< connections closed for what they did not send or read in time
-  at_further = 45,   ///< how many registers of further fields follow; the first nodes do not have this one
-  at_serial = 46,    ///< of the machine, a hash, 4 registers, most significant first; 0: unknown
-  at_hostname = 50,  ///< 32 registers, ASCII, two characters each, the first one high; zeros behind it
-  size = 82,
+  at_further = 45,    ///< how many registers of further fields follow; the first nodes do not have this one
+  at_serial = 46,     ///< of the machine, a hash, 4 registers, most significant first; 0: unknown
+  at_hostname = 50,   ///< 32 registers, ASCII, two characters each, the first one high; zeros behind it
+  at_functions = 82,  ///< function codes of our own that the node answers: Functions
+  at_watchdog_timeout = 83,  ///< ms, 2 registers, most significant first; 0: it has no watchdog
+  size = 85,
 };
 
 constexpr std::uint32_t magic = 0x4F43504C;  // "OCPL"
@@ -125,15 +127,30 @@ struct Machine {
   std::array<char, 64> hostname{};  ///< zeros behind it, if it is shorter; empty: unknown
 };
 
+/// What the node can do that Modbus does not say. An older node can none of it.
+struct Functions {
+  static constexpr std::uint16_t tells_changes_bit = 1;      ///< FC 65
+  static constexpr std::uint16_t schedules_outputs_bit = 2;  ///< FC 66
+  bool tells_changes = false;
+  bool schedules_outputs = false;
+};
+
+/// The further fields.
+struct Further {
+  Machine machine;
+  Functions functions;
+  std::uint32_t watchdog_timeout = 0;  ///< ms; 0: no watchdog, or an older node, which does not say
+};
+
 /// A name that is too long is cut off.
 Machine machine_of(std::string_view hostname, std::uint64_t serial);
 std::string_view hostname_of(const Machine& machine);
 
 /// Registers at_further … size.
-void write_machine(const Machine& machine, std::uint16_t* area);
+void write_further(const Further& further, std::uint16_t* area);
 
 /// `further` is from at_serial on, as many registers as the node has; what it does not have stays unknown.
-Machine read_machine(Span<const std::uint16_t> further);
+Further read_further(Span<const std::uint16_t> further);
 
 /// Where a piece of the map's text is, for FC 20: two bytes a record, most significant first,
 /// records_per_file records a file, files from 1 upward; an odd last byte is followed by a zero.

@@ -9,6 +9,7 @@ NodeMemory node_memory(const Map& map) {
     each_range(map, table, Mapped::all, [&](modbus::Range range) {
       ++memory.areas;
       memory.cells += range.count();
+      if (holds_bits(table)) memory.bits += range.count();
     });
     if (!is_writable(table)) continue;
     for (const Mapped which : {Mapped::readable, Mapped::writable})

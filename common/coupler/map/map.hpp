@@ -15,7 +15,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 7;
+constexpr int model_version = 8;
 
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {
@@ -112,6 +112,7 @@ struct Map {
   Span<const Unreadable> unreadable{};
   WatchdogSequences coupler_watchdog{};
   Poll poll = Poll::all;
+  bool changes = true;  ///< the driver listens to changes that a node announces; false: it polls only
 };
 
 /// The point of that name, or nullptr.

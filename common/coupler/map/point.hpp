@@ -50,6 +50,7 @@ struct HostOptions {
   std::chrono::milliseconds max_interval{
       0};  ///< with on_change: published at least so often; 0: never for that
   bool latch = false;
+  bool stamped = false;  ///< also published with the time at which the value was true; not for arrays
   std::uint32_t queue_size = 10;  ///< of the topic; its subscription to writes holds ten times as many
   WriteFunction write_function = WriteFunction::automatic;
   WriteQueue write_queue = WriteQueue::latest;
@@ -163,6 +164,11 @@ constexpr bool is_set_by_firmware(const Point& point) { return is_readable(point
 /// Shares its register with others. Bits of the bit tables share nothing.
 constexpr bool is_partial(const Point& point) {
   return !holds_bits(point.table) && codec::is_partial(point.format);
+}
+
+/// The bits of its registers that are its own: all, unless it shares its register.
+constexpr std::uint16_t own_bits(const Point& point) {
+  return is_partial(point) ? codec::mask(point.format) : std::uint16_t{0xFFFF};
 }
 
 }  // namespace coupler

@@ -20,8 +20,22 @@ constexpr void put_u16(std::uint8_t* at, std::uint16_t value) {
   at[0] = static_cast<std::uint8_t>(value >> 8);
   at[1] = static_cast<std::uint8_t>(value);
 }
+constexpr std::uint32_t get_u32(const std::uint8_t* at) {
+  return std::uint32_t{get_u16(at)} << 16 | get_u16(at + 2);
+}
+constexpr void put_u32(std::uint8_t* at, std::uint32_t value) {
+  put_u16(at, static_cast<std::uint16_t>(value >> 16));
+  put_u16(at + 2, static_cast<std::uint16_t>(value));
+}
+constexpr std::uint64_t get_u64(const std::uint8_t* at) {
+  return std::uint64_t{get_u32(at)} << 32 | get_u32(at + 4);
+}
+constexpr void put_u64(std::uint8_t* at, std::uint64_t value) {
+  put_u32(at, static_cast<std::uint32_t>(value >> 32));
+  put_u32(at + 4, static_cast<std::uint32_t>(value));
+}
 
-/// The function codes (MAP 5.1) in use here.
+/// The function codes in use here. 65 and 66 are our own, from the range that MAP 5.1 leaves to users.
 enum class Function : std::uint8_t {
   read_coils = 1,
   read_discrete_inputs = 2,
@@ -36,6 +50,8 @@ enum class Function : std::uint8_t {
   mask_write_register = 22,
   read_write_multiple_registers = 23,
   encapsulated_interface = 43,
+  wait_for_changes = 65,
+  schedule_output = 66,
 };
 
 /// Set in the function code of a reply that is an exception (MAP 4.1). Function codes are 1 … 127.

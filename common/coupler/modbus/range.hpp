@@ -40,4 +40,11 @@ class Range {
   std::uint32_t end_;
 };
 
+/// Calls `use` with each address that both have, in ascending order.
+template <class Use>
+constexpr void each_shared_address(Range a, Range b, Use use) {
+  const std::uint32_t end = a.end() < b.end() ? a.end() : b.end();
+  for (std::uint32_t at = a.start() < b.start() ? b.start() : a.start(); at < end; ++at) use(at);
+}
+
 }  // namespace coupler::modbus

@@ -85,6 +85,12 @@ Parsed parse_diagnostics(Bytes pdu) {
   return Echo{};
 }
 
+Parsed parse_schedule(Bytes pdu) {
+  const auto parsed = parse_schedule_request(pdu);
+  if (!parsed) return tl::unexpected(parsed.error());
+  return std::visit([](const auto& what) -> Request { return what; }, *parsed);
+}
+
 }  // namespace
 
 Parsed parse_request(Bytes pdu) {
@@ -104,6 +110,8 @@ Parsed parse_request(Bytes pdu) {
     case Function::mask_write_register: return parse_mask_write(pdu);
     case Function::read_write_multiple_registers: return parse_read_write(pdu);
     case Function::encapsulated_interface: return parse_device_identification(pdu);
+    case Function::wait_for_changes: return parse_changes_request(pdu);
+    case Function::schedule_output: return parse_schedule(pdu);
   }
   return tl::unexpected(Exception::illegal_function);
 }

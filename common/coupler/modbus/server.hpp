@@ -9,10 +9,12 @@
 #include <tl/expected.hpp>
 
 #include "coupler/base/span.hpp"
+#include "coupler/modbus/changes.hpp"
 #include "coupler/modbus/device_identification.hpp"
 #include "coupler/modbus/file_record.hpp"
 #include "coupler/modbus/pdu.hpp"
 #include "coupler/modbus/range.hpp"
+#include "coupler/modbus/scheduled_output.hpp"
 
 namespace coupler::modbus {
 
@@ -53,13 +55,13 @@ struct ReadWriteRegisters {
 struct Echo {};
 
 using Request = std::variant<Echo, FileGroups, Read, ReadDeviceIdentification, WriteBits, WriteRegisters,
-                             MaskWrite, ReadWriteRegisters>;
+                             MaskWrite, ReadWriteRegisters, ChangesRequest, ScheduleOutput, CancelOutput>;
 
 /// Reads a request PDU of at least one byte and checks all that can be checked without knowing the device, in
 /// the order of MAP's state diagrams. Errors: 01 a function or sub-function that is not supported, or a code
 /// of 128 and above; 03 a PDU longer or shorter than it must be, a quantity outside its limits, a byte count
-/// that does not match it, a coil value other than 0x0000 and 0xFF00; 02 a range that runs past address
-/// 65535.
+/// that does not match it, a coil value other than 0x0000 and 0xFF00, a version or wait that is not allowed;
+/// 02 a range that runs past address 65535.
 tl::expected<Request, Exception> parse_request(Bytes pdu);
 
 /// `function` is the request's code as it came; 128 and above stay as they are.

@@ -57,6 +57,11 @@ Json none_of(const Words& keys, Section section) {
 /// If it is there, it is like that.
 Json only(std::string_view key, Json value) { return {{"properties", {{key, std::move(value)}}}}; }
 
+Json not_true() {
+  return {
+      {"not", {{"anyOf", {{{"const", true}}, {{"type", "string"}, {"pattern", any_case({"yes", "on"})}}}}}}};
+}
+
 /// "not" with "required" would refuse a point that is no map, too.
 Json not_both(std::string_view a, std::string_view b) { return {{"dependencies", {{a, only(b, false)}}}}; }
 
@@ -203,8 +208,7 @@ void add_rules_of_the_host(Section section, Rules& rules) {
   Words reading = host_keys(About::reading);
   reading.push_back("read_address");
   Json unread = none_of(reading, section);
-  unread["properties"]["verify_write"] = {
-      {"not", {{"anyOf", {{{"const", true}}, {{"type", "string"}, {"pattern", any_case({"yes", "on"})}}}}}}};
+  unread["properties"]["verify_write"] = not_true();
   rules.push_back(when(has("access", is("write")), std::move(unread)));
   Words writing = host_keys(About::writing);
   writing.insert(writing.end(), {"deadman", "latched"});
@@ -213,6 +217,7 @@ void add_rules_of_the_host(Section section, Rules& rules) {
 
 void add_rules_of_arrays(Section section, Rules& rules) {
   Json array = none_of({"line", "counter", "latched", "iio", "pwm"}, section);
+  array["properties"]["stamped"] = not_true();
   if (loader::overlap(section, outputs)) array["properties"]["write_function"] = {{"not", is("single")}};
   rules.push_back(when(is_an_array(), std::move(array)));
 }

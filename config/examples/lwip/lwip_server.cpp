@@ -65,9 +65,16 @@ err_t LwipServer::receive(Client& client, pbuf* data) {
   return work(client);
 }
 
-/// Answers whole frames for as long as there is room for replies.
+void LwipServer::answer_waiting() {
+  for (Client& client : clients_)
+    if (client.pcb != nullptr && client.session.wait) work(client);
+}
+
+/// Answers whole frames, and what waits for changes, for as long as there is room for replies.
 err_t LwipServer::work(Client& client) {
   while (send_reply(client)) {
+    client.reply_size = server_.answer_waiting(client.session, lwip_now(), client.reply);
+    if (client.reply_size != 0) continue;
     switch (client.framer.next()) {
       case Framer::Outcome::frame:
         client.last_active = client.waits_since = lwip_now();
@@ -78,8 +85,9 @@ err_t LwipServer::work(Client& client) {
       case Framer::Outcome::bad: ++statistics_.bad_frames; return close(client);
       case Framer::Outcome::nothing:
         if (fill_framer(client)) break;
-        if (client.ended) return close(client);
-        return tcp_output(client.pcb);
+        if (!client.ended) return tcp_output(client.pcb);
+        client.reply_size = server_.end_wait(client.session, lwip_now(), client.reply);
+        if (client.reply_size == 0) return close(client);
     }
   }
   return tcp_output(client.pcb);
@@ -134,6 +142,7 @@ LwipServer::Client& LwipServer::free_place() {
 }
 
 void LwipServer::forget(Client& client) {
+  client.owner->server_.end_session(client.session, lwip_now());
   if (client.received != nullptr) pbuf_free(client.received);
   client.received = nullptr;
   client.pcb = nullptr;

@@ -28,6 +28,8 @@ class LwipServer {
       : server_(server), statistics_(statistics) {}
   /// On every address of the machine. False: the port is taken, or lwIP has no memory for it.
   bool listen(std::uint16_t port);
+  /// Answers clients that wait for changes, if that is due. To be called after each Handler::tick().
+  void answer_waiting();
 
  private:
   struct Client {
@@ -36,7 +38,8 @@ class LwipServer {
     pbuf* received = nullptr;  ///< what does not fit into the framer yet; the window stays closed by as much
     coupler::modbus::Framer framer{};
     coupler::device::ClientSession session{};
-    std::array<std::uint8_t, coupler::modbus::max_adu_size> reply{};
+    std::array<std::uint8_t, 2 * coupler::modbus::max_adu_size>
+        reply{};                 ///< and before it the one to a request that waited
     std::size_t reply_size = 0;  ///< 0: none waits for room
     bool ended = false;          ///< it sends no more
     bool has_asked = false;

@@ -5,12 +5,14 @@
 #include <lwip/netif.h>
 #include <lwip/tcpip.h>
 #include <lwip/timeouts.h>
+#include <sys/random.h>
 #include <unistd.h>
 extern "C" {
 #include <netif/tapif.h>
 }
 
 #include <cstdio>
+#include <ctime>
 
 #include "board_core.hpp"
 #include "lwip_server.hpp"
@@ -27,6 +29,10 @@ class Pins final : public coupler::device::Lines {
   bool read(Range, Span<std::uint16_t> levels, TimePoint) override {
     levels[0] = relay_;
     return true;
+  }
+  /// A pin that is looked at. An interrupt's edges have times of their own.
+  void take_edges(TimePoint now, coupler::device::EdgeSink& sink) override {
+    sink.changed(0, relay_ != 0, now);
   }
   bool drive(Range, Span<const std::uint16_t> levels) override {
     relay_ = levels[0];
@@ -65,10 +71,19 @@ Pins pins;
 Board board(pins);
 LwipServer server(board.server(), board.statistics());
 
-/// The output watchdog.
+/// The output watchdog, and changes for who waits for them.
 void tick(void*) {
   board.handler().tick(lwip_now());
+  server.answer_waiting();
   sys_timeout(20, tick, nullptr);
+}
+
+/// On a chip from its source of random numbers, or from a counter of its starts.
+std::uint32_t new_epoch() {
+  std::uint32_t epoch = 0;
+  if (getrandom(&epoch, sizeof epoch, 0) != sizeof epoch)
+    epoch = static_cast<std::uint32_t>(std::time(nullptr));
+  return epoch != 0 ? epoch : 1;
 }
 
 void start(void*) {
@@ -82,6 +97,7 @@ void start(void*) {
   netif_set_up(&interface);
   // On a chip: its name, and a hash of its unique number.
   board.handler().set_machine(coupler::identity::machine_of("board-1", 0x0011223344556677));
+  board.handler().tell_changes(new_epoch(), lwip_now());
   const bool listens = server.listen(502);
   std::puts(listens ? "lwip_node: serving on 192.0.2.2:502" : "lwip_node: cannot listen on port 502");
   std::fflush(stdout);

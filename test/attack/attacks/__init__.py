@@ -29,4 +29,4 @@ TARGET = 1000  # first of 125 holding registers
 TARGET_REGISTERS = 125
 TARGET_COIL = 100  # first of 16 coils
 
-from attacks import framing, requests, connections, waiting, guards  # noqa: E402,F401 in the order in which they run
+from attacks import framing, requests, connections, listening, scheduling, waiting, guards  # noqa: E402,F401 in the order in which they run

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Requests in right frames that ask for what must not be, and the exception that each deserves (MODBUS Application Protocol, 6 and 7)."""
+import struct
+
 import adu as modbus
 from attacks import TARGET, TARGET_COIL, attack
 
@@ -12,6 +14,7 @@ RIGHT = [
     modbus.pdu(5, TARGET_COIL, 0), modbus.pdu(6, TARGET + 124, 0), modbus.write_coils(TARGET_COIL, 1, b"\x00"),
     modbus.write_registers(TARGET + 124, 1, b"\x00\x00"), modbus.read_file(0, 1), modbus.pdu(22, TARGET + 124, 0, 0),
     modbus.read_write(TARGET, 1, TARGET + 124, 1, b"\x00\x00"), modbus.pdu(8, 0, 0), bytes([43, 14, 1, 0]),
+    struct.pack(">BBHIQ", 65, 1, 0, 0, 0), struct.pack(">BBBIH", 66, 1, 2, 0, 1),
 ]
 OFFERED = [request[0] for request in RIGHT]
 

@@ -89,8 +89,12 @@ TEST(Changes, What_a_side_does_by_itself_is_compatible) {
               ElementsAre("compatible map-rate-changed : 10 Hz -> 20 Hz"));
   EXPECT_THAT(changes_by("rate: 10", "rate: 10\npoll: subscribed"),
               ElementsAre("compatible poll-changed : all -> subscribed"));
+  EXPECT_THAT(changes_by("rate: 10", "rate: 10\nchanges: off"),
+              ElementsAre("compatible changes-changed : true -> false"));
   EXPECT_THAT(changes_by("units: rpm", "units: rpm, rate: 2"),
               ElementsAre("compatible rate-changed speed:  -> 2 Hz"));
+  EXPECT_THAT(changes_by("units: rpm", "units: rpm, stamped: true"),
+              ElementsAre("compatible stamped-changed speed: false -> true"));
 }
 
 TEST(Changes, Keys_that_are_told_as_one_change_are_named_with_their_values) {

@@ -40,7 +40,7 @@ TEST(Facts, A_map_with_wiring_is_served_by_a_node_with_an_identity_area) {
   auto builder = fakes::MapBuilder();
   builder.add(Table::coils, "lamp", 0, codec::Type::BOOL, [](Point& point) { point.line.name = "GPIO17"; });
   const auto map = builder.build();
-  EXPECT_EQ(told(map, "Identity area"), "82 input registers from 65280 (365281)");
+  EXPECT_EQ(told(map, "Identity area"), "85 input registers from 65280 (365281)");
   EXPECT_EQ(told(map, "Fingerprint in it"), "4 from 65283 (365284)");
   EXPECT_EQ(told(map, "Watchdog"), "none");
   EXPECT_EQ(told(map, "Watchdog reset"), "-");

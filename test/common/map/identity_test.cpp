@@ -49,28 +49,52 @@ TEST(Identity, Without_the_magic_or_with_another_layout_it_is_a_foreign_coupler)
 std::vector<std::uint16_t> whole_area(const Machine& machine) {
   std::vector<std::uint16_t> area(size);
   write_head({0x0123456789ABCDEF, 0, 0}, area.data());
-  write_machine(machine, area.data());
+  write_further({machine, {true, false}, 0x00012345}, area.data());
   return area;
 }
 
-Machine read_further(const std::vector<std::uint16_t>& area, std::size_t registers) {
-  return read_machine({area.data() + at_serial, registers});
+Further further_of(const std::vector<std::uint16_t>& area, std::size_t registers) {
+  return read_further({area.data() + at_serial, registers});
+}
+
+Machine machine_in(const std::vector<std::uint16_t>& area, std::size_t registers) {
+  return further_of(area, registers).machine;
 }
 
 TEST(Identity, The_machine_stands_behind_the_statistics_as_documented) {
   const auto area = whole_area(machine_of("cell-7", 0x0011223344556677));
-  ASSERT_EQ(area.size(), 82U);
+  ASSERT_EQ(area.size(), 85U);
   const std::vector<std::uint16_t> further(area.begin() + 45, area.begin() + 54);
   EXPECT_EQ(further,
-            (std::vector<std::uint16_t>{36, 0x0011, 0x2233, 0x4455, 0x6677, 0x6365, 0x6C6C, 0x2D37, 0}));
+            (std::vector<std::uint16_t>{39, 0x0011, 0x2233, 0x4455, 0x6677, 0x6365, 0x6C6C, 0x2D37, 0}));
 }
 
 TEST(Identity, A_machine_that_is_written_is_read_again) {
   for (const std::string& name : {std::string(), std::string("a"), std::string(64, 'x')}) {
-    const Machine again = read_further(whole_area(machine_of(name, 7)), further_size);
+    const Machine again = machine_in(whole_area(machine_of(name, 7)), further_size);
     EXPECT_EQ(hostname_of(again), name);
     EXPECT_EQ(again.serial, 7U);
   }
+}
+
+TEST(Identity, What_the_node_can_do_and_its_watchdogs_timeout_stand_behind_the_machine) {
+  auto area = whole_area(machine_of("cell-7", 7));
+  EXPECT_EQ((std::vector<std::uint16_t>{area.begin() + 82, area.end()}),
+            (std::vector<std::uint16_t>{1, 1, 0x2345}));
+  EXPECT_TRUE(further_of(area, further_size).functions.tells_changes);
+  EXPECT_FALSE(further_of(area, further_size).functions.schedules_outputs);
+  EXPECT_EQ(further_of(area, further_size).watchdog_timeout, 0x12345U);
+  EXPECT_EQ(further_of(area, further_size - 1).watchdog_timeout, 0U) << "a part of it";
+  area[at_functions] = 0xFFFE;
+  EXPECT_FALSE(further_of(area, further_size).functions.tells_changes);
+  EXPECT_TRUE(further_of(area, further_size).functions.schedules_outputs);
+}
+
+TEST(Identity, A_node_without_these_fields_can_none_of_it) {
+  const Further further = further_of(whole_area(machine_of("cell-7", 7)), 36);
+  EXPECT_FALSE(further.functions.tells_changes);
+  EXPECT_EQ(further.watchdog_timeout, 0U);
+  EXPECT_EQ(hostname_of(further.machine), "cell-7");
 }
 
 TEST(Identity, A_hostname_that_is_too_long_is_cut_off) {
@@ -79,13 +103,13 @@ TEST(Identity, A_hostname_that_is_too_long_is_cut_off) {
 
 TEST(Identity, Further_fields_that_are_not_there_are_unknown_and_those_that_nobody_knows_are_ignored) {
   auto area = whole_area(machine_of("cell-7", 7));
-  EXPECT_EQ(read_further(area, 0).serial, 0U);
-  EXPECT_EQ(read_further(area, 3).serial, 0U) << "a part of it";
-  EXPECT_EQ(read_further(area, 4).serial, 7U);
-  EXPECT_EQ(hostname_of(read_further(area, 4)), "");
-  EXPECT_EQ(hostname_of(read_further(area, 5)), "ce");
+  EXPECT_EQ(machine_in(area, 0).serial, 0U);
+  EXPECT_EQ(machine_in(area, 3).serial, 0U) << "a part of it";
+  EXPECT_EQ(machine_in(area, 4).serial, 7U);
+  EXPECT_EQ(hostname_of(machine_in(area, 4)), "");
+  EXPECT_EQ(hostname_of(machine_in(area, 5)), "ce");
   area.resize(200, 0xFFFF);
-  const Machine machine = read_further(area, 100);
+  const Machine machine = machine_in(area, 100);
   EXPECT_EQ(hostname_of(machine), "cell-7");
   EXPECT_EQ(machine.serial, 7U);
 }

@@ -64,7 +64,7 @@ KEYS = """bit: 3|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|or
     initial: %s|initial: [%s, %s]|initial: {}|count: 1|count: 2|count: 0|access: read|access: write|access: read_write|
     iio: {device: a, channel: b}|pwm: {chip: a, channel: 0, period: 1ms}|pwm: {chip: a, channel: 0, period: 11s}|
     iio: {device: "", channel: b}|counter: {of: q}|latched: {of: q}|deadband: 1|deadband: -1|publish: always|
-    max_interval: 1s|rate: 2|latch: on|queue_size: 3|write_function: single|write_function: multiple|
+    max_interval: 1s|rate: 2|latch: on|stamped: on|stamped: no|queue_size: 3|write_function: single|write_function: multiple|
     write_queue: every|priority: high|verify_write: yes|verify_write: no|deadman: {timeout: 1s, value: 1}|
     deadman: {timeout: 1s, value: on}|deadman: {timeout: 1s, value: 0.5}|deadman: {timeout: 500us, value: 1}|
     deadman: {timeout: 61min, value: 1}|deadman: {timeout: 1s}|read_address: 7|allow_nonfinite: true|safe: on|

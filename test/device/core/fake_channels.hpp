@@ -18,6 +18,7 @@ class FakeChannels : public Channels {
     return found == inputs.end() ? std::nullopt : std::optional(found->second);
   }
   bool accepts(const Point&, double value) const override { return value >= least && value <= most; }
+  bool is_plugged(const Point& output) const override { return gone.count(output.address) == 0; }
   Outcome drive(const Point& output, double value) override {
     driven.emplace_back(output.address, value);
     if (broken.count(output.address) != 0) return Outcome::failed;
@@ -32,6 +33,7 @@ class FakeChannels : public Channels {
   std::vector<std::pair<std::uint16_t, double>> driven;  ///< each call of drive()
   std::set<std::uint16_t> broken;
   std::set<std::uint16_t> unplugged;
+  std::set<std::uint16_t> gone;   ///< unplugged, and known to be
   std::set<std::uint16_t> picky;  ///< refuse every value when it is tried
   double least = 0;
   double most = 100;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,12 +25,13 @@ class FakeLines : public Lines {
     return !broken;
   }
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override {
-    if (broken) return false;
+    if (broken || (stuck && coils.contains(*stuck))) return false;
     if (remembers) driven_.emplace_back(coils, std::vector<std::uint16_t>(levels.begin(), levels.end()));
     for (auto& [address, output] : outputs)
       if (coils.contains(address)) output.level = levels[address - coils.start()];
     return true;
   }
+  bool are_plugged(modbus::Range) const override { return !unplugged; }
   bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override {
     bool any = false;
     for (const auto& [address, output] : outputs) {
@@ -41,21 +44,39 @@ class FakeLines : public Lines {
   bool drive_safe() override {
     ++safe_calls;
     if (broken) return false;
-    for (auto& [address, output] : outputs) output.level = output.safe;
-    return true;
+    for (auto& [address, output] : outputs)
+      if (address != stuck) output.level = output.safe;
+    return !stuck;
   }
 
   void take_edges(TimePoint, EdgeSink& sink) override {
     for (const auto& [input, happened] : edges) sink.add(input, happened);
     edges.clear();
+    for (const Change& change : changes) sink.changed(change.input, change.level, change.at);
+    changes.clear();
+    if (const auto lost = std::exchange(lost_changes, 0); lost != 0) sink.lost(lost);
   }
+  std::optional<TimePoint> next_change(TimePoint) const override { return next; }
+  bool has_to_look() const override { return looks; }
 
   void set_input(std::uint16_t address, std::uint16_t level) { inputs_[address] = level; }
   /// What drive() was called with.
   const auto& writes() const { return driven_; }
 
+  struct Change {
+    std::uint16_t input = 0;
+    bool level = false;
+    TimePoint at{};
+  };
+
   std::vector<std::pair<std::uint16_t, Edges>> edges;  ///< not told yet
+  std::vector<Change> changes;                         ///< not told yet
+  std::uint32_t lost_changes = 0;                      ///< not told yet
+  std::optional<TimePoint> next;                       ///< when it wants to be asked again
+  bool looks = false;                                  ///< has_to_look()
   bool broken = false;
+  std::optional<std::uint16_t> stuck;  ///< this output cannot be driven
+  bool unplugged = false;              ///< and known to be
   bool remembers = true;
   int safe_calls = 0;
   std::map<std::uint16_t, Output> outputs;  ///< the coils that have a line

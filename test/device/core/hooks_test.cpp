@@ -15,7 +15,7 @@ using ::testing::IsEmpty;
 
 /// Code that refuses one value of one point.
 struct FakeHooks : Hooks {
-  void put_new_values(Image& image) override {
+  void put_new_values(Image& image, Changes&) override {
     if (set) image.find(Table::input_registers, modbus::Range::of(0, 1))[0] = *std::exchange(set, {});
   }
   bool accept(std::uint32_t point, const std::uint16_t* registers) override {
@@ -64,7 +64,11 @@ struct HookedNode : ::testing::Test {
   TimePoint now{};
   OutputWatchdog watchdog{map.service.watchdog};
   std::vector<EdgePoints::Link> links{node_memory(map).links};
-  Handler handler{map, memory.image, Hardware(lines, nullptr, &hooked), statistics, watchdog, links};
+  Changes changes;
+  std::vector<ScheduledOutput> scheduled{4};
+  OutputSchedule schedule{scheduled};
+  Handler handler{
+      map, Hardware(lines, nullptr, &hooked), {memory.image, statistics, watchdog, links, changes, schedule}};
 };
 
 const Pdu failure{0x90, 4};
@@ -97,6 +101,20 @@ TEST_F(HookedNode, What_was_accepted_before_a_refusal_is_called_again_with_its_o
   EXPECT_EQ(ask(pdu(3, {0, 3})), (Pdu{3, 6, 0, 1, 0, 2, 0, 3}));
 }
 
+TEST_F(HookedNode, Each_for_itself_only_what_is_new_is_asked_about_and_what_is_refused_stays) {
+  ASSERT_NE(write(0, {1, 2, 3, 3}), failure);
+  hooks.calls.clear();
+  hooks.refused = {2, 8};
+  std::vector<std::uint16_t> next{7, 8, 9, 2};
+  EXPECT_FALSE(hooked.write_each(Table::holding_registers, modbus::Range::of(0, 4), next));
+  EXPECT_THAT(hooks.calls, ElementsAre(std::pair(1U, 7), std::pair(2U, 8), std::pair(3U, 2)));
+  EXPECT_THAT(next, ElementsAre(7, 2, 3, 2));
+  hooks.calls.clear();
+  next = {1, 2, 3, 3};
+  EXPECT_TRUE(hooked.write_each(Table::holding_registers, modbus::Range::of(0, 4), next));
+  EXPECT_THAT(hooks.calls, IsEmpty()) << "these are in force";
+}
+
 TEST_F(HookedNode, A_point_that_is_written_in_part_is_asked_about_as_a_whole) {
   ASSERT_NE(write(1, {5, 6}), failure);
   hooks.calls.clear();
@@ -115,9 +133,9 @@ TEST_F(HookedNode, Of_a_shared_register_only_the_points_that_change_are_asked_ab
 
 TEST_F(HookedNode, When_a_line_cannot_be_driven_the_code_gets_its_old_values_again) {
   lines.broken = true;
-  const MapPtr coils = fakes::MapBuilder().add(Table::coils, "lamp", 0, Type::BOOL).build();
-  OwnedImage image(coils->map());
-  HookedPoints points(coils->map(), image.image, hooks);
+  const MapPtr lamps = fakes::MapBuilder().add(Table::coils, "lamp", 0, Type::BOOL).build();
+  OwnedImage image(lamps->map());
+  HookedPoints points(lamps->map(), image.image, hooks);
   Hardware hardware(lines, nullptr, &points);
   const std::uint16_t on = 1;
   const auto driven = hardware.drive(Table::coils, modbus::Range::of(0, 1), {&on, 1});

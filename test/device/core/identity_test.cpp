@@ -82,9 +82,9 @@ TEST(Identity, A_node_that_was_told_its_machine_tells_it) {
   node.handler.set_machine(identity::machine_of("cell-7", 0x0123456789ABCDEF));
   const auto further =
       registers(node.ask(pdu(4, {0xFF00 + identity::at_further, 1 + identity::further_size})));
-  ASSERT_EQ(further.size(), 37U);
-  EXPECT_EQ(further[0], 36U);
-  const identity::Machine machine = identity::read_machine({further.data() + 1, 36});
+  ASSERT_EQ(further.size(), 40U);
+  EXPECT_EQ(further[0], 39U);
+  const identity::Machine machine = identity::read_further({further.data() + 1, 39}).machine;
   EXPECT_EQ(machine.serial, 0x0123456789ABCDEFU);
   EXPECT_EQ(identity::hostname_of(machine), "cell-7");
   EXPECT_THAT(node.ask(pdu(4, {0xFF00 + identity::size, 1})), ElementsAre(0x84, 2)) << "the end of the area";
@@ -95,13 +95,19 @@ TEST(Identity, A_node_that_was_told_its_machine_tells_it) {
                           '9', 'a', 'b', 'c', 'd', 'e', 'f'));
 }
 
+TEST(Identity, A_node_with_a_watchdog_tells_its_timeout) {
+  NodeUnderTest node(MapBuilder().watchdog({std::chrono::seconds(70)}).build());
+  const auto timeout = registers(node.ask(pdu(4, {0xFF00 + identity::at_watchdog_timeout, 2})));
+  EXPECT_THAT(timeout, ElementsAre(1, 0x1170)) << "70 s";
+}
+
 TEST(Identity, A_node_that_was_told_nothing_says_that_it_knows_nothing) {
   NodeUnderTest node(MapBuilder().build());
   const auto further =
       registers(node.ask(pdu(4, {0xFF00 + identity::at_further, 1 + identity::further_size})));
-  ASSERT_EQ(further.size(), 37U);
-  EXPECT_EQ(further[0], 36U);
-  EXPECT_EQ(std::count(further.begin() + 1, further.end(), 0), 36);
+  ASSERT_EQ(further.size(), 40U);
+  EXPECT_EQ(further[0], 39U);
+  EXPECT_EQ(std::count(further.begin() + 1, further.end(), 0), 39);
   EXPECT_THAT(node.ask({43, 14, 4, 6}), ElementsAre(0xAB, 2));
   EXPECT_THAT(node.ask({43, 14, 4, 0x80}), ElementsAre(0xAB, 2));
 }

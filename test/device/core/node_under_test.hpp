@@ -25,6 +25,23 @@ struct OwnedImage {
   Image image;
 };
 
+/// Tells the time that the test says.
+class FakeClock final : public Clock {
+ public:
+  explicit FakeClock(const TimePoint& now) : now_(now) {}
+  TimePoint now() const override { return now_; }
+
+ private:
+  const TimePoint& now_;
+};
+
+/// Remembers what it was told.
+class FakeScheduleSink final : public ScheduleSink {
+ public:
+  void add(const modbus::Change& outcome) override { told.push_back(outcome); }
+  std::vector<modbus::Change> told;
+};
+
 /// The core with hardware that obeys the test.
 struct NodeUnderTest {
   explicit NodeUnderTest(MapPtr of);
@@ -45,7 +62,15 @@ struct NodeUnderTest {
   TimePoint now{};
   OutputWatchdog watchdog{map.service.watchdog};
   std::vector<EdgePoints::Link> links{node_memory(map).links};
-  Handler handler{map, image, Hardware(lines, &analogue), statistics, watchdog, links};
+  std::vector<ChangeRing::Entry> ring{32};
+  std::vector<std::uint16_t> told = std::vector<std::uint16_t>(image.bits().size());
+  Changes changes{image, ring, told};
+  std::vector<ScheduledOutput> scheduled{64};
+  FakeScheduleSink outcomes;
+  OutputSchedule schedule{scheduled, &outcomes};
+  FakeClock clock{now};
+  Handler handler{
+      map, Hardware(lines, &analogue), {image, statistics, watchdog, links, changes, schedule}, &clock};
 };
 
 }  // namespace coupler::device

@@ -4,9 +4,11 @@
 
 #include <cerrno>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "coupler/device/gpio/grouped_lines.hpp"
+#include "coupler/device/gpio/line_edges.hpp"
 #include "test/device/core/fake_log.hpp"
 
 namespace coupler::device {
@@ -100,6 +102,28 @@ class ReadBack : public testing::Test {
   GroupedLines lines_ = make();
 };
 
+TEST_F(Grouped, Each_for_itself_one_chip_that_fails_keeps_no_other_from_its_levels) {
+  first_.error = EIO;
+  EXPECT_FALSE(lines_.drive_each(Range::of(0, 12), Levels(12, 1)));
+  EXPECT_THAT(first_.levels, ElementsAre(0, 0, 1));
+  EXPECT_THAT(second_.levels, ElementsAre(1, 1));
+  Levels driven(12);
+  lines_.driven(Range::of(0, 12), driven);
+  EXPECT_THAT(driven, ElementsAre(0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1));
+  first_.error = 0;
+  EXPECT_TRUE(lines_.drive_each(Range::of(0, 1), Levels{1}));
+  EXPECT_THAT(first_.levels, ElementsAre(1, 0, 1));
+}
+
+TEST_F(Grouped, Each_for_itself_a_chip_that_is_unplugged_has_its_levels_when_it_is_plugged_in_again) {
+  lines_.lose_outputs(0);
+  EXPECT_TRUE(lines_.drive_each(Range::of(0, 3), Levels{1, 1, 1}));
+  Levels driven(3);
+  lines_.driven(Range::of(0, 3), driven);
+  EXPECT_THAT(driven, ElementsAre(1, 1, 1)) << "LineRequests requests it so";
+  EXPECT_FALSE(lines_.drive(Range::of(0, 3), Levels{0, 0, 0})) << "a write is refused all the same";
+}
+
 TEST_F(ReadBack, A_line_that_does_not_follow_fails_the_write_and_the_others_go_back) {
   second_.stuck = 1;
   EXPECT_FALSE(lines_.drive(Range::of(0, 4), Levels{1, 1, 1, 1}));
@@ -178,21 +202,31 @@ TEST_F(Grouped, A_failure_is_logged_once_per_change_of_state) {
   EXPECT_EQ(log_.lines[1], "chip1 works again");
 }
 
-/// A group whose second line loses edges when the test says so.
+/// A group that tells of its second line what the test says.
 class FakeEvents : public FakeInputs {
  public:
   using FakeInputs::FakeInputs;
-  int descriptor() const override { return -1; }
-  bool take_edges() override { return true; }
-  Edges edges(std::size_t line, TimePoint) override {
-    return line == 1 ? std::exchange(waiting, {}) : Edges{};
+  void tell(TimePoint, LineSink& sink) override {
+    if (const Edges edges = std::exchange(waiting, {}); edges.any()) sink.edges(1, edges);
+    for (const LevelSince& change : std::exchange(changes, {})) sink.changed(1, change.level, change.at);
   }
+  std::optional<TimePoint> next_change(TimePoint) const override { return next; }
+  std::optional<bool> level(std::size_t line) const override { return line == 1 && is_on; }
+
   Edges waiting;
+  std::vector<LevelSince> changes;
+  std::optional<TimePoint> next;
+  bool is_on = false;
 };
 
 struct Told : EdgeSink {
   void add(std::uint16_t input, const Edges& edges) override { all.emplace_back(input, edges.rising); }
+  void changed(std::uint16_t input, bool level, TimePoint at) override {
+    changes.emplace_back(input, level, at);
+  }
+  void lost(std::uint32_t) override {}
   std::vector<std::pair<std::uint16_t, std::uint32_t>> all;
+  std::vector<std::tuple<std::uint16_t, bool, TimePoint>> changes;
 };
 
 TEST(CountedLines, Edges_are_told_by_address_and_losses_logged_once_per_burst) {
@@ -201,7 +235,7 @@ TEST(CountedLines, Edges_are_told_by_address_and_losses_logged_once_per_burst) {
   auto group = std::make_unique<FakeEvents>(hardware);
   FakeEvents& events = *group;
   std::vector<WiredInputs> inputs;
-  inputs.push_back({std::move(group), {4, 6}, true});
+  inputs.push_back({std::move(group), {4, 6}});
   GroupedLines lines({}, std::move(inputs), log);
   Told told;
   TimePoint now{std::chrono::hours(1)};
@@ -223,6 +257,55 @@ TEST(CountedLines, Edges_are_told_by_address_and_losses_logged_once_per_burst) {
   events.waiting = {0, 0, 1};
   lines.take_edges(now, told);
   EXPECT_EQ(log.lines.size(), 2U);
+}
+
+/// Two groups at addresses 0 and 1, and 4 and 6.
+class Changes : public testing::Test {
+ protected:
+  Changes() {
+    lines_.add({first_, {0, 1}});
+    lines_.add({second_, {4, 6}});
+  }
+  Hardware hardware_{{0, 0}};
+  FakeLog log_;
+  std::shared_ptr<FakeEvents> first_ = std::make_shared<FakeEvents>(hardware_);
+  std::shared_ptr<FakeEvents> second_ = std::make_shared<FakeEvents>(hardware_);
+  GroupedLines lines_{{}, {}, log_};
+  Told told_;
+  TimePoint now_{std::chrono::hours(1)};
+};
+
+TEST_F(Changes, Each_is_told_by_address_with_its_time_whether_or_not_somebody_counts) {
+  const TimePoint before = now_ - std::chrono::microseconds(3);
+  second_->changes = {{true, before}, {false, now_}};
+  lines_.take_edges(now_, told_);
+  EXPECT_THAT(told_.changes, ElementsAre(std::tuple(6, true, before), std::tuple(6, false, now_)));
+  EXPECT_THAT(told_.all, IsEmpty());
+}
+
+TEST_F(Changes, The_next_one_is_the_earliest_of_any_group) {
+  EXPECT_EQ(lines_.next_change(now_), std::nullopt);
+  first_->next = now_ + std::chrono::seconds(2);
+  second_->next = now_ + std::chrono::seconds(1);
+  EXPECT_EQ(lines_.next_change(now_), second_->next);
+  second_->next.reset();
+  EXPECT_EQ(lines_.next_change(now_), first_->next);
+}
+
+TEST_F(Changes, A_chip_that_is_back_tells_what_is_another_level_than_before_once) {
+  second_->is_on = true;
+  first_->is_on = true;
+  lines_.lose_inputs(0);
+  lines_.lose_inputs(1);
+  lines_.take_edges(now_, told_);
+  EXPECT_THAT(told_.changes, IsEmpty()) << "nobody knows";
+  auto same = std::make_shared<FakeEvents>(hardware_);
+  same->is_on = true;
+  lines_.renew_inputs(0, {same, {0, 1}});
+  lines_.renew_inputs(1, {std::make_shared<FakeEvents>(hardware_), {4, 6}});
+  lines_.take_edges(now_, told_);
+  lines_.take_edges(now_, told_);
+  EXPECT_THAT(told_.changes, ElementsAre(std::tuple(6, false, now_)));
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
-
+#include <tuple>
 #include <vector>
 
 #include "coupler/device/gpio/simulated_chip.hpp"
@@ -15,6 +16,8 @@ using codec::Type;
 using fakes::MapBuilder;
 using modbus::Range;
 using std::chrono::milliseconds;
+using testing::ElementsAre;
+using testing::IsEmpty;
 using Levels = std::vector<std::uint16_t>;
 
 constexpr Table coils = Table::coils;
@@ -105,6 +108,8 @@ TEST(SimulatedChip, Outputs_begin_with_their_initial_level_and_end_in_their_safe
   EXPECT_FALSE(chip.level("array"));
 }
 
+using Change = std::tuple<std::uint16_t, bool, TimePoint>;
+
 /// Adds up what it is told.
 class Total : public EdgeSink {
  public:
@@ -112,7 +117,13 @@ class Total : public EdgeSink {
     all[input].rising += edges.rising;
     all[input].falling += edges.falling;
   }
+  void changed(std::uint16_t input, bool level, TimePoint at) override {
+    changes.emplace_back(input, level, at);
+  }
+  void lost(std::uint32_t count) override { lost_changes += count; }
   std::map<std::uint16_t, Edges> all;
+  std::vector<Change> changes;
+  std::uint32_t lost_changes = 0;
 };
 
 TEST(SimulatedChip, The_edges_of_a_square_wave_are_computed_however_rarely_they_are_asked_for) {
@@ -148,6 +159,78 @@ TEST(SimulatedChip, Every_write_to_an_output_is_an_edge_of_the_inputs_wired_to_i
   EXPECT_EQ(total.all[0].falling, 1U);
   EXPECT_EQ(total.all[1].rising, 1U);
   EXPECT_EQ(total.all[1].falling, 2U);
+}
+
+TEST(SimulatedChip, The_changes_of_a_square_wave_have_their_own_times) {
+  using namespace std::chrono_literals;
+  const auto map = MapBuilder().add(inputs, "clock", 7, Type::BOOL).square("clock", 10ms).build();
+  const TimePoint start{1h};
+  SimulatedChip chip(map->map(), start);
+  Total total;
+  EXPECT_EQ(chip.next_change(start), start + 5ms);
+  chip.take_edges(start + 21ms, total);
+  EXPECT_THAT(total.changes, ElementsAre(Change(7, false, start + 5ms), Change(7, true, start + 10ms),
+                                         Change(7, false, start + 15ms), Change(7, true, start + 20ms)));
+  EXPECT_EQ(chip.next_change(start + 21ms), start + 25ms);
+  chip.take_edges(start + 22ms, total);
+  EXPECT_EQ(total.changes.size(), 4U) << "each is told once";
+}
+
+TEST(SimulatedChip, Of_very_many_changes_the_newest_are_told_and_none_is_unaccounted) {
+  using namespace std::chrono_literals;
+  const auto map = MapBuilder().add(inputs, "clock", 7, Type::BOOL).square("clock", 10ms).build();
+  const TimePoint start{1h};
+  SimulatedChip chip(map->map(), start);
+  Total total;
+  chip.take_edges(start + 10s, total);
+  ASSERT_EQ(total.changes.size(), std::size_t{SimulatedChip::most_changes});
+  EXPECT_EQ(total.changes.back(), Change(7, true, start + 10s));
+  EXPECT_EQ(total.changes.front(), Change(7, false, start + 10s - 5ms * (SimulatedChip::most_changes - 1)));
+  EXPECT_EQ(total.changes.size() + total.lost_changes, 2000U);
+}
+
+TEST(SimulatedChip, Changes_that_a_write_makes_wait_to_be_told) {
+  const auto map = MapBuilder()
+                       .add(coils, "out", 0, Type::BOOL)
+                       .add(inputs, "opposite", 1, Type::BOOL)
+                       .wire("out", "opposite", true)
+                       .build();
+  SimulatedChip chip(map->map(), {});
+  const TimePoint now{milliseconds(5)};
+  EXPECT_EQ(chip.next_change(now), std::nullopt);
+  EXPECT_TRUE(chip.drive(Range::of(0, 1), Levels{1}));
+  EXPECT_TRUE(chip.drive(Range::of(0, 1), Levels{0}));
+  EXPECT_EQ(chip.next_change(now), now);
+  Total total;
+  chip.take_edges(now, total);
+  EXPECT_THAT(total.changes, ElementsAre(Change(1, false, now), Change(1, true, now)));
+  EXPECT_EQ(chip.next_change(now), std::nullopt);
+}
+
+TEST(SimulatedChip, Plugged_in_again_it_tells_what_is_another_level_now) {
+  using namespace std::chrono_literals;
+  const auto line = [](Point& p) { p.line.name = p.name; };
+  const auto map = MapBuilder()
+                       .add(inputs, "a", 0, Type::BOOL, line)
+                       .add(inputs, "b", 1, Type::BOOL, line)
+                       .add(inputs, "clock", 2, Type::BOOL)
+                       .square("clock", 10ms)
+                       .build();
+  const TimePoint start{1h};
+  SimulatedChip chip(map->map(), start);
+  Total total;
+  chip.plug(false);
+  chip.pull("a", true);
+  chip.pull("b", true);
+  chip.pull("b", false);
+  chip.take_edges(start + 100ms, total);
+  EXPECT_EQ(chip.next_change(start + 100ms), std::nullopt);
+  EXPECT_THAT(total.changes, IsEmpty()) << "nobody knows";
+  chip.plug(true);
+  chip.take_edges(start + 205ms, total);
+  EXPECT_THAT(total.changes, ElementsAre(Change(0, true, start + 205ms), Change(2, false, start + 205ms)));
+  chip.take_edges(start + 206ms, total);
+  EXPECT_EQ(total.changes.size(), 2U);
 }
 
 TEST(SimulatedChip, Unplugged_it_refuses_everything_and_changes_nothing) {

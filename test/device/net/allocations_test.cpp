@@ -9,6 +9,14 @@ namespace {
 
 using fakes::allocations;
 
+constexpr std::uint32_t epoch = 7;
+
+Pdu wait_for_changes(std::uint32_t of) {
+  Pdu bytes(modbus::changes_request_size);
+  modbus::build_changes_request({30000, of, 1}, bytes);
+  return bytes;
+}
+
 const std::vector<Pdu>& every_kind_of_request() {
   static const std::vector<Pdu> requests{
       pdu(1, {0, 2000}),
@@ -25,6 +33,9 @@ const std::vector<Pdu>& every_kind_of_request() {
       pdu(3, {60000, 1}),
       pdu(99, {}),
       pdu(5, {0, 1}),
+      wait_for_changes(0),      // answered at once
+      wait_for_changes(epoch),  // waits, until …
+      pdu(5, {1, 0xFF00}),      // … that
   };
   return requests;
 }
@@ -38,6 +49,7 @@ TEST(Allocations, They_are_counted_here) {
 TEST(Allocations, From_the_socket_to_the_reply_there_is_none) {
   TcpUnderTest node;
   node.node.lines.remembers = false;
+  node.node.handler.tell_changes(epoch, TimePoint::clock::now());
   Client client = node.connect();
   for (const Pdu& request : every_kind_of_request()) {
     const Pdu bytes = adu(1, request);
@@ -45,7 +57,7 @@ TEST(Allocations, From_the_socket_to_the_reply_there_is_none) {
     client.send(bytes);
     const long before = allocations();
     while (node.node.statistics.requests == requests)
-      node.tcp.tick(node.loop.run_once(node.tcp.time_until_due()));
+      node.tcp.tick(node.loop.run_once(node.tcp.time_until_due(TimePoint::clock::now())));
     EXPECT_EQ(allocations(), before) << "function " << int{request[0]};
     client.received();
   }

@@ -187,13 +187,13 @@ TEST(Accepting, Without_descriptors_it_waits_says_so_once_and_goes_on_when_there
 
 TEST(Accepting, The_loop_sleeps_for_ever_when_nobody_is_connected) {
   TcpUnderTest node;
-  EXPECT_FALSE(node.tcp.time_until_due().has_value());
+  EXPECT_FALSE(node.tcp.time_until_due(TimePoint::clock::now()).has_value());
   Client client = node.connect();
-  EXPECT_TRUE(node.tcp.time_until_due().has_value());
+  EXPECT_TRUE(node.tcp.time_until_due(TimePoint::clock::now()).has_value());
   client.vanish();
   node.settle();
   node.tcp.tick(TimePoint::clock::now() + std::chrono::seconds(1));
-  EXPECT_FALSE(node.tcp.time_until_due().has_value());
+  EXPECT_FALSE(node.tcp.time_until_due(TimePoint::clock::now()).has_value());
 }
 
 TEST(Stopping, A_signal_to_stop_is_seen_by_the_loop) {

@@ -54,7 +54,7 @@ TEST_F(Guarded, A_hook_that_throws_refuses_and_is_told) {
 }
 
 TEST_F(Guarded, A_process_whose_firmware_cannot_begin_does_not_serve) {
-  EXPECT_FALSE(guarded_.begin());
+  EXPECT_FALSE(guarded_.begin(nullptr));
   EXPECT_THAT(log_.lines,
               ElementsAre("serving_began() threw an exception: something that is not a std::exception"));
 }
@@ -84,7 +84,7 @@ TEST(PointHooks, A_value_is_set_in_the_process_that_serves_and_nowhere_else) {
   const auto before = hooks.set_speed(5);
   ASSERT_FALSE(before.has_value());
   EXPECT_THAT(before.error(), testing::HasSubstr("this process does not answer clients"));
-  hooks.allow_setting();
+  hooks.allow_setting(nullptr);
   EXPECT_TRUE(hooks.set_speed(5).has_value());
 }
 

@@ -98,6 +98,82 @@ TEST(NodeMemory, What_nobody_can_change_is_as_the_new_map_says) {
   EXPECT_EQ(cell(after, inputs, 1), 9) << "a counter goes on";
 }
 
+/// Begins to drive the range, in another process that dies then.
+void begin(SharedState& state, Table table, Range range) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    OutputSchedule schedule(state.scheduled());
+    const std::vector<std::uint8_t> on(100, 0xFF);
+    modbus::ScheduleOutput wanted;
+    wanted.range = range;
+    wanted.values = on;
+    ScheduledOutput* which = schedule.add(wanted, table, TimePoint(std::chrono::seconds(1)), ClientSession{});
+    schedule.begin(*which, TimePoint(std::chrono::seconds(2)), state.image().find(table, range));
+    ::kill(::getpid(), SIGKILL);
+  }
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+}
+
+TEST(NodeMemory, A_duration_that_has_begun_outlives_its_process) {
+  const MapPtr map = MapBuilder().many(Table::coils, 0, 4).build();
+  SharedState state(map->map(), {});
+  begin(state, Table::coils, Range::of(1, 2));
+  OutputSchedule schedule(state.scheduled());
+  EXPECT_EQ(schedule.earliest(), TimePoint(std::chrono::seconds(2)));
+  const ScheduledOutput* begun = schedule.due(TimePoint::max());
+  ASSERT_NE(begun, nullptr);
+  EXPECT_EQ(begun->range, Range::of(1, 2));
+}
+
+TEST(NodeMemory, A_duration_goes_on_with_another_map_if_all_its_points_are_where_they_were) {
+  const MapPtr old_map =
+      MapBuilder().coil("a", 0).coil("b", 1).coil("c", 2).coil("d", 3).coil("e", 4).build();
+  const MapPtr new_map =
+      MapBuilder().coil("a", 0).coil("b", 1).coil("c", 5).coil("new", 2).coil("e", 4).build();
+  SharedState before(old_map->map(), {});
+  for (std::uint16_t first = 0; first < 5; ++first) begin(before, Table::coils, Range::of(first, 1));
+  begin(before, Table::coils, Range::of(0, 2));
+  begin(before, Table::coils, Range::of(0, 3));
+  SharedState after(new_map->map(), {});
+  after.prepare_take_over(before);
+  std::vector<bool> fits;
+  for (const ScheduledOutput& one : before.scheduled().first(7)) fits.push_back(after.fits(one, before));
+  EXPECT_THAT(fits, testing::ElementsAre(true, true, false, false, true, true, false));
+  after.take_over(before, {});
+  std::vector<Range> ranges;
+  OutputSchedule(after.scheduled()).each_begun([&](const ScheduledOutput& one) {
+    ranges.push_back(one.range);
+  });
+  EXPECT_THAT(ranges,
+              testing::ElementsAre(Range::of(0, 1), Range::of(1, 1), Range::of(4, 1), Range::of(0, 2)));
+}
+
+TEST(NodeMemory, A_duration_does_not_go_on_with_other_hardware_behind_its_points) {
+  const auto line = [](const char* name) { return [=](Point& point) { point.line.name = name; }; };
+  const auto pwm = [](std::uint16_t channel) {
+    return [=](Point& point) { point.pwm = {"pwmchip0", channel, std::chrono::milliseconds(1)}; };
+  };
+  const auto map = [&](const char* name, std::uint16_t channel) {
+    return MapBuilder()
+        .add(Table::coils, "lamp", 0, Type::BOOL, line("GPIO5"))
+        .add(Table::coils, "relay", 1, Type::BOOL, line(name))
+        .add(holding, "valve", 0, Type::UINT, pwm(channel))
+        .build();
+  };
+  const MapPtr old_map = map("GPIO6", 0);
+  const MapPtr new_map = map("GPIO7", 1);
+  SharedState before(old_map->map(), {});
+  begin(before, Table::coils, Range::of(0, 1));
+  begin(before, Table::coils, Range::of(1, 1));
+  begin(before, holding, Range::of(0, 1));
+  SharedState after(new_map->map(), {});
+  after.prepare_take_over(before);
+  std::vector<bool> fits;
+  for (const ScheduledOutput& one : before.scheduled().first(3)) fits.push_back(after.fits(one, before));
+  EXPECT_THAT(fits, testing::ElementsAre(true, false, false));
+}
+
 TEST(NodeMemory, The_watchdog_waits_anew_and_what_expired_stays_expired) {
   const auto with_timeout = [](int ms) {
     return MapBuilder()

@@ -32,7 +32,7 @@ struct NodeStatusTest : testing::Test {
     put(identity::at_watchdog_state, 2);
     put(identity::at_requests + 1, 42);
     std::array<std::uint16_t, identity::size> area{};
-    identity::write_machine(identity::machine_of("cell-7", 7), area.data());
+    identity::write_further({identity::machine_of("cell-7", 7), {}, 0}, area.data());
     for (std::uint32_t at = identity::at_further; at < identity::size; ++at) put(at, area[at]);
   }
   void refuse_identity() { device.missing.insert({Table::input_registers, identity::reserved.start()}); }
@@ -48,7 +48,7 @@ TEST_F(NodeStatusTest, A_node_tells_all_of_it) {
   ASSERT_TRUE(status.report);
   EXPECT_EQ(status.report->watchdog_state, 2);
   EXPECT_EQ(status.report->counts.front(), 42U);
-  EXPECT_EQ(hostname_of(status.machine), "cell-7");
+  EXPECT_EQ(hostname_of(status.further.machine), "cell-7");
   EXPECT_THAT(status.identification, ElementsAre(Pair(1, "cell")));
   EXPECT_FALSE(device.connected) << "somebody else may need it";
 }
@@ -59,7 +59,7 @@ TEST_F(NodeStatusTest, A_node_that_is_older_tells_what_it_has) {
   const NodeStatus status = look();
   EXPECT_EQ(status.error_text, "");
   EXPECT_TRUE(status.report);
-  EXPECT_EQ(status.machine.serial, 0U);
+  EXPECT_EQ(status.further.machine.serial, 0U);
 }
 
 TEST_F(NodeStatusTest, A_foreign_coupler_tells_its_identification) {
@@ -114,7 +114,7 @@ TEST_F(NodeStatusTest, A_node_that_falls_silent_has_what_it_told_until_then) {
   identification = tl::make_unexpected(host::Error(silence));
   const NodeStatus status = look();
   EXPECT_EQ(status.error_text, "no reply within 9 ms");
-  EXPECT_EQ(hostname_of(status.machine), "cell-7");
+  EXPECT_EQ(hostname_of(status.further.machine), "cell-7");
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ NodeStatus node() {
   status.report = identity::Report{{0x0123456789ABCDEF, 300, 0xF409A1FE}, 2, 345, 93784, {}};
   for (std::size_t i = 0; i < identity::counters.size(); ++i)
     status.report->counts[i] = 1000 + static_cast<std::uint32_t>(i);
-  status.machine = identity::machine_of("cell-7", 0xAB);
+  status.further = {identity::machine_of("cell-7", 0xAB), {true, true}, 2000};
   status.identification = {{0, "OpenCoupler"}, {1, "press"}, {2, "0.1.0"}, {0x80, "x"}};
   return status;
 }
@@ -41,6 +41,8 @@ TEST(StatusText, Everything_has_a_line) {
         "  version of OpenCoupler                0.1.0\n", "  hostname                              cell-7\n",
         "  serial                                00000000000000ab\n",
         "  watchdog                              armed, 345 ms left\n",
+        "  timeout of the watchdog               2000 ms\n",
+        "  function codes of its own             65 (waiting for changes), 66 (outputs at a time)\n",
         "  uptime                                93784 s (1 d 2 h 3 min)\n",
         "  requests answered                     1000\n"})
     EXPECT_THAT(text, HasSubstr(line));
@@ -50,11 +52,19 @@ TEST(StatusText, Everything_has_a_line) {
 
 TEST(StatusText, What_a_node_does_not_say_is_unknown) {
   NodeStatus status = node();
-  status.machine = {};
+  status.further = {};
   status.identification.clear();
   const std::string text = status_text(status, where);
-  for (const char* what : {"map", "version of OpenCoupler", "hostname", "serial"})
+  for (const char* what : {"map", "version of OpenCoupler", "hostname", "serial", "timeout of the watchdog"})
     EXPECT_THAT(text, testing::ContainsRegex(std::string("  ") + what + " +unknown\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("  function codes of its own +none\n"));
+}
+
+TEST(StatusText, A_node_without_a_watchdog_has_no_timeout) {
+  NodeStatus status = node();
+  status.report->watchdog_state = 0;
+  status.further.watchdog_timeout = 0;
+  EXPECT_THAT(status_text(status, where), testing::ContainsRegex("  timeout of the watchdog +none\n"));
 }
 
 TEST(StatusText, A_state_that_nobody_knows_is_a_number_and_the_longest_time_a_bound) {
@@ -77,7 +87,7 @@ TEST(StatusJson, Everything_has_a_key) {
     "device": "tcp://cell:502/1", "time": "1970-01-01T00:00:01.500Z", "trouble": null, "node": true,
     "name": "press", "version": "0.1.0", "fingerprint": "0123456789abcdef",
     "map": {"bytes": 300, "crc32": "f409a1fe"}, "hostname": "cell-7", "serial": "00000000000000ab",
-    "watchdog": {"state": "armed", "left_ms": 345}, "uptime_s": 93784,
+    "watchdog": {"state": "armed", "left_ms": 345, "timeout_ms": 2000}, "functions": [65, 66], "uptime_s": 93784,
     "statistics": {"requests": 1000, "exceptions": 1001, "exceptions_01": 1002, "exceptions_02": 1003,
       "exceptions_03": 1004, "exceptions_04": 1005, "foreign_units": 1006, "connections": 1007,
       "connections_refused": 1008, "connections_evicted": 1009, "connections_bad_frames": 1010,
@@ -85,6 +95,14 @@ TEST(StatusJson, Everything_has_a_key) {
     "identification": {"VendorName": "OpenCoupler", "ProductCode": "press", "MajorMinorRevision": "0.1.0",
       "object 80": "x"}})");
   EXPECT_EQ(json, expected) << json.dump(2);
+}
+
+TEST(StatusJson, What_a_node_does_not_have_is_null_or_empty) {
+  NodeStatus status = node();
+  status.further = {};
+  const auto json = ordered_json::parse(status_json(status, where));
+  EXPECT_TRUE(json.at("watchdog").at("timeout_ms").is_null());
+  EXPECT_EQ(json.at("functions"), ordered_json::array());
 }
 
 TEST(StatusJson, Of_a_device_that_is_no_node_or_does_not_answer_the_keys_are_the_same) {

@@ -23,6 +23,7 @@ DeviceTest::~DeviceTest() = default;
 
 void DeviceTest::start(const MapBuilder& builder, Verify verify) {
   owned = builder.build();
+  device.now = [this] { return clock.now(); };
   const Map& map = owned->map();
   sink.emplace(map);
   const auto load = [this](std::string_view, std::string_view) { return LoadResult{served, {}}; };
@@ -36,7 +37,11 @@ void DeviceTest::serve(const MapBuilder& builder) {
 
 void DeviceTest::run_for(Duration duration) {
   const Time end = clock.now() + duration;
-  while (clock.now() < end) clock.sleep_until(std::min(engine->step(), end));
+  while (clock.now() < end) {
+    const Time due = engine->step();
+    clock.sleep_until(std::min({due, device.answers_wait_at(), end}));
+    if (due > clock.now() && device.answers_wait_at() <= clock.now()) engine->arrived();
+  }
 }
 
 void DeviceTest::push(std::string_view point, std::uint16_t value, WriteListener* listener) {

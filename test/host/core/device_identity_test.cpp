@@ -27,7 +27,7 @@ TEST_F(DeviceIdentityTest, Equal_maps_are_quiet) {
 TEST_F(DeviceIdentityTest, A_node_that_says_which_machine_it_is_is_named) {
   serve(here());
   std::array<std::uint16_t, identity::size> area{};
-  identity::write_machine(identity::machine_of("cell-7", 0xAB), area.data());
+  identity::write_further({identity::machine_of("cell-7", 0xAB), {}, 0}, area.data());
   for (std::uint32_t at = identity::at_further; at < identity::size; ++at)
     device.values[{Table::input_registers, identity::reserved.start() + at}] = area[at];
   start(here());

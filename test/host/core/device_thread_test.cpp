@@ -24,13 +24,15 @@ struct WaitingSink : Sink {
   std::promise<void> written;
   bool seen = false;
   bool seen_written = false;
-  void on_bits(const ReadSpan&, Span<const std::uint8_t> bits, Time) override {
+  void on_bits(const ReadSpan&, Span<const std::uint8_t> bits, Stamp) override {
     if (!std::exchange(seen, true)) first.set_value();
     if (bits[0] != 0 && !std::exchange(seen_written, true)) written.set_value();
   }
-  void on_registers(const ReadSpan&, Span<const std::uint16_t>, Time) override {}
+  void on_registers(const ReadSpan&, Span<const std::uint16_t>, Stamp) override {}
   void on_online(bool) override {}
   void on_report(Level, const std::string&) override {}
+  std::promise<ScheduledOutcome> outcome;
+  void on_scheduled(const ScheduledOutcome& told) override { outcome.set_value(told); }
 };
 
 TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
@@ -45,6 +47,22 @@ TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
   on.registers[0] = 1;
   thread.write(on);
   EXPECT_EQ(sink.written.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
+}
+
+TEST(DeviceThread, What_is_scheduled_is_written_though_nothing_else_is_due) {
+  const auto owned = MapBuilder().command("a", 1).build();
+  FakeDevice device;
+  WaitingSink sink;
+  DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+  ScheduledWrite what;
+  what.write.registers[0] = 1;
+  do what.due = std::chrono::steady_clock::now() + std::chrono::milliseconds(50);
+  while (thread.schedule(what).get().number == 0);  // until it is connected
+  auto told = sink.outcome.get_future();
+  ASSERT_EQ(told.wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  const ScheduledOutcome outcome = told.get();
+  EXPECT_EQ(outcome.result, ScheduledOutcome::Result::done);
+  EXPECT_GE(outcome.at.at, what.due);
 }
 
 TEST(DeviceThread, With_subscribed_nothing_is_read_before_somebody_wants_it) {

@@ -41,6 +41,89 @@ void FakeDevice::serve(const Map& map) {
     values[{Table::input_registers, identity::reserved.start() + i}] = area[i];
 }
 
+void FakeDevice::answer_functions(std::uint32_t watchdog_timeout, bool schedules) {
+  identity::Further further;
+  further.functions.tells_changes = true;
+  further.functions.schedules_outputs = schedules;
+  further.watchdog_timeout = watchdog_timeout;
+  std::array<std::uint16_t, identity::size> area{};
+  identity::write_further(further, area.data());
+  for (std::uint32_t i = identity::at_further; i < area.size(); ++i)
+    values[{Table::input_registers, identity::reserved.start() + i}] = area[i];
+}
+
+void FakeDevice::change(Table table, std::uint16_t address, bool value) {
+  values[{table, address}] = value ? 1 : 0;
+  using Kind = modbus::Change::Kind;
+  changes.push_back({static_cast<std::uint8_t>(table == Table::coils ? 1 : 2), value ? Kind::on : Kind::off,
+                     address, now().time_since_epoch()});
+}
+
+void FakeDevice::decide(std::uint16_t number, modbus::Change::Kind kind, modbus::Reason reason) {
+  changes.push_back({static_cast<std::uint8_t>(reason), kind, number, now().time_since_epoch()});
+}
+
+Result<modbus::ScheduleReply> FakeDevice::schedule(const modbus::ScheduleRequest& request) {
+  answer_wait();
+  const auto parsed = modbus::parse_schedule_request(request.pdu());
+  const auto* const cancel = parsed ? std::get_if<modbus::CancelOutput>(&*parsed) : nullptr;
+  requests.push_back(cancel != nullptr ? fmt::format("cancel {}", cancel->number) : "schedule");
+  if (const auto error = planned()) return tl::make_unexpected(*error);
+  if (!parsed) return fail(ExceptionReply{parsed.error()});
+  if (cancel != nullptr) return modbus::ScheduleReply{cancel->number, {}, {}};
+  scheduled.push_back(std::get<modbus::ScheduleOutput>(*parsed));
+  const modbus::Bytes packed = std::exchange(scheduled.back().values, {});
+  scheduled_values.assign(packed.begin(), packed.end());
+  return modbus::ScheduleReply{static_cast<std::uint16_t>(scheduled.size()), {}, {}};
+}
+
+Result<> FakeDevice::send_wait(const modbus::ChangesRequest& request) {
+  if (!connected) return fail(NotConnected{"not connected"});
+  requests.push_back(fmt::format("wait {}", request.wait));
+  wait_ = request;
+  wait_sent_ = now();
+  if (during_wait) during_wait();
+  return {};
+}
+
+Time FakeDevice::answers_wait_at() const {
+  if (!wait_ || ignores_waits || drops_waits) return Time::max();
+  const bool has_news = wait_->epoch != epoch || wait_->seen < changes.size() || refuses_waits ||
+                        begins_epochs || answers_waits_early;
+  return has_news ? wait_sent_ : wait_sent_ + std::chrono::milliseconds(wait_->wait);
+}
+
+Result<> FakeDevice::receive_wait() {
+  if (!connected) return fail(NotConnected{"not connected"});
+  if (answers_wait_at() > now()) return fail(Timeout{std::chrono::milliseconds(1000)});
+  if (const auto error = planned()) return tl::make_unexpected(*error);
+  answer_wait();
+  return {};
+}
+
+void FakeDevice::answer_wait() {
+  if (drops_waits) return;
+  const auto wait = std::exchange(wait_, std::nullopt);
+  if (!wait) return;
+  if (refuses_waits) {
+    wait_answer_ = WaitAnswer{fail(ExceptionReply{*refuses_waits}), wait_sent_, now()};
+    return;
+  }
+  if (begins_epochs) ++epoch;
+  modbus::ChangesReply reply;
+  reply.epoch = epoch;
+  reply.arrived = wait_sent_.time_since_epoch();
+  reply.replied = now().time_since_epoch();
+  reply.newest = changes.size();
+  if (wait->epoch == epoch) {
+    const std::uint64_t first = std::max(wait->seen, forgotten);
+    reply.lost = static_cast<std::uint32_t>(first - wait->seen);
+    for (auto i = first; i < changes.size() && reply.count < modbus::max_changes; ++i)
+      reply.changes[reply.count++] = changes[i];
+  }
+  wait_answer_ = WaitAnswer{reply, wait_sent_, now()};
+}
+
 std::size_t FakeDevice::count(const std::string& request) const {
   return static_cast<std::size_t>(std::count(requests.begin(), requests.end(), request));
 }
@@ -74,6 +157,7 @@ Result<> FakeDevice::receive(const modbus::WriteRequest& request) {
     const std::lock_guard lock(mutex_);
     answered_ = false;
   }
+  answer_wait();
   requests.push_back(describe(request));
   if (const auto error = planned()) return tl::make_unexpected(*error);
   return carry_out(request);
@@ -117,6 +201,7 @@ Result<> FakeDevice::read_file_record(std::uint16_t number, std::uint16_t record
 
 std::optional<Error> FakeDevice::planned() {
   if (!connected) return Error(NotConnected{"not connected"});
+  if (wait_ && drops_waits) return Error(BadFrame{"the reply to another request"});
   if (const auto code = refuses ? refuses(requests.back()) : std::nullopt)
     return Error(ExceptionReply{*code});
   if (next_errors.empty()) return std::nullopt;
@@ -127,6 +212,7 @@ std::optional<Error> FakeDevice::planned() {
 
 Result<> FakeDevice::read(Table table, modbus::Range range,
                           const std::function<void(std::uint32_t, std::uint16_t)>& put) {
+  answer_wait();
   requests.push_back(fmt::format("read {} {}+{}", to_string(table), range.start(), range.count()));
   if (during_read) during_read();
   if (const auto error = planned()) return tl::make_unexpected(*error);

@@ -36,16 +36,42 @@ class FakeDevice : public Transport {
   bool refuse_send = false;              ///< it is somebody else's turn
   bool woken_by_call = false;            ///< how the last wait_until() ended
   bool missing_for_reads_only = false;   ///< writes to what is missing are acknowledged
+  bool can_wait_for_changes = true;      ///< it does not share its connection
+  std::uint32_t epoch = 1;
+  std::vector<modbus::Change> changes;  ///< since the epoch began; the first has number 1
+  std::uint64_t forgotten = 0;          ///< so many of them cannot be told any more
+  std::optional<modbus::Exception> refuses_waits;
+  bool ignores_waits = false;
+  bool drops_waits = false;                       ///< a gateway before it does, and lets all else through
+  bool begins_epochs = false;                     ///< with each answer to a wait
+  bool answers_waits_early = false;               ///< as if something had changed
+  std::function<void()> during_wait;              ///< what happens when a wait is sent
+  std::vector<modbus::ScheduleOutput> scheduled;  ///< number i + 1; without the values
+  std::vector<std::uint8_t> scheduled_values;     ///< of the last one
+  std::function<Time()> now = [] { return std::chrono::steady_clock::now(); };
 
   FakeDevice();
   ~FakeDevice() override;
 
   /// The device is a node that serves `map`.
   void serve(const Map& map);
+  /// It says so in its identity area, with the time of its watchdog in ms.
+  void tell_changes(std::uint32_t watchdog_timeout = 0) { answer_functions(watchdog_timeout, false); }
+  /// It tells changes and drives outputs at a time.
+  void schedule_outputs() { answer_functions(0, true); }
+  /// A scheduled output has this outcome now.
+  void decide(std::uint16_t number, modbus::Change::Kind kind, modbus::Reason reason = modbus::Reason::none);
+  /// A bit changes now.
+  void change(Table table, std::uint16_t address, bool value);
+  /// When a wait that is outstanding is answered, if nothing else comes; Time::max() if there is none.
+  Time answers_wait_at() const;
   std::size_t count(const std::string& request) const;
 
   Result<> connect() override;
-  void close() override { connected = false; }
+  void close() override {
+    connected = false;
+    wait_.reset();
+  }
   void interrupt() override {}
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
@@ -57,6 +83,11 @@ class FakeDevice : public Transport {
   Result<> send(const modbus::WriteRequest&) override;
   /// Requests take effect when their answer is fetched.
   Result<> receive(const modbus::WriteRequest& request) override;
+  Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request) override;
+  bool can_wait() const override { return can_wait_for_changes; }
+  Result<> send_wait(const modbus::ChangesRequest& request) override;
+  Result<> receive_wait() override;
+  std::optional<WaitAnswer> take_wait_answer() override { return std::exchange(wait_answer_, std::nullopt); }
   Woken wait_until(Time time) override;
   /// Until somebody waits in wait_until(), with nothing to wake him.
   void await_idle();
@@ -65,15 +96,20 @@ class FakeDevice : public Transport {
                             Span<std::uint16_t> registers) override;
 
  private:
+  void answer_functions(std::uint32_t watchdog_timeout, bool schedules);
   std::optional<Error> planned();
   Result<> read(Table table, modbus::Range range,
                 const std::function<void(std::uint32_t i, std::uint16_t value)>& put);
   Result<> carry_out(const modbus::WriteRequest& request);
   Result<> put(Table table, modbus::Range range, const std::function<std::uint16_t(std::uint32_t i)>& get);
+  void answer_wait();
   std::uint8_t byte(std::size_t at) const {
     return at < file.size() ? static_cast<std::uint8_t>(file[at]) : 0;
   }
 
+  std::optional<modbus::ChangesRequest> wait_;
+  Time wait_sent_{};
+  std::optional<WaitAnswer> wait_answer_;
   std::mutex mutex_;
   std::condition_variable woken_;
   bool called_ = false;

@@ -108,37 +108,37 @@ constexpr auto identity_start = identity::reserved.start();
 /// What the device has behind the statistics.
 void put_machine(FakeDevice& device, const identity::Machine& machine) {
   std::array<std::uint16_t, identity::size> area{};
-  identity::write_machine(machine, area.data());
+  identity::write_further({machine, {}, 0}, area.data());
   for (std::uint32_t at = identity::at_further; at < identity::size; ++at)
     device.values[{Table::input_registers, identity_start + at}] = area[at];
 }
 
 TEST_F(IdentityCheck, A_node_says_which_machine_it_runs_on) {
   put_machine(device, identity::machine_of("cell-7", 0xAB));
-  const auto machine = read_machine(device);
-  ASSERT_TRUE(machine);
-  EXPECT_EQ(to_string(*machine), "cell-7, serial 00000000000000ab");
-  EXPECT_THAT(device.requests, ElementsAre("read input_registers 65325+1", "read input_registers 65326+36"));
+  const auto further = read_further(device);
+  ASSERT_TRUE(further);
+  EXPECT_EQ(to_string(further->machine), "cell-7, serial 00000000000000ab");
+  EXPECT_THAT(device.requests, ElementsAre("read input_registers 65325+1", "read input_registers 65326+39"));
 }
 
 TEST_F(IdentityCheck, A_node_that_is_older_than_these_fields_says_nothing) {
   device.missing.insert({Table::input_registers, identity_start + identity::at_further});
-  EXPECT_EQ(to_string(read_machine(device).value()), "");
+  EXPECT_EQ(to_string(read_further(device).value().machine), "");
 }
 
 TEST_F(IdentityCheck, Of_a_node_with_fewer_or_more_fields_those_are_read_that_both_know) {
   put_machine(device, identity::machine_of("cell-7", 0xAB));
   auto& count = device.values[{Table::input_registers, identity_start + identity::at_further}];
   count = 4;
-  EXPECT_EQ(to_string(read_machine(device).value()), "serial 00000000000000ab");
+  EXPECT_EQ(to_string(read_further(device).value().machine), "serial 00000000000000ab");
   EXPECT_EQ(device.requests.back(), "read input_registers 65326+4");
   count = 0xFFFF;
-  EXPECT_EQ(to_string(read_machine(device).value()), "cell-7, serial 00000000000000ab");
+  EXPECT_EQ(to_string(read_further(device).value().machine), "cell-7, serial 00000000000000ab");
 }
 
 TEST_F(IdentityCheck, A_hostname_cannot_command_a_terminal) {
   put_machine(device, identity::machine_of("a\x1b[2J\xff", 0));
-  EXPECT_EQ(to_string(read_machine(device).value()), "a?[2J?");
+  EXPECT_EQ(to_string(read_further(device).value().machine), "a?[2J?");
 }
 
 TEST_F(IdentityCheck, A_timeout_is_no_verdict) {

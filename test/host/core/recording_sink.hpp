@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "coupler/host/core/publish_policy.hpp"
 #include "coupler/host/core/sink.hpp"
 #include "coupler/map/map.hpp"
 
@@ -17,13 +20,27 @@ class RecordingSink : public Sink {
   ~RecordingSink() override;
 
   std::map<std::string, std::vector<std::uint16_t>>
-      values;  ///< first register or bit of each sample, by point
+      values;                 ///< first register or bit of each sample, by point
+  std::vector<Stamp> stamps;  ///< of each span
   std::vector<bool> online;
   std::vector<std::string> reports;
 
-  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time) override;
-  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time) override;
+  /// Of a point, as in the driver.
+  struct Topic {
+    Topic(std::uint32_t of, const Point& point) : index(of), policy(point) {}
+    std::uint32_t index;
+    PublishPolicy policy;
+    std::vector<Time> published;
+  };
+  std::deque<Topic> topics;
+  Topic& add_topic(std::string_view point);
+
+  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override;
+  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override;
+  Time repeat_at(std::uint32_t point) const override;
   void on_online(bool now) override { online.push_back(now); }
+  std::vector<ScheduledOutcome> outcomes;
+  void on_scheduled(const ScheduledOutcome& outcome) override { outcomes.push_back(outcome); }
   void on_report(Level, const std::string& text) override { reports.push_back(text); }
 
   /// How many reports contain the text.

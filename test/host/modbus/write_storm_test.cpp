@@ -8,29 +8,13 @@
 #include "coupler/host/core/write.hpp"
 #include "coupler/host/modbus/modbus_transport.hpp"
 #include "test/fakes/map_builder.hpp"
+#include "test/host/modbus/listeners.hpp"
 #include "test/host/modbus/modbus_server.hpp"
 
 namespace coupler::host {
 namespace {
 
 using Outcome = WriteResult::Outcome;
-
-struct Deaf : Sink {
-  void on_bits(const ReadSpan&, Span<const std::uint8_t>, Time) override {}
-  void on_registers(const ReadSpan&, Span<const std::uint16_t>, Time) override {}
-  void on_online(bool) override {}
-  void on_report(Level, const std::string&) override {}
-};
-
-/// Counts results from any thread.
-struct Tally : WriteListener {
-  std::atomic<int> all{0};
-  std::atomic<int> ok{0};
-  void on_result(const WriteResult& result) override {
-    if (result.outcome == Outcome::ok) ++ok;
-    ++all;
-  }
-};
 
 struct WriteStorm : testing::Test {
   MapPtr make_map() const {
@@ -63,7 +47,7 @@ struct WriteStorm : testing::Test {
   test::ModbusServer server;
   MapPtr owned = make_map();
   ModbusTransport transport{owned->map().connection};
-  Deaf sink;
+  DeafSink sink;
 };
 
 TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_connections_break) {

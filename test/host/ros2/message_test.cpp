@@ -36,6 +36,34 @@ TEST(Message, The_types_are_those_of_ROS_1) {
     }
 }
 
+TEST(Message, The_types_of_stamped_values_are_those_of_ROS_1) {
+  using codec::Type;
+  const auto carried = [](Type type, double gain = 1) {
+    Point point = point_of(type, 1);
+    point.scale.gain = gain;
+    return with_stamped_message<Ros2Messages>(point, [](auto kind) {
+      return std::string(rosidl_generator_traits::name<typename decltype(kind)::Message>());
+    });
+  };
+  EXPECT_EQ(carried(Type::BOOL), "coupler_driver/msg/BoolStamped");
+  EXPECT_EQ(carried(Type::SINT), "coupler_driver/msg/Int64Stamped");
+  EXPECT_EQ(carried(Type::LWORD), "coupler_driver/msg/UInt64Stamped");
+  EXPECT_EQ(carried(Type::REAL), "coupler_driver/msg/Float64Stamped");
+  EXPECT_EQ(carried(Type::INT, 0.1), "coupler_driver/msg/Float64Stamped");
+  EXPECT_EQ(carried(Type::STRING), "coupler_driver/msg/StringStamped");
+}
+
+TEST(Message, A_stamp_is_in_wall_time) {
+  WallTime wall;
+  wall.measure(Time{}, std::chrono::seconds(100), Time{});
+  Stamper put(wall);
+  coupler_driver::msg::BoolStamped message;
+  put(message, {Time{} + std::chrono::milliseconds(1250), {}});
+  EXPECT_EQ(message.header.stamp.sec, 101);
+  EXPECT_EQ(message.header.stamp.nanosec, 250'000'000U);
+  EXPECT_EQ(message.sequence, 1U);
+}
+
 TEST(Message, The_bits_of_several_words_follow_each_other) {
   const Point point = point_of(codec::Type::WORD, 2);
   using Bits = BitsMessage<std::uint16_t, coupler_driver::msg::BoolArray>;

@@ -138,6 +138,11 @@ class Node(Process):
     def reload(self):
         self._child.send_signal(signal.SIGHUP)
 
+    def hang(self):
+        """The process that serves stops and keeps its connections, until the supervisor replaces it."""
+        for worker in subprocess.check_output(["pgrep", "--parent", str(self._child.pid)], text=True).split():
+            os.kill(int(worker), signal.SIGSTOP)
+
 
 def has_node():
     return (BUILD / "bin" / "coupler-node").exists()

@@ -11,6 +11,11 @@ import rostopic
 from support.patience import PATIENCE, QUIET, wait_until
 
 
+def content(message):
+    """Its data; of a message without, the message."""
+    return getattr(message, "data", message)
+
+
 class Topic:
     """What was published on a topic: `values` since the subscription or since a test has cleared them, `ever` all of it."""
 
@@ -25,8 +30,8 @@ class Topic:
 
         def receive(message):
             with self._changed:
-                values.append(message.data)
-                self.ever.append(message.data)
+                values.append(content(message))
+                self.ever.append(content(message))
                 self._changed.notify_all()
 
         self._subscriber = rospy.Subscriber(self.name, self._kind, receive, queue_size=1000)
@@ -45,6 +50,10 @@ class Topic:
                 if left <= 0:
                     raise AssertionError(f"{self.name}: waited {seconds} s; the last values were {self.values[-5:]}")
                 self._changed.wait(left)
+
+    def becomes(self, value):
+        """Until the last value is this one, whatever came before."""
+        self.wait_for(lambda _: self.values[-1] == value)
 
     def next(self):
         """The next value that comes."""

@@ -64,6 +64,11 @@ class Subscription:
             self._handle = None
 
 
+def content(message):
+    """Its data; of a message without, the message."""
+    return getattr(message, "data", message)
+
+
 class Topic:
     """What was published on a topic: `values` since the subscription or since a test has cleared them, `ever` all of it."""
 
@@ -79,8 +84,8 @@ class Topic:
 
     def _take(self):
         for message in self._subscription.take() if self._subscription else ():
-            self._values.append(message.data)
-            self._ever.append(message.data)
+            self._values.append(content(message))
+            self._ever.append(content(message))
 
     @property
     def values(self):
@@ -110,6 +115,10 @@ class Topic:
             if is_over:
                 raise AssertionError(f"{self.name}: waited {seconds} s; the last values were {values[-5:]}")
             time.sleep(STEP)
+
+    def becomes(self, value):
+        """Until the last value is this one, whatever came before."""
+        self.wait_for(lambda _: self.values[-1] == value)
 
     def next(self):
         """The next value that comes."""

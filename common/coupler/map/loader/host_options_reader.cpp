@@ -54,6 +54,9 @@ std::vector<Complaint> complaints(const Reader& reader, const Point& point) {
            "remove one of the two");
   if (!on_change)
     refuse("max_interval", "'max_interval' needs 'publish: on_change'", "add that, or remove 'max_interval'");
+  if (is_readable(point) && point.count > 1 && point.host.stamped)
+    refuse("stamped", "'stamped' is for single values, but this point is an array",
+           "remove it, or give each value a point of its own");
   if (is_writable(point.table) && !is_writable(point)) refuse_about(About::writing, "written", "read");
   return found;
 }
@@ -102,6 +105,7 @@ void read_host_options(const Reader& reader, const HostDefaults& defaults, Draft
   if (!number) options.deadband = 0;
   for (Complaint& wrong : complaints(reader, point))
     context.problems.error(reader.find(wrong.key)->key_at, std::move(wrong.what), std::move(wrong.remedy));
+  if (point.count > 1 || !is_readable(point)) options.stamped = false;
   if (!draft.placed) return;
   check_deadband(reader, point, context);
   if (!is_writable(point)) {

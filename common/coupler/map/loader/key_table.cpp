@@ -206,6 +206,8 @@ constexpr Key keys[] = {
     project("max_interval", treatment, K::duration, "1s", "the longest silence of a topic")
         .within(0, most_seconds),
     project("latch", treatment, K::boolean, "true", "late subscribers get the last value").otherwise("false"),
+    project("stamped", treatment, K::boolean, "true", "a topic that also says when the value was true")
+        .otherwise("false"),
     project("queue_size", treatment, K::integer, "10", "messages that wait for a subscriber")
         .otherwise("10")
         .within(1, 10000),
@@ -233,6 +235,9 @@ constexpr Key keys[] = {
     project("poll", S::map, K::choice, "subscribed", "which points the driver reads")
         .otherwise("all")
         .one_of<Poll>(),
+    project("changes", S::map, K::boolean, "off",
+            "whether the driver listens to changes that a node announces")
+        .otherwise("true"),
     project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
             "addresses that the device refuses")
         .lists(S::area),

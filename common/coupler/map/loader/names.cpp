@@ -17,12 +17,23 @@ constexpr std::string_view rule =
 
 using FirstOfName = std::unordered_map<std::string_view, const DraftPoint*>;
 
-/// `name/write` is where the driver listens for values of `name`.
-const DraftPoint* written_by(std::string_view name, const FirstOfName& first) {
-  constexpr std::string_view suffix = "/write";
+/// The point whose name stands before the suffix.
+const DraftPoint* before(std::string_view suffix, std::string_view name, const FirstOfName& first) {
   if (name.size() <= suffix.size() || name.substr(name.size() - suffix.size()) != suffix) return nullptr;
   const auto found = first.find(name.substr(0, name.size() - suffix.size()));
-  return found != first.end() && is_writable(found->second->point) ? found->second : nullptr;
+  return found != first.end() ? found->second : nullptr;
+}
+
+/// `name/write` is where the driver listens for values of `name`.
+const DraftPoint* written_by(std::string_view name, const FirstOfName& first) {
+  const DraftPoint* point = before("/write", name, first);
+  return point != nullptr && is_writable(point->point) ? point : nullptr;
+}
+
+/// `name/stamped` is where the driver publishes `name` with the time of its value.
+const DraftPoint* stamped_by(std::string_view name, const FirstOfName& first) {
+  const DraftPoint* point = before("/stamped", name, first);
+  return point != nullptr && point->point.host.stamped ? point : nullptr;
 }
 
 /// ROS 2 takes no part of a name that begins with a digit, as in "a/1b"; ROS 1 does.
@@ -51,6 +62,11 @@ void check_topic(const DraftPoint& draft, const FirstOfName& first, const Contex
                            fmt::format("{} is the topic that writes {} (line {})", shown(name),
                                        shown(other->point.name), other->name_at.line),
                            "give the point another name", {{other->name_at, "it is here"}});
+  } else if (const DraftPoint* stamped = stamped_by(name, first)) {
+    context.problems.error(draft.name_at,
+                           fmt::format("{} is the topic of the stamps of {} (line {})", shown(name),
+                                       shown(stamped->point.name), stamped->name_at.line),
+                           "give the point another name", {{stamped->name_at, "it is here"}});
   } else {
     warn_of_ros1_name(name, draft.name_at, context);
   }

@@ -12,7 +12,7 @@ namespace coupler::loader {
 bool is_relative_ros_name(std::string_view name);
 
 /// Topics of the driver itself, beside those of the points: no point may have such a name.
-constexpr std::string_view driver_topics[] = {"online", "status"};
+constexpr std::string_view driver_topics[] = {"online", "scheduled", "status"};
 bool is_driver_topic(std::string_view name);
 
 /// The map's name is a namespace.

@@ -129,6 +129,10 @@ bool SysfsChannels::accepts(const Point& point, double value) const {
   return device::accepts(channel_of(outputs_, point).wired, value);
 }
 
+bool SysfsChannels::is_plugged(const Point& point) const {
+  return channel_of(outputs_, point).fault.error() != ENODEV;
+}
+
 Channels::Outcome SysfsChannels::drive(const Point& point, double value) {
   Driven& output = channel_of(outputs_, point);
   const int error = std::visit([&](auto& channel) { return channel.drive(value); }, output.wired.channel);

@@ -86,6 +86,7 @@ class SysfsChannels : public Channels {
 
   std::optional<double> read(const Point& input, TimePoint now) override;
   bool accepts(const Point& output, double value) const override;
+  bool is_plugged(const Point& output) const override;
   Outcome drive(const Point& output, double value) override;
 
   /// Drives outputs that `successor` (may be null) does not have to their safe state.

@@ -27,6 +27,11 @@ double value_in(const Point& point, const std::uint16_t* registers) {
   return codec::published(registers, point.format, point.scale);
 }
 
+/// The same in `next`, which has one element for each address of the range.
+double value_in(const Point& output, Range holding, Span<const std::uint16_t> next) {
+  return value_in(output, &next[static_cast<std::size_t>(output.address - holding.start())]);
+}
+
 template <class Use>
 void each_output(const Map& map, Use use) {
   for (const Point& point : map.points)
@@ -60,27 +65,49 @@ bool AnaloguePoints::has_output(Range holding) const {
   return any;
 }
 
-tl::expected<void, Exception> AnaloguePoints::drive(Range holding, Span<const std::uint16_t> next) {
-  const auto wanted = [&](const Point& output) {
-    return value_in(output, &next[static_cast<std::size_t>(output.address - holding.start())]);
-  };
-  bool accepted = true;
+bool AnaloguePoints::accepts(Range holding, Span<const std::uint16_t> next) const {
+  bool all = true;
   each_channel(map_, Table::holding_registers, holding, [&](const Point& output) {
-    const double value = wanted(output);
-    accepted &= std::isfinite(value) && channels_.accepts(output, value);
+    const double value = value_in(output, holding, next);
+    all &= std::isfinite(value) && channels_.accepts(output, value);
   });
-  if (!accepted) return tl::unexpected(Exception::illegal_data_value);
+  return all;
+}
 
+tl::expected<void, Exception> AnaloguePoints::check(Range holding, Span<const std::uint16_t> next) const {
+  if (!accepts(holding, next)) return tl::unexpected(Exception::illegal_data_value);
+  bool plugged = true;
+  each_channel(map_, Table::holding_registers, holding,
+               [&](const Point& output) { plugged &= channels_.is_plugged(output); });
+  if (!plugged) return tl::unexpected(Exception::server_device_failure);
+  return {};
+}
+
+tl::expected<void, Exception> AnaloguePoints::drive(Range holding, Span<const std::uint16_t> next) {
+  if (!accepts(holding, next)) return tl::unexpected(Exception::illegal_data_value);
   std::optional<Exception> why;
   each_channel(map_, Table::holding_registers, holding, [&](const Point& output) {
     if (why) return;
-    const Outcome outcome = channels_.drive(output, wanted(output));
+    const Outcome outcome = channels_.drive(output, value_in(output, holding, next));
     if (outcome == Outcome::done) return;
     why = outcome == Outcome::refused ? Exception::illegal_data_value : Exception::server_device_failure;
     restore(holding, output);
   });
   if (why) return tl::unexpected(*why);
   return {};
+}
+
+bool AnaloguePoints::drive_each(Range holding, Span<std::uint16_t> next) {
+  bool good = true;
+  each_channel(map_, Table::holding_registers, holding, [&](const Point& output) {
+    const double value = value_in(output, holding, next);
+    const Outcome outcome = std::isfinite(value) ? channels_.drive(output, value) : Outcome::refused;
+    if (outcome == Outcome::done || outcome == Outcome::absent) return;
+    const auto now = image_.find(output.table, range(output));
+    std::copy(now.begin(), now.end(), &next[static_cast<std::size_t>(output.address - holding.start())]);
+    good = false;
+  });
+  return good;
 }
 
 void AnaloguePoints::restore(Range holding, const Point& end) {

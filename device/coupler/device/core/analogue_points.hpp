@@ -26,6 +26,14 @@ class AnaloguePoints {
   [[nodiscard]] tl::expected<void, modbus::Exception> drive(modbus::Range holding,
                                                             Span<const std::uint16_t> next);
 
+  /// The same, each for itself: overwrites in `next` those that cannot be driven with what the image has. One
+  /// that is unplugged counts as driven: it has to come back so. False: there is one.
+  [[nodiscard]] bool drive_each(modbus::Range holding, Span<std::uint16_t> next);
+
+  /// Whether drive() could do so, as far as that is known before it is tried.
+  [[nodiscard]] tl::expected<void, modbus::Exception> check(modbus::Range holding,
+                                                            Span<const std::uint16_t> next) const;
+
   /// Whether the range has a register of an output.
   bool has_output(modbus::Range holding) const;
 
@@ -40,6 +48,7 @@ class AnaloguePoints {
   [[nodiscard]] bool drive_safe();
 
  private:
+  bool accepts(modbus::Range holding, Span<const std::uint16_t> next) const;
   /// The outputs of the range that come before `end`.
   void restore(modbus::Range holding, const Point& end);
 

@@ -28,6 +28,9 @@ class Channels {
   /// Whether an output can be driven to a finite value, as far as that is known before it is tried.
   [[nodiscard]] virtual bool accepts(const Point& output, double value) const = 0;
 
+  /// False: the hardware behind an output is known to be unplugged.
+  virtual bool is_plugged(const Point&) const { return true; }
+
   /// Drives an output to a value that it accepts. Unless it is done, the output is as it was, as far as the
   /// hardware tells.
   [[nodiscard]] virtual Outcome drive(const Point& output, double value) = 0;

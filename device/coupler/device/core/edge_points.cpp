@@ -49,8 +49,9 @@ void each_wish(const Map& map, Use use) {
 
 }  // namespace
 
-EdgePoints::EdgePoints(const Map& map, Image& image, Statistics& statistics, Span<Link> links)
-    : map_(map), statistics_(statistics) {
+EdgePoints::EdgePoints(const Map& map, Image& image, Statistics& statistics, Span<Link> links,
+                       Changes& changes)
+    : map_(map), statistics_(statistics), changes_(changes) {
   if (links.empty()) return;  // to look at all points of a large map takes its time, and clients wait
   std::size_t used = 0;
   each_wish(map, [&](const Point& point, const EdgeOf& wish, bool latches) {
@@ -69,10 +70,12 @@ void EdgePoints::add(std::uint16_t input, const Edges& edges) {
                                       [](const Link& l, std::uint16_t wanted) { return l.input < wanted; });
   for (; link != links_.end() && link->input == input; ++link) {
     const std::uint32_t happened = of_kind(link->edge, edges);
-    if (!link->latches)
+    if (!link->latches) {
       count(*link, happened);
-    else if (happened != 0)
+    } else if (happened != 0) {
       *link->cells = static_cast<std::uint16_t>(*link->cells | mask_of(*link->point));
+      changes_.compare(link->point->table, range(*link->point));
+    }
   }
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "coupler/device/core/time.hpp"
+
 namespace coupler::device {
 
 /// What happened on an input since it was last asked. Edges are logical (after active_low).
@@ -14,11 +16,21 @@ struct Edges {
   constexpr bool any() const { return (rising | falling | lost) != 0; }
 };
 
-/// Who is told of them.
+/// Who is told of inputs by Lines::take_edges(). `input`: address of a discrete input.
 class EdgeSink {
  public:
-  /// `input`: address of a discrete input.
+  /// For counters and latched points.
   virtual void add(std::uint16_t input, const Edges& edges) = 0;
+
+  /// The input has `level` since `at`: the time stamp of the edge, as precise as the hardware tells it. Each
+  /// change is told once, those of one input in the order of their times; those of different inputs are not
+  /// in order. Twice the same level in a row: what was between was lost().
+  virtual void changed(std::uint16_t input, bool level, TimePoint at) = 0;
+
+  /// At least so many changes of inputs were not seen, or not kept, and will not be told. The level of each
+  /// input is told all the same, if it is another one than was told last. Counters and latched points are
+  /// told of the same loss by add().
+  virtual void lost(std::uint32_t changes) = 0;
 
  protected:
   ~EdgeSink() = default;

@@ -26,59 +26,86 @@ Table table_of(Function read) {
 
 }  // namespace
 
-Handler::Handler(const Map& map, Image& image, Hardware hardware, Statistics& statistics,
-                 OutputWatchdog& watchdog, Span<EdgePoints::Link> links)
+Handler::Handler(const Map& map, Hardware hardware, const NodeState& state, const Clock* clock)
     : map_(map),
-      image_(image),
+      image_(state.image),
       hardware_(hardware),
-      statistics_(statistics),
-      watchdog_(watchdog),
-      edge_points_(map, image, statistics, links),
+      statistics_(state.statistics),
+      watchdog_(state.watchdog),
+      changes_(state.changes),
+      edge_points_(map, state.image, state.statistics, state.links, state.changes),
+      schedule_(state.schedule),
+      clock_(clock),
       limits_values_(std::any_of(map.points.begin(), map.points.end(), [](const Point& point) {
         return is_writable(point) && limits_values(point);
       })) {
-  write_identity(map, machine_, image);
+  set_machine({});
   show_outputs();
 }
 
 void Handler::set_machine(const identity::Machine& machine) {
   machine_ = machine;
-  write_identity(map_, machine_, image_);
+  identity::Functions functions;
+  functions.tells_changes = changes_.are_told();
+  functions.schedules_outputs = can_schedule();
+  write_identity(map_, machine_, functions, image_);
 }
 
 std::size_t Handler::handle(modbus::Bytes request, ClientSession& session, TimePoint now,
                             Span<std::uint8_t> reply) {
-  tick(now);
-  hardware_.take_news(now, edge_points_);
+  drive_due(now);
+  take_news(now);
   ++statistics_.requests;
   wrote_output_ = false;
-  const Answer done = answer({request, now, reply});
+  const Answer done = answer({request, session, now, reply});
   if (done) {
     watchdog_.request(session, wrote_output_, now);
     return *done;
   }
   ++statistics_.exceptions;
-  ++statistics_.exceptions_of[static_cast<std::size_t>(done.error()) - 1];
+  const auto which = static_cast<std::size_t>(done.error()) - 1;
+  if (which < statistics_.exceptions_of.size()) ++statistics_.exceptions_of[which];
   return modbus::reply_exception(request[0], done.error(), reply);
 }
 
 void Handler::tick(TimePoint now) {
-  if (!watchdog_.is_due(now)) return;
+  drive_due(now);
+  if (wants_news(now)) take_news(now);
+}
+
+/// The watchdog first: what it cancels is not driven.
+void Handler::drive_due(TimePoint now) {
+  if (watchdog_.is_due(now)) expire_watchdog(now);
+  drive_scheduled(now);
+}
+
+void Handler::expire_watchdog(TimePoint now) {
   if (watchdog_.state() == OutputWatchdog::State::armed) ++statistics_.watchdog_trips;
-  watchdog_.expire(hardware_.drive_safe(), now);
+  watchdog_.expire(drive_safe(now), now);
+  schedule_.cancel_all(modbus::Reason::watchdog, later(now));
+}
+
+bool Handler::drive_safe(TimePoint now) {
+  const bool is_safe = hardware_.drive_safe();
+  changes_.set_time(later(now));
   show_outputs();
+  schedule_.outputs_went_safe(is_safe);
+  return is_safe;
 }
 
 std::optional<std::chrono::milliseconds> Handler::time_until_due(TimePoint now) const {
   using std::chrono::milliseconds;
-  if (!watchdog_.deadline()) return std::nullopt;
-  return std::max(milliseconds(0), std::chrono::ceil<milliseconds>(*watchdog_.deadline() - now));
+  TimePoint due = std::min(watchdog_.deadline().value_or(TimePoint::max()), next_scheduled());
+  if (wants_news(now)) due = std::min(due, hardware_.next_change(now).value_or(TimePoint::max()));
+  if (due == TimePoint::max()) return std::nullopt;
+  return std::max(milliseconds(0), std::chrono::ceil<milliseconds>(due - now));
 }
 
 void Handler::show_outputs() {
   for (const Image::Area& area : image_.mapped(Table::coils)) {
     const auto range = modbus::Range::of(area.start, area.end - area.start);
     hardware_.driven(Table::coils, range, image_.find(Table::coils, range));
+    changes_.compare(Table::coils, range);
   }
 }
 
@@ -88,6 +115,8 @@ Handler::Answer Handler::hardware_failed() {
 }
 
 Handler::Answer Handler::answer(const Call& call) {
+  if (call.request[0] == static_cast<std::uint8_t>(Function::schedule_output) && !can_schedule())
+    return tl::unexpected(Exception::illegal_function);
   const auto request = modbus::parse_request(call.request);
   if (!request) return tl::unexpected(request.error());
   return std::visit([&](const auto& what) { return carry_out(what, call); }, *request);
@@ -97,7 +126,7 @@ Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
   const Table table = table_of(read.function);
   const auto cells = image_.find_readable(table, read.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
-  if (!hardware_.read(table, read.range, cells, call.now)) return hardware_failed();
+  if (!read_hardware(table, read.range, cells, call.now)) return hardware_failed();
   if (table == Table::input_registers && identity::reserved.overlaps(read.range)) {
     write_statistics(statistics_, call.now, image_);
     write_watchdog(watchdog_, call.now, image_);
@@ -108,6 +137,15 @@ Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
 
 tl::expected<void, Exception> Handler::store(Table table, modbus::Range range, Span<std::uint16_t> cells,
                                              TimePoint now) {
+  auto stored = drive_and_store(table, range, cells, now);
+  if (!stored) return stored;
+  if (wrote_output_) watchdog_.arm(now);
+  schedule_.cancel_overlapping(table, range, now);
+  return stored;
+}
+
+tl::expected<void, Exception> Handler::drive_and_store(Table table, modbus::Range range,
+                                                       Span<std::uint16_t> cells, TimePoint now) {
   if (is_forbidden(table, range)) return tl::unexpected(Exception::illegal_data_value);
   const auto next = Span<std::uint16_t>(next_).first(cells.size());
   edge_points_.keep_latches(table, range, cells, next);
@@ -118,17 +156,17 @@ tl::expected<void, Exception> Handler::store(Table table, modbus::Range range, S
     return tl::unexpected(driven.error().exception);
   }
   std::copy(next.begin(), next.end(), cells.begin());
-  if (hardware_.driven(table, range, cells)) {
-    wrote_output_ = true;
-    watchdog_.arm(now);
-  }
+  if (hardware_.driven(table, range, cells)) wrote_output_ = true;
+  schedule_.driven(table, range, cells);
+  changes_.set_time(later(now));
+  changes_.compare(table, range);
   return {};
 }
 
 Handler::Answer Handler::carry_out(const modbus::WriteBits& write, const Call& call) {
   const auto cells = image_.find_writable(Table::coils, write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
-  for (std::size_t i = 0; i < cells.size(); ++i) next_[i] = write.packed[i / 8] >> i % 8 & 1;
+  put_next(write);
   if (const auto stored = store(Table::coils, write.range, cells, call.now); !stored)
     return tl::unexpected(stored.error());
   return modbus::reply_written(call.request, call.reply);
@@ -166,6 +204,10 @@ bool Handler::is_forbidden(const Point& point, modbus::Range written) const {
     if (concerned && why_forbidden(point, value.data())) return true;
   }
   return false;
+}
+
+void Handler::put_next(const modbus::WriteBits& write) {
+  for (std::size_t i = 0; i < write.range.count(); ++i) next_[i] = write.packed[i / 8] >> i % 8 & 1;
 }
 
 void Handler::put_next(const modbus::WriteRegisters& write) {

@@ -7,9 +7,12 @@
 #include <optional>
 #include <tl/expected.hpp>
 
+#include "coupler/device/core/changes.hpp"
+#include "coupler/device/core/clock.hpp"
 #include "coupler/device/core/edge_points.hpp"
 #include "coupler/device/core/hardware.hpp"
 #include "coupler/device/core/image.hpp"
+#include "coupler/device/core/output_schedule.hpp"
 #include "coupler/device/core/statistics.hpp"
 #include "coupler/device/core/watchdog.hpp"
 #include "coupler/map/identity.hpp"
@@ -18,35 +21,65 @@
 
 namespace coupler::device {
 
+/// What a node knows and remembers.
+struct NodeState {
+  Image& image;  ///< shows outputs as the lines are driven
+  Statistics& statistics;
+  OutputWatchdog& watchdog;
+  Span<EdgePoints::Link> links;  ///< node_memory().links of them
+  Changes& changes;
+  OutputSchedule& schedule;
+};
+
 /// Carries out requests, one at a time and each as a whole: everything is validated, then the hardware is
 /// driven, then the image is changed, then the reply is made. What fails leaves no trace. Allocates nothing.
 class Handler {
  public:
-  /// All of them outlive the handler. The image shows outputs as the lines are driven. `links` has
-  /// node_memory().links elements.
-  Handler(const Map& map, Image& image, Hardware hardware, Statistics& statistics, OutputWatchdog& watchdog,
-          Span<EdgePoints::Link> links);
+  /// Map, state and clock outlive the handler. Without a clock times are those at which a turn began.
+  Handler(const Map& map, Hardware hardware, const NodeState& state, const Clock* clock = nullptr);
 
   /// Which machine the node says that it runs on; until then it says that it does not know.
   void set_machine(const identity::Machine& machine);
 
+  /// From now on clients can schedule outputs and wait for changes (docs/time.md). Whoever calls handle() has
+  /// to answer those that wait: see Server. The epoch is not 0, and another one at each start: a random
+  /// number. Until then the node says that it does not know these functions.
+  void tell_changes(std::uint32_t epoch, TimePoint now);
+  const Changes& changes() const { return changes_; }
+
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
-  /// returns its size; `session` sent it. Exceptions: those of parse_request(); 02 an address that is not
+  /// returns its size; `session` sent it. 0: the session waits for changes now, which it did not before.
+  /// Exceptions: those of parse_request(); 02 an address that is not
   /// mapped, not readable or not writable; 03 a value that does not reset the watchdog, that the
   /// map does not allow, or that an output cannot take; 04 hardware that cannot be read or driven, or an
-  /// output that the watchdog keeps in its safe state.
+  /// output that the watchdog keeps in its safe state; 06 no place left to schedule an output.
   std::size_t handle(modbus::Bytes request, ClientSession& session, TimePoint now, Span<std::uint8_t> reply);
 
-  /// Drives the outputs to their safe state if the watchdog is due. handle() does so too.
+  /// Drives the outputs to their safe state if the watchdog is due, drives what is scheduled for now or
+  /// before, and takes news if a client asks for changes. handle() does so too, first.
   void tick(TimePoint now);
   /// How long tick() need not be called; nullopt: not before the next request.
   std::optional<std::chrono::milliseconds> time_until_due(TimePoint now) const;
+  /// When an output, or the end of one, is scheduled next; TimePoint::max(): none is.
+  TimePoint next_scheduled() const { return schedule_.earliest(); }
+
+  /// The connection has ended: what it has scheduled is cancelled.
+  void end_session(const ClientSession& session, TimePoint now);
+  /// This process serves no longer: what is scheduled is cancelled, what has begun goes on.
+  void end_schedule(TimePoint now);
+  /// Cancels what is scheduled, drives every output to its safe state and ends all durations. False: an
+  /// output could not be driven.
+  [[nodiscard]] bool make_safe(modbus::Reason reason, TimePoint now);
+
+  /// Takes what came by itself: edges of inputs, values that the firmware has set.
+  void take_news(TimePoint now);
 
  private:
   using Answer = tl::expected<std::size_t, modbus::Exception>;
   /// A request on its way to its answer.
   struct Call {
     modbus::Bytes request;
+    ClientSession& session;
     TimePoint now;
     Span<std::uint8_t> reply;
   };
@@ -60,6 +93,9 @@ class Handler {
   Answer carry_out(const modbus::FileGroups& groups, const Call& call);
   Answer carry_out(const modbus::Echo& echo, const Call& call);
   Answer carry_out(const modbus::ReadDeviceIdentification& wanted, const Call& call);
+  Answer carry_out(const modbus::ChangesRequest& request, const Call& call);
+  Answer carry_out(const modbus::ScheduleOutput& wanted, const Call& call);
+  Answer carry_out(const modbus::CancelOutput& wanted, const Call& call);
 
   Answer reset_watchdog(const modbus::WriteRegisters& write, const Call& call);
   Answer hardware_failed();
@@ -69,11 +105,31 @@ class Handler {
   /// What next_ says would give a point of the range a value that the map does not allow.
   bool is_forbidden(Table table, modbus::Range written) const;
   bool is_forbidden(const Point& point, modbus::Range written) const;
+  void put_next(const modbus::WriteBits& write);
   void put_next(const modbus::WriteRegisters& write);
-  /// Drives the outputs of the range, then stores in its cells: what next_ says.
+  /// Drives the outputs of the range, then stores in its cells: what next_ says. A client's write, which
+  /// cancels what is scheduled there.
   tl::expected<void, modbus::Exception> store(Table table, modbus::Range range, Span<std::uint16_t> cells,
                                               TimePoint now);
+  void drive_due(TimePoint now);
+  void expire_watchdog(TimePoint now);
+  tl::expected<void, modbus::Exception> drive_and_store(Table table, modbus::Range range,
+                                                        Span<std::uint16_t> cells, TimePoint now);
+  bool drive_safe(TimePoint now);
   void show_outputs();
+  bool read_hardware(Table table, modbus::Range range, Span<std::uint16_t> cells, TimePoint now);
+  /// Though no request asks for them now.
+  bool wants_news(TimePoint now) const;
+
+  // Outputs at a time: handler_schedule.cpp.
+  bool can_schedule() const;
+  Span<std::uint16_t> writable(Table table, modbus::Range range) const;
+  tl::expected<void, modbus::Exception> check(const modbus::ScheduleOutput& wanted, Table table);
+  Answer reply_schedule(std::uint16_t number, const Call& call) const;
+  void drive_scheduled(TimePoint now);
+  void drive(ScheduledOutput& which, TimePoint now);
+  void end(ScheduledOutput& which, TimePoint now);
+  TimePoint later(TimePoint now) const;
 
   const Map& map_;
   identity::Machine machine_{};
@@ -81,7 +137,11 @@ class Handler {
   Hardware hardware_;
   Statistics& statistics_;
   OutputWatchdog& watchdog_;
+  Changes& changes_;
+  std::optional<TimePoint> listened_{};  ///< when a client asked for changes, the last time
   EdgePoints edge_points_;
+  OutputSchedule& schedule_;
+  const Clock* clock_;
   bool limits_values_;                                        ///< the map does, of a point that is written
   bool wrote_output_ = false;                                 ///< the request that is being answered has
   std::array<std::uint16_t, modbus::max_write_bits> next_{};  ///< what a write stores, before it is committed

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <tl/expected.hpp>
 
 #include "coupler/device/core/analogue_points.hpp"
@@ -25,16 +26,36 @@ class Hardware {
       : lines_(&lines), analogue_(analogue), hooked_(hooked) {}
 
   /// What came by itself since the last call: edges, values that the firmware has set.
-  void take_news(TimePoint now, EdgeSink& sink) {
+  void take_news(TimePoint now, EdgeSink& sink, Changes& changes) {
     lines_->take_edges(now, sink);
-    if (hooked_ != nullptr) hooked_->put_new_values();
+    if (hooked_ != nullptr) hooked_->put_new_values(changes);
   }
+
+  /// When news are to be taken again though nobody tells of them; nullopt: they are not.
+  std::optional<TimePoint> next_change(TimePoint now) const { return lines_->next_change(now); }
+
+  /// Lines::has_to_look().
+  bool has_to_look() const { return lines_->has_to_look(); }
 
   /// Brings the image's cells of the range, which are `cells`, up to date. False if an input cannot be read.
   [[nodiscard]] bool read(Table table, modbus::Range range, Span<std::uint16_t> cells, TimePoint now) {
     if (table == Table::discrete_inputs) return lines_->read(range, cells, now);
     if (table == Table::input_registers && analogue_ != nullptr) return analogue_->read(range, now);
     return true;
+  }
+
+  /// Whether a firmware's code is behind points.
+  bool has_code() const { return hooked_ != nullptr; }
+
+  /// Whether the outputs of the range can be driven to what `next` says, as far as that is known before it is
+  /// tried; a firmware's code is not asked. Exceptions: 03 a value that an output cannot take, 04 hardware
+  /// that is unplugged.
+  [[nodiscard]] tl::expected<void, modbus::Exception> check(Table table, modbus::Range range,
+                                                            Span<const std::uint16_t> next) const {
+    if (table == Table::coils && !lines_->are_plugged(range))
+      return tl::unexpected(modbus::Exception::server_device_failure);
+    if (table == Table::holding_registers && analogue_ != nullptr) return analogue_->check(range, next);
+    return {};
   }
 
   /// Whether the range has an output. If so, a coil's level overwrites its element of `cells`; what a
@@ -55,6 +76,18 @@ class Hardware {
     const auto driven = drive_outputs(table, range, next);
     if (!driven) hooked_->take_back(table, range, next);
     return driven;
+  }
+
+  /// Drives the outputs of the range, each for itself: tries all of them, and overwrites in `next` those that
+  /// cannot be driven with what the image has. What is unplugged is driven when it is plugged in again.
+  /// False: there is one that cannot be driven.
+  [[nodiscard]] bool drive_each(Table table, modbus::Range range, Span<std::uint16_t> next) {
+    bool good = hooked_ == nullptr || hooked_->write_each(table, range, next);
+    if (table == Table::holding_registers && analogue_ != nullptr) good &= analogue_->drive_each(range, next);
+    if (table != Table::coils) return good;
+    good &= lines_->drive_each(range, next);
+    lines_->driven(range, next);
+    return good;
   }
 
   /// Every output to its safe state. Tries all of them, a firmware's code last, which may take

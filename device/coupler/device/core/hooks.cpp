@@ -27,8 +27,8 @@ bool HookedPoints::is_asked(std::uint32_t point, Range range, Span<const std::ui
   const auto now = before(point);
   std::copy(now.begin(), now.end(), value_.begin());
   const Range own = coupler::range(which);
-  for (std::uint32_t at = std::max(own.start(), range.start()); at < std::min(own.end(), range.end()); ++at)
-    value_[at - own.start()] = next[at - range.start()];
+  each_shared_address(own, range,
+                      [&](std::uint32_t at) { value_[at - own.start()] = next[at - range.start()]; });
   return !is_partial(which) || ((value_[0] ^ now[0]) & codec::mask(which.format)) != 0;
 }
 
@@ -40,6 +40,25 @@ bool HookedPoints::write(Table table, Range range, Span<const std::uint16_t> nex
     return false;
   }
   return true;
+}
+
+bool HookedPoints::write_each(Table table, Range range, Span<std::uint16_t> next) {
+  bool good = true;
+  const auto [first, end] = touched(table, range);
+  for (std::uint32_t point = first; point < end; ++point) {
+    if (!is_asked(point, range, next)) continue;
+    const auto now = before(point);
+    if (std::equal(now.begin(), now.end(), value_.begin()) || hooks_.accept(point, value_.data())) continue;
+    const Point& which = map_.points[point];
+    const std::uint16_t mask = own_bits(which);
+    const Range own = coupler::range(which);
+    each_shared_address(own, range, [&](std::uint32_t at) {
+      std::uint16_t& cell = next[at - range.start()];
+      cell = static_cast<std::uint16_t>((cell & ~mask) | (now[at - own.start()] & mask));
+    });
+    good = false;
+  }
+  return good;
 }
 
 void HookedPoints::take_back(Table table, Range range, Span<const std::uint16_t> next) {

@@ -4,10 +4,21 @@
 #include <array>
 #include <cstdint>
 
+#include "coupler/device/core/changes.hpp"
 #include "coupler/device/core/image.hpp"
 #include "coupler/modbus/limits.hpp"
 
 namespace coupler::device {
+
+/// Who is to put what a firmware has set into the image soon, and not with the next request only.
+class Waker {
+ public:
+  /// Called in any thread.
+  virtual void wake() = 0;
+
+ protected:
+  ~Waker() = default;
+};
 
 /// A firmware's own code behind the points that nothing else is behind (has_hardware() is false). Points are
 /// indices into Map::points. All of it is called in the thread that answers clients, but for make_safe().
@@ -19,11 +30,11 @@ class Hooks {
   /// open what they need. A node serves in a child process, and in another one if that dies.
   virtual void serving_began() {}
 
-  /// Values may be set in this process.
-  virtual void allow_setting() {}
+  /// Values may be set in this process. `waker`, which outlives this, is told of them; null: nobody is.
+  virtual void allow_setting([[maybe_unused]] Waker* waker) {}
 
-  /// Puts into the image what the firmware has set since the last call.
-  virtual void put_new_values(Image& image) = 0;
+  /// Puts into the image what the firmware has set since the last call, and has it compared.
+  virtual void put_new_values(Image& image, Changes& changes) = 0;
 
   /// A client writes the point: range(point).count() registers, or bits as 0 or 1. False refuses. When
   /// another point of the same request is refused, those already accepted are called again with the values
@@ -42,13 +53,17 @@ class HookedPoints {
   /// All of them outlive it.
   HookedPoints(const Map& map, Image& image, Hooks& hooks) : map_(map), image_(image), hooks_(hooks) {}
 
-  void put_new_values() { hooks_.put_new_values(image_); }
+  void put_new_values(Changes& changes) { hooks_.put_new_values(image_, changes); }
 
   /// Asks about the points that have an address in the range, in the order of their addresses, what `next`
   /// says: one element for each. A point that is written in part is asked about as a whole; one that shares
   /// its register only if its own bits change. False if one is refused: then the others have their values
   /// again.
   [[nodiscard]] bool write(Table table, modbus::Range range, Span<const std::uint16_t> next);
+
+  /// As write(), but each for itself, and only about values that are not in force: overwrites in `next` those
+  /// that are refused with the values in force. False: there is one.
+  [[nodiscard]] bool write_each(Table table, modbus::Range range, Span<std::uint16_t> next);
 
   /// Gives the points that write() has just accepted their values again.
   void take_back(Table table, modbus::Range range, Span<const std::uint16_t> next);

@@ -25,10 +25,12 @@ std::array<char, 16> hexadecimal(std::uint64_t value) {
 
 }  // namespace
 
-void write_identity(const Map& map, const identity::Machine& machine, Image& image) {
+void write_identity(const Map& map, const identity::Machine& machine, const identity::Functions& functions,
+                    Image& image) {
   const auto area = area_of(image);
   identity::write_head(identity::head_of(map), area.data());
-  identity::write_machine(machine, area.data());
+  const auto timeout = static_cast<std::uint32_t>(map.service.watchdog.timeout.count());
+  identity::write_further({machine, functions, timeout}, area.data());
 }
 
 void write_statistics(const Statistics& statistics, TimePoint now, Image& image) {

@@ -17,7 +17,8 @@
 namespace coupler::device {
 
 /// Writes the constant part of the identity area (coupler/map/identity.hpp) into the image.
-void write_identity(const Map& map, const identity::Machine& machine, Image& image);
+void write_identity(const Map& map, const identity::Machine& machine, const identity::Functions& functions,
+                    Image& image);
 
 /// The same for counters and watchdog, which are updated when a client reads there.
 void write_statistics(const Statistics& statistics, TimePoint now, Image& image);

@@ -22,7 +22,7 @@ const Image::Area* covering(Span<Image::Area> areas, Range range) {
 
 /// A point that shares its register leaves the others' bits alone.
 void put_initial(const Point& point, Span<std::uint16_t> cells) {
-  const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
+  const std::uint16_t mask = own_bits(point);
   for (std::size_t i = 0; i < point.initial.size(); ++i)
     cells[i] = static_cast<std::uint16_t>((cells[i] & ~mask) | (point.initial[i] & mask));
 }
@@ -45,6 +45,7 @@ Image::Image(const Map& map, Span<Area> areas, Span<std::uint16_t> cells) : cell
     mapped_[i] = list(table, Mapped::all);
     readable_[i] = is_writable(table) ? list(table, Mapped::readable) : mapped_[i];
     if (is_writable(table)) writable_[i] = list(table, Mapped::writable);
+    if (holds_bits(table)) bits_ = cell;
   }
   std::fill(cells_.begin(), cells_.end(), std::uint16_t{0});
   for (const Point& point : map.points) put_initial(point, find(point.table, range(point)));

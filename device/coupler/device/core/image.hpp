@@ -37,11 +37,15 @@ class Image {
   /// The same for a client's write: every address must also belong to a writable point.
   Span<std::uint16_t> find_writable(Table table, modbus::Range range) const;
 
+  /// The cells of all bits: coils, then discrete inputs.
+  Span<std::uint16_t> bits() const { return cells_.first(bits_); }
+
  private:
   std::array<Span<Area>, 4> mapped_;  ///< by table, sorted
   std::array<Span<Area>, 4> readable_;
   std::array<Span<Area>, 4> writable_;  ///< the same; empty for the input tables
   Span<std::uint16_t> cells_;
+  std::size_t bits_ = 0;
 };
 
 }  // namespace coupler::device

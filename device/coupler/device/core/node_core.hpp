@@ -15,10 +15,16 @@
 
 namespace coupler::device {
 
+/// How many changes a NodeCore keeps for clients that wait for them, 24 bytes each: those of two replies and
+/// some more.
+constexpr std::size_t kept_changes = 48;
+
 /// What the generated coupler::maps::NAME::NodeCore of every map has in common: a node in static memory, for
-/// microcontrollers. `Areas`, `Cells` and `Links` are the map's NodeMemory. All of it is called in one task:
-/// requests, tick(), and what the firmware sets. No heap, no exceptions, no threads.
-template <std::size_t Areas, std::size_t Cells, std::size_t Links>
+/// microcontrollers. `Areas`, `Cells`, `Bits` and `Links` are the map's NodeMemory, `Scheduled` is how many
+/// outputs clients can schedule. All of it is called in one task: requests, tick(), and what the firmware
+/// sets. No heap, no exceptions, no threads.
+template <std::size_t Areas, std::size_t Cells, std::size_t Bits, std::size_t Links,
+          std::size_t KeptChanges = kept_changes, std::size_t Scheduled = 4>
 class NodeCore : public Hooks {
  public:
   NodeCore(const NodeCore&) = delete;
@@ -26,13 +32,16 @@ class NodeCore : public Hooks {
 
   /// Answers the requests that the port has received.
   Server& server() { return server_; }
-  /// Its tick() is called when time_until_due() has passed.
+  /// Its tick() is called when time_until_due() has passed. Clients can wait for changes once the port has
+  /// called its tell_changes(); then it also calls the server's answer_waiting().
   Handler& handler() { return handler_; }
   /// What the port counts: connections, refusals, evictions, bad_frames, timeouts.
   Statistics& statistics() { return statistics_; }
   const OutputWatchdog& watchdog() const { return watchdog_; }
 
-  void put_new_values(Image&) final {}  // set() has put them there
+  void put_new_values(Image&, Changes& changes) final {
+    if (std::exchange(bits_were_set_, false)) changes.compare_all();  // set() has put them there
+  }
   [[nodiscard]] bool accept(std::uint32_t, const std::uint16_t*) override { return true; }
 
  protected:
@@ -44,8 +53,10 @@ class NodeCore : public Hooks {
         analogue_(channels == nullptr ? std::nullopt
                                       : std::optional<AnaloguePoints>(std::in_place, map, image_, *channels)),
         watchdog_(map.service.watchdog),
-        handler_(map, image_, {lines, analogue_ ? &*analogue_ : nullptr, &hooked_}, statistics_, watchdog_,
-                 links_),
+        changes_(image_, ring_, told_),
+        schedule_(scheduled_, &changes_),
+        handler_(map, {lines, analogue_ ? &*analogue_ : nullptr, &hooked_},
+                 {image_, statistics_, watchdog_, links_, changes_, schedule_}),
         server_(map.connection.unit, handler_, statistics_) {}
   ~NodeCore() = default;
 
@@ -58,6 +69,7 @@ class NodeCore : public Hooks {
   template <class T>
   bool set(std::uint32_t point, const T& value) {
     const Point& to = map_.points[point];
+    bits_were_set_ |= holds_bits(to.table);
     return PlainValue<T>::encode(value, to, image_.find(to.table, range(to)).data());
   }
 
@@ -66,11 +78,17 @@ class NodeCore : public Hooks {
   std::array<Image::Area, Areas> areas_{};
   std::array<std::uint16_t, Cells> cells_{};
   std::array<EdgePoints::Link, Links> links_{};
+  std::array<ChangeRing::Entry, KeptChanges> ring_{};
+  std::array<std::uint16_t, Bits> told_{};
+  bool bits_were_set_ = false;  ///< since put_new_values()
   Image image_;
   HookedPoints hooked_;
   std::optional<AnaloguePoints> analogue_;
   Statistics statistics_;
   OutputWatchdog watchdog_;
+  Changes changes_;
+  std::array<ScheduledOutput, Scheduled> scheduled_{};
+  OutputSchedule schedule_;
   Handler handler_;
   Server server_;
 };

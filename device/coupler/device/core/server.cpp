@@ -5,12 +5,32 @@ namespace coupler::device {
 
 std::size_t Server::answer(const modbus::Frame& frame, ClientSession& session, TimePoint now,
                            Span<std::uint8_t> adu) {
+  const std::size_t before = end_wait(session, now, adu);
   if (frame.unit != unit_ && frame.unit != 0 && frame.unit != 255) {
     ++statistics_.foreign_units;
-    return 0;
+    return before;
   }
+  adu = adu.from(before);
   const std::size_t pdu = handler_.handle(frame.pdu, session, now, adu.from(modbus::mbap_size));
+  if (session.wait) {
+    session.wait->transaction = frame.transaction;
+    session.wait->unit = frame.unit;
+    return before;
+  }
   modbus::put_header(frame, pdu, adu.data());
+  return before + modbus::mbap_size + pdu;
+}
+
+std::size_t Server::answer_waiting(ClientSession& session, TimePoint now, Span<std::uint8_t> adu) {
+  if (!session.wait || !changes().is_due(*session.wait, now)) return 0;
+  return end_wait(session, now, adu);
+}
+
+std::size_t Server::end_wait(ClientSession& session, TimePoint now, Span<std::uint8_t> adu) {
+  if (!session.wait) return 0;
+  const std::size_t pdu = changes().reply_to(*session.wait, now, adu.from(modbus::mbap_size));
+  modbus::put_header({session.wait->transaction, session.wait->unit, {}}, pdu, adu.data());
+  session.wait.reset();
   return modbus::mbap_size + pdu;
 }
 

@@ -16,10 +16,24 @@ class Server {
   Server(std::uint8_t unit, Handler& handler, Statistics& statistics)
       : unit_(unit), handler_(handler), statistics_(statistics) {}
 
-  /// Writes the reply to `adu` (at least max_adu_size bytes) and returns its size; 0: another unit's request,
-  /// which gets no answer. `session` sent the frame.
+  /// Writes the reply to `adu` and returns its size; 0: another unit's request, which gets no answer, or one
+  /// that waits for changes (session.wait). `session` sent the frame, which arrived at `now`. `adu` has at
+  /// least max_adu_size bytes, and twice as many if the session waits already: that is answered first.
   std::size_t answer(const modbus::Frame& frame, ClientSession& session, TimePoint now,
                      Span<std::uint8_t> adu);
+
+  /// To be called for each session that waits after answer(), after Handler::tick(), and when its time is
+  /// over (session.wait->until). Writes the reply that is sent now to `adu` (at least max_adu_size bytes) if
+  /// it is due, and returns its size; else 0.
+  std::size_t answer_waiting(ClientSession& session, TimePoint now, Span<std::uint8_t> adu);
+
+  /// The same, due or not: what the session waits for has to end. 0: it does not wait.
+  std::size_t end_wait(ClientSession& session, TimePoint now, Span<std::uint8_t> adu);
+
+  /// The connection has ended: what it has scheduled is cancelled.
+  void end_session(const ClientSession& session, TimePoint now) { handler_.end_session(session, now); }
+
+  const Changes& changes() const { return handler_.changes(); }
 
  private:
   std::uint8_t unit_;

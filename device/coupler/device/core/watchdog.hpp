@@ -5,15 +5,11 @@
 #include <cstdint>
 #include <optional>
 
+#include "coupler/device/core/client_session.hpp"
 #include "coupler/device/core/time.hpp"
 #include "coupler/map/watchdog.hpp"
 
 namespace coupler::device {
-
-/// What the node remembers of a connection, from when it is opened.
-struct ClientSession {
-  bool has_written = false;  ///< a write of it to an output was carried out
-};
 
 /// Tells when the client has been silent for too long. A write to an output arms it; requests of connections
 /// that have written one feed it, so neither a monitor nor an HMI that writes something else can keep a dead

@@ -16,15 +16,19 @@ namespace coupler::device::backend {
 /// The chips of this machine.
 Inventory chips();
 
+/// How many lines are watched though no counter, latched point or debounce needs it; each costs descriptors.
+std::size_t max_watched();
+
 /// Whether the kernel takes `line` into the same request as these (of which there is at least one).
-/// Inputs and outputs are never mixed.
+/// Inputs and outputs are never mixed, nor are inputs that are watched and others.
 bool fits(const std::vector<LineSpec>& group, const LineSpec& line);
 
 /// One to max_group_size lines that fit together. Outputs begin at their wanted levels, with no other
 /// level in between. The error names chip, line and holder.
 tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<LineSpec>& lines);
 
-/// The same for inputs; the group has a descriptor if its edges are to be watched.
+/// The same for inputs. Those that are watched are told of with each change, by their edges; of the others
+/// only the levels can be read.
 tl::expected<std::unique_ptr<InputGroup>, std::string> request_inputs(const std::vector<LineSpec>& lines);
 
 }  // namespace coupler::device::backend

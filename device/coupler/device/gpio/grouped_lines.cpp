@@ -62,9 +62,10 @@ GroupedLines::Output GroupedLines::output(WiredOutputs wired) {
 
 GroupedLines::Input GroupedLines::input(WiredInputs wired) {
   auto shared = std::make_unique<SharedArray<int>>(1);
+  auto before = std::make_unique<SharedArray<Before>>(wired.addresses.size());
   Fault fault(wired.group->name(), (*shared)[0], log_);
   LostEdges lost(wired.group->name(), log_);
-  return {std::move(wired), std::move(shared), std::move(fault), std::move(lost)};
+  return {std::move(wired), std::move(shared), std::move(before), std::move(fault), std::move(lost)};
 }
 
 bool GroupedLines::read(Range range, Span<std::uint16_t> levels, TimePoint now) {
@@ -81,25 +82,69 @@ bool GroupedLines::read(Range range, Span<std::uint16_t> levels, TimePoint now) 
   return good;
 }
 
+/// Tells of lines as their inputs.
+class GroupedLines::Teller : public LineSink {
+ public:
+  Teller(Input& input, TimePoint now, EdgeSink& sink) : input_(input), now_(now), sink_(sink) {}
+
+  void edges(std::size_t line, const Edges& edges) override {
+    const auto address = input_.wired.addresses[line];
+    if (!address) return;
+    input_.lost.note(edges.lost, now_);
+    sink_.add(*address, edges);
+  }
+  void changed(std::size_t line, bool level, TimePoint at) override {
+    if (const auto address = input_.wired.addresses[line]) sink_.changed(*address, level, at);
+  }
+  void lost(std::uint32_t changes) override { sink_.lost(changes); }
+
+  /// The lines of a chip that is plugged in again: what is another level now than before.
+  void changed_meanwhile() {
+    for (std::size_t line = 0; line < input_.before->all().size(); ++line) {
+      if ((*input_.before)[line] == Before::unknown) continue;
+      const Before before = std::exchange((*input_.before)[line], Before::unknown);
+      const auto level = input_.wired.group->level(line);
+      if (level && *level != (before == Before::on)) changed(line, *level, now_);
+    }
+  }
+
+ private:
+  Input& input_;
+  TimePoint now_;
+  EdgeSink& sink_;
+};
+
 void GroupedLines::take_edges(TimePoint now, EdgeSink& sink) {
   for (Input& input : inputs_) {
-    if (!input.wired.counted) continue;
+    Teller teller(input, now, sink);
+    if (!input.wired.request.lost) teller.changed_meanwhile();
     // Edges that were taken count, even if the chip is unplugged since; read() reports that.
     (void)input.wired.group->take_edges();
-    for (std::size_t line = 0; line < input.wired.addresses.size(); ++line) {
-      const Edges edges = input.wired.group->edges(line, now);
-      const auto address = input.wired.addresses[line];
-      if (!edges.any() || !address) continue;
-      input.lost.note(edges.lost, now);
-      sink.add(*address, edges);
-    }
+    input.wired.group->tell(now, teller);
   }
 }
 
-/// To output.next. Returns 0 or an errno: EIO if a line does not have the level that it was driven to.
+std::optional<TimePoint> GroupedLines::next_change(TimePoint now) const {
+  std::optional<TimePoint> next;
+  for (const Input& input : inputs_)
+    if (const auto its = input.wired.group->next_change(now); its && (!next || *its < *next)) next = its;
+  return next;
+}
+
+bool GroupedLines::has_to_look() const {
+  return std::any_of(inputs_.begin(), inputs_.end(),
+                     [](const Input& input) { return input.wired.group->has_to_look(); });
+}
+
+/// To output.next. Returns 0 or an errno.
 int GroupedLines::drive(Output& output, Span<int> scratch) {
   const int error = output.wired.group->drive(output.next);
-  if (error != 0 || !output.wired.readback) return error;
+  return error != 0 ? error : verify(output, scratch);
+}
+
+/// Returns 0 or an errno: EIO if a line does not have the level of output.next, to which it was driven.
+int GroupedLines::verify(Output& output, Span<int> scratch) {
+  if (!output.wired.readback) return 0;
   const auto got = scratch.first(output.next.size());
   if (const int unread = output.wired.group->read(got); unread != 0) return unread;
   return std::equal(got.begin(), got.end(), output.next.begin()) ? 0 : EIO;
@@ -128,6 +173,34 @@ bool GroupedLines::drive(Range range, Span<const std::uint16_t> levels) {
   return true;
 }
 
+/// To output.next, whatever becomes of other groups. What the chip has been told holds for its other lines
+/// although one does not follow; a chip that is unplugged has to come back so.
+GroupedLines::Driven GroupedLines::drive_alone(Output& output) {
+  const int refused = output.wired.group->drive(output.next);
+  const bool is_driven = output.fault.note(refused != 0 ? refused : verify(output, scratch_));
+  const bool is_gone = !is_driven && !output.wired.group->is_plugged();
+  if (refused == 0 || is_gone) copy(output.next, output.levels());
+  return is_driven ? Driven::yes : is_gone ? Driven::unplugged : Driven::no;
+}
+
+bool GroupedLines::drive_each(Range range, Span<const std::uint16_t> levels) {
+  bool good = true;
+  for (Output& output : outputs_) {
+    copy(output.levels(), output.next);
+    const bool wanted = each_in(range, output.wired.lines, [&](std::size_t line, std::size_t i) {
+      output.next[line] = levels[i] != 0 ? 1 : 0;
+    });
+    if (wanted) good &= drive_alone(output) != Driven::no;
+  }
+  return good;
+}
+
+bool GroupedLines::are_plugged(Range range) const {
+  return std::all_of(outputs_.begin(), outputs_.end(), [&](const Output& output) {
+    return !each_in(range, output.wired.lines, [](auto, auto) {}) || output.wired.group->is_plugged();
+  });
+}
+
 bool GroupedLines::driven(Range range, Span<std::uint16_t> levels) const {
   bool any = false;
   for (const Output& output : outputs_)
@@ -149,11 +222,8 @@ bool GroupedLines::drive_safe() {
   for (Output& output : outputs_) {
     for (std::size_t line = 0; line < output.next.size(); ++line)
       output.next[line] = safe_level(output.wired.lines[line].safe, output.levels()[line]);
-    const bool is_driven = output.fault.note(drive(output, scratch_));
-    const bool is_gone = !is_driven && !output.wired.group->is_plugged();
-    // A chip that is unplugged has to come back in its safe state.
-    if (is_driven || is_gone) copy(output.next, output.levels());
-    good &= is_driven || (is_gone && only_holds(output.wired));
+    const Driven driven = drive_alone(output);
+    good &= driven == Driven::yes || (driven == Driven::unplugged && only_holds(output.wired));
   }
   return good;
 }
@@ -175,6 +245,9 @@ void GroupedLines::lose_outputs(std::size_t group) {
 void GroupedLines::lose_inputs(std::size_t group) {
   Input& lost = inputs_[group];
   lost.fault.note(ENODEV);
+  for (std::size_t line = 0; line < lost.before->all().size(); ++line)
+    if (const auto level = lost.wired.group->level(line))
+      (*lost.before)[line] = *level ? Before::on : Before::off;
   lost.wired.group = std::make_shared<AbsentInputs>(lost.wired.group->name());
   lost.wired.request.lost = true;
 }
@@ -188,6 +261,10 @@ void GroupedLines::renew_outputs(std::size_t group, WiredOutputs again) {
 
 void GroupedLines::renew_inputs(std::size_t group, WiredInputs again) {
   Input renewed = input(std::move(again));
+  const Input& old = inputs_[group];
+  for (std::size_t line = 0; line < renewed.wired.addresses.size(); ++line)
+    for (std::size_t i = 0; i < old.wired.addresses.size(); ++i)
+      if (renewed.wired.addresses[line] == old.wired.addresses[i]) (*renewed.before)[line] = (*old.before)[i];
   (*renewed.shared)[0] = ENODEV;
   renewed.fault.note(0);
   inputs_[group] = std::move(renewed);

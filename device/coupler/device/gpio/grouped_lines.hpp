@@ -18,9 +18,6 @@
 
 namespace coupler::device {
 
-/// The level of an output in its safe state, if its level is `now`.
-inline int safe_level(Safe safe, int now) { return safe == Safe::hold ? now : safe == Safe::on ? 1 : 0; }
-
 /// A line of this machine and how it was requested.
 struct HeldLine {
   std::string chip;  ///< the kernel's name
@@ -31,6 +28,7 @@ struct HeldLine {
   Drive drive = Drive::push_pull;
   std::chrono::microseconds debounce{0};
   std::optional<Edge> counted{};
+  bool watched = false;          ///< its edges are wanted
   const Point* point = nullptr;  ///< that is wired to it; null: none of the map
 };
 
@@ -38,6 +36,7 @@ struct HeldLine {
 struct HeldRequest {
   std::vector<HeldLine> lines{};  ///< in the order of the group
   bool lost = false;              ///< the chip is unplugged
+  bool sampled = false;           ///< inputs that are looked at, since they report no edges
   std::string error{};            ///< why the lines cannot be requested again, as it was logged
 };
 
@@ -58,7 +57,6 @@ struct WiredOutputs {
 struct WiredInputs {
   std::shared_ptr<InputGroup> group;
   std::vector<std::optional<std::uint16_t>> addresses;
-  bool counted = false;  ///< counters or latched points want its edges
   HeldRequest request{};
 };
 
@@ -71,7 +69,11 @@ class GroupedLines : public Lines {
 
   bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint now) override;
   void take_edges(TimePoint now, EdgeSink& sink) override;
+  std::optional<TimePoint> next_change(TimePoint now) const override;
+  bool has_to_look() const override;
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override;
+  bool drive_each(modbus::Range coils, Span<const std::uint16_t> levels) override;
+  bool are_plugged(modbus::Range coils) const override;
   bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override;
   bool drive_safe() override;
 
@@ -110,16 +112,23 @@ class GroupedLines : public Lines {
 
     Span<int> levels() const { return shared->all().first(next.size()); }
   };
+  /// An input's level when its chip was unplugged.
+  enum class Before : std::uint8_t { unknown, off, on };
   struct Input {
     WiredInputs wired;
     Shared shared;
+    std::unique_ptr<SharedArray<Before>> before;  ///< one for each line; unknown once the difference was told
     Fault fault;
     LostEdges lost;
   };
 
   Output output(WiredOutputs wired);
   Input input(WiredInputs wired);
+  class Teller;
   static int drive(Output& output, Span<int> scratch);
+  static int verify(Output& output, Span<int> scratch);
+  enum class Driven : std::uint8_t { yes, no, unplugged };
+  Driven drive_alone(Output& output);
   void restore();
   static void abandon(Output& old, const Output* successor);
 

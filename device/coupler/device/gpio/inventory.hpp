@@ -58,9 +58,11 @@ struct LineSpec {
   FoundLine line;
   std::optional<Edge> counted;  ///< the edges that counters and latched points want of it
   int level = 0;                ///< that an output begins with
+  bool watched = true;          ///< an input: its edges are wanted, to tell each change
 };
 
 inline bool is_output(const LineSpec& wanted) { return wanted.point->table == Table::coils; }
+inline bool is_watched(const LineSpec& wanted) { return !is_output(wanted) && wanted.watched; }
 
 /// "gpiochip0 line 5 (GPIO5), gpiochip0 line 6 (GPIO6) and 3 more".
 std::string names_of(const std::vector<LineSpec>& lines);

@@ -4,6 +4,8 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -32,6 +34,19 @@ class OutputGroup : public LineGroup {
   [[nodiscard]] virtual int read(Span<int> levels) = 0;
 };
 
+/// Who is told what the lines of a group did. `line`: the group's i-th.
+class LineSink {
+ public:
+  /// Of a line whose edges counters or latched points want.
+  virtual void edges(std::size_t line, const Edges& edges) = 0;
+  /// As EdgeSink has them.
+  virtual void changed(std::size_t line, bool level, TimePoint at) = 0;
+  virtual void lost(std::uint32_t changes) = 0;
+
+ protected:
+  ~LineSink() = default;
+};
+
 class InputGroup : public LineGroup {
  public:
   /// All lines of the group at once. Returns 0 or an errno.
@@ -42,8 +57,14 @@ class InputGroup : public LineGroup {
   /// Takes the waiting edges without blocking. False: the lines are gone (their chip was unplugged). The
   /// descriptor stays readable for ever then, so it must not be watched any more.
   [[nodiscard]] virtual bool take_edges() { return true; }
-  /// The edges of the group's i-th line that were taken since the last call.
-  virtual Edges edges([[maybe_unused]] std::size_t line, [[maybe_unused]] TimePoint now) { return {}; }
+  /// Tells what was taken, or seen by looking at the lines, since the last call.
+  virtual void tell(TimePoint, LineSink&) {}
+  /// When tell() is to be called again although the descriptor is not ready.
+  virtual std::optional<TimePoint> next_change(TimePoint) const { return std::nullopt; }
+  /// Lines::has_to_look().
+  virtual bool has_to_look() const { return false; }
+  /// The level that was told last; before the first change, the one that the line had when it was requested.
+  virtual std::optional<bool> level([[maybe_unused]] std::size_t line) const { return std::nullopt; }
 };
 
 // Stand-ins for lines whose chip is unplugged.

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 #include <vector>
 
@@ -37,7 +38,8 @@ class LineRequests : public Wiring {
 
   GroupedLines& groups() { return lines_; }
 
-  /// Requests lines that fit together and adds them. The error names chip, line and holder.
+  /// Requests lines that fit together and adds them. Inputs that report no edges are sampled, which is
+  /// logged. The error names chip, line and holder.
   tl::expected<void, std::string> request(const std::vector<LineSpec>& lines, bool readback);
   /// Adds lines that cannot be requested now; reconnect() will request them.
   void add_missing(const std::vector<LineSpec>& lines, bool readback);
@@ -47,6 +49,8 @@ class LineRequests : public Wiring {
   bool renew(bool safe);
   bool renew_outputs(std::size_t group, const std::vector<LineSpec>& lines, bool safe);
   bool renew_inputs(std::size_t group, const std::vector<LineSpec>& lines);
+  tl::expected<void, std::string> request_apart(const std::vector<LineSpec>& lines, const std::string& error);
+  tl::expected<void, std::string> request_sampled(const std::vector<LineSpec>& lines, std::string_view why);
   void fail(HeldRequest& held, const std::string& error);
 
   GroupedLines lines_;

@@ -33,6 +33,22 @@ int first_level(const Point& point, bool safe) {
 
 void add_line(std::string& errors, const std::string& text) { errors += (errors.empty() ? "" : "\n") + text; }
 
+/// Counters, latched points or debouncing need the edges of the input.
+bool needs_edges(const LineSpec& wanted) {
+  return wanted.counted.has_value() || wanted.point->line.debounce.count() > 0;
+}
+
+/// Chooses the inputs that are watched for changes: those whose edges the map needs, and of the others as
+/// many as can be.
+void choose_watched(LineSpecs& wanted) {
+  std::size_t left = backend::max_watched();
+  for (LineSpec& line : wanted) {
+    if (is_output(line) || needs_edges(line)) continue;
+    line.watched = left > 0;
+    if (left > 0) --left;
+  }
+}
+
 /// The lines of the map; `errors` names those that do not exist.
 LineSpecs find_lines(const Map& map, const Inventory& inventory, bool safe, std::string& errors) {
   LineSpecs wanted;
@@ -52,6 +68,7 @@ LineSpecs find_lines(const Map& map, const Inventory& inventory, bool safe, std:
                fmt::format("point '{}': {} is already the line of point '{}'; give one of them another line",
                            point.name, to_string(*found), other->second->name));
   }
+  choose_watched(wanted);
   return wanted;
 }
 

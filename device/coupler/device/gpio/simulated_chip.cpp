@@ -33,6 +33,8 @@ Line* named(Span<Line> lines, std::string_view name) {
   return by_name(lines).find(name);
 }
 
+bool is_square(const SimWire* wire) { return wire != nullptr && wire->square.count() > 0; }
+
 bool starts_on(const Point& point) { return !point.initial.empty() && point.initial[0] != 0; }
 
 bool is_safe_on(const Point& point) {
@@ -44,6 +46,7 @@ bool is_safe_on(const Point& point) {
 SimulatedChip::SimulatedChip(const Map& map, TimePoint now)
     : outputs_(outputs_of(map)), inputs_(inputs_of(map, outputs_.all())), start_(now) {
   state_[0].told = now;
+  for (Input& input : inputs_.all()) input.told = level_of(input, now) != 0;
 }
 
 std::vector<SimulatedChip::Output> SimulatedChip::outputs_of(const Map& map) {
@@ -62,7 +65,7 @@ std::vector<SimulatedChip::Input> SimulatedChip::inputs_of(const Map& map, Span<
     const SimWire* wire = wires.find(point.name);
     if (wire == nullptr && !point.line.present()) continue;
     const Output* from = wire == nullptr ? nullptr : by_output.find(wire->from);
-    all.push_back({&point, starts_on(point), wire, from, {}});
+    all.push_back({&point, starts_on(point), wire, from, {}, false});
   }
   return all;
 }
@@ -77,27 +80,70 @@ std::uint16_t SimulatedChip::level_of(const Input& input, TimePoint now) const {
   return level != input.wire->invert ? 1 : 0;
 }
 
-Edges SimulatedChip::edges_of_square(const SimWire& wire, TimePoint now) const {
-  // It is on from the start: the first falling edge is after half a period, the first rising one after one.
+std::uint64_t SimulatedChip::square_edges(const SimWire& wire, TimePoint now) const {
   const std::chrono::nanoseconds period = wire.square;
-  const std::chrono::nanoseconds off = wire.square - wire.square / 2;
-  const auto since_told = [&](std::chrono::nanoseconds lead) {
-    return static_cast<std::uint32_t>((std::max(now, state_[0].told) - start_ + lead) / period -
-                                      (state_[0].told - start_ + lead) / period);
-  };
-  Edges edges{since_told(std::chrono::nanoseconds(0)), since_told(off), 0};
-  if (wire.invert) std::swap(edges.rising, edges.falling);
-  return edges;
+  const auto since = std::max(now, start_) - start_;
+  return static_cast<std::uint64_t>(since / period) * 2 + (since % period >= period / 2 ? 1 : 0);
+}
+
+TimePoint SimulatedChip::time_of_edge(const SimWire& wire, std::uint64_t edge) const {
+  const std::chrono::nanoseconds period = wire.square;
+  return start_ + static_cast<std::int64_t>(edge / 2) * period + (edge % 2) * (period / 2);
+}
+
+/// The edges of one input until `now`, and as many of its changes as are kept.
+void SimulatedChip::tell(Input& input, TimePoint now, EdgeSink& sink) const {
+  const bool level = level_of(input, now) != 0;
+  Edges edges = std::exchange(input.edges, {});
+  std::uint64_t last = 0;
+  if (is_square(input.wire)) {
+    last = square_edges(*input.wire, now);
+    const std::uint64_t told = square_edges(*input.wire, state_[0].told);
+    edges = {static_cast<std::uint32_t>(last / 2 - told / 2),
+             static_cast<std::uint32_t>((last + 1) / 2 - (told + 1) / 2), 0};
+    if (input.wire->invert) std::swap(edges.rising, edges.falling);
+  }
+  if (!edges.any()) return;
+  sink.add(input.point->address, edges);
+  input.told = level;
+  const std::uint32_t changes = edges.rising + edges.falling;
+  const std::uint32_t kept = std::min(changes, most_changes);
+  if (changes > kept) sink.lost(changes - kept);
+  for (std::uint32_t ago = kept; ago-- > 0;)
+    sink.changed(input.point->address, level == (ago % 2 == 0),
+                 is_square(input.wire) ? time_of_edge(*input.wire, last - ago) : now);
+}
+
+/// The chip is back: edges meanwhile were not seen.
+void SimulatedChip::tell_return(Input& input, TimePoint now, EdgeSink& sink) const {
+  input.edges = {};
+  const bool level = level_of(input, now) != 0;
+  if (std::exchange(input.told, level) != level) sink.changed(input.point->address, level, now);
 }
 
 void SimulatedChip::take_edges(TimePoint now, EdgeSink& sink) {
   if (!state_[0].plugged) return;
-  for (Input& input : inputs_.all()) {
-    Edges edges = std::exchange(input.edges, {});
-    if (input.wire != nullptr && input.wire->square.count() > 0) edges = edges_of_square(*input.wire, now);
-    if (edges.any()) sink.add(input.point->address, edges);
+  now = std::max(now, state_[0].told);
+  const bool was_away = std::exchange(state_[0].was_away, false);
+  for (Input& input : inputs_.all())
+    if (was_away)
+      tell_return(input, now, sink);
+    else
+      tell(input, now, sink);
+  state_[0].told = now;
+}
+
+std::optional<TimePoint> SimulatedChip::next_change(TimePoint now) const {
+  if (!state_[0].plugged) return std::nullopt;
+  if (state_[0].was_away) return now;
+  std::optional<TimePoint> next;
+  for (const Input& input : inputs_.all()) {
+    if (input.edges.any()) return now;
+    if (!is_square(input.wire)) continue;
+    const TimePoint its = time_of_edge(*input.wire, square_edges(*input.wire, state_[0].told) + 1);
+    if (!next || its < *next) next = its;
   }
-  state_[0].told = std::max(state_[0].told, now);
+  return next;
 }
 
 bool SimulatedChip::read(Range inputs, Span<std::uint16_t> levels, TimePoint now) {
@@ -145,6 +191,7 @@ void SimulatedChip::take_over(const SimulatedChip& before) {
     if (const Input* old = inputs.find(input.point->name)) {
       input.level = old->level;
       input.edges = old->edges;
+      input.told = old->told;
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -14,14 +15,19 @@ namespace coupler::device {
 /// Hardware without hardware (`--sim`): every coil of the map has a line here (but latched ones, which have
 /// none), and so has every discrete input with a line or a wire, wired as the map's `sim:` says; any other is
 /// its firmware's. An input with no wire keeps the level that it was given. Nothing bounces, so nothing is
-/// debounced. No edge is missed: those of square waves are computed. Processes forked from this one use the
-/// same chip.
+/// debounced. No edge is missed: those of square waves are computed, with their times. Other changes have the
+/// time at which they are told. Processes forked from this one use the same chip.
 class SimulatedChip : public Lines {
  public:
   /// Outputs and unwired inputs are at their initial levels; square waves begin now, with their `on` half.
   SimulatedChip(const Map& map, TimePoint now);
 
+  /// Of more changes of one input than this, the newest are told, and the others are lost; counters and
+  /// latched points have all of them.
+  static constexpr std::uint32_t most_changes = 64;
+
   void take_edges(TimePoint now, EdgeSink& sink) override;
+  std::optional<TimePoint> next_change(TimePoint now) const override;
   bool read(modbus::Range inputs, Span<std::uint16_t> levels, TimePoint now) override;
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override;
   bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override;
@@ -33,7 +39,11 @@ class SimulatedChip : public Lines {
   /// What a test does from outside. Names are those of points of the map.
   void pull(std::string_view input, bool level);  ///< an unwired input
   bool level(std::string_view output) const;
-  void plug(bool in) { state_[0].plugged = in; }  ///< unplugged, nothing can be read or driven
+  /// Unplugged, nothing can be read or driven, and no edge is seen.
+  void plug(bool in) {
+    state_[0].plugged = in;
+    state_[0].was_away |= !in;
+  }
 
  private:
   struct Output {
@@ -46,17 +56,23 @@ class SimulatedChip : public Lines {
     const SimWire* wire;  ///< null: none
     const Output* from;   ///< null: no wire, or a square wave
     Edges edges;          ///< not told yet
+    bool told;            ///< the level that was told last
   };
 
   struct State {
     TimePoint told{};  ///< edges until then
     bool plugged = true;
+    bool was_away = false;  ///< since then
   };
 
   static std::vector<Output> outputs_of(const Map& map);
   static std::vector<Input> inputs_of(const Map& map, Span<const Output> outputs);
   std::uint16_t level_of(const Input& input, TimePoint now) const;
-  Edges edges_of_square(const SimWire& wire, TimePoint now) const;
+  /// How many edges a square wave has had at `now`; even ones rise.
+  std::uint64_t square_edges(const SimWire& wire, TimePoint now) const;
+  TimePoint time_of_edge(const SimWire& wire, std::uint64_t edge) const;
+  void tell(Input& input, TimePoint now, EdgeSink& sink) const;
+  void tell_return(Input& input, TimePoint now, EdgeSink& sink) const;
   void set(Output& output, bool level);
 
   SharedArray<Output> outputs_;  ///< ascending addresses

@@ -47,6 +47,7 @@ void Connection::open(OpenConnection from, const IpAddress& origin, TimePoint no
 
 OpenConnection Connection::release() {
   OpenConnection open;
+  end_wait();
   loop_.forget(socket_.get(), *this);
   open.socket = std::move(socket_);
   open.has_written = session_.has_written;
@@ -57,11 +58,20 @@ OpenConnection Connection::release() {
   return open;
 }
 
+/// There is room: nothing came behind the request that waits.
+void Connection::end_wait() {
+  unlist();
+  put_waiting();
+  (void)send();  // what the client does not take now stays
+}
+
 void Connection::close() {
   if (!is_open()) return;
+  unlist();
   loop_.forget(socket_.get(), *this);
   socket_.close();
   deadline_.reset();
+  server_.end_session(session_, TimePoint::clock::now());
 }
 
 void Connection::ready(TimePoint now) {
@@ -70,7 +80,23 @@ void Connection::ready(TimePoint now) {
   if (!take_turn(now)) return close();
   if (has_output() != was_sending)
     loop_.change(socket_.get(), has_output() ? Interest::write : Interest::read, *this);
+  list();
   set_deadline(now, last_active_ != before);
+}
+
+/// Tells the waiters whether this is one of them. While the client does not read, what it waits for waits,
+/// too.
+void Connection::list() {
+  const bool waits = session_.wait && !has_output();
+  const auto until = waits ? std::optional(session_.wait->until) : std::nullopt;
+  if (until == listed_) return;
+  unlist();
+  if (until) waiters_.add(*this, *until);
+  listed_ = until;
+}
+
+void Connection::unlist() {
+  if (std::exchange(listed_, std::nullopt)) waiters_.remove(*this);
 }
 
 /// False: the connection is to be closed.
@@ -79,7 +105,8 @@ bool Connection::take_turn(TimePoint now) {
   if (!send() || !answer(now)) return false;
   if (has_output()) return true;
   if (!ended_ && !receive()) return false;
-  return answer(now) && (!ended_ || has_output());
+  // What has just been received came after `now`, and clients measure time by that.
+  return answer(TimePoint::clock::now()) && (!ended_ || has_output());
 }
 
 bool Connection::receive() {
@@ -106,15 +133,24 @@ bool Connection::answer(TimePoint now) {
 
 /// Answers whole frames while there is room for the longest reply; tells what comes next.
 Outcome Connection::fill_output(TimePoint now) {
-  while (output_.size() - output_end_ >= modbus::max_adu_size) {
+  while (has_room()) {
+    if (session_.wait && server_.changes().is_due(*session_.wait, now)) put_waiting();
     const Outcome outcome = framer_.next();
+    if (outcome == Outcome::nothing && ended_) put_waiting();
     if (outcome != Outcome::frame) return outcome;
-    output_end_ +=
-        server_.answer(framer_.frame(), session_, now, Span<std::uint8_t>(output_).from(output_end_));
+    output_end_ += server_.answer(framer_.frame(), session_, now, room());
     has_asked_ = true;
     last_active_ = now;
   }
   return Outcome::frame;
+}
+
+/// The reply to what it waits for has the time at which it leaves.
+void Connection::put_waiting() { output_end_ += server_.end_wait(session_, TimePoint::clock::now(), room()); }
+
+/// For the longest reply, and that to the request that waits.
+bool Connection::has_room() const {
+  return output_.size() - output_end_ >= (session_.wait ? 2 : 1) * modbus::max_adu_size;
 }
 
 bool Connection::send() {

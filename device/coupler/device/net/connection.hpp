@@ -7,6 +7,7 @@
 #include "coupler/device/core/server.hpp"
 #include "coupler/device/net/loop.hpp"
 #include "coupler/device/net/open_connection.hpp"
+#include "coupler/device/net/waiters.hpp"
 #include "coupler/map/network.hpp"
 #include "coupler/modbus/frame.hpp"
 
@@ -15,15 +16,16 @@ namespace coupler::device {
 /// One client. In a turn it receives once, at most as much as the longest frame, and answers what that
 /// completes; so clients that pipeline thousands of requests take turns with the others. While a reply waits
 /// for the client to read, no further request of it is carried out or received, so its replies are bounded.
-/// Its memory is used again for the next client.
+/// While its request waits for changes, it is one of the waiters. Its memory is used again for the next
+/// client.
 class Connection : public EventHandler {
  public:
   /// For the rest of a frame once its beginning is there, and for a client to take a reply; absolute, so that
   /// single bytes do not extend it.
   static constexpr std::chrono::seconds timeout{5};
 
-  Connection(Loop& loop, Server& server, Statistics& statistics)
-      : loop_(loop), server_(server), statistics_(statistics) {}
+  Connection(Loop& loop, Server& server, Waiters& waiters, Statistics& statistics)
+      : loop_(loop), server_(server), waiters_(waiters), statistics_(statistics) {}
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
   ~Connection() { close(); }
@@ -32,8 +34,10 @@ class Connection : public EventHandler {
   void open(Descriptor socket, const IpAddress& origin, TimePoint now);
   /// Continues with a client that another connection released.
   void open(OpenConnection from, const IpAddress& origin, TimePoint now);
-  /// Releases the client without closing its connection.
+  /// Answers what it waits for, and releases the client without closing its connection.
   OpenConnection release();
+  /// Answers what it waits for, since the node ends.
+  void end_wait();
   bool is_open() const { return socket_.is_open(); }
   void close();
 
@@ -59,15 +63,22 @@ class Connection : public EventHandler {
   bool receive();
   bool answer(TimePoint now);
   modbus::Framer::Outcome fill_output(TimePoint now);
+  void put_waiting();
+  bool has_room() const;
+  Span<std::uint8_t> room() { return Span<std::uint8_t>(output_).from(output_end_); }
+  void list();
+  void unlist();
   bool send();
   bool has_output() const { return output_begin_ != output_end_; }
   void set_deadline(TimePoint now, bool had_frame);
 
   Loop& loop_;
   Server& server_;
+  Waiters& waiters_;
   Statistics& statistics_;
   Descriptor socket_;
   ClientSession session_;
+  std::optional<TimePoint> listed_;  ///< among the waiters, until then
   IpAddress origin_{};
   modbus::Framer framer_;
   std::array<std::uint8_t, output_size> output_;

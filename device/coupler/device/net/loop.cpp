@@ -40,12 +40,11 @@ void Loop::forget(int fd, const EventHandler& handler) {
 TimePoint Loop::run_once(std::optional<std::chrono::milliseconds> timeout) {
   const int wait = timeout ? static_cast<int>(timeout->count()) : -1;
   waiting_ = std::max(0, ::epoll_wait(epoll_.get(), events_.data(), static_cast<int>(events_.size()), wait));
-  const TimePoint now = TimePoint::clock::now();
   for (int i = 0; i < waiting_; ++i)
     if (void* handler = events_[static_cast<std::size_t>(i)].data.ptr)
-      static_cast<EventHandler*>(handler)->ready(now);
+      static_cast<EventHandler*>(handler)->ready(TimePoint::clock::now());
   waiting_ = 0;
-  return now;
+  return TimePoint::clock::now();
 }
 
 }  // namespace coupler::device

@@ -38,8 +38,8 @@ class Loop {
   /// After this the handler is not called for it any more, not even if it was ready in this round.
   void forget(int fd, const EventHandler& handler);
 
-  /// Waits until a descriptor is ready or the time is over (nullopt: for ever), then calls the handlers.
-  /// Returns the time after the wait.
+  /// Waits until a descriptor is ready or the time is over (nullopt: for ever), then calls the handlers, each
+  /// with its own time. Returns the time after that.
   TimePoint run_once(std::optional<std::chrono::milliseconds> timeout);
 
  private:

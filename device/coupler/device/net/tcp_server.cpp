@@ -58,8 +58,13 @@ std::string host_of(const sockaddr_storage& peer) {
 
 TcpServer::TcpServer(Loop& loop, const Listener& listener, Server& server, Statistics& statistics, Log& log,
                      std::size_t capacity)
-    : loop_(loop), listener_(listener), statistics_(statistics), log_(log) {
-  for (std::size_t i = affordable(capacity); i > 0; --i) connections_.emplace_back(loop, server, statistics);
+    : loop_(loop),
+      listener_(listener),
+      statistics_(statistics),
+      log_(log),
+      waiters_(server, affordable(capacity)) {
+  for (std::size_t i = affordable(capacity); i > 0; --i)
+    connections_.emplace_back(loop, server, waiters_, statistics);
   for (Connection& connection : connections_) by_origin_.push_back(&connection);
   [[maybe_unused]] const bool watched = loop_.watch(listener_.socket.get(), Interest::read, *this);
   assert(watched);
@@ -98,6 +103,11 @@ std::vector<OpenConnection> TcpServer::release() {
   for (Connection& connection : connections_)
     if (connection.is_open()) clients.push_back(connection.release());
   return clients;
+}
+
+void TcpServer::end_waits() {
+  for (Connection& connection : connections_)
+    if (connection.is_open()) connection.end_wait();
 }
 
 /// False: nobody waits, or nobody can be let in now.
@@ -180,12 +190,19 @@ Connection& TcpServer::who_makes_room_for(const IpAddress& newcomer) {
   return *chosen;
 }
 
-std::optional<std::chrono::milliseconds> TcpServer::time_until_due() const {
+std::optional<std::chrono::milliseconds> TcpServer::time_until_due(TimePoint now) const {
+  using std::chrono::milliseconds;
+  if (const auto due = waiters_.due(); due && *due < now + sweep_period)
+    return std::max(milliseconds(0), std::chrono::ceil<milliseconds>(*due - now));
   return in_use_ || paused_ ? std::optional(sweep_period) : std::nullopt;
 }
 
 void TcpServer::tick(TimePoint now) {
-  if (now < next_sweep_) return;
+  waiters_.answer(now);
+  if (now >= next_sweep_) sweep(now);
+}
+
+void TcpServer::sweep(TimePoint now) {
   next_sweep_ = now + sweep_period;
   for (Connection& connection : connections_) {
     if (!connection.deadline() || *connection.deadline() > now) continue;

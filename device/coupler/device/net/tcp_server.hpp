@@ -34,18 +34,21 @@ class TcpServer : public EventHandler {
 
   /// Continues with clients that another server released, if they may connect and there is room.
   void take_over(std::vector<OpenConnection> clients, TimePoint now);
-  /// Releases all clients without closing their connections.
+  /// Releases all clients without closing their connections, after an answer to those that wait.
   std::vector<OpenConnection> release();
+  /// Answers those that wait, since the node ends.
+  void end_waits();
 
   /// A client connects.
   void ready(TimePoint now) override;
 
   /// How long tick() need not be called; nullopt: not before something happens.
-  std::optional<std::chrono::milliseconds> time_until_due() const;
-  /// Closes what is overdue.
+  std::optional<std::chrono::milliseconds> time_until_due(TimePoint now) const;
+  /// Tells changes to those that wait for them, and closes what is overdue.
   void tick(TimePoint now);
 
  private:
+  void sweep(TimePoint now);
   Connection& place_for(const IpAddress& newcomer);
   Connection& who_makes_room_for(const IpAddress& newcomer);
   bool accept_one(TimePoint now);
@@ -56,6 +59,7 @@ class TcpServer : public EventHandler {
   const Listener& listener_;
   Statistics& statistics_;
   Log& log_;
+  Waiters waiters_;
   std::deque<Connection> connections_;  ///< never grows after the start: addresses are stable
   std::vector<Connection*> by_origin_;  ///< the same; sorted where it matters
   bool paused_ = false;                 ///< out of descriptors or memory

@@ -28,15 +28,16 @@ void GuardedHooks::log(const std::string& who, const char* what) {
   log_.fail(fmt::format("{} threw an exception: {}", who, what));
 }
 
-bool GuardedHooks::begin() {
-  hooks_.allow_setting();
+bool GuardedHooks::begin(Waker* waker) {
+  hooks_.allow_setting(waker);
   return guard([&] { hooks_.serving_began(); }, [&](const char* what) { log("serving_began()", what); });
 }
 
 bool GuardedHooks::end(Image& image) {
-  hooks_.allow_setting();
+  hooks_.allow_setting(nullptr);
   const bool safe = made_safe();
-  hooks_.put_new_values(image);
+  Changes told_to_nobody;
+  hooks_.put_new_values(image, told_to_nobody);
   return safe;
 }
 

@@ -16,12 +16,13 @@ class GuardedHooks final : public Hooks {
   /// All of them outlive it; the map is the one whose points `hooks` is behind.
   GuardedHooks(Hooks& hooks, const Map& map, Log& log) : hooks_(hooks), map_(map), log_(log) {}
 
-  /// This process serves from now on: values can be set in it. False: serving_began() threw.
-  [[nodiscard]] bool begin();
+  /// This process serves from now on: values can be set in it, of which `waker` is told. False:
+  /// serving_began() threw.
+  [[nodiscard]] bool begin(Waker* waker);
   /// Nobody serves: make_safe(), and what it sets is put into the image. False: it threw.
   [[nodiscard]] bool end(Image& image);
 
-  void put_new_values(Image& image) override { hooks_.put_new_values(image); }
+  void put_new_values(Image& image, Changes& changes) override { hooks_.put_new_values(image, changes); }
   [[nodiscard]] bool accept(std::uint32_t point, const std::uint16_t* registers) override;
   void make_safe() override { (void)made_safe(); }
 

@@ -2,9 +2,12 @@
 #include "coupler/device/node/io_service.hpp"
 
 #include <fmt/format.h>
+#include <sys/random.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <string_view>
 #include <utility>
@@ -15,12 +18,36 @@
 namespace coupler::device {
 namespace {
 
+/// That clients which wait can ask for.
+constexpr std::size_t kept_changes = 1024;
+
 using TimeUntilDue = std::optional<std::chrono::milliseconds>;
+
+class SteadyClock final : public Clock {
+ public:
+  TimePoint now() const override { return TimePoint::clock::now(); }
+};
+
+const SteadyClock steady_clock;
 
 /// nullopt is for ever.
 TimeUntilDue shorter(TimeUntilDue a, TimeUntilDue b) {
   if (!a || !b) return a ? a : b;
   return std::min(*a, *b);
+}
+
+/// For the first seconds of a machine without a source of random numbers, when the kernel has none.
+std::uint32_t epoch_from_clock() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto ns = static_cast<std::uint64_t>(std::chrono::nanoseconds(now).count());
+  return static_cast<std::uint32_t>(ns ^ ns >> 32) ^ static_cast<std::uint32_t>(::getpid());
+}
+
+/// A number for what begins anew with each process: not 0, and hardly ever the same twice. Waits for nothing.
+std::uint32_t random_epoch() {
+  std::uint32_t epoch = 0;
+  if (::getrandom(&epoch, sizeof epoch, GRND_NONBLOCK) != sizeof epoch) epoch = epoch_from_clock();
+  return std::max<std::uint32_t>(epoch, 1);
 }
 
 /// " (01: 2, 03: 1)"; nothing if there were none.
@@ -37,7 +64,8 @@ std::string by_code(const Statistics& statistics) {
 /// Takes edges from the kernel as they come. A line that is gone is not watched any more.
 class IoService::EdgeHandler : public EventHandler {
  public:
-  EdgeHandler(Loop& loop, InputGroup& group, Log& log) : loop_(loop), group_(group) {
+  EdgeHandler(Loop& loop, InputGroup& group, Handler& handler, Log& log)
+      : loop_(loop), group_(group), handler_(handler) {
     if (!loop_.watch(group_.descriptor(), Interest::read, *this))
       log.write(fmt::format(
           "edges of an input cannot be watched: {}; they are taken only when a client sends a request",
@@ -47,28 +75,38 @@ class IoService::EdgeHandler : public EventHandler {
   EdgeHandler& operator=(const EdgeHandler&) = delete;
   ~EdgeHandler() { loop_.forget(group_.descriptor(), *this); }
 
-  void ready(TimePoint) override {
+  void ready(TimePoint now) override {
     if (!group_.take_edges()) loop_.forget(group_.descriptor(), *this);
+    handler_.take_news(now);
   }
 
  private:
   Loop& loop_;
   InputGroup& group_;
+  Handler& handler_;
 };
 
 IoService::IoService(const ServingContext& context, Loop& loop, Log& log)
-    : hardware_(context.hardware()),
-      loop_(loop),
+    : loop_(loop),
       log_(log),
       statistics_(context.state->statistics()),
-      handler_(*context.map, context.state->image(), hardware_, context.state->statistics(),
-               context.state->watchdog(), context.state->links()),
+      ring_(kept_changes),
+      told_(context.state->image().bits().size()),
+      changes_(context.state->image(), ring_, told_),
+      schedule_(context.state->scheduled(), &changes_),
+      handler_(*context.map, context.hardware(),
+               {context.state->image(), context.state->statistics(), context.state->watchdog(),
+                context.state->links(), changes_, schedule_},
+               &steady_clock),
       server_(context.map->connection.unit, handler_, context.state->statistics()),
       tcp_(loop, context.listener, server_, context.state->statistics(), log),
+      timer_(loop, [this](TimePoint now) { handler_.tick(now); }),
       now_(TimePoint::clock::now()),
       trips_(statistics_.watchdog_trips) {
   handler_.set_machine(context.state->machine());
-  for (InputGroup* group : context.wiring->event_sources()) edge_handlers_.emplace_back(loop, *group, log);
+  handler_.tell_changes(random_epoch(), now_);
+  for (InputGroup* group : context.wiring->event_sources())
+    edge_handlers_.emplace_back(loop, *group, handler_, log);
 }
 
 IoService::~IoService() = default;
@@ -84,17 +122,23 @@ void IoService::run(const std::function<bool(TimePoint)>& is_over, const std::fu
   (void)log_.tick(now_ + LineLimit::interval);  // logs what is still held back
 }
 
-std::vector<OpenConnection> IoService::release() { return tcp_.release(); }
+std::vector<OpenConnection> IoService::release() {
+  handler_.end_schedule(TimePoint::clock::now());
+  return tcp_.release();
+}
 
 void IoService::end(int signal) {
-  log_.write(shutdown_summary(signal, make_safe(), statistics_, TimePoint::clock::now()));
+  const bool is_safe = make_safe(modbus::Reason::reload);
+  tcp_.end_waits();
+  log_.write(shutdown_summary(signal, is_safe, statistics_, TimePoint::clock::now()));
 }
 
 void IoService::turn() {
-  const TimeUntilDue work = shorter(tcp_.time_until_due(), handler_.time_until_due(now_));
+  const TimeUntilDue work = shorter(tcp_.time_until_due(now_), handler_.time_until_due(now_));
+  timer_.set(handler_.next_scheduled());
   now_ = loop_.run_once(shorter(heartbeat_period, shorter(work, log_.tick(now_))));
-  tcp_.tick(now_);
   handler_.tick(now_);
+  tcp_.tick(now_);
   log_trips();
 }
 

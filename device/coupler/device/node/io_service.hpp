@@ -9,6 +9,7 @@
 #include "coupler/device/core/log.hpp"
 #include "coupler/device/core/server.hpp"
 #include "coupler/device/net/tcp_server.hpp"
+#include "coupler/device/net/timer.hpp"
 #include "coupler/device/node/serving_context.hpp"
 
 namespace coupler::device {
@@ -27,12 +28,13 @@ class IoService {
   /// Serves until `is_over`, which is called in each turn of the loop, is true. Calls `beat` once in each
   /// heartbeat_period.
   void run(const std::function<bool(TimePoint)>& is_over, const std::function<void()>& beat);
-  /// Releases its clients; outputs stay as they are.
+  /// Releases its clients; outputs stay as they are, and what clients have scheduled is cancelled.
   std::vector<OpenConnection> release();
-  /// The end after a signal: drives the outputs to their safe state and logs the summary.
+  /// The end after a signal: drives the outputs to their safe state, tells those that wait for changes, and
+  /// logs the summary.
   void end(int signal);
   /// Drives the outputs to their safe state. False: one of them could not be driven.
-  bool make_safe() { return hardware_.drive_safe(); }
+  bool make_safe(modbus::Reason reason) { return handler_.make_safe(reason, TimePoint::clock::now()); }
 
  private:
   class EdgeHandler;
@@ -40,14 +42,18 @@ class IoService {
   void turn();
   void log_trips();
 
-  Hardware hardware_;
   Loop& loop_;
   Log& log_;
   std::list<EdgeHandler> edge_handlers_;
   const Statistics& statistics_;
+  std::vector<ChangeRing::Entry> ring_;
+  std::vector<std::uint16_t> told_;
+  Changes changes_;
+  OutputSchedule schedule_;
   Handler handler_;
   Server server_;
   TcpServer tcp_;
+  Timer timer_;  ///< for what is scheduled
   TimePoint now_;
   std::uint32_t trips_;  ///< of the watchdog, that were logged
 };

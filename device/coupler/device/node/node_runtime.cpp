@@ -4,16 +4,35 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <utility>
 
 #include "coupler/device/analogue/sampler.hpp"
+#include "coupler/device/core/duration_end.hpp"
 #include "coupler/device/node/realtime.hpp"
 #include "coupler/map/fingerprint.hpp"
 
 namespace coupler::device {
+namespace {
+
+/// Ends the durations of a worker process that serves no more.
+struct Ending {
+  explicit Ending(ServingContext& context)
+      : schedule(context.state->scheduled()),
+        hardware(context.hardware()),
+        end(*context.map, context.state->image(), hardware, schedule, next) {}
+
+  OutputSchedule schedule;
+  Hardware hardware;
+  std::array<std::uint16_t, modbus::max_scheduled_bits> next{};
+  DurationEnd end;
+  TimePoint now = TimePoint::clock::now();
+};
+
+}  // namespace
 
 NodeRuntime::NodeRuntime(Loop& loop, const Options& options, ReadMap again, ServiceManager& manager, Log& log,
                          Hooks* hooks)
@@ -57,7 +76,8 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
   }
   const Signals signals(loop);
   supervisor.watch(loop);
-  if (hooks_ && !hooks_->begin()) return ServeError::device_failed;
+  if (hooks_) waker_ = std::make_unique<LoopWaker>(loop);
+  if (hooks_ && !hooks_->begin(waker_.get())) return ServeError::device_failed;
   std::optional<Sampler> sampler;
   if (context_->channels)
     sampler.emplace(*context_->channels, Sampler::period_for(context_->map->polling.rate));
@@ -84,7 +104,7 @@ void NodeRuntime::beat() {
 
 /// If this process died later, nobody would drive the outputs. What started the node starts it again.
 int NodeRuntime::end_without_supervisor(IoService& service) {
-  const bool safe = service.make_safe();
+  const bool safe = service.make_safe(modbus::Reason::safe_state);
   log_.fail(fmt::format(
       "the supervisor, process {}, was silent for {} s and is killed; {}", ::getppid(),
       SupervisorLink::timeout.count(),
@@ -161,6 +181,7 @@ bool NodeRuntime::reconnect(TimePoint now) {
 void NodeRuntime::change(std::vector<OpenConnection>& clients) {
   if (!next_) return;
   const bool same = next_->looks_like(*context_);
+  end_durations_that_do_not_fit();
   next_->state->take_over(*context_->state, TimePoint::clock::now());
   next_->wiring = std::exchange(next_->prepared, nullptr)->take_over();
   if (context_->channels) context_->channels->hand_over(next_->channels.get());
@@ -185,7 +206,22 @@ bool NodeRuntime::drive_safe() {
   if (options_.realtime) (void)take_priority(RealtimePriority::supervisor);
   const bool safe = Hardware(context_->wiring->lines(), context_->analogue.get()).drive_safe();
   context_->state->watchdog().disarm();
-  return safe;
+  // The next worker process may be long in coming.
+  return end_durations(safe) && safe;
+}
+
+bool NodeRuntime::end_durations(bool outputs_are_safe) {
+  Ending ending(*context_);
+  ending.schedule.outputs_went_safe(outputs_are_safe);
+  return ending.end.of_all(ending.now);
+}
+
+/// The new map has its points elsewhere, or has them no longer.
+void NodeRuntime::end_durations_that_do_not_fit() {
+  Ending ending(*context_);
+  ending.schedule.each_begun([&](ScheduledOutput& begun) {
+    if (!next_->state->fits(begun, *context_->state)) (void)ending.end.of(begun, ending.now);
+  });
 }
 
 bool NodeRuntime::make_firmware_safe() { return hooks_->end(context_->state->image()); }

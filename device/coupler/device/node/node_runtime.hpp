@@ -9,6 +9,7 @@
 
 #include "coupler/device/node/guarded_hooks.hpp"
 #include "coupler/device/node/io_service.hpp"
+#include "coupler/device/node/loop_waker.hpp"
 #include "coupler/device/node/map_reading.hpp"
 #include "coupler/device/node/options.hpp"
 #include "coupler/device/node/reload.hpp"
@@ -46,6 +47,8 @@ class NodeRuntime final : public Workload {
   bool take_map();
   void refuse(const ServeError& error);
   bool reconnect(TimePoint now);
+  bool end_durations(bool outputs_are_safe);
+  void end_durations_that_do_not_fit();
   int end_without_supervisor(IoService& service);
 
   Loop& loop_;
@@ -56,6 +59,8 @@ class NodeRuntime final : public Workload {
   Hooks* firmware_;
   bool has_announced_ = false;
   std::unique_ptr<GuardedHooks> hooks_;  ///< null: there is no firmware
+  std::unique_ptr<LoopWaker>
+      waker_;  ///< in a process that serves; the firmware's threads may outlive serve()
   std::unique_ptr<ServingContext> context_;
   std::unique_ptr<ServingContext> next_;    ///< waits for change()
   std::unique_ptr<ServingContext> former_;  ///< waits to be freed

@@ -43,8 +43,8 @@ class UrgentMutex {
 /// sets.
 class PointHooks : public Hooks {
  public:
-  void put_new_values(Image& image) final;
-  void allow_setting() final;
+  void put_new_values(Image& image, Changes& changes) final;
+  void allow_setting(Waker* waker) final;
   [[nodiscard]] bool accept(std::uint32_t, const std::uint16_t*) override { return true; }
 
  protected:
@@ -74,7 +74,8 @@ class PointHooks : public Hooks {
   std::string wrong_process() const;
 
   const Map& map_;
-  pid_t process_ = 0;  ///< the one that serves
+  pid_t process_ = 0;       ///< the one that serves
+  Waker* waker_ = nullptr;  ///< in it
   UrgentMutex mutex_;
   std::vector<std::vector<std::uint16_t>> set_;  ///< by point; empty: not set since it was put into the image
   std::vector<std::uint32_t> points_;            ///< those that are not empty

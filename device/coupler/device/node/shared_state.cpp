@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/device/node/shared_state.hpp"
 
+#include <algorithm>
 #include <tuple>
 #include <utility>
 
+#include "coupler/device/core/each_point.hpp"
 #include "coupler/map/lookup_by_name.hpp"
 
 namespace coupler::device {
@@ -25,6 +27,15 @@ bool same_value(const Point& a, const Point& b) {
   return layout(a) == layout(b);
 }
 
+/// Whether both drive the same, as far as the map says.
+bool same_hardware(const Point& a, const Point& b) {
+  const auto hardware = [](const Point& p) {
+    return std::tie(p.line.chip, p.line.offset, p.line.name, p.iio.device, p.iio.channel, p.pwm.chip,
+                    p.pwm.channel);
+  };
+  return hardware(a) == hardware(b);
+}
+
 /// Others have the value that their map says.
 bool may_change(const Point& point) {
   return is_writable(point) || point.counter.present() || point.latched.present();
@@ -41,6 +52,7 @@ SharedState::SharedState(const Map& map, TimePoint now, NodeMemory size, const i
       cells_(size.cells),
       image_(map, areas_, cells_.all()),
       lasting_(1, {started_at(now), OutputWatchdog(map.service.watchdog)}),
+      scheduled_(scheduled_outputs),
       links_(size.links),
       machine_(machine) {}
 
@@ -51,15 +63,30 @@ void SharedState::prepare_take_over(const SharedState& before) {
     const Point* old = known.find(point.name);
     if (old == nullptr || !same_value(*old, point)) continue;
     // A point that shares its register leaves the others' bits alone.
-    const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
-    carried_.push_back(
-        {before.image_.find(point.table, range(*old)), image_.find(point.table, range(point)), mask});
+    const std::uint16_t mask = own_bits(point);
+    carried_.push_back({&point, old, before.image_.find(point.table, range(*old)),
+                        image_.find(point.table, range(point)), mask});
   }
+}
+
+bool SharedState::fits(const ScheduledOutput& begun, const SharedState& before) const {
+  const auto same =
+      static_cast<std::size_t>(std::count_if(carried_.begin(), carried_.end(), [&](const Carried& carried) {
+        const Point& old = *carried.before;
+        return old.table == begun.table && range(old).overlaps(begun.range) &&
+               old.address == carried.point->address && same_hardware(old, *carried.point);
+      }));
+  return same == touched_points(before.map_, begun.table, begun.range).size() &&
+         same == touched_points(map_, begun.table, begun.range).size();
 }
 
 void SharedState::take_over(const SharedState& before, TimePoint now) {
   statistics() = before.lasting_[0].statistics;
   watchdog().take_over(before.lasting_[0].watchdog, now);
+  for (std::size_t i = 0; i < scheduled_outputs; ++i)
+    if (const ScheduledOutput& begun = before.scheduled_[i];
+        begun.state == ScheduledOutput::State::begun && fits(begun, before))
+      scheduled_[i] = begun;
   for (const Carried& carried : std::exchange(carried_, {}))
     for (std::size_t i = 0; i < carried.to.size(); ++i)
       carried.to[i] =

@@ -5,6 +5,7 @@
 
 #include "coupler/device/core/edge_points.hpp"
 #include "coupler/device/core/image.hpp"
+#include "coupler/device/core/output_schedule.hpp"
 #include "coupler/device/core/statistics.hpp"
 #include "coupler/device/core/watchdog.hpp"
 #include "coupler/device/supervisor/shared_memory.hpp"
@@ -13,24 +14,34 @@
 
 namespace coupler::device {
 
-/// What a node knows, for as long as its map stays the same: values, statistics, watchdog. It is shared with
-/// forked processes, so a worker process that is started anew goes on where the one before ended.
+/// What a node knows, for as long as its map stays the same: values, statistics, watchdog, scheduled outputs.
+/// It is shared with forked processes, so a worker process that is started anew goes on where the one before
+/// ended.
 class SharedState {
  public:
   /// Initial values. The map outlives it.
   SharedState(const Map& map, TimePoint now, const identity::Machine& machine = {});
 
+  /// How many outputs clients can schedule.
+  static constexpr std::size_t scheduled_outputs = 64;
+
   /// Finds out what take_over() from this other state, of another map, is to copy: that takes its time if
   /// there are many points.
   void prepare_take_over(const SharedState& before);
   /// Takes over from the other state what both have: statistics, the watchdog's state, and the value of
-  /// every point that has the same name, table, type and layout in both.
+  /// every point that has the same name, table, type and layout in both; and scheduled outputs that have
+  /// begun, if they fit().
   void take_over(const SharedState& before, TimePoint now);
+
+  /// Whether an output of `before`, for which take_over() was prepared, is of the same points here, at the
+  /// same addresses, with the same hardware behind them.
+  bool fits(const ScheduledOutput& begun, const SharedState& before) const;
 
   Image& image() { return image_; }
   Statistics& statistics() { return lasting_[0].statistics; }
   OutputWatchdog& watchdog() { return lasting_[0].watchdog; }
   Span<EdgePoints::Link> links() { return links_; }
+  Span<ScheduledOutput> scheduled() { return scheduled_.all(); }
   const identity::Machine& machine() const { return machine_; }
 
  private:
@@ -40,6 +51,8 @@ class SharedState {
   };
   /// Cells of a point in the other image and in this one.
   struct Carried {
+    const Point* point;
+    const Point* before;
     Span<const std::uint16_t> from;
     Span<std::uint16_t> to;
     std::uint16_t mask;
@@ -51,6 +64,7 @@ class SharedState {
   SharedArray<std::uint16_t> cells_;
   Image image_;
   SharedArray<Lasting> lasting_;
+  SharedArray<ScheduledOutput> scheduled_;
   std::vector<EdgePoints::Link> links_;
   std::vector<Carried> carried_;
   identity::Machine machine_;

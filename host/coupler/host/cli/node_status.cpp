@@ -31,9 +31,9 @@ Result<bool> read_area(host::Transport& transport, NodeStatus& status) {
   }
   status.report = *report;
   if (!status.report) return true;
-  const auto machine = host::read_machine(transport);
-  if (!machine) return tl::make_unexpected(machine.error());
-  status.machine = *machine;
+  const auto further = host::read_further(transport);
+  if (!further) return tl::make_unexpected(further.error());
+  status.further = *further;
   return true;
 }
 
@@ -88,6 +88,21 @@ std::string watchdog_text(const Report& report) {
   return text;
 }
 
+/// Of our own, each with what it is for.
+std::string functions_text(const identity::Functions& functions) {
+  std::string text;
+  if (functions.tells_changes) text += "65 (waiting for changes)";
+  if (functions.schedules_outputs) text += fmt::format("{}66 (outputs at a time)", text.empty() ? "" : ", ");
+  return text.empty() ? "none" : text;
+}
+
+/// An older node does not say how long it is.
+std::string timeout_text(const NodeStatus& status) {
+  if (status.report->watchdog_state == 0) return "none";
+  const std::uint32_t timeout = status.further.watchdog_timeout;
+  return timeout == 0 ? "unknown" : fmt::format("{} ms", timeout);
+}
+
 /// "93784 s (1 d 2 h 3 min)"
 std::string uptime_text(std::uint32_t seconds) {
   std::string text = fmt::format("{} s", seconds);
@@ -104,6 +119,13 @@ std::string row(std::string_view what, const std::string& value) {
 }
 
 ordered_json or_null(const std::string& text) { return text.empty() ? ordered_json() : ordered_json(text); }
+
+ordered_json functions_json(const identity::Functions& functions) {
+  ordered_json json = ordered_json::array();
+  if (functions.tells_changes) json.push_back(modbus::Function::wait_for_changes);
+  if (functions.schedules_outputs) json.push_back(modbus::Function::schedule_output);
+  return json;
+}
 
 ordered_json statistics_json(const Report& report) {
   ordered_json json = ordered_json::object();
@@ -144,9 +166,11 @@ std::string status_text(const NodeStatus& status, const Connection& where) {
   text += row("size and CRC-32 of the map",
               fmt::format("{} bytes, {:08x}", report.head.map_size, report.head.map_crc));
   text += row("version of OpenCoupler", or_unknown(object(status, revision)));
-  text += row("hostname", or_unknown(std::string(hostname_of(status.machine))));
-  text += row("serial", or_unknown(serial_text(status.machine)));
+  text += row("hostname", or_unknown(std::string(hostname_of(status.further.machine))));
+  text += row("serial", or_unknown(serial_text(status.further.machine)));
   text += row("watchdog", watchdog_text(report));
+  text += row("timeout of the watchdog", timeout_text(status));
+  text += row("function codes of its own", functions_text(status.further.functions));
   text += row("uptime", uptime_text(report.uptime));
   for (std::size_t i = 0; i < identity::counters.size(); ++i)
     text += row(identity::counters[i].text, fmt::to_string(report.counts[i]));
@@ -165,6 +189,7 @@ std::string status_json(const NodeStatus& status, const Connection& where) {
                     {"hostname", nullptr},
                     {"serial", nullptr},
                     {"watchdog", nullptr},
+                    {"functions", nullptr},
                     {"uptime_s", nullptr},
                     {"statistics", nullptr},
                     {"identification", identification_json(status)}};
@@ -174,9 +199,13 @@ std::string status_json(const NodeStatus& status, const Connection& where) {
     json["version"] = or_null(object(status, revision));
     json["fingerprint"] = fingerprint_text(report.head.fingerprint);
     json["map"] = {{"bytes", report.head.map_size}, {"crc32", fmt::format("{:08x}", report.head.map_crc)}};
-    json["hostname"] = or_null(std::string(hostname_of(status.machine)));
-    json["serial"] = or_null(serial_text(status.machine));
-    json["watchdog"] = {{"state", state_text(report)}, {"left_ms", report.watchdog_left}};
+    json["hostname"] = or_null(std::string(hostname_of(status.further.machine)));
+    json["serial"] = or_null(serial_text(status.further.machine));
+    json["watchdog"] = {
+        {"state", state_text(report)}, {"left_ms", report.watchdog_left}, {"timeout_ms", nullptr}};
+    if (const auto timeout = status.further.watchdog_timeout; timeout != 0)
+      json["watchdog"]["timeout_ms"] = timeout;
+    json["functions"] = functions_json(status.further.functions);
     json["uptime_s"] = report.uptime;
     json["statistics"] = statistics_json(report);
   }

@@ -20,7 +20,7 @@ struct NodeStatus {
   std::chrono::system_clock::time_point at{};
   std::string error_text{};                              ///< why not everything could be asked; empty: it was
   std::optional<identity::Report> report{};              ///< nullopt: a foreign coupler, or no answer
-  identity::Machine machine{};                           ///< as far as the node says
+  identity::Further further{};                           ///< as far as the node says
   std::map<std::uint8_t, std::string> identification{};  ///< the objects of FC 43/14
 };
 

@@ -10,6 +10,7 @@
 #include <tl/expected.hpp>
 
 #include "coupler/cli/commands.hpp"
+#include "coupler/cli/output_argument.hpp"
 #include "coupler/cli/report.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/host/cli/interruption.hpp"
@@ -135,7 +136,7 @@ scan::Findings look(const Call& call) {
 
 /// Before anything is asked: a draft that cannot be written would cost a scan.
 tl::expected<void, WrongCall> can_write(const Arguments& arguments) {
-  if (arguments.out.empty()) return {};
+  if (names_no_file(arguments.out)) return {};
   const fs::path path(arguments.out);
   std::error_code ignored;
   if (!arguments.force && fs::exists(path, ignored))
@@ -148,8 +149,13 @@ tl::expected<void, WrongCall> can_write(const Arguments& arguments) {
 }
 
 Exit write(const std::string& path, const std::string& text) {
-  const LoadResult loaded = load_map(text, path);
+  const bool to_file = path != standard_output;
+  const LoadResult loaded = load_map(text, to_file ? path : "<stdout>");
   print(loaded.diagnostics);
+  if (!to_file) {
+    const Exit written = write_out("probe", path, text);
+    return loaded.map ? written : bad_input;
+  }
   if (const auto outcome = generate::write_if_changed(path, text); !outcome) {
     std::fputs(text.c_str(), stdout);
     return complain("probe", bad_call, outcome.error(), "the draft is on standard output instead");
@@ -183,12 +189,15 @@ Exit run(const Arguments& arguments) {
   for (const scan::KnownValue& known : call->known)
     matches.push_back({known, scan::find_candidates(known, findings.tables)});
   call->connection.unit = *findings.unit;
-  std::fputs(probe_report(findings, call->task, call->connection, matches).c_str(), stdout);
+  const bool to_file = arguments.out != standard_output;
+  std::fputs(probe_report(findings, call->task, call->connection, matches).c_str(),
+             to_file ? stdout : stderr);
   Exit exit = findings.broke_off ? failed : ok;
   if (shows_nothing(findings)) {
     if (arguments.out.empty()) return exit;
     return complain(
-        "probe", failed, arguments.out + " is not written: a map needs a point, and none was found",
+        "probe", failed,
+        (to_file ? arguments.out : "the draft") + " is not written: a map needs a point, and none was found",
         findings.is_complete
             ? "look elsewhere, as the report says, or write what the device's manual names into a map"
             : "run it again, to its end");
@@ -240,7 +249,10 @@ void add_probe(Program& program, Exit& exit) {
                   "A value that the device displays, to search for: 230.4, voltage=230.4, voltage=230.4±2")
       .type_name("[NAME=]VALUE")
       .one_value();
-  command.add_option("--out", arguments->out, "Write a draft of the map").type_name("FILE");
+  command
+      .add_option("--out", arguments->out,
+                  "Write a draft of the map; - is standard output, and the report is on standard error then")
+      .type_name("FILE");
   command.add_flag("--force", arguments->force, "Replace an existing file");
   command.footer(
       "Example:\n  coupler probe 192.168.1.17 --known voltage=230.4 --known frequency=50.02 --out "

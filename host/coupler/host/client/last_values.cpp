@@ -10,7 +10,7 @@ bool LastValues::keep(Entry& entry, const Point& point, const std::uint16_t* reg
   const bool first = !entry.value;
   if (first) entry.value.emplace();
   auto& kept = entry.value->registers;
-  const std::uint16_t mask = is_partial(point) ? codec::mask(point.format) : 0xFFFF;
+  const std::uint16_t mask = own_bits(point);
   const auto equal = [mask](std::uint16_t a, std::uint16_t b) { return ((a ^ b) & mask) == 0; };
   const bool changed = !std::equal(kept.begin(), kept.end(), registers, equal);
   kept.assign(registers, registers + range(point).count());

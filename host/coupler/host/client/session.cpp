@@ -107,7 +107,10 @@ tl::expected<Session::Sample, NoValue> Session::judge(std::uint32_t point,
   if (!value) return tl::unexpected(NoValue{known.state, known.last_exception});
   // A value is here a moment before its quality is.
   const Quality state = known.state == Quality::never_read ? Quality::good : known.state;
-  return Sample{std::move(value->registers), state, std::chrono::steady_clock::now() - value->at};
+  // Where a node tells changes, a value is known to be true for longer than since the change.
+  const host::Time at =
+      state == Quality::good && known.last_good ? std::max(value->at, *known.last_good) : value->at;
+  return Sample{std::move(value->registers), state, std::chrono::steady_clock::now() - at};
 }
 
 host::PointQuality Session::quality(std::uint32_t point) const {
@@ -127,13 +130,14 @@ PendingWrite Session::write(host::Write& write) {
   return pending;
 }
 
-void Session::on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits, host::Time at) {
+void Session::on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits, host::Stamp stamp) {
   std::copy(bits.begin(), bits.end(), bits_.begin());
-  on_registers(span, {bits_.data(), bits.size()}, at);
+  on_registers(span, {bits_.data(), bits.size()}, stamp);
 }
 
-void Session::on_registers(const host::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at) {
-  values_.set(span, registers, at);
+void Session::on_registers(const host::ReadSpan& span, Span<const std::uint16_t> registers,
+                           host::Stamp stamp) {
+  values_.set(span, registers, stamp.at);
 }
 
 void Session::on_online(bool online) {

@@ -97,8 +97,9 @@ class Session : private host::Sink {
   host::PointQuality quality(std::uint32_t point) const;
   PendingWrite write(host::Write& write);
 
-  void on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits, host::Time at) override;
-  void on_registers(const host::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at) override;
+  void on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits, host::Stamp stamp) override;
+  void on_registers(const host::ReadSpan& span, Span<const std::uint16_t> registers,
+                    host::Stamp stamp) override;
   void on_online(bool online) override;
   void on_report(Level level, const std::string& text) override;
 

@@ -2,36 +2,50 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <future>
 #include <mutex>
+#include <optional>
 #include <string>
-#include <vector>
+#include <utility>
+#include <variant>
 
 namespace coupler::host {
 
-/// Calls from any thread that the connection's owner carries out: to reset the coupler's watchdog, to write
-/// the safe values.
-class Calls {
+/// Calls from any thread that the connection's owner carries out: `What` is asked for. `Answer{{}, why}`
+/// says why not.
+template <class What, class TheAnswer>
+class CallQueue {
  public:
-  struct Answer {
-    bool success;
-    std::string text;
+  using Answer = TheAnswer;
+  struct Call {
+    What what;
+    std::promise<Answer> answer;
   };
 
   /// Answered at once if there is no connection.
-  std::future<Answer> ask() {
+  std::future<Answer> ask(const What& what = {}) {
     const std::lock_guard lock(mutex_);
-    std::promise<Answer> asked;
-    auto answer = asked.get_future();
+    Call call{what, {}};
+    auto answer = call.answer.get_future();
     if (closed_.empty()) {
-      asked_.push_back(std::move(asked));
+      waiting_.push_back(std::move(call));
       any_ = true;
     } else {
-      asked.set_value({false, closed_});
+      call.answer.set_value({{}, closed_});
     }
     return answer;
   }
   bool any() const { return any_; }
+  /// The oldest call, for the caller to answer; nullopt: none waits.
+  std::optional<Call> take() {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.empty()) return std::nullopt;
+    std::optional<Call> call(std::move(waiting_.front()));
+    waiting_.pop_front();
+    any_ = !waiting_.empty();
+    return call;
+  }
   /// Answers all calls that wait.
   void answer(const Answer& answer) {
     const std::lock_guard lock(mutex_);
@@ -47,20 +61,28 @@ class Calls {
   void close(const std::string& why) {
     const std::lock_guard lock(mutex_);
     closed_ = why;
-    answer_all({false, why});
+    answer_all({{}, why});
   }
 
  private:
   void answer_all(const Answer& answer) {
-    for (auto& asked : asked_) asked.set_value(answer);
-    asked_.clear();
+    for (Call& call : waiting_) call.answer.set_value(answer);
+    waiting_.clear();
     any_ = false;
   }
 
   std::mutex mutex_;
   std::string closed_ = "not connected";  ///< why; empty while open
-  std::vector<std::promise<Answer>> asked_;
-  std::atomic<bool> any_{false};  ///< asked_ is not empty
+  std::deque<Call> waiting_;
+  std::atomic<bool> any_{false};  ///< waiting_ is not empty
 };
+
+struct CallAnswer {
+  bool success;
+  std::string text;
+};
+
+/// To reset the coupler's watchdog, to write the safe values.
+using Calls = CallQueue<std::monostate, CallAnswer>;
 
 }  // namespace coupler::host

@@ -30,7 +30,9 @@ Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transpo
       transport_(transport, clock, map.limits, statistics_),
       watchdog_(map_, transport_, clock, statistics_, sink),
       writer_(map_, transport_, clock, statistics_, qualities_, sink),
-      poller_(map_, transport_, clock, writer_, statistics_, qualities_, sink) {}
+      poller_(map_, transport_, clock, writer_, statistics_, qualities_, sink),
+      scheduler_(map_, transport_, clock, writer_, poller_.changes(), sink),
+      listener_(map.connection.timeout, transport_, clock, statistics_, scheduler_.changes(), sink) {}
 
 Time Device::step() {
   if (!is_verified()) {
@@ -43,25 +45,35 @@ Time Device::step() {
 
 Result<> Device::do_what_is_due(Time now) {
   Result<> answer;
-  const Time write_due = std::min(writer_.due(), watchdog_.due());
-  transport_.rank(write_due <= now ? Rank::write : Rank::read);
+  if (!writer_.awaits_answer()) answer = listener_.step();
+  if (!answer) return answer;
+  scheduler_.queue_due(now);
+  const bool schedules = scheduler_.has_request();
+  const Time write_due = std::min({writer_.due(), watchdog_.due(), scheduler_.due()});
+  transport_.rank(schedules || write_due <= now ? Rank::write : Rank::read);
   if (writer_.awaits_answer() || writer_.is_safe_asked())
     answer = write();
+  else if (listener_.asks_for_watchdog())
+    answer = ask_for_watchdog();
+  else if (schedules)
+    answer = scheduler_.step(listener_);
   else if (watchdog_.due() <= now)
     answer = serve_watchdog();
   else if (writer_.due() <= now)
-    answer = is_read_first(now) && poller_.has_request(now) ? read_or_write() : write();
-  else if (poller_.due() <= now)
+    answer =
+        is_read_first(now) && listener_.lets_read() && poller_.has_request(now) ? read_or_write() : write();
+  else if (listener_.lets_read() && poller_.due() <= now)
     answer = read(write_due);
   else if (keep_alive_due() <= now && transport_.await_turn(write_due) == Transport::Turn::read)
     answer = transport_.keep_alive(map_);
-  else
-    return {};
-  if (answer && transport_.replies() > replies_at_connect_) {
-    identity_suffices_ = true;
-    came_online();
-  }
+  if (answer) answered();
   return answer;
+}
+
+void Device::answered() {
+  if (transport_.replies() == replies_at_connect_) return;
+  identity_suffices_ = true;
+  came_online();
 }
 
 Result<> Device::write() {
@@ -96,7 +108,9 @@ Result<> Device::serve_watchdog() {
 }
 
 Time Device::due() const {
-  return std::min({writer_.due(), watchdog_.due(), poller_.due(), keep_alive_due()});
+  const Time read_due = listener_.lets_read() ? poller_.due() : Time::max();
+  return std::min(
+      {writer_.due(), watchdog_.due(), scheduler_.due(), read_due, listener_.due(), keep_alive_due()});
 }
 
 void Device::arrived() {
@@ -106,12 +120,22 @@ void Device::arrived() {
     state_ = State::none;
     return;
   }
+  if (listener_.is_waiting()) {
+    if (const auto heard = listener_.receive(); !heard)
+      lost(heard.error());
+    else
+      answered();
+    return;
+  }
   lost(TransportFailure{"the device closed the connection, or sent an unexpected reply"});
 }
 
 bool Device::stop() {
-  const bool is_safe = writer_.shut_down(is_verified());
+  const bool is_safe = writer_.shut_down(is_verified());  // first: there may be little time
+  if (scheduler_.is_busy() && writer_.awaits_answer()) writer_.step();
+  scheduler_.shut_down(is_verified(), listener_);
   writer_.disconnected(NotConnected{"the driver ends"});
+  scheduler_.disconnected("the driver ends");
   watchdog_.disconnected("the driver ends");
   transport_.close();
   if (std::exchange(state_, State::none) == State::online) sink_.on_online(false);
@@ -121,6 +145,7 @@ bool Device::stop() {
 Time Device::connect() {
   transport_.rank(Rank::read);
   wrote_last_ = false;
+  node_ = {};
   Result<> result = state_ == State::open ? Result<>{} : transport_.connect();
   state_ = result ? State::open : State::none;
   if (result && verify_ != Verify::off) result = prove_equal();
@@ -131,10 +156,33 @@ Time Device::connect() {
     return retry_at_;
   }
   state_ = State::verified;
-  poller_.start();
+  listen();
+  scheduler_.connected(listener_.is_active() && node_.functions.schedules_outputs);
+  poller_.start(listener_.is_active());
   replies_at_connect_ = transport_.replies();
   if (verify_ != Verify::off && identity_suffices_) came_online();
   return due();
+}
+
+void Device::listen() {
+  const bool tells = map_.changes && node_.functions.tells_changes && transport_.can_wait();
+  if (tells && lets_waits_through_)
+    listener_.start(std::chrono::milliseconds(node_.watchdog_timeout));
+  else
+    listener_.stop();
+  if (!tells || lets_waits_through_) return;
+  sink_.on_report(
+      Level::warning,
+      "the node says that it tells changes, but the question for them (function code 65) ended the "
+      "last connection; its points are polled while this connection lasts. Where a gateway does "
+      "not let the question through, say so in the map: changes: off");
+}
+
+Result<> Device::ask_for_watchdog() {
+  const Result<identity::Further> further = read_further(transport_);
+  if (!further) return tl::make_unexpected(further.error());
+  listener_.set_watchdog(std::chrono::milliseconds(further->watchdog_timeout));
+  return {};
 }
 
 Result<> Device::prove_equal() {
@@ -144,11 +192,12 @@ Result<> Device::prove_equal() {
     return tl::make_unexpected(identity.error());
   }
   explains_silence_ = false;
-  Result<identity::Machine> machine;
-  if (identity->verdict != Identity::Verdict::foreign) machine = read_machine(transport_);
-  if (!machine) return tl::make_unexpected(machine.error());
-  peer_ = to_string(*machine);
-  statistics_.identified(identity->verdict, *machine);
+  Result<identity::Further> further;
+  if (identity->verdict != Identity::Verdict::foreign) further = read_further(transport_);
+  if (!further) return tl::make_unexpected(further.error());
+  node_ = *further;
+  peer_ = to_string(node_.machine);
+  statistics_.identified(identity->verdict, further->machine);
   return judge(*identity);
 }
 
@@ -193,12 +242,15 @@ void Device::came_online() {
 
 void Device::lost(const Error& error) {
   const bool was_online = state_ == State::online;
+  if (is_verified()) lets_waits_through_ = !listener_.is_active() || listener_.has_heard();
   state_ = state_ != State::none && is_unit_away(error) ? State::open : State::none;
   if (state_ == State::none) transport_.close();
   retry_at_ = clock_.now() + backoff_.next();
+  listener_.stop();
   writer_.disconnected(error);
-  watchdog_.disconnected(to_string(error));
   const std::string why = to_string(error);
+  watchdog_.disconnected(why);
+  scheduler_.disconnected(why);
   statistics_.offline(why);
   qualities_.online(false);
   if (was_online) {

@@ -5,7 +5,9 @@
 #include <future>
 #include <string>
 
+#include "coupler/host/core/change_listener.hpp"
 #include "coupler/host/core/coupler_watchdog.hpp"
+#include "coupler/host/core/output_scheduler.hpp"
 #include "coupler/host/core/poller.hpp"
 #include "coupler/host/core/schedule.hpp"
 #include "coupler/host/core/writer.hpp"
@@ -23,9 +25,12 @@ namespace coupler::host {
 /// A unit that its gateway cannot reach is offline, too, and tried again after the back-off. The connection
 /// to the gateway stays, since others may use it.
 ///
-/// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), end_comes(), statistics() and
-/// qualities() may be called from any thread. All else is for the thread that owns the connection; send_now()
-/// is also for another that has made sure that the owner only waits.
+/// A node that tells changes of its bits is asked for them all the time, by a request whose answer it holds
+/// back. Reads are made while one is outstanding only: its answer says which changes are older than they.
+///
+/// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), schedule(), has_to_end(),
+/// end_comes(), statistics() and qualities() may be called from any thread. All else is for the thread that
+/// owns the connection; send_now() is also for another that has made sure that the owner only waits.
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
@@ -37,12 +42,19 @@ class Device {
   void refuse(const Write& write, std::string_view why) { writer_.refuse(write, why); }
 
   /// As Writer's.
-  void report_held_back() { writer_.report_held_back(); }
+  void report_held_back() {
+    writer_.report_held_back();
+    listener_.report_held_back();
+  }
 
   /// Resets the coupler's own watchdog.
   std::future<Calls::Answer> reset_watchdog() { return watchdog_.ask_reset(); }
   /// As Writer::ask_safe().
   std::future<Calls::Answer> make_safe() { return writer_.ask_safe(); }
+  /// As OutputScheduler::ask().
+  std::future<ScheduleAnswer> schedule(const ScheduledWrite& what) { return scheduler_.ask(what); }
+  /// stop() has requests to make because of what was scheduled.
+  bool has_to_end() const { return scheduler_.is_busy(); }
 
   /// Sends what is queued without waiting for anything, if that is possible now. If false, step() must be
   /// called.
@@ -59,7 +71,7 @@ class Device {
   /// an output should have its safe value but does not.
   bool stop();
 
-  /// Whether somebody wants the values of a point (index into Map::points).
+  /// Whether somebody wants the values of a point (index into Map::points); as ToldBits'.
   void want(std::uint32_t point, bool wanted) { poller_.want(point, wanted); }
 
   DeviceSnapshot statistics() const { return statistics_.snapshot(); }
@@ -80,9 +92,11 @@ class Device {
   bool is_verified() const { return state_ >= State::verified; }
 
   Time connect();
+  Result<> ask_for_watchdog();
   Result<> prove_equal();
   Result<> judge(const Identity& identity);
   void explain_silence(const Error& error);
+  void listen();
   Result<> do_what_is_due(Time now);
   bool is_read_first(Time now) const { return wrote_last_ && poller_.is_overdue(now); }
   Result<> write();
@@ -90,7 +104,10 @@ class Device {
   Result<> read(Time until);
   Result<> serve_watchdog();
   Time due() const;
-  Time keep_alive_due() const { return transport_.last_answer() + map_.connection.timeout; }
+  Time keep_alive_due() const {
+    return listener_.is_active() ? Time::max() : transport_.last_answer() + map_.connection.timeout;
+  }
+  void answered();
   void came_online();
   void lost(const Error& error);
 
@@ -105,6 +122,8 @@ class Device {
   CouplerWatchdog watchdog_;
   Writer writer_;
   Poller poller_;
+  OutputScheduler scheduler_;
+  ChangeListener listener_;
   Backoff backoff_;
 
   std::atomic<bool> ending_{false};
@@ -113,9 +132,11 @@ class Device {
   std::uint64_t replies_at_connect_ = 0;  ///< PacedTransport::replies() when the maps were verified
   /// A verified device is online at once. Not one that answered nothing else the last time: it would flicker.
   bool identity_suffices_ = true;
+  bool lets_waits_through_ = true;  ///< the last connection to a node that tells changes
   Time retry_at_ = Time::min();
   std::string last_error_text_;             ///< of the last attempt, so that it is logged once
   bool explains_silence_ = true;            ///< until the identity was answered, or silence_text() logged
+  identity::Further node_;                  ///< what it says of itself; empty if it is none
   std::string peer_;                        ///< which machine it is, if a node says so
   std::uint64_t reported_fingerprint_ = 0;  ///< whose differences have been logged
 };

@@ -30,6 +30,12 @@ void DeviceStatistics::rejected() {
   ++now_.rejected_ranges;
 }
 
+void DeviceStatistics::heard(std::uint64_t changes, std::uint64_t lost) {
+  const std::lock_guard lock(mutex_);
+  now_.changes += changes;
+  now_.changes_lost += lost;
+}
+
 void DeviceStatistics::watchdog(const WatchdogStatus& status) {
   const std::lock_guard lock(mutex_);
   now_.watchdog = status;

@@ -40,6 +40,8 @@ struct DeviceSnapshot {
   std::array<std::uint64_t, 256> exceptions{};  ///< by code
   std::uint64_t rejected_ranges = 0;
   std::uint64_t overruns = 0;
+  std::uint64_t changes = 0;                                  ///< that a node has told
+  std::uint64_t changes_lost = 0;                             ///< that it could not tell any more
   std::array<std::uint64_t, WriteResult::outcomes> writes{};  ///< by outcome
   WatchdogStatus watchdog;                                    ///< the coupler's own
   Histogram latency;                                          ///< from request to answer
@@ -57,6 +59,7 @@ class DeviceStatistics {
   void wrote(WriteResult::Outcome outcome);
   void cycle_ended(Duration after, std::uint64_t overruns);
   void rejected();
+  void heard(std::uint64_t changes, std::uint64_t lost);
   void watchdog(const WatchdogStatus& status);
   void identified(Identity::Verdict verdict, const identity::Machine& machine);
   void online();

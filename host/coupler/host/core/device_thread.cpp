@@ -25,7 +25,7 @@ bool DeviceThread::end() {
   if (!thread_.joinable()) return ended_safely_;
   stopping_ = true;
   transport_.wake();
-  if (ends_safely_) stopped_.get_future().wait_for(longest_shutdown);
+  if (ends_safely_ || device_.has_to_end()) stopped_.get_future().wait_for(longest_shutdown);
   clock_.stop();
   device_.end_comes();
   transport_.interrupt();
@@ -53,6 +53,12 @@ std::future<Calls::Answer> DeviceThread::make_safe() {
 
 std::future<Calls::Answer> DeviceThread::reset_watchdog() {
   auto answer = device_.reset_watchdog();
+  transport_.wake();
+  return answer;
+}
+
+std::future<ScheduleAnswer> DeviceThread::schedule(const ScheduledWrite& what) {
+  auto answer = device_.schedule(what);
   transport_.wake();
   return answer;
 }

@@ -67,13 +67,17 @@ class DeviceThread {
   void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
   /// As Writer's. To be called a few times a second.
   void report_held_back() { device_.report_held_back(); }
-  /// Whether somebody wants the values of a point (index into Map::points).
+  /// Whether somebody wants the values of a point (index into Map::points). One that is wanted still is read
+  /// soon where its changes are told: somebody new has seen none of its values.
   void want(std::uint32_t point, bool wanted);
   /// Resets the coupler's own watchdog. The answer comes after a few timeouts at most.
   std::future<Calls::Answer> reset_watchdog();
   /// Writes what `on_shutdown: safe` would. The answer comes after the request in flight and these writes; at
   /// once if there is no connection.
   std::future<Calls::Answer> make_safe();
+  /// The answer comes when the writes and requests before it are done, and a timeout after that at the
+  /// latest; at once if there is no connection. The outcome goes to the sink.
+  std::future<ScheduleAnswer> schedule(const ScheduledWrite& what);
   DeviceSnapshot statistics() const { return device_.statistics(); }
   std::vector<PointQuality> qualities() const { return device_.qualities(); }
   PointQuality quality(std::uint32_t point) const { return device_.quality(point); }

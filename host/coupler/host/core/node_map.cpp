@@ -52,20 +52,20 @@ Result<std::optional<identity::Report>> read_report(Transport& transport) {
   return read_area<std::array<std::uint16_t, identity::report_size>>(transport, identity::read_report);
 }
 
-Result<identity::Machine> read_machine(Transport& transport) {
+Result<identity::Further> read_further(Transport& transport) {
   std::uint16_t count = 0;
   const auto counted = read_if_mapped(transport, identity::at_further, Span<std::uint16_t>(&count, 1));
   if (!counted) return tl::make_unexpected(counted.error());
   std::array<std::uint16_t, identity::further_size> area{};
   const Span<std::uint16_t> known(area.data(), std::min<std::size_t>(count, area.size()));
-  if (!*counted || known.empty()) return identity::Machine{};
+  if (!*counted || known.empty()) return identity::Further{};
   const auto given = read_if_mapped(transport, identity::at_serial, known);
   if (!given) return tl::make_unexpected(given.error());
-  if (!*given) return identity::Machine{};
-  identity::Machine machine = identity::read_machine(known);
-  for (char& c : machine.hostname)
+  if (!*given) return identity::Further{};
+  identity::Further further = identity::read_further(known);
+  for (char& c : further.machine.hostname)
     if (c != '\0' && (c < ' ' || c > '~')) c = '?';
-  return machine;
+  return further;
 }
 
 std::string to_string(const identity::Machine& machine) {

@@ -21,8 +21,9 @@ Result<std::optional<identity::Head>> read_identity(Transport& transport);
 /// All that a node of any age has in its identity area; nullopt as above.
 Result<std::optional<identity::Report>> read_report(Transport& transport);
 
-/// Which machine a node runs on, hostname in printable ASCII. Empty: the node is older than these fields.
-Result<identity::Machine> read_machine(Transport& transport);
+/// Which machine a node runs on, hostname in printable ASCII, and what it can do. Empty: the node is older
+/// than these fields.
+Result<identity::Further> read_further(Transport& transport);
 
 /// "cell-7, serial 0123456789abcdef", as far as it is known.
 std::string to_string(const identity::Machine& machine);

@@ -22,7 +22,15 @@ Result<> PacedTransport::answered(Result<> result) {
     seen_.set(static_cast<std::size_t>(exception->code));
   statistics_.answered(answered_ - begun_, result);
   if (result || exception_in(result.error()) != nullptr) ++replies_;
+  give_wait_answer();
   return result;
+}
+
+void PacedTransport::give_wait_answer() {
+  const auto answer = transport_.take_wait_answer();
+  if (!answer || listener_ == nullptr) return;
+  ++replies_;
+  listener_->on_wait_answer(*answer);
 }
 
 Result<> PacedTransport::connect() {
@@ -48,7 +56,29 @@ Result<> PacedTransport::send(const modbus::WriteRequest& request) {
   return transport_.send(request);
 }
 Result<> PacedTransport::receive(const modbus::WriteRequest& request) {
-  return answered(transport_.receive(request));
+  Result<> result = answered(transport_.receive(request));
+  written_ = stamp_between(begun_, answered_);
+  return result;
+}
+
+Result<modbus::ScheduleReply> PacedTransport::schedule(const modbus::ScheduleRequest& request) {
+  pause();
+  Result<modbus::ScheduleReply> reply = transport_.schedule(request);
+  if (const auto taken = answered(reply ? Result<>{} : tl::make_unexpected(reply.error())); !taken)
+    return tl::make_unexpected(taken.error());
+  return reply;
+}
+
+Result<> PacedTransport::send_wait(const modbus::ChangesRequest& request) {
+  pause();
+  return transport_.send_wait(request);
+}
+Result<> PacedTransport::receive_wait() {
+  if (Result<> received = transport_.receive_wait(); !received) return answered(received);
+  answered_ = clock_.now();
+  ready_ = gap_ > Duration::zero() ? answered_ + gap_ : Time::min();
+  give_wait_answer();
+  return {};
 }
 
 Result<> PacedTransport::keep_alive(const Map& map) {

@@ -5,10 +5,19 @@
 
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/device_statistics.hpp"
+#include "coupler/host/core/stamp.hpp"
 #include "coupler/host/core/transport.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {
+
+/// Gets what a wait for changes has brought.
+class WaitListener {
+ public:
+  virtual ~WaitListener() = default;
+  /// Before the answer to a request that was made meanwhile is given to anybody: it is newer.
+  virtual void on_wait_answer(const WaitAnswer& answer) = 0;
+};
 
 /// Makes the pauses that some devices need: `connect_delay` after a connect, `request_gap` between a reply
 /// and the next request. Measures the time of each request.
@@ -39,6 +48,12 @@ class PacedTransport : public Transport {
   bool reserve() override { return transport_.reserve(); }
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;
+  Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request) override;
+  bool can_wait() const override { return transport_.can_wait(); }
+  Result<> send_wait(const modbus::ChangesRequest& request) override;
+  Result<> receive_wait() override;
+  /// Gets the answers; take_wait_answer() has none.
+  void listen(WaitListener& listener) { listener_ = &listener; }
   Woken wait_until(Time time) override { return transport_.wait_until(time); }
   void wake() override { transport_.wake(); }
 
@@ -50,6 +65,10 @@ class PacedTransport : public Transport {
   bool is_ready() const { return clock_.now() >= ready_; }
   /// When the last request was answered, well or not.
   Time last_answer() const { return answered_; }
+  /// Of the values in the last answer to a read: between the request's and its reply's time.
+  Stamp last_stamp() const { return stamp_between(begun_, answered_); }
+  /// Of the last write that was answered: it was carried out between the request's and its reply's time.
+  Stamp last_write() const { return written_; }
   /// How many requests have been answered, also by an exception.
   std::uint64_t replies() const { return replies_; }
 
@@ -60,6 +79,7 @@ class PacedTransport : public Transport {
  private:
   void pause();
   Result<> answered(Result<> result);
+  void give_wait_answer();
   template <class Request>
   Result<> paced(Request&& request) {
     pause();
@@ -69,11 +89,13 @@ class PacedTransport : public Transport {
   Transport& transport_;
   Clock& clock_;
   DeviceStatistics& statistics_;
+  WaitListener* listener_ = nullptr;
   Duration gap_;
   Duration delay_;
   Time ready_ = Time::min();  ///< no request before
   Time begun_{};              ///< the request in flight
   Time answered_{};
+  Stamp written_{};
   std::uint64_t replies_ = 0;
   std::bitset<256> seen_;  ///< exceptions
 };

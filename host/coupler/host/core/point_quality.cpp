@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/core/point_quality.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "coupler/host/core/schedule.hpp"
 #include "coupler/plan/planner.hpp"
 
@@ -62,6 +65,16 @@ void PointQualities::rejected(Span<const std::uint32_t> points, modbus::Exceptio
   ++revision_;
 }
 
+void PointQualities::told(std::uint32_t point, bool told) {
+  const std::lock_guard lock(mutex_);
+  if (std::exchange(points_[point].told, told) != told) ++revision_;
+}
+
+void PointQualities::heard(Time at) {
+  const std::lock_guard lock(mutex_);
+  heard_ = at;
+}
+
 void PointQualities::connected() {
   const std::lock_guard lock(mutex_);
   for (Entry& entry : points_) entry.failing = entry.rejected = false;
@@ -79,13 +92,17 @@ State PointQualities::state_of(const Entry& entry, Time now) const {
   if (entry.rejected) return State::rejected;
   if (entry.failing) return State::exception;
   if (!entry.last_good) return State::never_read;
+  if (entry.told) return State::good;
   return now - *entry.last_good > entry.stale_after ? State::stale : State::good;
 }
 
 PointQuality PointQualities::quality_of(const Entry& entry, Time now) const {
   const State state = state_of(entry, now);
-  const Time stale_from = state == State::good ? *entry.last_good + entry.stale_after : Time::max();
-  return {state, stale_from, entry.last_good, entry.last_exception, entry.last_write, entry.last_write_text};
+  const bool becomes_stale = state == State::good && !entry.told;
+  const Time stale_from = becomes_stale ? *entry.last_good + entry.stale_after : Time::max();
+  const bool is_true_still = state == State::good && entry.told;
+  const auto last_good = is_true_still ? std::max(*entry.last_good, heard_) : entry.last_good;
+  return {state, stale_from, last_good, entry.last_exception, entry.last_write, entry.last_write_text};
 }
 
 std::vector<PointQuality> PointQualities::snapshot(Time now) const {

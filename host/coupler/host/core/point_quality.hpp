@@ -48,6 +48,10 @@ class PointQualities {
   void exception(Span<const std::uint32_t> points, modbus::Exception code);
   void wrote(std::uint32_t point, const WriteResult& result);
   void rejected(Span<const std::uint32_t> points, modbus::Exception code);
+  /// Whether the device tells changes of the point: its value does not become stale then.
+  void told(std::uint32_t point, bool told);
+  /// The last values of told points were still true `at`.
+  void heard(Time at);
   /// What the device rejected over an earlier connection may be there now.
   void connected();
   void online(bool online);
@@ -68,6 +72,7 @@ class PointQualities {
     std::string last_write_text{};
     bool failing = false;
     bool rejected = false;
+    bool told = false;
   };
   PointQuality quality_of(const Entry& entry, Time now) const;
   PointQuality::State state_of(const Entry& entry, Time now) const;
@@ -75,6 +80,7 @@ class PointQualities {
   mutable std::mutex mutex_;
   std::vector<Entry> points_;
   bool online_ = false;
+  Time heard_ = Time::min();
   std::atomic<std::uint64_t> revision_{0};
 };
 

@@ -30,7 +30,10 @@ std::string to_string(const RejectedRange& rejected) {
 }
 
 PollCycle::PollCycle(const Map& map)
-    : planner_(map), wanted_(map.points.size(), true), given_up_(map.points.size(), false) {
+    : planner_(map),
+      wanted_(map.points.size(), true),
+      given_up_(map.points.size(), false),
+      at_rest_(map.points.size(), false) {
   for (const plan::RateGroup& points : planner_.groups())
     groups_.push_back({&points, Schedule(period_of(points.rate))});
 }
@@ -38,6 +41,7 @@ PollCycle::PollCycle(const Map& map)
 void PollCycle::start(Time now) {
   rejected_ranges_.clear();
   given_up_.assign(given_up_.size(), false);
+  at_rest_.assign(at_rest_.size(), false);
   findings_.clear();
   others_first_ = false;
   for (Group& group : groups_) {
@@ -52,12 +56,30 @@ void PollCycle::start(Time now) {
 void PollCycle::want(std::uint32_t point, bool wanted) {
   if (wanted_[point] == wanted) return;
   wanted_[point] = wanted;
+  if (Group* const group = group_of(point)) group->stale = true;
+}
+
+void PollCycle::rest(std::uint32_t point, bool at_rest) {
+  if (at_rest_[point] == at_rest) return;
+  at_rest_[point] = at_rest;
+  if (Group* const group = group_of(point)) group->stale = true;
+}
+
+void PollCycle::read_soon(std::uint32_t point) {
+  at_rest_[point] = false;
+  if (Group* const group = group_of(point)) group->stale = group->soon = true;
+}
+
+/// nullptr if no point of its rate can be read.
+PollCycle::Group* PollCycle::group_of(std::uint32_t point) {
   const double rate = plan::rate_of(planner_.map(), planner_.map().points[point]);
-  for (Group& group : groups_)
-    if (group.points->rate == rate) group.stale = true;
+  const auto found = std::find_if(groups_.begin(), groups_.end(),
+                                  [rate](const Group& group) { return group.points->rate == rate; });
+  return found == groups_.end() ? nullptr : &*found;
 }
 
 Time PollCycle::Group::due() const {
+  if (soon && idle()) return Time::min();
   if (steps.empty()) return stale ? Time::min() : Time::max();
   return schedule.due();
 }
@@ -70,6 +92,9 @@ Time PollCycle::due() const {
 
 bool PollCycle::is_overdue(Time now) const {
   return std::any_of(groups_.begin(), groups_.end(), [now](const Group& group) {
+    // What is asked for out of turn, and what is to be read again after a rest, has no deadline to count
+    // from.
+    if ((group.soon && group.idle()) || (group.steps.empty() && group.stale)) return true;
     return !group.steps.empty() && group.schedule.due() + group.schedule.period() <= now;
   });
 }
@@ -151,7 +176,7 @@ std::uint64_t PollCycle::overruns() const {
 void PollCycle::replan(Group& group, Time now) {
   std::vector<std::uint32_t> points;
   for (const std::uint32_t point : group.points->points)
-    if (wanted_[point] && !given_up_[point]) points.push_back(point);
+    if (wanted_[point] && !given_up_[point] && !at_rest_[point]) points.push_back(point);
   const std::vector<Step> old = std::exchange(group.steps, {});
   for (ReadSpan& span : planner_.plan(points, rejected_ranges_)) {
     const auto same = std::find_if(old.begin(), old.end(), [&](const Step& step) {
@@ -160,8 +185,8 @@ void PollCycle::replan(Group& group, Time now) {
     const auto last = same == old.end() ? std::nullopt : same->last;
     group.steps.push_back({std::move(span), last});
   }
-  if (old.empty()) group.schedule.start(now);
-  group.stale = false;
+  if (old.empty() || group.soon) group.schedule.start(now);
+  group.stale = group.soon = false;
 }
 
 void PollCycle::remove_current() {

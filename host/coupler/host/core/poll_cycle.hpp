@@ -44,6 +44,10 @@ class PollCycle {
   /// Whether somebody wants the values of a point (index into Map::points). From the next cycle of its rate
   /// on the requests are as few as the wanted points need; a rate without wanted points makes none.
   void want(std::uint32_t point, bool wanted);
+  /// A point at rest is not read, from the next cycle of its rate on.
+  void rest(std::uint32_t point, bool at_rest);
+  /// The point is at rest no more, and the next cycle of its rate is due as soon as none runs.
+  void read_soon(std::uint32_t point);
 
   /// When select() has a request; in the past while a cycle runs. Time::max() if nothing is left to read.
   Time due() const;
@@ -97,6 +101,7 @@ class PollCycle {
     std::vector<Step> steps{};
     std::size_t next = 0;
     bool stale = false;            ///< to be planned anew when no cycle runs
+    bool soon = false;             ///< then its next cycle is due at once
     bool joined_again = false;     ///< planned anew after what it learned: once is enough
     std::vector<Parted> parted{};  ///< in the cycle that runs
     std::uint64_t served = 0;      ///< the number of its last request
@@ -105,6 +110,7 @@ class PollCycle {
     Time due() const;
   };
   const Step& step() const { return groups_[current_].steps[groups_[current_].next]; }
+  Group* group_of(std::uint32_t point);
   void replan(Group& group, Time now);
   void remove_current();
   void done(Time now);
@@ -113,6 +119,7 @@ class PollCycle {
   plan::Planner planner_;
   std::vector<bool> wanted_;    ///< by point
   std::vector<bool> given_up_;  ///< by point
+  std::vector<bool> at_rest_;   ///< by point
   std::vector<Group> groups_;
   std::size_t current_ = 0;
   std::uint64_t requests_ = 0;

@@ -7,7 +7,7 @@
 
 namespace coupler::host {
 
-Poller::Poller(const Map& map, Transport& transport, Clock& clock, Writer& writer,
+Poller::Poller(const Map& map, PacedTransport& transport, Clock& clock, Writer& writer,
                DeviceStatistics& statistics, PointQualities& qualities, Sink& sink)
     : map_(map),
       transport_(transport),
@@ -16,11 +16,13 @@ Poller::Poller(const Map& map, Transport& transport, Clock& clock, Writer& write
       statistics_(statistics),
       qualities_(qualities),
       sink_(sink),
-      cycle_(map) {}
+      cycle_(map),
+      told_(map_, cycle_, writer, qualities, sink) {}
 
-void Poller::start() {
+void Poller::start(bool told) {
   qualities_.connected();
   cycle_.start(clock_.now());
+  told_.start(told);
 }
 
 Result<> Poller::request(const ReadSpan& span) {
@@ -52,14 +54,19 @@ Result<> Poller::step(Time until) {
 }
 
 void Poller::publish(const ReadSpan& span) {
-  const Time now = clock_.now();
+  const Stamp stamp = transport_.last_stamp();
   const ReadSpan& fresh = writer_.hides_any() ? without_hidden(span) : span;
   if (holds_bits(span.table))
-    sink_.on_bits(fresh, {bits_.data(), span.range.count()}, now);
+    publish_bits(fresh, stamp);
   else
-    sink_.on_registers(fresh, {registers_.data(), span.range.count()}, now);
+    sink_.on_registers(fresh, {registers_.data(), span.range.count()}, stamp);
   writer_.shown(fresh.points);
-  qualities_.good(span.points, now);  // last: nobody waits for it
+  qualities_.good(span.points, transport_.last_answer());  // last: nobody waits for it
+}
+
+void Poller::publish_bits(const ReadSpan& span, Stamp stamp) {
+  const Span<const std::uint8_t> bits(bits_.data(), span.range.count());
+  sink_.on_bits(span, bits, told_.read(span, bits, stamp));
 }
 
 const ReadSpan& Poller::without_hidden(const ReadSpan& span) {

@@ -9,6 +9,7 @@
 #include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/poll_cycle.hpp"
 #include "coupler/host/core/sink.hpp"
+#include "coupler/host/core/told_bits.hpp"
 #include "coupler/host/core/writer.hpp"
 #include "coupler/modbus/limits.hpp"
 
@@ -20,11 +21,11 @@ namespace coupler::host {
 class Poller {
  public:
   /// Everything given by reference must outlive it.
-  Poller(const Map& map, Transport& transport, Clock& clock, Writer& writer, DeviceStatistics& statistics,
-         PointQualities& qualities, Sink& sink);
+  Poller(const Map& map, PacedTransport& transport, Clock& clock, Writer& writer,
+         DeviceStatistics& statistics, PointQualities& qualities, Sink& sink);
 
-  /// A new connection.
-  void start();
+  /// A new connection; `told`: to a node that tells changes of its bits.
+  void start(bool told);
   /// When step() has something to do.
   Time due() const { return cycle_.due(); }
   /// As PollCycle's.
@@ -35,24 +36,28 @@ class Poller {
   /// the connection can no longer be used, or that the unit is away; any other exception is not an error.
   Result<> step(Time until = Time::max());
 
-  void want(std::uint32_t point, bool wanted) { cycle_.want(point, wanted); }
+  void want(std::uint32_t point, bool wanted) { told_.want(point, wanted); }
+  /// Gets the changes.
+  ChangeSink& changes() { return told_; }
 
  private:
   Result<> request(const ReadSpan& span);
   void publish(const ReadSpan& span);
+  void publish_bits(const ReadSpan& span, Stamp stamp);
   const ReadSpan& without_hidden(const ReadSpan& span);
   void on_exception(modbus::Exception code);
   void report_rejected_ranges();
   std::string describe(const ReadSpan& span) const;
 
   const Map& map_;
-  Transport& transport_;
+  PacedTransport& transport_;
   Clock& clock_;
   Writer& writer_;
   DeviceStatistics& statistics_;
   PointQualities& qualities_;
   Sink& sink_;
   PollCycle cycle_;
+  ToldBits told_;
   ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< kept for its memory
   std::array<std::uint8_t, modbus::max_read_bits> bits_{};
   std::array<std::uint16_t, modbus::max_read_registers> registers_{};

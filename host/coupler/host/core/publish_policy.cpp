@@ -31,10 +31,16 @@ bool is_number(codec::Type type) { return type != codec::Type::BOOL && type != c
 PublishPolicy::PublishPolicy(const Point& point)
     : point_(point), last_(point.host.publish == Publish::on_change ? range(point).count() : 0) {}
 
+Time PublishPolicy::repeat_at() const {
+  const HostOptions& host = point_.host;
+  const bool repeats = host.publish == Publish::on_change && host.max_interval.count() > 0;
+  return repeats ? last_at_ + host.max_interval : Time::max();
+}
+
 bool PublishPolicy::calls_news(const std::uint16_t* registers, Time at) {
   const HostOptions& host = point_.host;
   if (host.publish == Publish::always) return true;
-  const bool in_time = host.max_interval.count() == 0 || at - last_at_ < host.max_interval;
+  const bool in_time = at < repeat_at();
   if (!renewed_.exchange(false) && in_time && !differs(registers)) return false;
   std::copy_n(registers, last_.size(), last_.begin());
   last_at_ = at;

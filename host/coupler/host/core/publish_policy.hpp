@@ -21,6 +21,9 @@ class PublishPolicy {
   /// The point's registers as they came `at`; bit tables: each bit as one register, 0 or 1.
   bool calls_news(const std::uint16_t* registers, Time at);
 
+  /// When the value that was news last is so again. Time::max(): never.
+  Time repeat_at() const;
+
   /// The next value is news whatever it is: the device was away, or a new listener has not seen the last one.
   /// From any thread.
   void renew() { renewed_ = true; }

@@ -4,7 +4,8 @@
 #include <string>
 
 #include "coupler/base/span.hpp"
-#include "coupler/host/core/clock.hpp"
+#include "coupler/host/core/scheduled.hpp"
+#include "coupler/host/core/stamp.hpp"
 #include "coupler/plan/read_span.hpp"
 
 namespace coupler::host {
@@ -18,13 +19,18 @@ enum class Level { info, warning, error };
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// `bits[i]` is the coil or discrete input `span.range.start() + i`, as of `at`.
-  virtual void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) = 0;
-  /// `registers[i]` is the register `span.range.start() + i`, as of `at`.
-  virtual void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) = 0;
+  /// `bits[i]` is the coil or discrete input `span.range.start() + i`, as it was at `stamp`.
+  virtual void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) = 0;
+  /// `registers[i]` is the register `span.range.start() + i`, as it was at `stamp`.
+  virtual void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) = 0;
+  /// When the point's value is wanted once more though it is still the same: `max_interval` after it was
+  /// published last. Time::max(): never.
+  virtual Time repeat_at(std::uint32_t /*point*/) const { return Time::max(); }
   /// The device answers (or no longer does). Only changes; it begins offline.
   virtual void on_online(bool online) = 0;
   virtual void on_report(Level level, const std::string& text) = 0;
+  /// What became of a write at a time.
+  virtual void on_scheduled(const ScheduledOutcome& /*outcome*/) {}
 };
 
 }  // namespace coupler::host

@@ -4,14 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "coupler/base/span.hpp"
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/error.hpp"
 #include "coupler/map/table.hpp"
+#include "coupler/modbus/changes.hpp"
 #include "coupler/modbus/client.hpp"
 #include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/range.hpp"
+#include "coupler/modbus/scheduled_output.hpp"
 
 namespace coupler::host {
 
@@ -21,6 +24,13 @@ enum class Rank {
   read,
   write,  ///< also the read before a write, and the one that verifies it
   safe    ///< before all others, until another rank is set
+};
+
+/// What came of a wait for changes, and when.
+struct WaitAnswer {
+  Result<modbus::ChangesReply> reply;  ///< an error is an exception
+  Time sent{};
+  Time received{};
 };
 
 /// The port to one unit of a Modbus device. One request is in flight at a time; its reply is awaited for the
@@ -71,6 +81,26 @@ class Transport {
   virtual Result<> send(const modbus::WriteRequest& request) = 0;
   /// The answer to what was sent, at the latest a timeout after that.
   virtual Result<> receive(const modbus::WriteRequest& request) = 0;
+
+  /// FC 66. Where units share a connection, none of them can.
+  virtual Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& /*request*/) {
+    return fail(ExceptionReply{modbus::Exception::illegal_function});
+  }
+
+  // A wait for changes (function code 65) may be outstanding while other requests are made: the device
+  // answers it then at once, and before them.
+
+  /// Where units share a connection, none of them can.
+  virtual bool can_wait() const { return false; }
+  /// Sends and does not wait for the answer. There must be none outstanding.
+  virtual Result<> send_wait(const modbus::ChangesRequest& /*request*/) {
+    return fail(NotConnected{"this connection cannot wait for changes"});
+  }
+  /// To be called when bytes have come, or a timeout after the wait is over. An answer that has begun is
+  /// awaited for a timeout at most.
+  virtual Result<> receive_wait() { return fail(NotConnected{"nothing was asked for"}); }
+  /// The answer that receive_wait() or another request has received: once.
+  virtual std::optional<WaitAnswer> take_wait_answer() { return std::nullopt; }
 
   enum class Woken { by_time, by_call, by_bytes };
   /// Returns when bytes have come (or the connection has ended), after wake(), or at `time`.

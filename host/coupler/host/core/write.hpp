@@ -99,6 +99,7 @@ struct Write {
   std::array<std::uint16_t, modbus::max_read_registers> registers{};
   bool ordered = false;               ///< keeps its place in the queue: its caller waits for its own result
   bool of_deadman = false;            ///< made by the driver because no message came
+  bool of_schedule = false;           ///< made by the driver because its time has come
   WriteListener* listener = nullptr;  ///< gets the result; lives until then
 
   bool bit(std::size_t i) const { return (registers[i / 16] >> i % 16 & 1U) != 0; }

@@ -126,7 +126,7 @@ Result<> ReadBack::read(const Write& write, const Map& map, Transport& transport
   const modbus::Range where = read_range(point);
   count_ = where.count();
   if (auto read = transport.read(point.table, where, found_.data()); !read) return read;
-  const auto mask = is_partial(point) ? codec::mask(point.format) : std::uint16_t{0xFFFF};
+  const auto mask = own_bits(point);
   for (std::size_t i = 0; i < count_; ++i) {
     written_[i] = point.table == Table::coils ? write.bit(i) : write.registers[i] & mask;
     found_[i] = found_[i] & mask;

@@ -144,6 +144,7 @@ Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
   if (answer) {
     remember(write);
     acknowledged_[write.point] = true;
+    if (written_ != nullptr) written_->on_written(write);
     if (map_.points[write.point].host.verify_write) return verify(write);
     settle(write, {Outcome::ok});
     return {};
@@ -152,7 +153,7 @@ Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
     settle(write, {Outcome::exception, exception->code});
     return {};
   }
-  remember(write);
+  if (!write.of_schedule) remember(write);
   if (write.of_deadman) deadmen_.put_back(write.point);
   settle(write, {Outcome::lost, std::nullopt, to_string(answer.error())});
   return answer;
@@ -191,6 +192,7 @@ Result<> Writer::make_safe() {
     text += fmt::format("; {}: {}", name(point), to_string(Error(ExceptionReply{code})));
   sink_.on_report(rejected->empty() ? Level::info : Level::error, text);
   safe_calls_.answer({rejected->empty(), text});
+  if (written_ != nullptr) written_->on_made_safe(safe_values_);
   return {};
 }
 
@@ -258,18 +260,19 @@ void Writer::remember(const Write& write) {
   Write& value = last_written_[write.point];
   value = write;
   value.listener = nullptr;
-  value.ordered = false;
+  value.ordered = value.of_schedule = false;
 }
 
 void Writer::drop(const Write& write) {
-  remember(write);
+  const bool keeps = restores() && !write.of_schedule;  // that has a time of its own
+  if (keeps) remember(write);
   if (write.of_deadman) deadmen_.put_back(write.point);
   const WriteResult result = {
-      restores() ? Outcome::kept : Outcome::dropped, std::nullopt,
+      keeps ? Outcome::kept : Outcome::dropped, std::nullopt,
       "not connected; with 'on_reconnect: restore' in the map it would be written when the device is back"};
   queue_.settled(write.point);
   tell(write, result);
-  if (restores() || dropped_++ > 0) return;
+  if (keeps || dropped_++ > 0) return;
   sink_.on_report(Level::warning,
                   fmt::format("write to {}: {}. Further writes are dropped silently until the device is back",
                               name(write.point), to_string(result)));

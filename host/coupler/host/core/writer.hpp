@@ -17,6 +17,18 @@
 
 namespace coupler::host {
 
+/// Gets the writes that were carried out, in the connection's thread.
+class WrittenListener {
+ public:
+  /// By a write of its own.
+  virtual void on_written(const Write& write) = 0;
+  /// These outputs have their safe values.
+  virtual void on_made_safe(const std::vector<Write>& values) = 0;
+
+ protected:
+  ~WrittenListener() = default;
+};
+
 /// Writes to one device: sends what the queue holds, gives each write its result, and makes the writes of
 /// deadmen, after a reconnect and at the end.
 ///
@@ -27,6 +39,9 @@ class Writer {
   /// Everything given by reference must outlive it.
   Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
          PointQualities& qualities, Sink& sink);
+
+  /// Before anything is written.
+  void listen(WrittenListener& listener) { written_ = &listener; }
 
   /// NaN and infinity are refused.
   void push(const Write& write);
@@ -56,6 +71,8 @@ class Writer {
   /// A new connection, or a coupler whose watchdog had switched its outputs off: under
   /// `on_reconnect: restore` they get their last values.
   Result<> reconnected();
+  /// An output has this value now, by another way than a write: `on_reconnect: restore` brings it back.
+  void remember(const Write& write);
   /// There is no connection: all that was sent or queued gets its result.
   void disconnected(const Error& why);
   /// Does what `on_shutdown` says, last before the connection is closed. False if an output should have its
@@ -87,7 +104,6 @@ class Writer {
   void report(const Write& write, const WriteResult& result);
   void drop(const Write& write);
   bool restores() const { return map_.on_reconnect == OnReconnect::restore; }
-  void remember(const Write& write);
   std::string_view name(std::uint32_t point) const { return map_.points[point].name; }
 
   const Map& map_;
@@ -96,6 +112,7 @@ class Writer {
   DeviceStatistics& statistics_;
   PointQualities& qualities_;
   Sink& sink_;
+  WrittenListener* written_ = nullptr;
   WriteQueue queue_;
   Deadmen deadmen_;
   std::map<std::uint32_t, Write> last_written_;  ///< by point, for `on_reconnect: restore`

@@ -84,6 +84,8 @@ Result<> ModbusTransport::open(const Event& interrupt) {
 }
 
 void ModbusTransport::close() {
+  wait_.reset();
+  wait_answer_.reset();
   const std::lock_guard lock(socket_mutex_);
   if (socket_ < 0) return;
   modbus_close(context_.get());
@@ -104,6 +106,8 @@ Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
   if (socket_ < 0) return fail(NotConnected{"not connected"});
   if (auto sent = send_request(socket_, next_header(), request.pdu()); !sent)
     return tl::make_unexpected(sent.error());
+  if (auto before = receive_wait_before(Deadline(timeout_)); !before)
+    return tl::make_unexpected(before.error());
   const int size = modbus_receive_confirmation(context_.get(), reply_.data());
   if (size < 0) return tl::make_unexpected(receive_error(errno, timeout_));
   const Span<const std::uint8_t> adu(reply_.data(), static_cast<std::size_t>(size));
@@ -147,6 +151,7 @@ Result<modbus::Bytes> ModbusTransport::exchange(modbus::Bytes pdu) {
   if (socket_ < 0) return fail(NotConnected{"not connected"});
   const Deadline deadline(timeout_);
   if (auto sent = send_request(socket_, next_header(), pdu); !sent) return tl::make_unexpected(sent.error());
+  if (auto before = receive_wait_before(deadline); !before) return tl::make_unexpected(before.error());
   modbus::Framer framer;
   const auto reply = receive_reply(socket_, sent_, timeout_, deadline, framer);
   if (!reply) return tl::make_unexpected(reply.error());
@@ -161,10 +166,48 @@ Result<> ModbusTransport::send(const modbus::WriteRequest& request) {
 }
 
 Result<> ModbusTransport::receive(const modbus::WriteRequest& request) {
+  if (auto before = receive_wait_before(answer_by_); !before) return before;
   modbus::Framer framer;
   const auto reply = receive_reply(socket_, sent_, timeout_, answer_by_, framer);
   if (!reply) return tl::make_unexpected(reply.error());
   return result(modbus::check_reply(request, *reply));
+}
+
+Result<modbus::ScheduleReply> ModbusTransport::schedule(const modbus::ScheduleRequest& request) {
+  const auto reply = exchange(request.pdu());
+  if (!reply) return tl::make_unexpected(reply.error());
+  const auto parsed = modbus::parse_schedule_reply(*reply);
+  if (parsed) return *parsed;
+  if (parsed.error().exception) return fail(ExceptionReply{*parsed.error().exception});
+  return fail(BadFrame{"not the reply to a request to schedule"});
+}
+
+Result<> ModbusTransport::send_wait(const modbus::ChangesRequest& request) {
+  if (socket_ < 0) return fail(NotConnected{"not connected"});
+  std::array<std::uint8_t, modbus::changes_request_size> pdu{};
+  modbus::build_changes_request(request, pdu);
+  wait_ = {next_header(), std::chrono::steady_clock::now(),
+           Deadline(std::chrono::milliseconds(request.wait) + timeout_)};
+  return send_request(socket_, wait_->header, pdu);
+}
+
+Result<> ModbusTransport::receive_wait() {
+  if (!wait_) return fail(NotConnected{"nothing was asked for"});
+  return receive_wait_before(std::min(wait_->answer_by, Deadline(timeout_)));
+}
+
+Result<> ModbusTransport::receive_wait_before(const Deadline& deadline) {
+  if (!wait_) return {};
+  modbus::Framer framer;
+  const auto pdu = receive_first_reply(socket_, wait_->header, timeout_, deadline, framer);
+  if (!pdu) return tl::make_unexpected(pdu.error());
+  const auto reply = modbus::parse_changes_reply(*pdu);
+  if (!reply && !reply.error().exception) return fail(BadFrame{"not the reply to a wait for changes"});
+  wait_answer_ = {reply ? Result<modbus::ChangesReply>(*reply)
+                        : Result<modbus::ChangesReply>(fail(ExceptionReply{*reply.error().exception})),
+                  wait_->sent, std::chrono::steady_clock::now()};
+  wait_.reset();
+  return {};
 }
 
 Transport::Woken ModbusTransport::wait_until(Time time) {

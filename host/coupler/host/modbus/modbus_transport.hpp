@@ -4,7 +4,9 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "coupler/host/core/transport.hpp"
 #include "coupler/host/modbus/wait.hpp"
@@ -35,6 +37,11 @@ class ModbusTransport : public Transport {
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;
+  Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request) override;
+  bool can_wait() const override { return true; }
+  Result<> send_wait(const modbus::ChangesRequest& request) override;
+  Result<> receive_wait() override;
+  std::optional<WaitAnswer> take_wait_answer() override { return std::exchange(wait_answer_, std::nullopt); }
   Woken wait_until(Time time) override;
   void wake() override { wakeup_.call(); }
 
@@ -55,6 +62,15 @@ class ModbusTransport : public Transport {
   /// The PDU of the reply, valid until the next request.
   Result<modbus::Bytes> ask(const modbus::ReadRequest& request);
   modbus::Frame next_header();
+  /// The answer to a wait comes before that to the request which has been sent now.
+  Result<> receive_wait_before(const Deadline& deadline);
+
+  /// A wait for changes that is outstanding.
+  struct Wait {
+    modbus::Frame header;
+    Time sent{};
+    Deadline answer_by;
+  };
 
   std::string host_;
   std::uint16_t port_;
@@ -66,6 +82,8 @@ class ModbusTransport : public Transport {
   modbus::Frame sent_;  ///< the header of the request whose answer is awaited
   std::array<std::uint8_t, modbus::max_adu_size> reply_{};
   Deadline answer_by_{std::chrono::milliseconds(0)};
+  std::optional<Wait> wait_;
+  std::optional<WaitAnswer> wait_answer_;  ///< until it is taken
   std::mutex socket_mutex_;  ///< between closing the socket and interrupt(); never held during a request
   int socket_ = -1;
 };

@@ -14,8 +14,18 @@
 namespace coupler::host {
 namespace {
 
+/// How many bytes the frame that has begun in `bytes` needs at least.
+std::size_t missing(modbus::Bytes bytes) {
+  constexpr std::size_t before_unit = modbus::mbap_size - 1;
+  const std::size_t size =
+      bytes.size() < before_unit ? before_unit : before_unit + modbus::get_u16(&bytes[4]);
+  return size - bytes.size();
+}
+
+enum class Take { all, one_frame };
+
 Result<> receive_frame(int socket, std::chrono::milliseconds timeout, const Deadline& deadline,
-                       modbus::Framer& framer) {
+                       modbus::Framer& framer, Take take) {
   for (;;) {
     const auto outcome = framer.next();
     if (outcome == modbus::Framer::Outcome::frame) return {};
@@ -23,7 +33,8 @@ Result<> receive_frame(int socket, std::chrono::milliseconds timeout, const Dead
     pollfd wanted{socket, POLLIN, 0};
     if (::poll(&wanted, 1, deadline.left()) == 0) return fail(Timeout{timeout});
     const auto room = framer.room();
-    const auto got = ::recv(socket, room.data(), room.size(), 0);
+    const std::size_t most = take == Take::all ? room.size() : std::min(room.size(), missing(framer.rest()));
+    const auto got = ::recv(socket, room.data(), most, 0);
     if (got == 0) return fail(TransportFailure{"the device closed the connection"});
     if (got > 0)
       framer.filled(static_cast<std::size_t>(got));
@@ -56,12 +67,21 @@ Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu) {
 
 Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::chrono::milliseconds timeout,
                                     const Deadline& deadline, modbus::Framer& framer) {
-  if (auto received = receive_frame(socket, timeout, deadline, framer); !received)
+  if (auto received = receive_frame(socket, timeout, deadline, framer, Take::all); !received)
     return tl::make_unexpected(received.error());
   const modbus::Frame& reply = framer.frame();
   if (auto answers = check_header(reply, to); !answers) return tl::make_unexpected(answers.error());
   if (framer.is_partial()) return fail(BadFrame{"more than one reply"});
   return reply.pdu;
+}
+
+Result<modbus::Bytes> receive_first_reply(int socket, const modbus::Frame& to,
+                                          std::chrono::milliseconds timeout, const Deadline& deadline,
+                                          modbus::Framer& framer) {
+  if (auto received = receive_frame(socket, timeout, deadline, framer, Take::one_frame); !received)
+    return tl::make_unexpected(received.error());
+  if (auto answers = check_header(framer.frame(), to); !answers) return tl::make_unexpected(answers.error());
+  return framer.frame().pdu;
 }
 
 }  // namespace coupler::host

@@ -22,4 +22,9 @@ Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu);
 Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::chrono::milliseconds timeout,
                                     const Deadline& deadline, modbus::Framer& framer);
 
+/// The same where the reply to a later request may follow: takes no byte of that one.
+Result<modbus::Bytes> receive_first_reply(int socket, const modbus::Frame& to,
+                                          std::chrono::milliseconds timeout, const Deadline& deadline,
+                                          modbus::Framer& framer);
+
 }  // namespace coupler::host

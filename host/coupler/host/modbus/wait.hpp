@@ -17,6 +17,7 @@ namespace coupler::host {
 class Deadline {
  public:
   explicit Deadline(std::chrono::milliseconds after) : at_(std::chrono::steady_clock::now() + after) {}
+  friend bool operator<(const Deadline& a, const Deadline& b) { return a.at_ < b.at_; }
   /// What poll() takes: milliseconds left, rounded up, 0 when it has passed.
   int left() const {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(at_ - std::chrono::steady_clock::now());

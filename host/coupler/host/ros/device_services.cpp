@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/device_services.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
@@ -25,6 +27,11 @@ Duration answer_timeout(const Map& map, const Point& point) {
 
 }  // namespace
 
+bool can_schedule(const Map& map) {
+  return std::any_of(map.points.begin(), map.points.end(),
+                     [](const Point& point) { return is_writable(point); });
+}
+
 void DeviceServices::start(Node& node, Device device) {
   device_ = std::move(device);
   calls_ = node.make_service_thread();
@@ -37,6 +44,13 @@ void DeviceServices::start(Node& node, Device device) {
   if (map_.coupler_watchdog.present())
     calls_->offer_trigger(name("reset_watchdog"), [this] { return answer_call(&Device::reset); });
   urgent_calls_->offer_trigger(name("safe"), [this] { return answer_call(&Device::make_safe); });
+  if (can_schedule(map_)) {
+    timed_calls_ = node.make_service_thread();
+    timed_calls_->offer_schedule(name("schedule"), [this](const ServiceThread::ScheduleRequest& request) {
+      return answer_schedule(request);
+    });
+    timed_calls_->start();
+  }
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)
     if (is_writable(map_.points[i]) && is_bit(map_.points[i]))
       calls_->offer_set(name(fmt::format("{}/set", map_.points[i].name)),
@@ -46,7 +60,7 @@ void DeviceServices::start(Node& node, Device device) {
 }
 
 void DeviceServices::stop() {
-  for (ServiceThread* thread : {calls_.get(), urgent_calls_.get()})
+  for (ServiceThread* thread : {calls_.get(), urgent_calls_.get(), timed_calls_.get()})
     if (thread != nullptr) thread->stop();
   value_waiter_.cancel();
   const std::lock_guard lock(mutex_);
@@ -83,17 +97,42 @@ WriteTicket::Outcome DeviceServices::refuse(const std::string& name, const Point
   return {Outcome::refused, {}, "refused: " + why};
 }
 
-WriteTicket::Outcome DeviceServices::answer_write(const std::string& name, const std::string& text) {
+/// The value in that text for that point, or why it cannot be written.
+tl::expected<std::vector<std::uint16_t>, std::string> DeviceServices::value_for(
+    const std::string& name, const std::string& text) const {
   std::string why;
   const Point* point = find_point(name, why);
-  std::vector<std::uint16_t> value;
-  if (point != nullptr && !is_writable(*point)) why = fmt::format("{} cannot be written", point->name);
-  if (why.empty()) {
-    value.resize(range(*point).count());
-    if (const auto parsed = parse_value(text, *point, value.data()); !parsed) why = parsed.error();
+  if (point == nullptr) return tl::unexpected(why);
+  if (!is_writable(*point)) return tl::unexpected(fmt::format("{} cannot be written", point->name));
+  std::vector<std::uint16_t> value(range(*point).count());
+  if (const auto parsed = parse_value(text, *point, value.data()); !parsed)
+    return tl::unexpected(parsed.error());
+  return value;
+}
+
+WriteTicket::Outcome DeviceServices::answer_write(const std::string& name, const std::string& text) {
+  const auto value = value_for(name, text);
+  const Point* point = find(map_, name);
+  return value ? write(index_of(*point), *value) : refuse(name, point, value.error());
+}
+
+/// A duration is in whole milliseconds, as long as was asked for at least.
+ScheduleAnswer DeviceServices::answer_schedule(const ServiceThread::ScheduleRequest& request) {
+  using std::chrono::milliseconds;
+  const auto value = value_for(request.point, request.value);
+  if (!value) return {0, value.error()};
+  WallTime wall;
+  for (int i = 0; i < 5; ++i) wall.measure();  // the best counts: a measurement may be interrupted
+  ScheduledWrite what{
+      make_write(map_, index_of(*find(map_, request.point)), *value), wall.at(request.at), {}, request.at};
+  what.duration = request.how_long.count() < 0 ? std::chrono::floor<milliseconds>(request.how_long)
+                                               : std::chrono::ceil<milliseconds>(request.how_long);
+  std::future<ScheduleAnswer> asked;
+  {
+    const std::lock_guard lock(mutex_);
+    if (device_) asked = device_->schedule(what);
   }
-  if (!why.empty()) return refuse(name, point, why);
-  return write(index_of(*point), value);
+  return asked.valid() ? asked.get() : ScheduleAnswer{0, "the driver ends"};
 }
 
 Calls::Answer DeviceServices::answer_set(std::uint32_t index, bool on) {
@@ -123,8 +162,7 @@ ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
   }
   const std::uint32_t index = index_of(*point);
   const auto deadline = std::chrono::steady_clock::now() + answer_timeout(map_, *point);
-  subscribers_.add(index);
-  const auto value = value_waiter_.wait(index, deadline);
+  const auto value = value_waiter_.wait(index, deadline, [this, index] { subscribers_.add(index); });
   subscribers_.remove(index);
   answer.success = value.has_value();
   if (value)

@@ -7,15 +7,22 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
 
 #include "coupler/host/ros/node.hpp"
 #include "coupler/host/ros/value_waiter.hpp"
 
 namespace coupler::host {
 
+/// A device has the service `schedule` and the topic `scheduled`: a point can be written.
+bool can_schedule(const Map& map);
+
 /// The services of a device: `<name>/write`, `<name>/read`, `<name>/<point>/set` for each writable bit,
-/// `<name>/reset_watchdog` if the driver uses the coupler's own watchdog, and `<name>/safe`. They answer when
-/// the result is known, in a thread of their own. `safe` has another thread: it does not wait for the others.
+/// `<name>/reset_watchdog` if the driver uses the coupler's own watchdog, `<name>/schedule` if a point can be
+/// written, and `<name>/safe`. They answer when the result is known, in a thread of their own. `safe` and
+/// `schedule` have other threads: they do not wait for the others.
 class DeviceServices {
  public:
   /// What `map` views, and the counts, must outlive it.
@@ -30,6 +37,7 @@ class DeviceServices {
     WriteHandler writes;
     std::function<std::future<Calls::Answer>()> reset;      ///< of the coupler's own watchdog
     std::function<std::future<Calls::Answer>()> make_safe;  ///< all outputs
+    std::function<std::future<ScheduleAnswer>(const ScheduledWrite&)> schedule;
     std::function<DeviceSnapshot()> statistics;
   };
 
@@ -45,6 +53,9 @@ class DeviceServices {
   WriteTicket::Outcome write(std::uint32_t index, Span<const std::uint16_t> value);
   WriteTicket::Outcome refuse(const std::string& name, const Point* point, const std::string& why);
   WriteTicket::Outcome answer_write(const std::string& name, const std::string& text);
+  ScheduleAnswer answer_schedule(const ServiceThread::ScheduleRequest& request);
+  tl::expected<std::vector<std::uint16_t>, std::string> value_for(const std::string& name,
+                                                                  const std::string& text) const;
   ServiceThread::ReadAnswer answer_read(const std::string& name);
   Calls::Answer answer_set(std::uint32_t index, bool on);
   Calls::Answer answer_call(std::function<std::future<Calls::Answer>()> Device::*call);
@@ -61,6 +72,7 @@ class DeviceServices {
   ValueWaiter value_waiter_;
   std::unique_ptr<ServiceThread> calls_;  // last: they use the others
   std::unique_ptr<ServiceThread> urgent_calls_;
+  std::unique_ptr<ServiceThread> timed_calls_;
 };
 
 }  // namespace coupler::host

@@ -99,6 +99,8 @@ DiagnosticEntry Diagnostics::polling() {
   values.add("request latency", now_.latency);
   values.add("overruns", now_.overruns);
   values.add("rejected ranges", now_.rejected_ranges);
+  values.add("changes", now_.changes);
+  values.add("changes lost", now_.changes_lost);
   for (std::size_t code = 0; code < now_.exceptions.size(); ++code)
     if (now_.exceptions[code] > 0)
       values.add(to_string(Error(ExceptionReply{static_cast<modbus::Exception>(code)})),

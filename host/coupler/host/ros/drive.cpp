@@ -38,15 +38,33 @@ std::vector<std::unique_ptr<PointPublisher>> advertise_all(Node& node, const Map
   return result;
 }
 
+/// By point; null for those that are not stamped.
+std::vector<std::unique_ptr<PointPublisher>> advertise_stamped(Node& node, const Map& map,
+                                                               SubscriberCounts& subscribers,
+                                                               const WallTime& wall) {
+  std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
+  for (std::uint32_t i = 0; i < map.points.size() && !Shutdown::requested; ++i)
+    if (map.points[i].host.stamped)
+      result[i] = node.advertise_stamped(topic(map, map.points[i].name) + "/stamped", map.points[i], i,
+                                         subscribers, wall);
+  return result;
+}
+
+Node::PublishScheduled advertise_scheduled(Node& node, const Map& map, const WallTime& wall) {
+  return can_schedule(map) ? node.advertise_scheduled(topic(map, "scheduled"), map, wall)
+                           : Node::PublishScheduled();
+}
+
 std::function<void(bool)> advertise_online(Node& node, const Map& map) {
   auto online = node.advertise_online(topic(map, "online"));
   online(false);
   return online;
 }
 
-/// One device in ROS: `<name>/<point>` for each readable point, `<name>/<point>/write` for each writable one,
-/// the latched `<name>/online` and `<name>/status`, services, diagnostics, and the thread that drives the
-/// device. Values are published in that thread as they are decoded.
+/// One device in ROS: `<name>/<point>` for each readable point, with `<name>/<point>/stamped` where the map
+/// says so, `<name>/<point>/write` for each writable one, the latched `<name>/online` and `<name>/status`,
+/// `<name>/scheduled`, services, diagnostics, and the thread that drives the device. Values are published in
+/// that thread as they are decoded.
 class DeviceDriver : public Sink {
  public:
   /// The map's views must outlive it. Callbacks of the node refer to it: the node must be shut down before it
@@ -56,8 +74,10 @@ class DeviceDriver : public Sink {
         map_(map),
         subscribers_(map.points.size()),
         publishers_(advertise_all(node, map_, subscribers_)),
+        stamped_(advertise_stamped(node, map_, subscribers_, wall_)),
         publish_online_(advertise_online(node, map)),
         publish_status_(node.advertise_status(topic(map, "status"), map)),
+        publish_scheduled_(advertise_scheduled(node, map_, wall_)),
         diagnostics_(map, node),
         services_(map, subscribers_),
         transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport), node)),
@@ -69,10 +89,13 @@ class DeviceDriver : public Sink {
       if (is_writable(map_.points[i]))
         subscriptions_.push_back(
             node.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
-    services_.start(node, {writes_, [this] { return thread_.reset_watchdog(); },
-                           [this] { return thread_.make_safe(); }, [this] { return thread_.statistics(); }});
+    services_.start(
+        node, {writes_, [this] { return thread_.reset_watchdog(); }, [this] { return thread_.make_safe(); },
+               [this](const ScheduledWrite& what) { return thread_.schedule(what); },
+               [this] { return thread_.statistics(); }});
     if (map.poll == Poll::subscribed)
       subscribers_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
+    subscribers_.on_each([this](std::uint32_t point) { thread_.want(point, true); });
   }
   ~DeviceDriver() override { services_.stop(); }
 
@@ -87,12 +110,17 @@ class DeviceDriver : public Sink {
   /// once. To be called about ten times a second; without news and without `force` it does nothing.
   bool report(Time now, bool force);
 
-  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Time at) override {
+  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override {
     std::copy(bits.begin(), bits.end(), bits_.begin());
-    on_registers(span, {bits_.data(), bits.size()}, at);
+    on_registers(span, {bits_.data(), bits.size()}, stamp);
   }
-  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) override;
+  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override;
+  Time repeat_at(std::uint32_t point) const override;
   void on_online(bool online) override;
+  void on_scheduled(const ScheduledOutcome& outcome) override {
+    wall_.measure();
+    publish_scheduled_(outcome);
+  }
   void on_report(Level level, const std::string& text) override {
     node_.log(level, fmt::format("{}: {}", map_.name, text));
   }
@@ -104,9 +132,12 @@ class DeviceDriver : public Sink {
   Map map_;
   SubscriberCounts subscribers_;
   std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
+  WallTime wall_;
+  std::vector<std::unique_ptr<PointPublisher>> stamped_;     ///< by point; null where it is not stamped
   std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of one span, as publishers take them
   std::function<void(bool)> publish_online_;
   Node::PublishStatus publish_status_;
+  Node::PublishScheduled publish_scheduled_;  ///< empty if no point can be written
   Diagnostics diagnostics_;
   DeviceServices services_;
   std::unique_ptr<TracedTransport> transport_;
@@ -138,21 +169,34 @@ bool DeviceDriver::report(Time now, bool force) {
   return diagnostics_.update(device, points);
 }
 
-void DeviceDriver::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Time at) {
+void DeviceDriver::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) {
+  bool is_measured = false;  // once, so that the stamps of one read are equal
   for (const std::uint32_t index : span.points) {
     const modbus::Range place = read_range(map_.points[index]);
     const std::uint16_t* value = &registers[place.start() - std::size_t{span.range.start()}];
     if (!publishers_[index]) continue;  // the driver ends before it has begun
-    publishers_[index]->publish(value, at);
+    publishers_[index]->publish(value, stamp);
+    if (stamped_[index]) {
+      if (!std::exchange(is_measured, true)) wall_.measure();
+      stamped_[index]->publish(value, stamp);
+    }
     if (services_.value_waiter().waits_for(index))
-      services_.value_waiter().deliver(value, place.count(), transport_->read_sent_at());
+      services_.value_waiter().deliver(value, place.count(), std::min(transport_->read_sent_at(), stamp.at));
   }
+}
+
+Time DeviceDriver::repeat_at(std::uint32_t point) const {
+  Time first = Time::max();
+  for (const auto* publishers : {&publishers_, &stamped_})
+    if (const auto& publisher = (*publishers)[point]) first = std::min(first, publisher->repeat_at());
+  return first;
 }
 
 void DeviceDriver::on_online(bool online) {
   if (online)  // values from before the interruption are history
-    for (const auto& publisher : publishers_)
-      if (publisher) publisher->renew();
+    for (const auto* publishers : {&publishers_, &stamped_})
+      for (const auto& publisher : *publishers)
+        if (publisher) publisher->renew();
   services_.value_waiter().set_online(online);
   publish_online_(online);
 }

@@ -2,6 +2,7 @@
 // What the driver needs of a ROS. coupler/host/ros1 and coupler/host/ros2 implement it.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -15,7 +16,9 @@
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/point_quality.hpp"
+#include "coupler/host/core/scheduled.hpp"
 #include "coupler/host/core/sink.hpp"
+#include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/core/write.hpp"
 #include "coupler/map/map.hpp"
 
@@ -25,9 +28,11 @@ namespace coupler::host {
 class PointPublisher {
  public:
   virtual ~PointPublisher() = default;
-  /// The point's registers as they came `at`; bit tables: each bit as one register, 0 or 1. Publishes them if
-  /// the point's policy says so.
-  virtual void publish(const std::uint16_t* registers, Time at) = 0;
+  /// The point's registers as they were at `stamp`; bit tables: each bit as one register, 0 or 1. Publishes
+  /// them if the point's policy says so.
+  virtual void publish(const std::uint16_t* registers, Stamp stamp) = 0;
+  /// When publish() would publish the value of last time once more; Time::max(): never. From its thread.
+  virtual Time repeat_at() const = 0;
   /// The next value is published whatever it is.
   virtual void renew() = 0;
 };
@@ -41,6 +46,7 @@ class SubscriberCounts {
   void add(std::uint32_t point) {
     const std::lock_guard lock(mutex_);
     if (counts_[point]++ == 0 && want_) want_(point, true);
+    if (read_) read_(point);
   }
   void remove(std::uint32_t point) {
     const std::lock_guard lock(mutex_);
@@ -56,6 +62,15 @@ class SubscriberCounts {
       if (counts_[point] > 0) want_(point, true);
   }
 
+  /// Calls `read(point)` for each subscriber that there is or that comes later: it has seen no value yet.
+  /// `read` must not wait for anything.
+  void on_each(std::function<void(std::uint32_t point)> read) {
+    const std::lock_guard lock(mutex_);
+    read_ = std::move(read);
+    for (std::uint32_t point = 0; point < counts_.size(); ++point)
+      if (counts_[point] > 0) read_(point);
+  }
+
   /// The point has no subscriber, and after follow() that matters.
   bool is_unwanted(std::uint32_t point) const {
     const std::lock_guard lock(mutex_);
@@ -66,6 +81,7 @@ class SubscriberCounts {
   mutable std::mutex mutex_;
   std::vector<std::uint32_t> counts_;
   std::function<void(std::uint32_t, bool)> want_;
+  std::function<void(std::uint32_t)> read_;
 };
 
 /// What all subscriptions of a device call.
@@ -83,6 +99,12 @@ class ServiceThread {
     std::string value;
     std::string message;
   };
+  struct ScheduleRequest {
+    std::string point;
+    std::string value;
+    std::chrono::nanoseconds at{};  ///< wall time
+    std::chrono::nanoseconds how_long{};
+  };
 
   /// Waits for the call in progress.
   virtual ~ServiceThread() = default;
@@ -93,6 +115,9 @@ class ServiceThread {
   virtual void offer_write(
       const std::string& name,
       std::function<WriteTicket::Outcome(const std::string& point, const std::string& value)> call) = 0;
+  /// coupler_driver/Schedule.
+  virtual void offer_schedule(const std::string& name,
+                              std::function<ScheduleAnswer(const ScheduleRequest&)> call) = 0;
   /// coupler_driver/Read: a point's name.
   virtual void offer_read(const std::string& name,
                           std::function<ReadAnswer(const std::string& point)> call) = 0;
@@ -124,6 +149,12 @@ class Node {
   /// must outlive the publisher.
   virtual std::unique_ptr<PointPublisher> advertise(const std::string& topic, const Point& point,
                                                     std::uint32_t index, SubscriberCounts& subscribers) = 0;
+  /// The same with the stamps of the values: coupler_driver/BoolStamped and its relatives. `wall` must
+  /// outlive the publisher, and is used where that publishes.
+  virtual std::unique_ptr<PointPublisher> advertise_stamped(const std::string& topic, const Point& point,
+                                                            std::uint32_t index,
+                                                            SubscriberCounts& subscribers,
+                                                            const WallTime& wall) = 0;
   /// To `map.points[index]`. The handler is called in ROS's network thread and must not wait for anything.
   /// The subscription lasts as long as the result; map and handler must outlive it.
   virtual std::shared_ptr<void> subscribe(const std::string& topic, const Map& map, std::uint32_t index,
@@ -135,6 +166,11 @@ class Node {
   using PublishStatus =
       std::function<bool(const DeviceSnapshot&, const std::vector<PointQuality>&, Time now)>;
   virtual PublishStatus advertise_status(const std::string& topic, const Map& map) = 0;
+  /// coupler_driver/Scheduled. From one thread only; `wall` must outlive the result, and has measured the
+  /// time of what is published.
+  using PublishScheduled = std::function<void(const ScheduledOutcome&)>;
+  virtual PublishScheduled advertise_scheduled(const std::string& topic, const Map& map,
+                                               const WallTime& wall) = 0;
   virtual std::unique_ptr<ServiceThread> make_service_thread() = 0;
 
   /// publish_diagnostics() calls `make` of every entry, in the order in which they were added. The entries of

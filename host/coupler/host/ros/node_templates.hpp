@@ -12,17 +12,27 @@
 #include <vector>
 
 #include "coupler/host/core/publish_policy.hpp"
+#include "coupler/host/ros/message_time.hpp"
 #include "coupler/host/ros/node.hpp"
 #include "coupler/host/ros/status.hpp"
 
 namespace coupler::host {
 
-/// Publishes a point as a kind of message (message.hpp).
-template <class Kind, class Publisher>
+/// For a message that has no stamp.
+struct NoStamp {
+  template <class Message>
+  void operator()(Message&, Stamp) const {}
+};
+
+/// Publishes a point as a kind of message (message.hpp), or with Stamper (stamped_message.hpp).
+template <class Kind, class Publisher, class PutStamp = NoStamp>
 class TypedPublisher : public PointPublisher {
  public:
-  TypedPublisher(const Point& point, std::uint32_t index, SubscriberCounts& subscribers)
-      : point_(point), policy_(point), index_(index), subscribers_(subscribers) {}
+  using Message = typename Kind::Message;
+
+  TypedPublisher(const Point& point, std::uint32_t index, SubscriberCounts& subscribers,
+                 PutStamp put_stamp = {})
+      : point_(point), policy_(point), index_(index), subscribers_(subscribers), put_stamp_(put_stamp) {}
 
   /// Before anything is published. The publisher may call add_subscriber() and remove_subscriber() already.
   void set_publisher(Publisher publisher) { publisher_ = std::move(publisher); }
@@ -33,12 +43,14 @@ class TypedPublisher : public PointPublisher {
   }
   void remove_subscriber() { subscribers_.remove(index_); }
 
-  void publish(const std::uint16_t* registers, Time at) override {
-    if (!policy_.calls_news(registers, at)) return;
+  void publish(const std::uint16_t* registers, Stamp stamp) override {
+    if (!policy_.calls_news(registers, stamp.at)) return;
     Kind::decode(registers, point_, message_);
+    put_stamp_(message_, stamp);
     publisher_.publish(message_);
   }
 
+  Time repeat_at() const override { return policy_.repeat_at(); }
   void renew() override { policy_.renew(); }
 
  private:
@@ -46,7 +58,8 @@ class TypedPublisher : public PointPublisher {
   PublishPolicy policy_;
   std::uint32_t index_;
   SubscriberCounts& subscribers_;
-  typename Kind::Message message_;
+  PutStamp put_stamp_;
+  Message message_;
   Publisher publisher_;
 };
 
@@ -90,6 +103,38 @@ void fill(Response& response, const ServiceThread::ReadAnswer& answer) {
   response.success = answer.success;
   response.value = answer.value;
   response.message = answer.message;
+}
+
+/// Fills a response of coupler_driver/Schedule.
+template <class Response>
+void fill(Response& response, const ScheduleAnswer& answer) {
+  response.success = answer.number != 0;
+  response.number = answer.number;
+  response.message = answer.text;
+}
+
+/// What a request of coupler_driver/Schedule says.
+template <class Request>
+ServiceThread::ScheduleRequest schedule_request(const Request& request) {
+  return {request.point, request.value, message_time(request.at), message_time(request.how_long)};
+}
+
+/// Fills a coupler_driver/Scheduled, but for the point.
+template <class Message>
+void fill(Message& message, const ScheduledOutcome& outcome, const WallTime& wall) {
+  using Result = ScheduledOutcome::Result;
+  static_assert(static_cast<int>(Result::done) == Message::DONE &&
+                static_cast<int>(Result::cancelled) == Message::CANCELLED &&
+                static_cast<int>(Result::failed) == Message::FAILED &&
+                static_cast<int>(Result::unknown) == Message::UNKNOWN);
+  put_time(message.header.stamp, wall.of(outcome.at.at));
+  message.number = outcome.number;
+  message.result = static_cast<std::uint8_t>(outcome.result);
+  message.reason = outcome.reason;
+  put_time(message.due, outcome.asked);
+  message.lateness =
+      outcome.result == Result::done ? std::chrono::duration<double>(outcome.at.at - outcome.due).count() : 0;
+  message.uncertainty = std::chrono::duration<double>(outcome.at.uncertainty + wall.error()).count();
 }
 
 /// Fills a response of std_srvs/SetBool or std_srvs/Trigger.
@@ -136,6 +181,17 @@ Node::PublishStatus status_with(Publisher publisher, const Map& map, Clock now) 
   };
 }
 
+/// For Node::advertise_scheduled(): the publisher is one of coupler_driver/Scheduled.
+template <class Message, class Publisher>
+Node::PublishScheduled scheduled_with(Publisher publisher, const Map& map, const WallTime& wall) {
+  return [publisher = std::move(publisher), &map, &wall](const ScheduledOutcome& outcome) {
+    Message message;
+    fill(message, outcome, wall);
+    message.point = std::string(map.points[outcome.point].name);
+    publisher.publish(message);
+  };
+}
+
 /// Types names the service types of a ROS; `Adapter::serve<S>(name, function)` offers a service that calls
 /// function(request, response) in the adapter's thread.
 template <class Adapter, class Types>
@@ -146,6 +202,12 @@ class TypedServiceThread : public ServiceThread {
       std::function<WriteTicket::Outcome(const std::string&, const std::string&)> call) override {
     serve<typename Types::Write>(name, [call = std::move(call)](const auto& request, auto& response) {
       fill(response, call(request.point, request.value));
+    });
+  }
+  void offer_schedule(const std::string& name,
+                      std::function<ScheduleAnswer(const ServiceThread::ScheduleRequest&)> call) override {
+    serve<typename Types::Schedule>(name, [call = std::move(call)](const auto& request, auto& response) {
+      fill(response, call(schedule_request(request)));
     });
   }
   void offer_read(const std::string& name, std::function<ReadAnswer(const std::string&)> call) override {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -61,6 +62,26 @@ class TracedTransport : public Transport {
       return fmt::format("write by FC {} at {}: {:02x}", static_cast<int>(request.function()),
                          request.address(), fmt::join(request.pdu().begin() + 3, request.pdu().end(), " "));
     });
+  }
+  Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request) override {
+    const Time begun = now();
+    Result<modbus::ScheduleReply> reply = transport_->schedule(request);
+    trace(reply ? Result<>{} : tl::make_unexpected(reply.error()), begun, [&] {
+      return fmt::format("schedule: {:02x}", fmt::join(request.pdu().begin() + 1, request.pdu().end(), " "));
+    });
+    return reply;
+  }
+  bool can_wait() const override { return transport_->can_wait(); }
+  Result<> send_wait(const modbus::ChangesRequest& request) override {
+    return transport_->send_wait(request);
+  }
+  Result<> receive_wait() override { return transport_->receive_wait(); }
+  std::optional<WaitAnswer> take_wait_answer() override {
+    std::optional<WaitAnswer> answer = transport_->take_wait_answer();
+    if (answer)
+      trace(answer->reply ? Result<>{} : tl::make_unexpected(answer->reply.error()), answer->sent,
+            [&] { return fmt::format("wait for changes: {}", answer->reply ? answer->reply->count : 0); });
+    return answer;
   }
   Woken wait_until(Time time) override { return transport_->wait_until(time); }
   void wake() override { transport_->wake(); }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -18,11 +19,14 @@ class ValueWaiter {
   /// The registers of the first value of `point` that the device is asked for from now on (bit tables: each
   /// bit as one register, 0 or 1). nullopt after `deadline` or cancel(), and while the device is offline:
   /// there is nothing to wait for. For one thread.
-  std::optional<std::vector<std::uint16_t>> wait(std::uint32_t point, Time deadline) {
+  /// `ask` is called when the wait has begun; it must not wait for anything.
+  std::optional<std::vector<std::uint16_t>> wait(
+      std::uint32_t point, Time deadline, const std::function<void()>& ask = [] {}) {
     std::unique_lock lock(mutex_);
     value_.reset();
     since_ = std::chrono::steady_clock::now();
     point_ = point;
+    ask();
     changed_.wait_until(lock, deadline, [this] { return value_.has_value() || !online_ || cancelled_; });
     point_ = none;
     return std::move(value_);

@@ -2,6 +2,11 @@
 #pragma once
 
 #include <coupler_driver/BoolArray.h>
+#include <coupler_driver/BoolStamped.h>
+#include <coupler_driver/Float64Stamped.h>
+#include <coupler_driver/Int64Stamped.h>
+#include <coupler_driver/StringStamped.h>
+#include <coupler_driver/UInt64Stamped.h>
 #include <std_msgs/Bool.h>
 #include <std_msgs/Char.h>
 #include <std_msgs/Float32.h>
@@ -25,32 +30,38 @@
 #include <std_msgs/UInt8.h>
 
 #include "coupler/host/ros/message.hpp"
+#include "coupler/host/ros/stamped_message.hpp"
 
 namespace coupler::host {
 
-/// The message types of ROS 1, for with_message().
+/// The message types of ROS 1, for with_message() and with_stamped_message().
 struct Ros1Messages {
   using Bool = std_msgs::Bool;
   using BoolArray = coupler_driver::BoolArray;
+  using BoolStamped = coupler_driver::BoolStamped;
   using Char = std_msgs::Char;
   using Float32 = std_msgs::Float32;
   using Float32MultiArray = std_msgs::Float32MultiArray;
   using Float64 = std_msgs::Float64;
   using Float64MultiArray = std_msgs::Float64MultiArray;
+  using Float64Stamped = coupler_driver::Float64Stamped;
   using Int16 = std_msgs::Int16;
   using Int16MultiArray = std_msgs::Int16MultiArray;
   using Int32 = std_msgs::Int32;
   using Int32MultiArray = std_msgs::Int32MultiArray;
   using Int64 = std_msgs::Int64;
   using Int64MultiArray = std_msgs::Int64MultiArray;
+  using Int64Stamped = coupler_driver::Int64Stamped;
   using Int8 = std_msgs::Int8;
   using String = std_msgs::String;
+  using StringStamped = coupler_driver::StringStamped;
   using UInt16 = std_msgs::UInt16;
   using UInt16MultiArray = std_msgs::UInt16MultiArray;
   using UInt32 = std_msgs::UInt32;
   using UInt32MultiArray = std_msgs::UInt32MultiArray;
   using UInt64 = std_msgs::UInt64;
   using UInt64MultiArray = std_msgs::UInt64MultiArray;
+  using UInt64Stamped = coupler_driver::UInt64Stamped;
   using UInt8 = std_msgs::UInt8;
 };
 

@@ -2,6 +2,8 @@
 #include "coupler/host/ros1/node.hpp"
 
 #include <coupler_driver/Read.h>
+#include <coupler_driver/Schedule.h>
+#include <coupler_driver/Scheduled.h>
 #include <coupler_driver/Status.h>
 #include <coupler_driver/Write.h>
 #include <ros/callback_queue.h>
@@ -17,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/ros/node_templates.hpp"
+#include "coupler/host/ros/topic_depth.hpp"
 #include "coupler/host/ros1/logger_service.hpp"
 #include "coupler/host/ros1/messages.hpp"
 #include "coupler/map/printable.hpp"
@@ -43,6 +46,7 @@ class InPlaceQueue : public ros::CallbackQueueInterface {
 struct Ros1Services {
   using Write = coupler_driver::Write;
   using Read = coupler_driver::Read;
+  using Schedule = coupler_driver::Schedule;
   using SetBool = std_srvs::SetBool;
   using Trigger = std_srvs::Trigger;
 };
@@ -95,18 +99,33 @@ Ros1Node::Ros1Node() : loggers_(advertise_loggers(InPlaceQueue::instance())) {
   diagnostics_.setHardwareID("coupler_driver");  // each device has its own
 }
 
+template <class Publisher>
+std::unique_ptr<PointPublisher> Ros1Node::advertise_as(const std::string& topic, const Point& point,
+                                                       std::unique_ptr<Publisher> publisher) {
+  auto options = ros::AdvertiseOptions::create<typename Publisher::Message>(
+      topic, topic_depth(point), [p = publisher.get()](const auto&) { p->add_subscriber(); },
+      [p = publisher.get()](const auto&) { p->remove_subscriber(); }, ros::VoidPtr(),
+      &InPlaceQueue::instance());
+  options.latch = point.host.latch;
+  publisher->set_publisher(handle_.advertise(options));
+  return publisher;
+}
+
 std::unique_ptr<PointPublisher> Ros1Node::advertise(const std::string& topic, const Point& point,
                                                     std::uint32_t index, SubscriberCounts& subscribers) {
-  return with_message<Ros1Messages>(point, [&](auto kind) -> std::unique_ptr<PointPublisher> {
-    using Kind = decltype(kind);
-    auto publisher = std::make_unique<TypedPublisher<Kind, ros::Publisher>>(point, index, subscribers);
-    auto options = ros::AdvertiseOptions::create<typename Kind::Message>(
-        topic, point.host.queue_size, [p = publisher.get()](const auto&) { p->add_subscriber(); },
-        [p = publisher.get()](const auto&) { p->remove_subscriber(); }, ros::VoidPtr(),
-        &InPlaceQueue::instance());
-    options.latch = point.host.latch;
-    publisher->set_publisher(handle_.advertise(options));
-    return publisher;
+  return with_message<Ros1Messages>(point, [&](auto kind) {
+    using Publisher = TypedPublisher<decltype(kind), ros::Publisher>;
+    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers));
+  });
+}
+
+std::unique_ptr<PointPublisher> Ros1Node::advertise_stamped(const std::string& topic, const Point& point,
+                                                            std::uint32_t index,
+                                                            SubscriberCounts& subscribers,
+                                                            const WallTime& wall) {
+  return with_stamped_message<Ros1Messages>(point, [&](auto kind) {
+    using Publisher = TypedPublisher<decltype(kind), ros::Publisher, Stamper>;
+    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)));
   });
 }
 
@@ -135,6 +154,12 @@ std::function<void(bool)> Ros1Node::advertise_online(const std::string& topic) {
 Node::PublishStatus Ros1Node::advertise_status(const std::string& topic, const Map& map) {
   using Message = coupler_driver::Status;
   return status_with<Message>(handle_.advertise<Message>(topic, 1, true), map, ros::Time::now);
+}
+
+Node::PublishScheduled Ros1Node::advertise_scheduled(const std::string& topic, const Map& map,
+                                                     const WallTime& wall) {
+  using Message = coupler_driver::Scheduled;
+  return scheduled_with<Message>(handle_.advertise<Message>(topic, max_scheduled), map, wall);
 }
 
 std::unique_ptr<ServiceThread> Ros1Node::make_service_thread() {

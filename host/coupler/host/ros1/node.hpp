@@ -19,10 +19,15 @@ class Ros1Node : public Node {
 
   std::unique_ptr<PointPublisher> advertise(const std::string& topic, const Point& point, std::uint32_t index,
                                             SubscriberCounts& subscribers) override;
+  std::unique_ptr<PointPublisher> advertise_stamped(const std::string& topic, const Point& point,
+                                                    std::uint32_t index, SubscriberCounts& subscribers,
+                                                    const WallTime& wall) override;
   std::shared_ptr<void> subscribe(const std::string& topic, const Map& map, std::uint32_t index,
                                   const WriteHandler& handler) override;
   std::function<void(bool)> advertise_online(const std::string& topic) override;
   PublishStatus advertise_status(const std::string& topic, const Map& map) override;
+  PublishScheduled advertise_scheduled(const std::string& topic, const Map& map,
+                                       const WallTime& wall) override;
   std::unique_ptr<ServiceThread> make_service_thread() override;
   void add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) override;
   void publish_diagnostics() override { diagnostics_.force_update(); }
@@ -35,6 +40,10 @@ class Ros1Node : public Node {
   void log_debug(const std::string& text) override;
 
  private:
+  template <class Publisher>
+  std::unique_ptr<PointPublisher> advertise_as(const std::string& topic, const Point& point,
+                                               std::unique_ptr<Publisher> publisher);
+
   ros::NodeHandle handle_;
   ros::ServiceServer loggers_;
   diagnostic_updater::Updater diagnostics_;

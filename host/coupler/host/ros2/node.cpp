@@ -2,8 +2,10 @@
 #include "coupler/host/ros2/node.hpp"
 
 #include <rcutils/logging.h>
+#include <coupler_driver/msg/scheduled.hpp>
 #include <coupler_driver/msg/status.hpp>
 #include <coupler_driver/srv/read.hpp>
+#include <coupler_driver/srv/schedule.hpp>
 #include <coupler_driver/srv/write.hpp>
 #include <rcl_interfaces/msg/parameter_type.hpp>
 #include <std_srvs/srv/set_bool.hpp>
@@ -19,6 +21,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/ros/node_templates.hpp"
+#include "coupler/host/ros/topic_depth.hpp"
 #include "coupler/host/ros2/messages.hpp"
 #include "coupler/host/ros2/rcl/service.hpp"
 #include "coupler/map/printable.hpp"
@@ -32,6 +35,7 @@ constexpr auto graph_watch_interval = std::chrono::seconds(2);
 struct Ros2Services {
   using Write = coupler_driver::srv::Write;
   using Read = coupler_driver::srv::Read;
+  using Schedule = coupler_driver::srv::Schedule;
   using SetBool = std_srvs::srv::SetBool;
   using Trigger = std_srvs::srv::Trigger;
 };
@@ -117,20 +121,35 @@ void Ros2Node::declare_sim_time(bool use_sim_time) {
                        [this](const ParameterServer::Value& now) { clock_.use_simulated(now.bool_value); });
 }
 
+template <class Publisher>
+std::unique_ptr<PointPublisher> Ros2Node::advertise_as(const std::string& topic, const Point& point,
+                                                       std::unique_ptr<Publisher> publisher) {
+  const auto matched = [p = publisher.get()](bool came) {
+    came ? p->add_subscriber() : p->remove_subscriber();
+  };
+  const bool latch = point.host.latch;
+  const rmw_qos_profile_t qos = latch ? rcl::latched() : rcl::reliable(topic_depth(point));
+  publisher->set_publisher({node_, topic, qos, {matched, warn_subscriber(!latch)}});
+  return publisher;
+}
+
 std::unique_ptr<PointPublisher> Ros2Node::advertise(const std::string& topic, const Point& point,
                                                     std::uint32_t index, SubscriberCounts& subscribers) {
-  return with_message<Ros2Messages>(point, [&](auto kind) -> std::unique_ptr<PointPublisher> {
+  return with_message<Ros2Messages>(point, [&](auto kind) {
     using Kind = decltype(kind);
-    using Message = typename Kind::Message;
-    auto publisher =
-        std::make_unique<TypedPublisher<Kind, rcl::Publisher<Message>>>(point, index, subscribers);
-    const auto matched = [p = publisher.get()](bool came) {
-      came ? p->add_subscriber() : p->remove_subscriber();
-    };
-    const bool latch = point.host.latch;
-    const rmw_qos_profile_t qos = latch ? rcl::latched() : rcl::reliable(point.host.queue_size);
-    publisher->set_publisher({node_, topic, qos, {matched, warn_subscriber(!latch)}});
-    return publisher;
+    using Publisher = TypedPublisher<Kind, rcl::Publisher<typename Kind::Message>>;
+    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers));
+  });
+}
+
+std::unique_ptr<PointPublisher> Ros2Node::advertise_stamped(const std::string& topic, const Point& point,
+                                                            std::uint32_t index,
+                                                            SubscriberCounts& subscribers,
+                                                            const WallTime& wall) {
+  return with_stamped_message<Ros2Messages>(point, [&](auto kind) {
+    using Kind = decltype(kind);
+    using Publisher = TypedPublisher<Kind, rcl::Publisher<typename Kind::Message>, Stamper>;
+    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)));
   });
 }
 
@@ -161,6 +180,14 @@ Node::PublishStatus Ros2Node::advertise_status(const std::string& topic, const M
   return status_with<Message>(
       rcl::Publisher<Message>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)}), map,
       [this] { return clock_.now(); });
+}
+
+Node::PublishScheduled Ros2Node::advertise_scheduled(const std::string& topic, const Map& map,
+                                                     const WallTime& wall) {
+  using Message = coupler_driver::msg::Scheduled;
+  return scheduled_with<Message>(
+      rcl::Publisher<Message>(node_, topic, rcl::reliable(max_scheduled), {{}, warn_subscriber(false)}), map,
+      wall);
 }
 
 std::unique_ptr<ServiceThread> Ros2Node::make_service_thread() {

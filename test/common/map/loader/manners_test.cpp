@@ -135,6 +135,17 @@ TEST(HostOptions, What_is_only_written_is_not_read_back) {
       OnePoint("coils", "{address: 0, access: write, verify_write: false}", defaults)->host.verify_write);
 }
 
+TEST(HostOptions, Defaults_stamp_what_is_read_and_no_array) {
+  const std::string defaults = "defaults: {stamped: true}";
+  EXPECT_TRUE(OnePoint("coils", "{address: 0}", defaults)->host.stamped);
+  EXPECT_TRUE(OnePoint("input_registers", "{address: 0, type: STRING, length: 4}", defaults)->host.stamped);
+  EXPECT_FALSE(OnePoint("coils", "{address: 0, stamped: false}", defaults)->host.stamped);
+  EXPECT_FALSE(OnePoint("coils", "{address: 0, count: 8}", defaults)->host.stamped);
+  EXPECT_FALSE(OnePoint("coils", "{address: 0, count: 8, stamped: false}", defaults)->host.stamped);
+  EXPECT_FALSE(OnePoint("coils", "{address: 0, access: write}", defaults)->host.stamped);
+  EXPECT_FALSE(OnePoint("coils", "{address: 0}")->host.stamped);
+}
+
 TEST(Unreadable, Areas_are_sorted_and_in_the_addressing_of_the_map) {
   const MapPtr map = load_clean(map_of("coils", "p: 1",
                                        "addressing: modicon\n"
@@ -147,12 +158,14 @@ TEST(Unreadable, Areas_are_sorted_and_in_the_addressing_of_the_map) {
 }
 
 TEST(Link, What_becomes_of_outputs_and_which_points_are_read_is_said_at_the_top) {
-  const MapPtr map =
-      load_clean(map_of("coils", "p: 1", "on_reconnect: restore\non_shutdown: safe\npoll: subscribed"));
+  const MapPtr map = load_clean(
+      map_of("coils", "p: 1", "on_reconnect: restore\non_shutdown: safe\npoll: subscribed\nchanges: off"));
   EXPECT_EQ(map->map().on_reconnect, OnReconnect::restore);
   EXPECT_EQ(map->map().on_shutdown, OnShutdown::safe);
   EXPECT_EQ(map->map().poll, Poll::subscribed);
+  EXPECT_FALSE(map->map().changes);
   EXPECT_EQ(load_clean(map_of("coils", "p: 1"))->map().poll, Poll::all);
+  EXPECT_TRUE(load_clean(map_of("coils", "p: 1"))->map().changes);
 }
 
 TEST(Manners, Any_output_may_say_what_is_safe_for_it) {

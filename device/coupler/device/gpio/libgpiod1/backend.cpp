@@ -2,16 +2,18 @@
 #include "coupler/device/gpio/backend.hpp"
 
 #include <fcntl.h>
+#include <sys/epoll.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
 #include "coupler/device/gpio/libgpiod1/request.hpp"
-#include "coupler/device/gpio/line_edges.hpp"
-#include "coupler/device/supervisor/shared_memory.hpp"
+#include "coupler/device/gpio/watched_inputs.hpp"
 
 namespace coupler::device::backend {
 namespace {
@@ -56,108 +58,132 @@ TimePoint time_of(const gpiod_line_event& event) {
   return TimePoint(std::chrono::seconds(event.ts.tv_sec) + std::chrono::nanoseconds(event.ts.tv_nsec));
 }
 
-/// An input that is watched for edges: because they are counted, or to debounce it here, since libgpiod 1
-/// has no debounce. Each such line has a descriptor of its own. Its events have no sequence number, and the
-/// kernel drops those that come while its queue of 16 is full: a queue that was found full counts as one
-/// edge lost, at least.
-class EventLine : public InputGroup {
+/// Inputs that are watched for edges. Each is a request with a descriptor of its own, for that is how
+/// libgpiod 1 has it; one descriptor stands for all of them. Its events have no sequence number, and the
+/// kernel drops those that come while its queue of 16 is full: a queue that was found full counts as one edge
+/// lost, at least. To ask the kernel for the level of each line would take a call for each. So the levels are
+/// what the edges say, and with every read the next line in turn is looked at, too: nothing that was missed
+/// stays unseen, nor does a chip that is gone.
+class EventLines : public WatchedInputs {
  public:
-  /// `request` holds one line, requested for `watched` edges; both, if there is a debounce period.
-  EventLine(std::unique_ptr<Request> request, Edge watched, std::chrono::microseconds debounce);
+  /// `requests` holds a request for each of `lines`, whose levels are `levels`. `ready` becomes readable when
+  /// one of them has an event.
+  EventLines(std::vector<std::unique_ptr<Request>> requests, const std::vector<LineSpec>& lines,
+             Span<const int> levels, int ready)
+      : WatchedInputs(lines, levels), requests_(std::move(requests)), ready_(ready), name_(names_of(lines)) {}
+  ~EventLines() override { ::close(ready_); }
+  EventLines(const EventLines&) = delete;
+  EventLines& operator=(const EventLines&) = delete;
 
-  const std::string& name() const override { return request_->name(); }
-  bool is_plugged() override { return request_->is_plugged(); }
+  const std::string& name() const override { return name_; }
+  bool is_plugged() override { return requests_.front()->is_plugged(); }
   int read(Span<int> levels, TimePoint now) override;
-  int descriptor() const override { return descriptor_; }
+  int descriptor() const override { return ready_; }
   bool take_edges() override;
-  Edges edges(std::size_t line, TimePoint now) override;
 
  private:
-  void add(const gpiod_line_event& event);
-  /// The line's own level is what counts where the queue may have been full. Returns 0 or an errno.
-  int debounce_level(TimePoint now);
+  bool take_waiting();
+  bool take(std::size_t line);
+  int look_at(std::size_t line);
+  int look_at_doubtful();
 
-  /// What was seen of the line. Shared, so that a process that is started anew takes no edge for a lost one.
-  struct Seen {
-    EdgeTally tally;
-    std::optional<Debounce> debounce;
-  };
-  EdgeTally& tally() { return seen_[0].tally; }
-  std::optional<Debounce>& debounce() { return seen_[0].debounce; }
-
-  std::unique_ptr<Request> request_;
-  int descriptor_;
-  SharedArray<Seen> seen_;
+  std::vector<std::unique_ptr<Request>> requests_;
+  int ready_;
+  std::size_t next_ = 0;   ///< is looked at with the next read
+  bool is_known_ = false;  ///< this process has looked at all of them
+  std::string name_;
 };
 
-EventLine::EventLine(std::unique_ptr<Request> request, Edge watched, std::chrono::microseconds debounce)
-    : request_(std::move(request)),
-      descriptor_(gpiod_line_event_get_fd(request_->first())),
-      seen_(1, {EdgeTally(watched, gpiod_line_get_value(request_->first()) == 1), std::nullopt}) {
-  if (debounce.count() > 0) this->debounce().emplace(debounce, gpiod_line_get_value(request_->first()) == 1);
-  ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
-}
+int descriptor_of(Request& request) { return gpiod_line_event_get_fd(request.first()); }
 
-void EventLine::add(const gpiod_line_event& event) {
-  const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
-  if (debounce())
-    debounce()->edge(rising, time_of(event));
-  else
-    tally().edge(rising);
-}
-
-bool EventLine::take_edges() {
+/// False: the lines are gone.
+bool EventLines::take(std::size_t line) {
   std::array<gpiod_line_event, kernel_queue> events{};
+  const int descriptor = descriptor_of(*requests_[line]);
+  bool was_full = false;
   for (;;) {
-    const int count = gpiod_line_event_read_fd_multiple(descriptor_, events.data(), kernel_queue);
-    if (count < 0) return errno == EAGAIN || errno == EINTR;
-    for (int i = 0; i < count; ++i) add(events[static_cast<std::size_t>(i)]);
-    if (count < static_cast<int>(kernel_queue)) return true;
-    tally().lose(1);
+    const int count = gpiod_line_event_read_fd_multiple(descriptor, events.data(), kernel_queue);
+    if (count < 0 && errno != EAGAIN && errno != EINTR) return false;
+    for (int i = 0; i < count; ++i) {
+      const gpiod_line_event& event = events[static_cast<std::size_t>(i)];
+      edge(line, event.event_type == GPIOD_LINE_EVENT_RISING_EDGE, time_of(event));
+    }
+    if (count < static_cast<int>(kernel_queue)) break;
+    lose(line, 1);
+    was_full = true;
   }
+  // The newest edges are those that the kernel dropped.
+  return !was_full || look_at(line) == 0;
 }
 
-int EventLine::debounce_level(TimePoint now) {
-  const int level = gpiod_line_get_value(request_->first());
-  if (level < 0) return errno;
-  if ((level == 1) != debounce()->latest()) debounce()->edge(level == 1, now);
+/// False: the lines are gone.
+bool EventLines::take_waiting() {
+  std::array<epoll_event, max_group_size> waiting{};
+  const int count = ::epoll_wait(ready_, waiting.data(), static_cast<int>(waiting.size()), 0);
+  for (int i = 0; i < count; ++i)
+    if (!take(waiting[static_cast<std::size_t>(i)].data.u32)) return false;
+  return true;
+}
+
+bool EventLines::take_edges() {
+  if (!take_waiting()) return false;
+  if (is_known_) return !has_doubts() || look_at_doubtful() == 0;
+  // A process that died may have taken edges and not noted them.
+  is_known_ = true;
+  for (std::size_t line = 0; line < size(); ++line)
+    if (look_at(line) != 0) return false;
+  return true;
+}
+
+int EventLines::look_at_doubtful() {
+  const TimePoint now = TimePoint::clock::now();
+  for (std::size_t line = 0; line < size(); ++line)
+    if (is_doubtful(line, now))
+      if (const int error = look_at(line); error != 0) return error;
   return 0;
 }
 
-Edges EventLine::edges(std::size_t, TimePoint now) {
-  Edges edges = tally().take();
-  if (!debounce()) return edges;
-  const std::uint32_t lost = edges.lost;
-  if (lost != 0 && debounce_level(now) != 0) return edges;
-  edges = debounce()->take_edges(now);
-  edges.lost = lost;
-  return edges;
+/// Returns 0 or an errno.
+int EventLines::look_at(std::size_t line) {
+  const int level = gpiod_line_get_value(requests_[line]->first());
+  if (level < 0) return errno;
+  check(line, level == 1, TimePoint::clock::now());
+  return 0;
 }
 
-int EventLine::read(Span<int> levels, TimePoint now) {
+int EventLines::read(Span<int> levels, TimePoint now) {
   if (!take_edges()) return errno;
-  if (debounce()) {
-    const int error = debounce_level(now);
-    levels[0] = debounce()->level(now) ? 1 : 0;
-    return error;
-  }
-  levels[0] = gpiod_line_get_value(request_->first());
-  return levels[0] < 0 ? errno : 0;
+  next_ = (next_ + 1) % size();
+  const int error = look_at(next_);
+  put_levels(levels, now);
+  return error;
 }
 
-/// libgpiod 1 has no debounce: it is made of both edges and their times.
-std::optional<Edge> edges_of(const LineSpec& wanted) {
-  if (is_output(wanted)) return std::nullopt;
-  return wanted.point->line.debounce.count() > 0 ? Edge::both : wanted.counted;
-}
-
-int request_type(Edge edge) {
-  switch (edge) {
-    case Edge::rising: return GPIOD_LINE_REQUEST_EVENT_RISING_EDGE;
-    case Edge::falling: return GPIOD_LINE_REQUEST_EVENT_FALLING_EDGE;
-    case Edge::both: break;
+tl::expected<std::unique_ptr<InputGroup>, std::string> request_event_lines(
+    const std::vector<LineSpec>& lines) {
+  std::vector<std::unique_ptr<Request>> requests;
+  std::vector<int> levels;
+  for (const LineSpec& line : lines) {
+    auto request = Request::make({line}, GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES);
+    if (!request) return tl::unexpected(std::move(request).error());
+    levels.push_back(gpiod_line_get_value((*request)->first()) == 1 ? 1 : 0);
+    requests.push_back(*std::move(request));
   }
-  return GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES;
+  const int ready = ::epoll_create1(EPOLL_CLOEXEC);
+  const auto watch = [&](std::size_t line) {
+    const int descriptor = descriptor_of(*requests[line]);
+    ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
+    epoll_event event{};
+    event.events = EPOLLIN | EPOLLPRI;
+    event.data.u32 = static_cast<std::uint32_t>(line);
+    return ::epoll_ctl(ready, EPOLL_CTL_ADD, descriptor, &event) == 0;
+  };
+  bool watched = ready >= 0;
+  for (std::size_t line = 0; watched && line < lines.size(); ++line) watched = watch(line);
+  if (watched) return std::make_unique<EventLines>(std::move(requests), lines, levels, ready);
+  std::string error = request_error(lines, errno, [](unsigned) { return std::nullopt; });
+  if (ready >= 0) ::close(ready);
+  return tl::unexpected(std::move(error));
 }
 
 /// nullopt with errno set if it cannot be opened.
@@ -178,10 +204,14 @@ std::optional<Chip> read_chip(const std::string& path) {
 
 Inventory chips() { return Inventory(read_chip); }
 
+std::size_t max_watched() { return 64; }
+
 bool fits(const std::vector<LineSpec>& group, const LineSpec& line) {
   const LineSpec& first = group.front();
-  return first.line.chip == line.line.chip && is_output(first) == is_output(line) && !edges_of(first) &&
-         !edges_of(line) && libgpiod1::flags_of(first.point->line) == libgpiod1::flags_of(line.point->line);
+  if (first.line.chip != line.line.chip || is_output(first) != is_output(line) ||
+      is_watched(first) != is_watched(line))
+    return false;
+  return is_watched(line) || libgpiod1::flags_of(first.point->line) == libgpiod1::flags_of(line.point->line);
 }
 
 tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const std::vector<LineSpec>& lines) {
@@ -191,11 +221,10 @@ tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const st
 }
 
 tl::expected<std::unique_ptr<InputGroup>, std::string> request_inputs(const std::vector<LineSpec>& lines) {
-  const auto edges = edges_of(lines.front());
-  auto request = Request::make(lines, edges ? request_type(*edges) : GPIOD_LINE_REQUEST_DIRECTION_INPUT);
+  if (is_watched(lines.front())) return request_event_lines(lines);
+  auto request = Request::make(lines, GPIOD_LINE_REQUEST_DIRECTION_INPUT);
   if (!request) return tl::unexpected(std::move(request).error());
-  if (!edges) return std::make_unique<ValueInputs>(*std::move(request));
-  return std::make_unique<EventLine>(*std::move(request), *edges, lines.front().point->line.debounce);
+  return std::make_unique<ValueInputs>(*std::move(request));
 }
 
 }  // namespace coupler::device::backend

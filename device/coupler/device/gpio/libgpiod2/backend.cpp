@@ -7,11 +7,14 @@
 #include <array>
 #include <cassert>
 #include <cerrno>
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "coupler/device/gpio/libgpiod2/request.hpp"
-#include "coupler/device/gpio/line_edges.hpp"
+#include "coupler/device/gpio/watched_inputs.hpp"
 #include "coupler/device/supervisor/shared_memory.hpp"
 
 namespace coupler::device::backend {
@@ -30,11 +33,7 @@ class Outputs : public OutputGroup {
       values_[i] = levels[i] != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
     return gpiod_line_request_set_values(request_.lines.get(), values_.data()) == 0 ? 0 : errno;
   }
-  int read(Span<int> levels) override {
-    if (gpiod_line_request_get_values(request_.lines.get(), values_.data()) != 0) return errno;
-    for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = values_[i] == GPIOD_LINE_VALUE_ACTIVE ? 1 : 0;
-    return 0;
-  }
+  int read(Span<int> levels) override { return request_.read(levels); }
 
  private:
   Request request_;
@@ -44,71 +43,76 @@ class Outputs : public OutputGroup {
 
 constexpr std::size_t events_at_once = 64;
 
-/// Inputs of one request: one system call reads them all, one descriptor reports the edges of those that are
-/// counted. The kernel debounces, and numbers its events: what it drops is seen as a gap.
+/// Inputs of one request: one system call reads them all.
 class Inputs : public InputGroup {
  public:
-  /// `request` holds `lines`, in this order.
-  Inputs(Request request, const std::vector<LineSpec>& lines);
+  Inputs(Request request, std::string name) : request_(std::move(request)), name_(std::move(name)) {}
+  const std::string& name() const override { return name_; }
+  bool is_plugged() override { return request_.is_plugged(); }
+  int read(Span<int> levels, TimePoint) override { return request_.read(levels); }
+
+ private:
+  Request request_;
+  std::string name_;
+};
+
+/// The same, and one descriptor reports the edges of all of them. The kernel numbers its events: what it
+/// drops is seen as a gap. It could debounce, but its time stamps are those of the end of the period then.
+class EventInputs : public WatchedInputs {
+ public:
+  /// `request` holds `lines`, in this order, which have `levels`.
+  EventInputs(Request request, const std::vector<LineSpec>& lines, Span<const int> levels);
 
   const std::string& name() const override { return name_; }
   bool is_plugged() override { return request_.is_plugged(); }
   int read(Span<int> levels, TimePoint now) override;
-  int descriptor() const override { return is_counted_ ? fd() : -1; }
+  int descriptor() const override { return gpiod_line_request_get_fd(request_.lines.get()); }
   bool take_edges() override;
-  Edges edges(std::size_t line, TimePoint now) override;
 
  private:
-  struct Counted {
+  struct Reported {
     unsigned offset = 0;
-    EdgeTally tally;
     std::uint32_t sequence = 0;  ///< of the line's last event; the kernel begins with 1
   };
 
-  int fd() const { return gpiod_line_request_get_fd(request_.lines.get()); }
+  bool take_waiting();
   void add(gpiod_edge_event* event);
+  int look_at_all();
 
   Request request_;
   Owned<gpiod_edge_event_buffer, gpiod_edge_event_buffer_free> events_;
-  std::array<gpiod_line_value, max_group_size> values_{};
-  SharedArray<Counted> lines_;  ///< shared: a process that is started anew sees no gap in their sequence
-  bool is_counted_ = false;
+  SharedArray<Reported> reported_;  ///< shared: a process that is started anew sees no gap in their sequence
+  bool is_known_ = false;           ///< this process has looked at the lines
   std::string name_;
 };
 
-Inputs::Inputs(Request request, const std::vector<LineSpec>& lines)
-    : request_(std::move(request)),
+EventInputs::EventInputs(Request request, const std::vector<LineSpec>& lines, Span<const int> levels)
+    : WatchedInputs(lines, levels),
+      request_(std::move(request)),
       events_(gpiod_edge_event_buffer_new(events_at_once)),
-      lines_(lines.size(), {0, EdgeTally(Edge::both, false)}),
+      reported_(lines.size()),
       name_(names_of(lines)) {
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const unsigned offset = lines[i].line.offset;
-    const bool level = gpiod_line_request_get_value(request_.lines.get(), offset) == GPIOD_LINE_VALUE_ACTIVE;
-    is_counted_ |= lines[i].counted.has_value();
-    lines_[i] = {offset, EdgeTally(lines[i].counted.value_or(Edge::both), level)};
-  }
-  ::fcntl(fd(), F_SETFL, ::fcntl(fd(), F_GETFL) | O_NONBLOCK);
+  for (std::size_t i = 0; i < lines.size(); ++i) reported_[i].offset = lines[i].line.offset;
+  const int fd = gpiod_line_request_get_fd(request_.lines.get());
+  ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
 }
 
-int Inputs::read(Span<int> levels, TimePoint) {
-  if (gpiod_line_request_get_values(request_.lines.get(), values_.data()) != 0) return errno;
-  for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = values_[i] == GPIOD_LINE_VALUE_ACTIVE ? 1 : 0;
-  return 0;
-}
-
-void Inputs::add(gpiod_edge_event* event) {
+void EventInputs::add(gpiod_edge_event* event) {
   const unsigned offset = gpiod_edge_event_get_line_offset(event);
-  const Span<Counted> lines = lines_.all();
+  const Span<Reported> all = reported_.all();
   auto* const line =
-      std::find_if(lines.begin(), lines.end(), [&](const Counted& l) { return l.offset == offset; });
-  assert(line != lines.end());
+      std::find_if(all.begin(), all.end(), [&](const Reported& one) { return one.offset == offset; });
+  assert(line != all.end());
+  const auto i = static_cast<std::size_t>(line - all.begin());
   const auto sequence = static_cast<std::uint32_t>(gpiod_edge_event_get_line_seqno(event));
-  if (const std::uint32_t gap = sequence - line->sequence - 1; gap != 0) line->tally.lose(gap);
+  if (const std::uint32_t gap = sequence - line->sequence - 1; gap != 0) lose(i, gap);
   line->sequence = sequence;
-  line->tally.edge(gpiod_edge_event_get_event_type(event) == GPIOD_EDGE_EVENT_RISING_EDGE);
+  const std::chrono::nanoseconds at(gpiod_edge_event_get_timestamp_ns(event));
+  edge(i, gpiod_edge_event_get_event_type(event) == GPIOD_EDGE_EVENT_RISING_EDGE, TimePoint(at));
 }
 
-bool Inputs::take_edges() {
+/// False: the lines are gone.
+bool EventInputs::take_waiting() {
   for (;;) {
     const int count =
         gpiod_line_request_read_edge_events(request_.lines.get(), events_.get(), events_at_once);
@@ -119,7 +123,29 @@ bool Inputs::take_edges() {
   }
 }
 
-Edges Inputs::edges(std::size_t line, TimePoint) { return lines_[line].tally.take(); }
+bool EventInputs::take_edges() {
+  if (!take_waiting()) return false;
+  // A process that died may have taken edges and not noted them.
+  if (std::exchange(is_known_, true) && !has_doubts()) return true;
+  return look_at_all() == 0;
+}
+
+/// Returns 0 or an errno.
+int EventInputs::look_at_all() {
+  std::array<int, max_group_size> space{};
+  const auto levels = Span<int>(space).first(size());
+  if (const int error = request_.read(levels); error != 0) return error;
+  if (!take_waiting()) return errno;  // first the edges that were reported
+  const TimePoint now = TimePoint::clock::now();
+  for (std::size_t i = 0; i < size(); ++i) check(i, levels[i] != 0, now);
+  return 0;
+}
+
+int EventInputs::read(Span<int> levels, TimePoint now) {
+  const int error = look_at_all();
+  put_levels(levels, now);
+  return error;
+}
 
 std::size_t kinds(const std::vector<LineSpec>& lines) {
   std::size_t count = 0;
@@ -149,8 +175,13 @@ std::optional<Chip> read_chip(const std::string& path) {
 
 Inventory chips() { return Inventory(read_chip); }
 
+std::size_t max_watched() { return std::numeric_limits<std::size_t>::max(); }
+
 bool fits(const std::vector<LineSpec>& group, const LineSpec& line) {
-  if (group.front().line.chip != line.line.chip || is_output(group.front()) != is_output(line)) return false;
+  const LineSpec& first = group.front();
+  if (first.line.chip != line.line.chip || is_output(first) != is_output(line) ||
+      is_watched(first) != is_watched(line))
+    return false;
   const bool known =
       std::any_of(group.begin(), group.end(), [&](const LineSpec& other) { return same_kind(other, line); });
   return known || kinds(group) < max_kinds;
@@ -165,7 +196,10 @@ tl::expected<std::unique_ptr<OutputGroup>, std::string> request_outputs(const st
 tl::expected<std::unique_ptr<InputGroup>, std::string> request_inputs(const std::vector<LineSpec>& lines) {
   auto made = request(lines);
   if (!made) return tl::unexpected(std::move(made).error());
-  return std::make_unique<Inputs>(*std::move(made), lines);
+  if (!is_watched(lines.front())) return std::make_unique<Inputs>(*std::move(made), names_of(lines));
+  std::array<int, max_group_size> levels{};
+  (void)made->read(Span<int>(levels).first(lines.size()));  // if it fails, so does the next, which is told
+  return std::make_unique<EventInputs>(*std::move(made), lines, levels);
 }
 
 }  // namespace coupler::device::backend

@@ -44,16 +44,6 @@ gpiod_line_drive drive_of(Drive drive) {
   return GPIOD_LINE_DRIVE_PUSH_PULL;
 }
 
-gpiod_line_edge edge_of(const std::optional<Edge>& counted) {
-  if (!counted) return GPIOD_LINE_EDGE_NONE;
-  switch (*counted) {
-    case Edge::rising: return GPIOD_LINE_EDGE_RISING;
-    case Edge::falling: return GPIOD_LINE_EDGE_FALLING;
-    case Edge::both: break;
-  }
-  return GPIOD_LINE_EDGE_BOTH;
-}
-
 void set_output(gpiod_line_settings* settings, const LineSpec& wanted) {
   gpiod_line_settings_set_direction(settings, GPIOD_LINE_DIRECTION_OUTPUT);
   gpiod_line_settings_set_drive(settings, drive_of(wanted.point->line.drive));
@@ -63,9 +53,8 @@ void set_output(gpiod_line_settings* settings, const LineSpec& wanted) {
 
 void set_input(gpiod_line_settings* settings, const LineSpec& wanted) {
   gpiod_line_settings_set_direction(settings, GPIOD_LINE_DIRECTION_INPUT);
-  gpiod_line_settings_set_edge_detection(settings, edge_of(wanted.counted));
-  gpiod_line_settings_set_debounce_period_us(settings,
-                                             static_cast<unsigned long>(wanted.point->line.debounce.count()));
+  gpiod_line_settings_set_edge_detection(settings,
+                                         wanted.watched ? GPIOD_LINE_EDGE_BOTH : GPIOD_LINE_EDGE_NONE);
 }
 
 /// False with errno set if there is no memory or the settings contradict each other.
@@ -86,8 +75,7 @@ bool add(gpiod_line_config* config, const LineSpec& wanted) {
 bool same_kind(const LineSpec& a, const LineSpec& b) {
   const Line& x = a.point->line;
   const Line& y = b.point->line;
-  return x.active_low == y.active_low && x.bias == y.bias && x.drive == y.drive && x.debounce == y.debounce &&
-         a.counted == b.counted;
+  return x.active_low == y.active_low && x.bias == y.bias && x.drive == y.drive;
 }
 
 tl::expected<Request, std::string> request(const std::vector<LineSpec>& lines) {

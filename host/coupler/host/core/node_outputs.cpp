@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/node_outputs.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace coupler::host {
+namespace {
+
+using Kind = ScheduledOutcome::Result;
+using modbus::Change;
+
+/// A node tells at once; this is for one that is busy.
+constexpr std::chrono::seconds told_within(1);
+/// Two clocks drift apart by less than this part of the time that passes.
+constexpr int drift_part = 500;
+
+std::optional<Kind> result_of(Change::Kind kind) {
+  switch (kind) {
+    case Change::Kind::done: return Kind::done;
+    case Change::Kind::cancelled: return Kind::cancelled;
+    case Change::Kind::failed: return Kind::failed;
+    case Change::Kind::off:
+    case Change::Kind::on: break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void NodeOutputs::add(std::uint16_t number, const AcceptedWrite& what) {
+  const Time due = what.what.due;
+  waiting_.push_back({number, what, due + told_within + (due - clock_.now()) / drift_part});
+}
+
+std::vector<std::uint16_t> NodeOutputs::numbers() const {
+  std::vector<std::uint16_t> numbers;
+  for (const Waiting& one : waiting_) numbers.push_back(one.number);
+  return numbers;
+}
+
+template <class Which>
+std::vector<NodeOutputs::Waiting> NodeOutputs::take_if(Which which) {
+  std::vector<Waiting> taken;
+  if (waiting_.empty()) return taken;
+  const auto kept = std::stable_partition(waiting_.begin(), waiting_.end(),
+                                          [&which](const Waiting& one) { return !which(one); });
+  std::move(kept, waiting_.end(), std::back_inserter(taken));
+  waiting_.erase(kept, waiting_.end());
+  return taken;
+}
+
+void NodeOutputs::tell(const Waiting& which, ScheduledOutcome::Result result, Stamp at,
+                       const std::string& reason) {
+  outcomes_.on_outcome(which.what, result, at, reason);
+}
+
+void NodeOutputs::settle(std::uint16_t number, ScheduledOutcome::Result result, const std::string& reason) {
+  for (const Waiting& one : take_if([number](const Waiting& which) { return which.number == number; }))
+    tell(one, result, {clock_.now(), {}}, reason);
+}
+
+void NodeOutputs::lose(const std::string& reason) {
+  for (const Waiting& one : std::exchange(waiting_, {})) tell(one, Kind::unknown, {clock_.now(), {}}, reason);
+}
+
+void NodeOutputs::on_change(const Change& change, std::uint64_t number, Stamp stamp) {
+  const auto result = result_of(change.kind);
+  if (!result) {
+    bits_.on_change(change, number, stamp);
+    return;
+  }
+  const std::string reason = to_string(static_cast<modbus::Reason>(change.table));
+  for (const Waiting& one :
+       take_if([&change](const Waiting& which) { return which.number == change.address; }))
+    tell(one, *result, stamp, reason);
+}
+
+/// The process that had accepted them serves no more, and no other one drives them.
+void NodeOutputs::on_new_epoch() {
+  bits_.on_new_epoch();
+  const Time now = clock_.now();
+  const auto has_time = [now](const Waiting& which) { return which.what.what.due - told_within > now; };
+  for (const Waiting& one : take_if(has_time))
+    tell(one, Kind::cancelled, {now, {}}, to_string(modbus::Reason::reload));
+  lose("the node was started anew, or read a new map, before the outcome was heard");
+}
+
+void NodeOutputs::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
+  bits_.on_heard(newest, stamp);
+  if (!stamp) return;
+  for (const Waiting& one : take_if([&stamp](const Waiting& which) { return which.told_by < stamp->at; }))
+    tell(one, Kind::unknown, *stamp, "the node could not tell all its changes, and this one was among them");
+}
+
+void NodeOutputs::on_end() {
+  bits_.on_end();
+  lose("the node tells changes no more");
+}
+
+}  // namespace coupler::host

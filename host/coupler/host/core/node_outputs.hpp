@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coupler/host/core/change_listener.hpp"
+#include "coupler/host/core/scheduled.hpp"
+
+namespace coupler::host {
+
+/// What a node has accepted to drive at a time, until it tells what became of that. Changes of bits are
+/// handed on.
+class NodeOutputs : public ChangeSink {
+ public:
+  /// `bits` gets what is told of bits. Both must outlive it.
+  NodeOutputs(ChangeSink& bits, Clock& clock, ScheduledListener& outcomes)
+      : bits_(bits), clock_(clock), outcomes_(outcomes) {}
+
+  /// `number`: ScheduleReply's.
+  void add(std::uint16_t number, const AcceptedWrite& what);
+  std::size_t size() const { return waiting_.size(); }
+  /// The numbers of those that wait.
+  std::vector<std::uint16_t> numbers() const;
+  /// It has this outcome now, if it waits still.
+  void settle(std::uint16_t number, ScheduledOutcome::Result result, const std::string& reason);
+  /// The outcomes will not be heard.
+  void lose(const std::string& reason);
+
+  void on_change(const modbus::Change& change, std::uint64_t number, Stamp stamp) override;
+  void on_gap() override { bits_.on_gap(); }
+  void on_new_epoch() override;
+  void on_heard(std::uint64_t newest, std::optional<Stamp> stamp) override;
+  void on_end() override;
+  Time answer_wanted() override { return bits_.answer_wanted(); }
+
+ private:
+  struct Waiting {
+    std::uint16_t number;
+    AcceptedWrite what;
+    Time told_by;  ///< what has not been told by then was among the changes that were lost
+  };
+  void tell(const Waiting& which, ScheduledOutcome::Result result, Stamp at, const std::string& reason);
+  template <class Which>
+  std::vector<Waiting> take_if(Which which);
+
+  ChangeSink& bits_;
+  Clock& clock_;
+  ScheduledListener& outcomes_;
+  std::vector<Waiting> waiting_;
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/output_scheduler.hpp"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/map/typed_value.hpp"
+#include "coupler/modbus/scheduled_output.hpp"
+
+namespace coupler::host {
+namespace {
+
+using modbus::Exception;
+
+constexpr auto the_driver_ends = "the driver ends";
+
+std::string refusal(modbus::Exception code) {
+  std::string what = to_string(Error(ExceptionReply{code}));
+  switch (code) {
+    case Exception::illegal_data_address: return what + ": its map has no such output";
+    case Exception::illegal_data_value:
+      return what +
+             ": it does not take that value, its clock has jumped or it has just read a new map; try again";
+    case Exception::server_device_failure:
+      return what +
+             ": its watchdog keeps outputs in their safe state until it is reset, or its hardware is gone";
+    case Exception::server_device_busy:
+      return what + ": too many outputs are scheduled there; ask again when one of them is over";
+    default: return what;
+  }
+}
+
+}  // namespace
+
+OutputScheduler::OutputScheduler(const Map& map, PacedTransport& transport, Clock& clock, Writer& writer,
+                                 ChangeSink& bits, Sink& sink)
+    : map_(map),
+      transport_(transport),
+      clock_(clock),
+      writer_(writer),
+      sink_(sink),
+      by_driver_(transport, clock, writer, *this),
+      by_node_(bits, clock, *this) {
+  writer.listen(*this);
+}
+
+void OutputScheduler::connected(bool by_node) {
+  node_can_ = by_node;
+  calls_.open();
+}
+
+Result<> OutputScheduler::step(const ChangeListener& listener) {
+  auto call = calls_.take();
+  Result<> done = call ? answer(std::move(*call), listener) : Result<>{};
+  note();
+  return done;
+}
+
+std::string OutputScheduler::why_refused(const ScheduledWrite& what, Time now) const {
+  if (by_node_.size() + by_driver_.size() >= max_scheduled)
+    return fmt::format("{} scheduled writes wait, and more cannot; ask again when one of them is over",
+                       max_scheduled);
+  if (const auto forbidden = find_forbidden(point(what), what.write.registers.data()))
+    return fmt::format("{}; send {}", forbidden_text(point(what), *forbidden), allowed_text(point(what)));
+  return why_impossible(what, now);
+}
+
+Result<> OutputScheduler::answer(ScheduleCalls::Call call, const ChangeListener& listener) {
+  if (const std::string why = why_refused(call.what, clock_.now()); !why.empty()) {
+    call.answer.set_value({0, why});
+    return {};
+  }
+  if (can_node(call.what, listener)) {
+    const Result<ScheduleAnswer> given = give_to_node(call.what, listener);
+    if (!given) {
+      call.answer.set_value({0, "it may be carried out or not: " + to_string(given.error())});
+      return tl::make_unexpected(given.error());
+    }
+    if (node_can_) {
+      call.answer.set_value(*given);
+      return {};
+    }
+  }
+  call.answer.set_value(keep(call.what));
+  return {};
+}
+
+/// Parts of a register are for the driver: a request has whole ones.
+bool OutputScheduler::can_node(const ScheduledWrite& what, const ChangeListener& listener) const {
+  const bool bits = holds_bits(point(what).table);
+  return node_can_ && !is_partial(point(what)) && listener.epoch() &&
+         listener.mapping().node_time(what.due) &&
+         range(point(what)).count() <= (bits ? modbus::max_scheduled_bits : modbus::max_scheduled_registers);
+}
+
+modbus::ScheduleRequest OutputScheduler::request(const ScheduledWrite& what,
+                                                 const ChangeListener& listener) const {
+  modbus::ScheduleOutput when;
+  when.epoch = listener.epoch().value_or(0);
+  when.due = listener.mapping().node_time(what.due).value_or(modbus::NodeTime{});
+  when.duration = what.duration;
+  when.range = range(point(what));
+  const std::size_t count = when.range.count();
+  if (!holds_bits(point(what).table))
+    return modbus::ScheduleRequest::registers(when, {what.write.registers.data(), count});
+  std::array<std::uint16_t, modbus::max_scheduled_bits> bits{};
+  for (std::size_t i = 0; i < count; ++i) bits[i] = what.write.bit(i) ? 1 : 0;
+  return modbus::ScheduleRequest::coils(when, {bits.data(), count});
+}
+
+Result<ScheduleAnswer> OutputScheduler::give_to_node(const ScheduledWrite& what,
+                                                     const ChangeListener& listener) {
+  const auto reply = transport_.schedule(request(what, listener));
+  if (reply) {
+    by_node_.add(reply->number, {++last_number_, what});
+    return ScheduleAnswer{last_number_, "accepted: the node does it"};
+  }
+  const ExceptionReply* exception = exception_in(reply.error());
+  if (exception == nullptr || is_unit_away(reply.error())) return tl::make_unexpected(reply.error());
+  node_can_ = exception->code != Exception::illegal_function;
+  return ScheduleAnswer{0, "the node refuses it with " + refusal(exception->code)};
+}
+
+ScheduleAnswer OutputScheduler::keep(const ScheduledWrite& what) {
+  if (what.duration.count() > 0)
+    return {0,
+            fmt::format("nothing but the driver could end it, and that may die before; only a node ends by "
+                        "itself what lasts, and no part of a register. Schedule a second write of {}",
+                        point(what).name)};
+  by_driver_.add({++last_number_, what});
+  return {last_number_, "accepted: the driver does it"};
+}
+
+void OutputScheduler::disconnected(const std::string& why) {
+  calls_.close(fmt::format("not connected: {}; ask again when the device is back", why));
+  if (!busy_) return;
+  by_driver_.cancel(to_string(modbus::Reason::connection));
+  by_node_.lose("the connection ended before the outcome was heard");
+  note();
+}
+
+void OutputScheduler::shut_down(bool connected, const ChangeListener& listener) {
+  calls_.close(the_driver_ends);
+  if (!busy_) return;
+  by_driver_.cancel(the_driver_ends);
+  if (connected) cancel_at_node(listener);
+  by_node_.lose(the_driver_ends);
+}
+
+void OutputScheduler::cancel_at_node(const ChangeListener& listener) {
+  for (const std::uint16_t number : by_node_.numbers()) {
+    const auto reply =
+        transport_.schedule(modbus::ScheduleRequest::cancel({listener.epoch().value_or(0), number}));
+    if (reply) by_node_.settle(number, ScheduledOutcome::Result::cancelled, the_driver_ends);
+    if (!reply && exception_in(reply.error()) == nullptr) return;
+  }
+}
+
+void OutputScheduler::on_outcome(const AcceptedWrite& which, ScheduledOutcome::Result result, Stamp at,
+                                 const std::string& reason) {
+  const ScheduledWrite& what = which.what;
+  // What the node drove for good is what a write has written.
+  if (result == ScheduledOutcome::Result::done && what.duration.count() == 0) writer_.remember(what.write);
+  sink_.on_scheduled({which.number, what.write.point, result, reason, what.asked, what.due, at});
+  note();
+}
+
+void OutputScheduler::on_written(const Write& write) {
+  if (by_driver_.size() > 0) by_driver_.on_written(write);
+}
+
+void OutputScheduler::on_made_safe(const std::vector<Write>& values) {
+  if (by_driver_.size() > 0) by_driver_.on_made_safe(values);
+}
+
+}  // namespace coupler::host

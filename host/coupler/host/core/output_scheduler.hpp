@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <future>
+#include <string>
+#include <vector>
+
+#include "coupler/host/core/calls.hpp"
+#include "coupler/host/core/change_listener.hpp"
+#include "coupler/host/core/node_outputs.hpp"
+#include "coupler/host/core/scheduled.hpp"
+#include "coupler/host/core/scheduled_writes.hpp"
+#include "coupler/host/core/sink.hpp"
+#include "coupler/host/core/writer.hpp"
+
+namespace coupler::host {
+
+using ScheduleCalls = CallQueue<ScheduledWrite, ScheduleAnswer>;
+
+/// Writes at a time: by a node that drives outputs by itself and tells what became of that, otherwise by the
+/// driver.
+///
+/// ask() and is_busy() may be called from any thread, all else only from the one that uses the transport.
+class OutputScheduler : private ScheduledListener, private WrittenListener {
+ public:
+  /// `bits` gets what a node tells of bits. Everything given by reference must outlive it.
+  OutputScheduler(const Map& map, PacedTransport& transport, Clock& clock, Writer& writer, ChangeSink& bits,
+                  Sink& sink);
+
+  /// To a writable point. Refused while there is no connection; what is not done when that ends is cancelled.
+  std::future<ScheduleAnswer> ask(const ScheduledWrite& what) { return calls_.ask(what); }
+  /// shut_down() has something to do.
+  bool is_busy() const { return busy_; }
+
+  /// Gets what a node tells.
+  ChangeSink& changes() { return by_node_; }
+
+  /// A new connection; `by_node`: to a node that drives outputs at a time.
+  void connected(bool by_node);
+  /// When queue_due() or step() has something to do; the past if it has now.
+  Time due() const { return calls_.any() ? Time::min() : by_driver_.due(); }
+  /// Queues the writes whose time has come.
+  void queue_due(Time now) {
+    if (!busy_) return;
+    by_driver_.queue_due(now);
+    note();
+  }
+  bool has_request() const { return calls_.any(); }
+  /// Makes one request. An error means that the connection can no longer be used.
+  Result<> step(const ChangeListener& listener);
+  /// There is no connection, and the writer knows that: what waits is cancelled.
+  void disconnected(const std::string& why);
+  /// The program ends, before the connection is closed if there is one: what waits is cancelled.
+  void shut_down(bool connected, const ChangeListener& listener);
+
+ private:
+  void on_outcome(const AcceptedWrite& which, ScheduledOutcome::Result result, Stamp at,
+                  const std::string& reason) override;
+  void on_written(const Write& write) override;
+  void on_made_safe(const std::vector<Write>& values) override;
+
+  std::string why_refused(const ScheduledWrite& what, Time now) const;
+  bool can_node(const ScheduledWrite& what, const ChangeListener& listener) const;
+  Result<> answer(ScheduleCalls::Call call, const ChangeListener& listener);
+  Result<ScheduleAnswer> give_to_node(const ScheduledWrite& what, const ChangeListener& listener);
+  ScheduleAnswer keep(const ScheduledWrite& what);
+  void cancel_at_node(const ChangeListener& listener);
+  modbus::ScheduleRequest request(const ScheduledWrite& what, const ChangeListener& listener) const;
+  const Point& point(const ScheduledWrite& what) const { return map_.points[what.write.point]; }
+  void note() { busy_ = by_node_.size() + by_driver_.size() > 0; }
+
+  const Map& map_;
+  PacedTransport& transport_;
+  Clock& clock_;
+  Writer& writer_;
+  Sink& sink_;
+  ScheduleCalls calls_;
+  ScheduledWrites by_driver_;
+  NodeOutputs by_node_;
+  bool node_can_ = false;  ///< the device drives outputs at a time
+  std::uint32_t last_number_ = 0;
+  std::atomic<bool> busy_{false};  ///< something has been accepted and is not over
+};
+
+}  // namespace coupler::host

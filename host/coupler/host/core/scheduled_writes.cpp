@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/scheduled_writes.hpp"
+
+#include <algorithm>
+
+namespace coupler::host {
+namespace {
+
+using Outcome = WriteResult::Outcome;
+using Kind = ScheduledOutcome::Result;
+
+}  // namespace
+
+ScheduledWrites::ScheduledWrites(PacedTransport& transport, Clock& clock, Writer& writer,
+                                 ScheduledListener& outcomes)
+    : transport_(transport), clock_(clock), writer_(writer), outcomes_(outcomes) {}
+
+void ScheduledWrites::add(const AcceptedWrite& what) {
+  entries_.emplace_back(*this, what);
+  find_due();
+}
+
+Time ScheduledWrites::due(const Entry& entry) {
+  return entry.state == Entry::State::waiting ? entry.what.what.due : Time::max();
+}
+
+void ScheduledWrites::find_due() {
+  due_ = Time::max();
+  for (const Entry& entry : entries_) due_ = std::min(due_, due(entry));
+}
+
+/// What is to be queued now: the first that is due, and of those due at the same time the one accepted first.
+ScheduledWrites::Entry* ScheduledWrites::next(Time now) {
+  Entry* first = nullptr;
+  for (Entry& entry : entries_)
+    if (due(entry) <= now && (first == nullptr || due(entry) < due(*first))) first = &entry;
+  return first;
+}
+
+void ScheduledWrites::queue_due(Time now) {
+  if (now < due_) return;
+  while (Entry* const entry = next(now)) queue(*entry);
+  find_due();
+}
+
+void ScheduledWrites::queue(Entry& entry) {
+  entry.state = Entry::State::being_written;
+  Write write = entry.what.what.write;
+  write.ordered = write.of_schedule = true;
+  write.listener = &entry;
+  queueing_ = true;
+  writer_.push(write);
+  queueing_ = false;
+}
+
+void ScheduledWrites::on_result(const Entry& entry, const WriteResult& result) {
+  const Stamp written = transport_.last_write();
+  const Stamp now{clock_.now(), {}};
+  const std::string why = to_string(result);
+  switch (result.outcome) {
+    case Outcome::ok: return finish(entry, Kind::done, written, {});
+    case Outcome::lost: return finish(entry, Kind::unknown, now, why);
+    case Outcome::superseded:
+      return finish(entry, Kind::cancelled, now, to_string(modbus::Reason::safe_state));
+    case Outcome::kept:
+    case Outcome::dropped:
+      if (queueing_) break;
+      return finish(entry, Kind::cancelled, now, to_string(modbus::Reason::connection));
+    case Outcome::exception: return finish(entry, Kind::failed, written, why);
+    case Outcome::not_taken:
+    case Outcome::refused: break;
+  }
+  finish(entry, Kind::failed, now, why);
+}
+
+void ScheduledWrites::finish(const Entry& entry, ScheduledOutcome::Result result, Stamp at,
+                             const std::string& reason) {
+  const AcceptedWrite what = entry.what;
+  remove(entry);
+  outcomes_.on_outcome(what, result, at, reason);
+}
+
+void ScheduledWrites::remove(const Entry& entry) {
+  entries_.remove_if([&entry](const Entry& other) { return &other == &entry; });
+  find_due();
+}
+
+template <class Which>
+void ScheduledWrites::cancel_if(Which which, Stamp at, const std::string& reason) {
+  for (auto next = entries_.begin(); next != entries_.end();) {
+    const Entry& entry = *next++;
+    if (entry.state == Entry::State::waiting && which(entry)) finish(entry, Kind::cancelled, at, reason);
+  }
+}
+
+void ScheduledWrites::on_written(const Write& write) {
+  if (write.of_schedule) return;
+  cancel_if([&write](const Entry& entry) { return point(entry) == write.point; }, transport_.last_write(),
+            to_string(modbus::Reason::overwritten));
+}
+
+void ScheduledWrites::on_made_safe(const std::vector<Write>& values) {
+  const auto is_safe = [&values](const Entry& entry) {
+    return std::any_of(values.begin(), values.end(),
+                       [&entry](const Write& value) { return value.point == point(entry); });
+  };
+  cancel_if(is_safe, {clock_.now(), {}}, to_string(modbus::Reason::safe_state));
+}
+
+void ScheduledWrites::cancel(const std::string& reason) {
+  cancel_if([](const Entry&) { return true; }, {clock_.now(), {}}, reason);
+}
+
+}  // namespace coupler::host

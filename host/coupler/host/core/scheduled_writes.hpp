@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <string>
+#include <vector>
+
+#include "coupler/host/core/scheduled.hpp"
+#include "coupler/host/core/writer.hpp"
+
+namespace coupler::host {
+
+/// The writes that the driver makes at a time with its own timer, for devices that have none. They are queued
+/// when their time has come.
+///
+/// They are for good: what ends by itself needs a timer that does not end with the driver.
+///
+/// Another write to the point cancels what waits, unless that one was scheduled, too. All is for the thread
+/// that owns the connection.
+class ScheduledWrites {
+ public:
+  /// Everything given by reference must outlive it.
+  ScheduledWrites(PacedTransport& transport, Clock& clock, Writer& writer, ScheduledListener& outcomes);
+
+  void add(const AcceptedWrite& what);
+  /// How many wait or are being written.
+  std::size_t size() const { return entries_.size(); }
+
+  /// When queue_due() has something to do; Time::max(): never.
+  Time due() const { return due_; }
+  /// Queues the writes whose time has come.
+  void queue_due(Time now);
+
+  /// As WrittenListener's.
+  void on_written(const Write& write);
+  void on_made_safe(const std::vector<Write>& values);
+
+  /// What waits is cancelled.
+  void cancel(const std::string& reason);
+
+ private:
+  struct Entry : WriteListener {
+    enum class State { waiting, being_written };
+    Entry(ScheduledWrites& writes, const AcceptedWrite& accepted) : owner(writes), what(accepted) {}
+    void on_result(const WriteResult& result) override { owner.on_result(*this, result); }
+
+    ScheduledWrites& owner;
+    AcceptedWrite what;
+    State state = State::waiting;
+  };
+
+  static std::uint32_t point(const Entry& entry) { return entry.what.what.write.point; }
+  static Time due(const Entry& entry);
+  void find_due();
+  /// Those that wait and of which `which(entry)` is true.
+  template <class Which>
+  void cancel_if(Which which, Stamp at, const std::string& reason);
+  Entry* next(Time now);
+  void queue(Entry& entry);
+  void on_result(const Entry& entry, const WriteResult& result);
+  void finish(const Entry& entry, ScheduledOutcome::Result result, Stamp at, const std::string& reason);
+  void remove(const Entry& entry);
+
+  PacedTransport& transport_;
+  Clock& clock_;
+  Writer& writer_;
+  ScheduledListener& outcomes_;
+  std::list<Entry> entries_;  ///< in the order in which they were accepted
+  Time due_ = Time::max();
+  bool queueing_ = false;
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/told_bits.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "coupler/map/functions.hpp"
+#include "coupler/plan/planner.hpp"
+
+namespace coupler::host {
+namespace {
+
+std::uint32_t place(std::uint8_t function, std::uint16_t address) {
+  return std::uint32_t{function} << 16 | address;
+}
+
+/// Not before the last stamp of the point; what that adds to the error is said.
+Stamp not_before(Stamp last, Stamp stamp) {
+  if (stamp.at >= last.at) return stamp;
+  return {last.at, stamp.uncertainty + (last.at - stamp.at)};
+}
+
+}  // namespace
+
+ToldBits::ToldBits(const Map& map, PollCycle& cycle, Writer& writer, PointQualities& qualities, Sink& sink)
+    : map_(map),
+      cycle_(cycle),
+      writer_(writer),
+      qualities_(qualities),
+      sink_(sink),
+      index_(map.points.size()) {
+  for (std::uint32_t i = 0; i < map.points.size(); ++i) {
+    const Point& point = map.points[i];
+    if (!holds_bits(point.table) || plan::why_not_read(map, point)) continue;
+    const modbus::Range range = read_range(point);
+    const auto index = static_cast<std::uint32_t>(points_.size());
+    index_[i] = index;
+    points_.push_back({i, bits_.size()});
+    bits_.resize(bits_.size() + range.count());
+    const auto function = static_cast<std::uint8_t>(read_function(point.table));
+    for (std::uint32_t bit = 0; bit < range.count(); ++bit)
+      at_.emplace_back(place(function, static_cast<std::uint16_t>(range.start() + bit)), index);
+  }
+  std::sort(at_.begin(), at_.end());
+  one_.points.resize(1);
+}
+
+bool ToldBits::rests(const Told& told) const {
+  return point_of(told).host.publish == HostOptions::Publish::on_change;
+}
+
+bool ToldBits::repeats(const Told& told) const {
+  return told.known && rests(told) && point_of(told).host.max_interval.count() > 0;
+}
+
+Time ToldBits::repeat_at(Told& told) {
+  if (!told.repeat_at) told.repeat_at = sink_.repeat_at(told.point);
+  return *told.repeat_at;
+}
+
+void ToldBits::start(bool told) {
+  active_ = told;
+  newest_ = 0;
+  for (Told& point : points_) forget(point);
+}
+
+void ToldBits::forget(Told& told) {
+  told.known = false;
+  told.pending.reset();
+  told.newer_than = 0;
+  cycle_.rest(told.point, false);
+  qualities_.told(told.point, false);
+}
+
+void ToldBits::want(std::uint32_t point, bool wanted) {
+  cycle_.want(point, wanted);
+  if (!active_ || !index_[point]) return;
+  Told& told = points_[*index_[point]];
+  if (!wanted)
+    forget(told);
+  else if (told.known)
+    cycle_.read_soon(point);
+}
+
+Stamp ToldBits::read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
+  if (!active_ || !holds_bits(span.table)) return stamp;
+  for (const std::uint32_t point : span.points) stamp = not_before(points_[*index_[point]].stamp, stamp);
+  for (const std::uint32_t point : span.points) {
+    Told& told = points_[*index_[point]];
+    const modbus::Range range = read_range(map_.points[point]);
+    const std::uint8_t* from = &bits[range.start() - std::size_t{span.range.start()}];
+    std::copy_n(from, range.count(), &bits_[told.first]);
+    told.known = true;
+    told.pending.reset();
+    told.newer_than = newest_;
+    told.stamp = stamp;
+    told.repeat_at.reset();
+    if (!rests(told)) continue;
+    cycle_.rest(point, true);
+    qualities_.told(point, true);
+  }
+  return stamp;
+}
+
+void ToldBits::on_change(const modbus::Change& change, std::uint64_t number, Stamp stamp) {
+  if (!change.is_bit()) return;
+  const std::uint32_t here = place(change.table, change.address);
+  for (auto at = std::lower_bound(at_.begin(), at_.end(), std::pair(here, 0U));
+       at != at_.end() && at->first == here; ++at)
+    this->change(points_[at->second], change, number, stamp);
+}
+
+void ToldBits::change(Told& told, const modbus::Change& change, std::uint64_t number, Stamp stamp) {
+  if (!told.known || number <= told.newer_than) return;
+  if (told.pending && change.at != told.pending_at) show_pending(told);
+  const std::size_t bit = change.address - read_range(point_of(told)).start();
+  bits_[told.first + bit] = change.kind == modbus::Change::Kind::on ? 1 : 0;
+  if (writer_.hides(told.point)) {
+    told.pending.reset();
+    cycle_.rest(told.point, false);  // should the write fail, this is the value
+  } else if (point_of(told).count > 1) {
+    told.pending = stamp;
+    told.pending_at = change.at;
+  } else {
+    show(told, stamp);
+  }
+}
+
+void ToldBits::show_pending(Told& told) {
+  if (told.pending) show(told, *std::exchange(told.pending, std::nullopt));
+}
+
+void ToldBits::show(Told& told, Stamp stamp) {
+  told.stamp = not_before(told.stamp, stamp);
+  told.repeat_at.reset();
+  one_.table = point_of(told).table;
+  one_.range = read_range(point_of(told));
+  one_.points.front() = told.point;
+  sink_.on_bits(one_, {&bits_[told.first], one_.range.count()}, told.stamp);
+  writer_.shown(one_.points);
+}
+
+void ToldBits::on_gap() {
+  for (Told& told : points_) {
+    forget(told);
+    cycle_.read_soon(told.point);
+  }
+}
+
+void ToldBits::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
+  newest_ = newest;
+  if (!stamp) return leave_out_older_than_writes();
+  qualities_.heard(stamp->at);
+  for (Told& told : points_) show_pending(told);
+  for (Told& told : points_)
+    if (repeats(told) && repeat_at(told) <= stamp->at && !writer_.hides(told.point)) show(told, *stamp);
+}
+
+/// More changes follow, and are older than what waits to be written, too.
+void ToldBits::leave_out_older_than_writes() {
+  if (!writer_.hides_any()) return;
+  for (Told& told : points_) {
+    if (!told.known || !writer_.hides(told.point)) continue;
+    told.newer_than = newest_;
+    told.pending.reset();
+    cycle_.rest(told.point, false);  // should the write fail, it has the value
+  }
+}
+
+void ToldBits::on_end() {
+  active_ = false;
+  for (Told& told : points_) forget(told);
+}
+
+Time ToldBits::answer_wanted() {
+  Time wanted = Time::max();
+  for (Told& told : points_)
+    if (repeats(told)) wanted = std::min(wanted, repeat_at(told));
+  return wanted;
+}
+
+}  // namespace coupler::host

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "coupler/host/core/change_listener.hpp"
+#include "coupler/host/core/point_quality.hpp"
+#include "coupler/host/core/poll_cycle.hpp"
+#include "coupler/host/core/sink.hpp"
+#include "coupler/host/core/writer.hpp"
+
+namespace coupler::host {
+
+/// The points of coils and discrete inputs at a node that tells changes. Each is read once; a change is then
+/// given to the sink as if the point had been read. Under `publish: on_change` it is not read again until
+/// something was missed: it rests.
+///
+/// An array whose bits change in one step of the node is shown once.
+///
+/// No value flickers back: a change is not shown if it is older than a value that has been read, or than one
+/// that is to be written.
+class ToldBits : public ChangeSink {
+ public:
+  /// Everything given by reference must outlive it.
+  ToldBits(const Map& map, PollCycle& cycle, Writer& writer, PointQualities& qualities, Sink& sink);
+
+  /// A new connection, after PollCycle::start(). `told`: the device tells changes.
+  void start(bool told);
+  /// As PollCycle's. If it is wanted again, or still, it is read soon, since somebody has not seen it.
+  void want(std::uint32_t point, bool wanted);
+  /// These points have been read, and are to be shown. Returns the stamp to show them with: that of a point
+  /// does not go back.
+  Stamp read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp);
+
+  void on_change(const modbus::Change& change, std::uint64_t number, Stamp stamp) override;
+  void on_gap() override;
+  void on_heard(std::uint64_t newest, std::optional<Stamp> stamp) override;
+  void on_end() override;
+  Time answer_wanted() override;
+
+ private:
+  struct Told {
+    std::uint32_t point;
+    std::size_t first;                ///< its bits begin there
+    bool known = false;               ///< they are those of the device
+    std::uint64_t newer_than = 0;     ///< they are newer than this change
+    Stamp stamp{};                    ///< the last one
+    std::optional<Time> repeat_at{};  ///< as Sink's; nullopt: to be asked for
+    /// Bits of an array that change in one step are told one by one: shown when all of them have come.
+    std::optional<Stamp> pending{};
+    modbus::NodeTime pending_at{};  ///< the step's time
+  };
+  const Point& point_of(const Told& told) const { return map_.points[told.point]; }
+  bool rests(const Told& told) const;
+  bool repeats(const Told& told) const;
+  Time repeat_at(Told& told);
+  void forget(Told& told);
+  void leave_out_older_than_writes();
+  void change(Told& told, const modbus::Change& change, std::uint64_t number, Stamp stamp);
+  void show_pending(Told& told);
+  void show(Told& told, Stamp stamp);
+
+  const Map& map_;
+  PollCycle& cycle_;
+  Writer& writer_;
+  PointQualities& qualities_;
+  Sink& sink_;
+  std::vector<Told> points_;
+  std::vector<std::optional<std::uint32_t>> index_;          ///< in points_, by point
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> at_;  ///< place of a bit, index in points_; sorted
+  std::vector<std::uint8_t> bits_;
+  bool active_ = false;
+  std::uint64_t newest_ = 0;
+  ReadSpan one_{Table::coils, modbus::Range::of(0, 1), {}};  ///< kept for its memory
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which message carries a single value with its stamp. A kind of message is as in message.hpp, without
+// encode().
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "coupler/codec/number.hpp"
+#include "coupler/codec/scale.hpp"
+#include "coupler/codec/text.hpp"
+#include "coupler/host/core/stamp.hpp"
+#include "coupler/host/core/wall_time.hpp"
+#include "coupler/host/ros/message_time.hpp"
+#include "coupler/map/point.hpp"
+
+namespace coupler::host {
+
+/// One coil or discrete input.
+template <class M>
+struct StampedCoil {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point&, Message& message) {
+    message.value = registers[0] != 0;
+  }
+};
+
+/// A signed number as the message has it.
+template <class T>
+auto widened(T number) {
+  if constexpr (std::is_integral_v<T> && std::is_signed_v<T>)
+    return std::int64_t{number};
+  else
+    return number;
+}
+
+/// T is the type in the registers.
+template <class T, class M>
+struct StampedNumber {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    message.value = widened(codec::take<T>(point.format, registers));
+  }
+};
+
+template <class M>
+struct StampedScaled {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    message.value = codec::published(registers, point.format, point.scale);
+  }
+};
+
+template <class M>
+struct StampedText {
+  using Message = M;
+  static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
+    codec::decode_text(registers, point.format, message.value);
+  }
+};
+
+/// Calls f(T{}) with the kind of message of a point that is no array. M names the message types of a ROS.
+template <class M, class F>
+auto with_stamped_message(const Point& point, F&& f) {
+  using codec::Type;
+  if (point.scale.present()) return f(StampedScaled<typename M::Float64Stamped>{});
+  if (point.format.type == Type::STRING) return f(StampedText<typename M::StringStamped>{});
+  if (holds_bits(point.table)) return f(StampedCoil<typename M::BoolStamped>{});
+  if (point.format.type == Type::BOOL) return f(StampedNumber<std::uint8_t, typename M::BoolStamped>{});
+  return codec::with_number(point.format.type, [&](auto zero) {
+    using T = decltype(zero);
+    if constexpr (std::is_floating_point_v<T>)
+      return f(StampedNumber<T, typename M::Float64Stamped>{});
+    else if constexpr (std::is_signed_v<T>)
+      return f(StampedNumber<T, typename M::Int64Stamped>{});
+    else
+      return f(StampedNumber<T, typename M::UInt64Stamped>{});
+  });
+}
+
+/// Fills what such a message says beside its value.
+class Stamper {
+ public:
+  /// `wall` must outlive it.
+  explicit Stamper(const WallTime& wall) : wall_(wall) {}
+
+  template <class Message>
+  void operator()(Message& message, Stamp stamp) {
+    put_time(message.header.stamp, wall_.of(stamp.at));
+    message.sequence = ++sequence_;
+    message.uncertainty = std::chrono::duration<double>(stamp.uncertainty + wall_.error()).count();
+  }
+
+ private:
+  const WallTime& wall_;
+  std::uint64_t sequence_ = 0;
+};
+
+}  // namespace coupler::host

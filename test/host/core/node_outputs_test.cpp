@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Outputs at a time: the node's timer does it, and tells what became of it.
+#include <gmock/gmock.h>
+
+#include "test/host/core/schedule_fixture.hpp"
+
+namespace coupler::host {
+namespace {
+
+using modbus::Reason;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using test::Became;
+using test::TimedOutputsTest;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using Kind = modbus::Change::Kind;
+
+struct NodeOutputsTest : TimedOutputsTest {};
+
+TEST_F(NodeOutputsTest, The_node_gets_the_time_on_its_clock_the_value_and_the_duration) {
+  begin_node(press());
+  const Time due = clock.now() + seconds(3);
+  const ScheduleAnswer answer = schedule("speed", 0x1234, seconds(3), milliseconds(70));
+  EXPECT_EQ(answer.number, 1U);
+  EXPECT_EQ(answer.text, "accepted: the node does it");
+  ASSERT_EQ(device.scheduled.size(), 1U);
+  const modbus::ScheduleOutput& got = device.scheduled[0];
+  EXPECT_EQ(got.epoch, device.epoch);
+  EXPECT_LE(std::chrono::abs(got.due - due.time_since_epoch()), milliseconds(5));
+  EXPECT_EQ(got.duration, milliseconds(70));
+  EXPECT_EQ(got.table, modbus::Function::read_holding_registers);
+  EXPECT_EQ(got.range, modbus::Range::of(2, 1));
+  EXPECT_THAT(device.scheduled_values, ElementsAre(0x12, 0x34));
+  run_for(seconds(10));
+  EXPECT_EQ(device.count("write register 2"), 0U);
+}
+
+TEST_F(NodeOutputsTest, What_the_node_tells_is_the_outcome) {
+  begin_node(press());
+  for (int i = 0; i < 3; ++i) schedule("lamp", 1, milliseconds(500));
+  run_for(milliseconds(500));
+  const Time now = clock.now();
+  device.decide(1, Kind::done);
+  device.decide(2, Kind::cancelled, Reason::watchdog);
+  device.decide(3, Kind::failed, Reason::hardware);
+  device.decide(4, Kind::done);  // another client's
+  run_for(milliseconds(1));
+  ASSERT_EQ(sink->outcomes.size(), 3U);
+  EXPECT_EQ(sink->outcomes[0].result, Became::done);
+  EXPECT_EQ(sink->outcomes[0].reason, "");
+  EXPECT_LE(std::chrono::abs(sink->outcomes[0].at.at - now), sink->outcomes[0].at.uncertainty);
+  EXPECT_EQ(sink->outcomes[1].result, Became::cancelled);
+  EXPECT_EQ(sink->outcomes[1].reason, "the watchdog expired");
+  EXPECT_EQ(sink->outcomes[2].result, Became::failed);
+  EXPECT_EQ(sink->outcomes[2].reason, "the line or channel could not be driven");
+}
+
+TEST_F(NodeOutputsTest, Changes_of_bits_are_heard_of_meanwhile) {
+  begin_node(press());
+  schedule("lamp", 1, milliseconds(500));
+  sink->values.clear();
+  device.change(Table::coils, 5, true);
+  device.decide(1, Kind::done);
+  run_for(milliseconds(1));
+  EXPECT_THAT(sink->values["lamp"], ElementsAre(1));
+}
+
+TEST_F(NodeOutputsTest, An_exception_is_told_with_its_remedy) {
+  begin_node(press());
+  std::optional<modbus::Exception> code = modbus::Exception::server_device_busy;
+  device.refuses = [&code](const std::string& request) {
+    return request == "schedule" ? code : std::nullopt;
+  };
+  ScheduleAnswer answer = schedule("lamp", 1, seconds(1));
+  EXPECT_EQ(answer.number, 0U);
+  EXPECT_THAT(answer.text, HasSubstr("exception 06"));
+  EXPECT_THAT(answer.text, HasSubstr("ask again when one of them is over"));
+  code = modbus::Exception::server_device_failure;
+  EXPECT_THAT(schedule("lamp", 1, seconds(1)).text, HasSubstr("until it is reset"));
+  code.reset();
+  EXPECT_NE(schedule("lamp", 1, seconds(1)).number, 0U) << "the connection is as before";
+}
+
+TEST_F(NodeOutputsTest, A_node_that_cannot_after_all_has_it_done_by_the_driver) {
+  begin_node(press());
+  device.refuses = [](const std::string& request) {
+    return request == "schedule" ? std::optional(modbus::Exception::illegal_function) : std::nullopt;
+  };
+  EXPECT_EQ(schedule("lamp", 1, milliseconds(100)).text, "accepted: the driver does it");
+  EXPECT_EQ(schedule("lamp", 0, milliseconds(300)).text, "accepted: the driver does it");
+  EXPECT_EQ(device.count("schedule"), 1U);
+  run_for(milliseconds(110));
+  EXPECT_EQ(lamp(), 1);
+}
+
+TEST_F(NodeOutputsTest, With_changes_off_the_driver_does_it) {
+  auto builder = press();
+  builder.head().changes = false;
+  begin_node(builder);
+  EXPECT_EQ(schedule("lamp", 1, milliseconds(100)).text, "accepted: the driver does it");
+}
+
+TEST_F(NodeOutputsTest, A_part_of_a_register_is_for_the_driver) {
+  begin_node(MapBuilder().holding("half", 3, fakes::half(codec::Type::USINT, codec::Half::low)));
+  EXPECT_EQ(schedule("half", 1, milliseconds(100)).text, "accepted: the driver does it");
+}
+
+TEST_F(NodeOutputsTest, With_the_connection_the_outcome_is_lost) {
+  begin_node(press());
+  schedule("lamp", 1, seconds(10));
+  device.next_errors = {TransportFailure{"it has gone"}};
+  run_for(seconds(2));
+  const ScheduledOutcome told = outcome();
+  EXPECT_EQ(told.result, Became::unknown);
+  EXPECT_THAT(told.reason, HasSubstr("the connection ended before the outcome was heard"));
+}
+
+TEST_F(NodeOutputsTest, An_outcome_among_changes_that_were_lost_is_unknown) {
+  begin_node(press());
+  schedule("lamp", 1, seconds(1));
+  run_for(milliseconds(900));
+  device.decide(1, Kind::done);
+  device.forgotten = device.changes.size();
+  run_for(milliseconds(500));
+  EXPECT_TRUE(sink->outcomes.empty());
+  run_for(seconds(5));
+  EXPECT_EQ(outcome().result, Became::unknown);
+}
+
+TEST_F(NodeOutputsTest, A_node_that_was_started_anew_has_cancelled_what_was_not_due) {
+  begin_node(press());
+  schedule("lamp", 1, seconds(100));
+  schedule("speed", 1, milliseconds(20));
+  ++device.epoch;
+  run_for(seconds(3));
+  ASSERT_EQ(sink->outcomes.size(), 2U);
+  EXPECT_EQ(sink->outcomes[0].result, Became::cancelled);
+  EXPECT_EQ(sink->outcomes[0].reason, "the node read a new map or ended");
+  EXPECT_EQ(sink->outcomes[1].result, Became::unknown);
+}
+
+TEST_F(NodeOutputsTest, What_the_node_drove_for_good_is_restored_after_a_reconnect) {
+  auto builder = press();
+  builder.head().on_reconnect = OnReconnect::restore;
+  begin_node(builder);
+  schedule("lamp", 1, milliseconds(100));
+  schedule("speed", 5, milliseconds(100), seconds(1));
+  run_for(milliseconds(100));
+  device.decide(1, Kind::done);
+  device.decide(2, Kind::done);
+  run_for(milliseconds(10));
+  device.next_errors = {TransportFailure{"it has gone"}};
+  run_for(seconds(3));
+  EXPECT_EQ(device.count("write coil 5"), 1U);
+  EXPECT_EQ(device.count("write register 2"), 0U);
+}
+
+TEST_F(NodeOutputsTest, At_the_end_of_the_driver_it_is_cancelled_at_the_node) {
+  begin_node(press());
+  schedule("lamp", 1, seconds(100));
+  schedule("speed", 1, milliseconds(20));
+  device.refuses = [](const std::string& request) {
+    return request == "cancel 2" ? std::optional(modbus::Exception::illegal_data_address) : std::nullopt;
+  };
+  engine->stop();
+  ASSERT_EQ(sink->outcomes.size(), 2U);
+  EXPECT_EQ(sink->outcomes[0].result, Became::cancelled);
+  EXPECT_EQ(sink->outcomes[1].result, Became::unknown) << "it has begun";
+}
+
+}  // namespace
+}  // namespace coupler::host

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/core/wall_time.hpp"
+
+#include <gtest/gtest.h>
+
+namespace coupler::host {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+/// Both clocks, at instants that the test says.
+struct WallTimeTest : testing::Test {
+  /// The wall clock is read in the middle of `takes`.
+  void measure(Duration takes) {
+    wall.measure(now, now.time_since_epoch() + takes / 2 + ahead, now + takes);
+    now += takes;
+  }
+
+  Time now = Time{} + hours(5);
+  nanoseconds ahead = hours(24 * 365);  ///< the wall clock
+  WallTime wall;
+};
+
+TEST_F(WallTimeTest, It_is_the_wall_clocks_time_at_an_instant_of_the_monotonic_one) {
+  measure(nanoseconds(40));
+  EXPECT_EQ(wall.of(now), now.time_since_epoch() + ahead);
+  EXPECT_EQ(wall.of(now - milliseconds(7)), now.time_since_epoch() + ahead - milliseconds(7));
+  EXPECT_EQ(wall.error(), nanoseconds(20));
+}
+
+TEST_F(WallTimeTest, A_step_of_the_wall_clock_is_followed) {
+  measure(nanoseconds(40));
+  for (const nanoseconds step : {nanoseconds(hours(1)), nanoseconds(hours(-3)), nanoseconds(500)}) {
+    ahead += step;
+    measure(nanoseconds(60));
+    EXPECT_EQ(wall.of(now), now.time_since_epoch() + ahead);
+  }
+}
+
+TEST_F(WallTimeTest, It_does_not_tremble_with_each_measurement) {
+  measure(nanoseconds(40));
+  const nanoseconds first = wall.of(now);
+  const Time at = now;
+  ahead += nanoseconds(15);  // the wall clock is read a little later
+  measure(nanoseconds(60));
+  EXPECT_EQ(wall.of(at), first);
+}
+
+TEST_F(WallTimeTest, A_measurement_that_was_interrupted_changes_nothing) {
+  measure(nanoseconds(40));
+  ahead += milliseconds(4);  // read at the end of a long pause
+  measure(milliseconds(10));
+  ahead -= milliseconds(4);
+  EXPECT_EQ(wall.of(now), now.time_since_epoch() + ahead);
+  EXPECT_EQ(wall.error(), nanoseconds(20));
+}
+
+TEST_F(WallTimeTest, A_better_measurement_takes_the_place_of_an_interrupted_one) {
+  ahead += milliseconds(4);
+  measure(milliseconds(10));
+  EXPECT_EQ(wall.error(), milliseconds(5));
+  ahead -= milliseconds(4);
+  measure(nanoseconds(40));
+  EXPECT_EQ(wall.of(now), now.time_since_epoch() + ahead);
+  EXPECT_EQ(wall.error(), nanoseconds(20));
+}
+
+TEST_F(WallTimeTest, It_measures_the_machines_clocks) {
+  wall.measure();
+  const Time before = std::chrono::steady_clock::now();
+  const nanoseconds said = std::chrono::system_clock::now().time_since_epoch();
+  const Time after = std::chrono::steady_clock::now();
+  EXPECT_GE(said, wall.of(before) - wall.error());
+  EXPECT_LE(said, wall.of(after) + wall.error());
+}
+
+}  // namespace
+}  // namespace coupler::host

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Devices that write to units behind a gateway, each in its thread.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "coupler/host/core/device_thread.hpp"
+#include "coupler/host/core/write.hpp"
+#include "test/host/modbus/listeners.hpp"
+#include "test/host/modbus/units_behind_gateway.hpp"
+
+namespace coupler::host {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST_F(UnitTransportTest, A_write_waits_for_the_request_in_flight_and_for_no_other_read) {
+  constexpr int writes = 20;
+  make();
+  DeafSink sink;
+  std::vector<std::unique_ptr<DeviceThread>> devices;
+  for (std::size_t i = 0; i < units; ++i)
+    devices.push_back(
+        std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *transports[i], sink));
+  while (gateway.reads < 10 * units) std::this_thread::sleep_for(milliseconds(10));
+  // A write of unit 1 while a read of unit 2 is in flight, which takes so long: its thread has to come
+  // meanwhile.
+  const auto is_overtaken = [&](milliseconds in_flight) {
+    gateway.held = 2;
+    while (!gateway.holds) std::this_thread::sleep_for(milliseconds(1));
+    const int before = gateway.reads;
+    WriteTicket ticket;
+    Write write;
+    write.listener = &ticket;
+    devices[0]->write(write);
+    std::this_thread::sleep_for(in_flight);
+    gateway.held = -1;
+    EXPECT_EQ(ticket.wait().outcome, WriteResult::Outcome::ok);
+    return gateway.reads_before_write > before;
+  };
+  for (int i = 0; i < writes; ++i)
+    ASSERT_FALSE(is_overtaken(milliseconds(10)) && is_overtaken(milliseconds(200)) &&
+                 is_overtaken(milliseconds(2000)));
+}
+
+TEST_F(UnitTransportTest, Every_write_has_one_result_while_all_units_write_and_the_gateway_hangs_up) {
+  constexpr int writes = 1000;
+  gateway.ends_each = 301;
+  make();
+  DeafSink sink;
+  Tally tally;
+  std::atomic<int> written{0};
+  {
+    std::vector<std::unique_ptr<DeviceThread>> devices;
+    for (std::size_t i = 0; i < units; ++i)
+      devices.push_back(
+          std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *transports[i], sink));
+    std::vector<std::thread> writers;
+    writers.reserve(units);
+    for (const auto& device : devices)
+      writers.emplace_back([&tally, &written, &device] {
+        for (int i = 0; i < writes || tally.ok == 0; ++i) {
+          Write write;
+          write.registers[0] = static_cast<std::uint16_t>(i);
+          write.listener = &tally;
+          device->write(write);
+          ++written;
+          if (i % 10 == 0) std::this_thread::sleep_for(milliseconds(3));
+        }
+      });
+    for (std::thread& writer : writers) writer.join();
+  }
+  EXPECT_EQ(tally.all, written);
+  EXPECT_GT(tally.ok, 0);
+}
+
+}  // namespace
+}  // namespace coupler::host

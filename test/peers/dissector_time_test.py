@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""The dissector that `coupler export --to wireshark` writes knows function codes 65 and 66. The replies are scripted
+here, so that all that a node may answer is among them; the bytes are packed by Python's struct.
+
+    dissector_time_test.py COUPLER MAP
+"""
+import pathlib
+import shutil
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+
+import peer
+import tshark_test
+
+EPOCH, NOW = 0xA1B2C3D4, 1234_567890123
+TIME, SOON = "1234.567890123 s", "0.000000005 s"
+STAMPS = [f"Epoch: 0x{EPOCH:08X}", f"Request arrived: {TIME}", f"Replied: {TIME}"]
+
+
+def wait(milliseconds, seen):
+    return struct.pack(">BBHIQ", 65, 1, milliseconds, EPOCH, seen)
+
+
+def changes(newest, lost, *each):
+    head = struct.pack(">BBIqqQIB", 65, 1, EPOCH, NOW, NOW, newest, lost, len(each))
+    return head + b"".join(struct.pack(">BBHq", *change) for change in each)
+
+
+def schedule(table, address, count, values, duration):
+    return struct.pack(">BBBIqIBHHB", 66, 1, 1, EPOCH, NOW, duration, table, address, count, len(values)) + values
+
+
+def scheduled(number):
+    return struct.pack(">BBHqq", 66, 1, number, NOW, NOW)
+
+
+# Request, reply, what the request must show, what the reply must show.
+TRAFFIC = [
+    (wait(1000, 2**63 + 7), changes(2**63 + 7, 0),
+     ["waits for changes", "Longest wait: 1000 ms", STAMPS[0], "Changes seen: 9223372036854775815"],
+     ["changes", *STAMPS, "Newest change: 9223372036854775815", "Changes lost: 0"]),
+    (wait(0, 7), changes(300, 9, (1, 1, 0, NOW), (2, 0, 1, 5), (1, 1, 10, 5), (2, 1, 900, 5)),
+     ["waits for changes", "Longest wait: 0 ms", STAMPS[0], "Changes seen: 7"],
+     ["changes", *STAMPS, "Newest change: 300", "Changes lost: 9", f"lamp: true [at {TIME}] (above the door)",
+      f"door: false [at {SOON}]", f"row: [2] true [at {SOON}]", f"discrete_inputs 900: true [at {SOON}]"]),
+    (wait(0, 300), changes(304, 0, (0, 3, 7, 5), (2, 4, 8, 5), (7, 5, 9, 5), (99, 77, 10, 5)),
+     ["waits for changes", "Longest wait: 0 ms", STAMPS[0], "Changes seen: 300"],
+     ["changes", *STAMPS, "Newest change: 304", "Changes lost: 0", f"Scheduled output 7: driven [at {SOON}]",
+      f"Scheduled output 8: cancelled, another write to the same point [at {SOON}]",
+      f"Scheduled output 9: not driven, the line or channel could not be driven [at {SOON}]",
+      f"Scheduled output 10: kind 77, reason 99 [at {SOON}]"]),
+    (wait(30001, 0), b"\xc1\x03",
+     ["waits for changes", "Longest wait: 30001 ms", STAMPS[0], "Changes seen: 0"], ["refused [exception 03]"]),
+    (schedule(1, 0, 2, b"\x01", 200), scheduled(513),
+     ["schedules", STAMPS[0], f"Due: {TIME}", "Duration: 200 ms", f"lamp: true [at {TIME}] (above the door)",
+      f"gate: false [at {TIME}]"],
+     ["scheduled as number 513", *STAMPS[1:]]),
+    (schedule(3, 0, 1, struct.pack(">h", -100), 0), b"\xc2\x06",
+     ["schedules", STAMPS[0], f"Due: {TIME}", "Duration: for good", f"speed: -100 rpm [at {TIME}]"],
+     ["refused", "speed [exception 06]"]),
+    (struct.pack(">BBBIH", 66, 1, 2, EPOCH, 513), scheduled(513),
+     ["cancels a scheduled output", STAMPS[0], "Number: 513"], ["cancelled as number 513", *STAMPS[1:]]),
+    # Cut off, and another version's: the dissector leaves them alone.
+    (wait(0, 0)[:9], b"\xc1\x03", None, None),
+    (schedule(1, 0, 2, b"\x01", 200)[:20], b"\xc2\x03", None, None),
+    (wait(0, 0), changes(0, 0)[:20], ["waits for changes", "Longest wait: 0 ms", STAMPS[0], "Changes seen: 0"], None),
+]
+
+
+def serve(listener):
+    """Answers the requests of one connection after the other, each with its reply."""
+    replies = {struct.pack(">H", 0x4000 + i): reply for i, (_, reply, _, _) in enumerate(TRAFFIC)}
+    while True:
+        try:
+            client, _ = listener.accept()
+        except OSError:
+            return
+        with client, client.makefile("rb") as stream:
+            while request := stream.read(6):
+                body = stream.read(struct.unpack(">H", request[4:])[0])
+                pdu = replies.get(request[:2], body[1:])
+                client.sendall(request[:4] + struct.pack(">H", len(pdu) + 1) + body[:1] + pdu)
+
+
+def talk(port):
+    with tshark_test.connected(port) as client:
+        for index, (pdu, _, _, _) in enumerate(TRAFFIC):
+            client.ask(pdu, 0x4000 + index)
+
+
+def shown(port, file, script):
+    """By transaction id: what the request shows, what the reply shows; and what tshark complains of."""
+    done = tshark_test.read(port, file, "-X", f"lua_script:{script}", "-o", f"coupler_cell_north.port:{port}", "-V")
+    messages, lines, is_request = {}, None, False
+    for line in done.stdout.splitlines():
+        if line.startswith("Transmission Control Protocol"):
+            is_request = f"Dst Port: {port}" in line
+        elif line.strip().startswith("Transaction Identifier: "):
+            transaction = int(line.split()[-1])
+        elif line.startswith("cell/north: "):
+            lines = messages.setdefault((transaction, is_request), [])
+            lines.append(line.removeprefix("cell/north: "))
+        elif lines is not None and line.startswith("    ") and not line.startswith("     "):
+            lines.append(line.strip())
+        elif not line.startswith(" "):
+            lines = None
+    return messages, [line for line in (done.stderr + done.stdout).splitlines() if "lua" in line.lower()]
+
+
+def main():
+    if not shutil.which("tshark"):
+        peer.skip("tshark is missing; run scripts/install-packages test")
+    coupler, device_map = sys.argv[1:]
+    checks = peer.Checks()
+    with tempfile.TemporaryDirectory() as folder, socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
+        threading.Thread(target=serve, args=(listener,), daemon=True).start()
+        pathlib.Path(folder).chmod(0o755)
+        file, script = pathlib.Path(folder) / "node.pcapng", pathlib.Path(folder) / "cell.lua"
+        subprocess.run([coupler, "export", device_map, "--to", "wireshark", "--out", str(script)], check=True,
+                       capture_output=True)
+        tshark_test.capture(port, file, lambda: talk(port), checks)
+        messages, errors = shown(port, file, script)
+        checks.equal("what tshark says of the script", errors, [])
+        for index, (pdu, _, asked, answered) in enumerate(TRAFFIC):
+            checks.equal(f"request {index} ({pdu.hex()})", messages.get((0x4000 + index, True)), asked)
+            checks.equal(f"reply {index} ({pdu.hex()})", messages.get((0x4000 + index, False)), answered)
+    checks.done("tshark with the exported dissector shows changes and scheduled outputs")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,271 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Outputs at a time (function code 66), by the bytes of docs/time.md: when they are driven, when they end, what cancels
+them. The node's clock is this machine's, so times can be compared. Nothing is said about how late they are, but never early.
+
+    schedule_test.py NODE MAP MAP_WITH_WATCHDOG
+"""
+import contextlib
+import os
+import pathlib
+import signal
+import struct
+import sys
+import tempfile
+import time
+
+import peer
+
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent)]
+from support.raw_client import Listener  # noqa: E402
+
+MOTOR, BRAKE, LAMP = 0, 1, 2
+OFF, ON, DONE, CANCELLED = 0, 1, 3, 4
+BY_CLIENT, OVERWRITTEN, WATCHDOG, RELOAD, CONNECTION = 1, 2, 3, 5, 6
+MS = 1_000_000
+HOUR = 3600 * 1000 * MS
+
+
+class Client(Listener):
+    def changes(self, wait=0):
+        """(kind, table or reason, address or number, time) of each that is new."""
+        told = self.take(self.ask(self.request(wait))).changes
+        return [(kind, table, address, at) for table, kind, address, at in told]
+
+    def outcomes(self, count):
+        """The next ones of scheduled outputs: (kind, reason, number, time)."""
+        found = []
+        end = time.monotonic() + peer.PATIENCE
+        while len(found) < count and time.monotonic() < end:
+            found += [change for change in self.changes(1000) if change[0] >= DONE]
+        return found
+
+    def coil_changes(self, coil, count):
+        """The next ones of a coil: (level, time)."""
+        found = []
+        end = time.monotonic() + peer.PATIENCE
+        while len(found) < count and time.monotonic() < end:
+            found += [(kind, at) for kind, table, address, at in self.changes(1000)
+                      if kind <= ON and table == 1 and address == coil]
+        return found
+
+    def schedule(self, due, coil, bits, duration=0, epoch=None):
+        packed = sum(bit << i for i, bit in enumerate(bits)).to_bytes((len(bits) + 7) // 8, "little")
+        epoch = self.epoch if epoch is None else epoch
+        return self.ask(struct.pack(">BBBIQIBHHB", 66, 1, 1, epoch, due, duration, 1, coil, len(bits), len(packed)) + packed)
+
+    def schedule_register(self, due, address, value):
+        return self.ask(struct.pack(">BBBIQIBHHBH", 66, 1, 1, self.epoch, due, 0, 3, address, 1, 2, value))
+
+    def cancel(self, number):
+        return self.ask(struct.pack(">BBBIH", 66, 1, 2, self.epoch, number))
+
+    def write(self, coil, bit):
+        return self.ask(struct.pack(">BHH", 5, coil, 0xFF00 if bit else 0))
+
+    def inputs(self):
+        bits = self.ask(struct.pack(">BHH", 2, 0, 3))[2]
+        return [bits >> i & 1 for i in range(3)]
+
+
+def soon():
+    """Not past when the request arrives, on any machine."""
+    return time.monotonic_ns() + 2000 * MS
+
+
+def number_of(reply):
+    return struct.unpack(">H", reply[2:4])[0] if reply[0] == 66 else None
+
+
+@contextlib.contextmanager
+def clients(port, count=1):
+    every = [Client(("127.0.0.1", port)) for _ in range(count)]
+    try:
+        yield every[0] if count == 1 else every
+    finally:
+        for client in every:
+            client.close()
+
+
+def they_are_driven_at_their_times_in_their_order(port, checks):
+    with clients(port) as client:
+        now = time.monotonic_ns()
+        late, early = now + 2300 * MS, now + 2100 * MS
+        second = client.schedule(late, MOTOR, [0, 1])
+        first = client.schedule(early, MOTOR, [1, 0])
+        arrived, replied = struct.unpack(">QQ", first[4:])
+        checks.equal("the times in the reply", now <= arrived <= replied <= time.monotonic_ns(), True)
+        outcomes = client.outcomes(2)
+        checks.equal("in the order of their times", [outcome[:3] for outcome in outcomes],
+                     [(DONE, 0, number_of(first)), (DONE, 0, number_of(second))])
+        checks.equal("none is early", [at >= due for (*_, at), due in zip(outcomes, (early, late))], [True, True])
+        checks.equal("the wires", client.inputs(), [0, 1, 0])
+        client.write(BRAKE, 0)
+
+
+def a_duration_ends_though_its_client_is_gone(port, checks):
+    with clients(port) as watcher:
+        with clients(port) as client:
+            due = soon()
+            client.schedule(due, MOTOR, [1], 200)
+            on = watcher.coil_changes(MOTOR, 1)
+        changes = on + watcher.coil_changes(MOTOR, 2 - len(on))
+        checks.equal("on, then off", [level for level, _ in changes], [ON, OFF])
+        checks.equal("neither is early", [changes[0][1] >= due, changes[1][1] >= due + 200 * MS], [True, True])
+        checks.equal("the wires", watcher.inputs(), [0, 0, 0])
+
+
+def what_cancels(port, checks):
+    with clients(port, 2) as (client, other):
+        later = time.monotonic_ns() + HOUR // 2
+        number = number_of(client.schedule(later, MOTOR, [1]))
+        checks.equal("another client cannot cancel it", other.cancel(number), bytes([0xC2, 2]))
+        checks.equal("its client can", number_of(client.cancel(number)), number)
+        checks.equal("and hears so", [o[:3] for o in client.outcomes(1)], [(CANCELLED, BY_CLIENT, number)])
+        checks.equal("only once", client.cancel(number), bytes([0xC2, 2]))
+
+        number = number_of(client.schedule(later, MOTOR, [1, 1]))
+        other.write(BRAKE, 0)
+        checks.equal("a plain write of another client", [o[:3] for o in client.outcomes(1)],
+                     [(CANCELLED, OVERWRITTEN, number)])
+
+        number = number_of(client.schedule(later, MOTOR, [1]))
+        client.close()
+        outcomes = [o[:3] for o in other.outcomes(3)]
+        checks.equal("the end of the connection", outcomes[-1], (CANCELLED, CONNECTION, number))
+
+
+def what_is_refused(port, checks):
+    with clients(port) as client:
+        due = soon()
+        checks.equal("the epoch of another boot", client.schedule(due, MOTOR, [1], epoch=client.epoch ^ 1),
+                     bytes([0xC2, 3]))
+        checks.equal("past", client.schedule(time.monotonic_ns() - 10 * MS, MOTOR, [1]), bytes([0xC2, 3]))
+        checks.equal("too far", client.schedule(time.monotonic_ns() + 2 * HOUR, MOTOR, [1]), bytes([0xC2, 3]))
+        checks.equal("no such coil", client.schedule(due, LAMP, [1, 1]), bytes([0xC2, 2]))
+        checks.equal("above its largest", client.schedule_register(soon(), 0, 1001), bytes([0xC2, 3]))
+        checks.equal("nothing happened", client.inputs(), [0, 0, 0])
+
+
+def sixty_four_places_for_all_clients(port, checks):
+    with clients(port) as watcher:
+        later = time.monotonic_ns() + HOUR // 2
+        with clients(port, 4) as every:
+            numbers = [number_of(every[i % 4].schedule(later, MOTOR, [1])) for i in range(64)]
+            checks.equal("64 numbers", len(set(numbers)), 64)
+            checks.equal("0 is none", 0 in numbers or None in numbers, False)
+            for client in (*every, watcher):
+                checks.equal("no place", client.schedule(later, BRAKE, [1]), bytes([0xC2, 6]))
+        outcomes = watcher.outcomes(64)
+        checks.equal("their connections have ended", sorted(o[2] for o in outcomes if o[:2] == (CANCELLED, CONNECTION)),
+                     sorted(numbers))
+        checks.equal("there is room again", number_of(watcher.schedule(later, BRAKE, [1])) is not None, True)
+
+
+def children_of(process):
+    return [int(child) for task in pathlib.Path(f"/proc/{process}/task").iterdir()
+            for child in (task / "children").read_text(encoding="ascii").split()]
+
+
+def the_node():
+    return next(child for child in children_of(os.getpid())
+                if pathlib.Path(f"/proc/{child}/comm").read_text(encoding="ascii") == "coupler-node\n")
+
+
+def the_worker():
+    for child in children_of(the_node()):
+        with contextlib.suppress(OSError):
+            if pathlib.Path(f"/proc/{child}/comm").read_text(encoding="ascii") == "coupler-node-io\n":
+                return child
+    return None
+
+
+def a_reload_cancels_and_durations_go_on(port, checks):
+    with clients(port) as client:
+        before = client.epoch
+        due = soon()
+        client.schedule(due, LAMP, [1], 5000)
+        checks.equal("it has begun", client.coil_changes(LAMP, 1)[0][0], ON)
+        number = number_of(client.schedule(time.monotonic_ns() + HOUR // 2, MOTOR, [1]))
+        client.send(client.request())  # who asks only afterwards asks the next process, which does not know
+        os.kill(the_node(), signal.SIGHUP)
+        checks.equal("told before the reload", [change[:3] for change in client.take(client.receive()).changes],
+                     [(RELOAD, CANCELLED, number)])
+        peer.await_true("a new epoch", lambda: client.changes() is not None and client.epoch != before, checks)
+        checks.equal("the epoch before", client.schedule(soon(), MOTOR, [1], epoch=before),
+                     bytes([0xC2, 3]))
+        peer.await_true("it ends", lambda: client.inputs() == [0, 0, 0], checks)
+        checks.equal("not early", time.monotonic_ns() >= due + 5000 * MS, True)
+
+
+def a_killed_worker_process_leaves_nothing_on(port, checks):
+    with clients(port) as client:
+        client.schedule(soon(), MOTOR, [1, 0, 1], 3_600_000)
+        checks.equal("it has begun", [o[0] for o in client.outcomes(1)], [DONE])
+        due = soon()
+        client.schedule(due, BRAKE, [1])
+        killed = the_worker()
+        os.kill(killed, signal.SIGKILL)
+    peer.await_true("another one serves", lambda: the_worker() not in (None, killed), checks)
+    with clients(port) as client:
+        checks.equal("safe, and the lamp as it was before", client.inputs(), [0, 0, 0])
+        while time.monotonic_ns() < due:
+            time.sleep(0.05)
+        checks.equal("what the killed one had to do is not done", client.inputs(), [0, 0, 0])
+        taken = client.schedule(soon(), MOTOR, [1], 1)
+        checks.equal("and the new one takes orders", number_of(taken) is not None, True)
+
+
+def another_map_ends_what_it_has_elsewhere(port, checks, served):
+    with clients(port) as client:
+        client.schedule(soon(), MOTOR, [1], 3_600_000)
+        client.schedule(soon(), LAMP, [1], 3_600_000)
+        client.outcomes(2)
+        checks.equal("both are on", client.inputs(), [1, 0, 1])
+    before = the_worker()
+    moved = served.read_text(encoding="utf-8").replace("lamp:  {address: 2", "lamp:  {address: 7")
+    served.write_text(moved, encoding="utf-8")
+    os.kill(the_node(), signal.SIGHUP)
+    peer.await_true("another process serves", lambda: the_worker() not in (None, before), checks)
+    with clients(port) as client:
+        checks.equal("what has moved is as it was before, the other goes on", client.inputs(), [1, 0, 0])
+
+
+def the_watchdog_cancels(port, checks):
+    with clients(port, 2) as (client, monitor):
+        begun = client.schedule(soon(), LAMP, [1], 5000)
+        number = number_of(client.schedule(time.monotonic_ns() + HOUR // 2, MOTOR, [1]))
+        checks.equal("the monitor hears it", [o[:3] for o in monitor.outcomes(2)],
+                     [(DONE, 0, number_of(begun)), (CANCELLED, WATCHDOG, number)])
+        checks.equal("the lamp holds", monitor.inputs(), [0, 1, 1])
+        checks.equal("locked", client.schedule(soon(), MOTOR, [1]), bytes([0xC2, 4]))
+        peer.await_true("the duration ends all the same", lambda: monitor.inputs() == [0, 1, 0], checks)
+
+
+def without_watchdog(node, served, checks):
+    with peer.running_node([node, str(served), "--sim"]) as port:
+        for test in (they_are_driven_at_their_times_in_their_order, a_duration_ends_though_its_client_is_gone,
+                     what_cancels, what_is_refused, sixty_four_places_for_all_clients, a_reload_cancels_and_durations_go_on,
+                     a_killed_worker_process_leaves_nothing_on):
+            test(port, checks)
+        another_map_ends_what_it_has_elsewhere(port, checks, served)
+
+
+def main():
+    node, served, guarded = sys.argv[1:4]
+    checks = peer.Checks()
+    with tempfile.TemporaryDirectory() as folder:
+        own = pathlib.Path(folder) / "schedule.yaml"
+        own.write_text(pathlib.Path(served).read_text(encoding="utf-8"), encoding="utf-8")
+        without_watchdog(node, own, checks)
+        # Longer, so that the lamp's duration begins before and ends after it, on any machine.
+        patient = pathlib.Path(folder) / "watchdog.yaml"
+        patient.write_text(pathlib.Path(guarded).read_text(encoding="utf-8").replace("timeout: 500ms", "timeout: 5s"),
+                           encoding="utf-8")
+        with peer.running_node([node, str(patient), "--sim"]) as port:
+            the_watchdog_cancels(port, checks)
+    checks.done("outputs are driven at their times, end, and are cancelled as docs/time.md says")
+
+
+if __name__ == "__main__":
+    main()

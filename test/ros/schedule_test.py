@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes at a time: by the node's timer where a node can, otherwise by the driver's. Nothing here says how late they may be,
+but none is early."""
+import os
+import time
+import unittest
+
+from coupler_driver.msg import Scheduled
+from coupler_driver.srv import Schedule, Write
+from std_msgs.msg import Bool
+
+from support import process, testing
+from support.device import FAILURE, Device, Refuse
+from support.patience import NO_TIMEOUT, wait_until
+from support.peer import Peer
+from support.ports import free_port
+
+MAP = f"""
+name: cell
+address: 127.0.0.1
+rate: 50
+timeout: {NO_TIMEOUT}s
+mapping:
+  coils: {{lamp: 4, horn: {{address: 5, access: write}}}}
+  input_registers: {{pressure: {{address: 40, type: INT}}}}
+  holding_registers:
+    speed: {{address: 2, type: UINT, max: 1000}}
+    part: {{address: 9, type: BOOL, bit: 3}}
+"""
+SOON, LATER, NEVER = 0.3, 0.6, 3000  # seconds
+BY_DRIVER, BY_NODE = "accepted: the driver does it", "accepted: the node does it"
+ROUNDING = 1e-6  # of a time as a double
+
+
+def seconds(stamp):
+    """ROS 1 and ROS 2 have other names for them."""
+    return stamp.secs + stamp.nsecs / 1e9 if hasattr(stamp, "secs") else stamp.sec + stamp.nanosec / 1e9
+
+
+def parts(value):
+    return int(value), int(value % 1 * 1e9)
+
+
+# Of the request's types, which ROS 1 has without a message.
+# pylint: disable=import-outside-toplevel,import-error
+if os.environ.get("ROS_VERSION") == "2":
+    from builtin_interfaces.msg import Duration, Time
+
+    def ros_time(at):
+        second, rest = parts(at)
+        return Time(sec=second, nanosec=rest)
+
+    def ros_duration(length):
+        second, rest = parts(length)
+        return Duration(sec=second, nanosec=rest)
+else:
+    import rospy
+
+    def ros_time(at):
+        return rospy.Time(*parts(at))
+
+    def ros_duration(length):
+        return rospy.Duration(*parts(length))
+
+
+class ScheduleTest(testing.RosTest):
+    def start(self, port, by=BY_DRIVER, text=MAP):
+        self.program = self.driver(f"_map:={process.write_map(text)}", f"_port:={port}")
+        self.program.wait_for("connected")
+        self.scheduled = self.topic("/cell/scheduled", Scheduled)
+        self.call = self.service("/cell/schedule", Schedule)
+        self.write = self.service("/cell/write", Write)
+        self.settles(by)
+
+    def settles(self, by):
+        """Until it is known who does it, and what is published is heard."""
+        def is_known():
+            answer = self.schedule("horn", "false", NEVER)
+            self.write("horn", "false")
+            return answer.message == by and self.scheduled.values
+
+        wait_until(is_known, f"'{by}'")
+
+    def schedule(self, point, value, in_seconds=SOON, how_long=0):
+        self.at = ros_time(time.time() + in_seconds)
+        return self.call(point, value, self.at, ros_duration(how_long))
+
+    def accepted(self, by, point, value, in_seconds=SOON, how_long=0):
+        """Its number. On a busy machine the call may come after the time."""
+        answer = self.schedule(point, value, in_seconds, how_long)
+        while " s past" in answer.message or "exception 03" in answer.message:
+            in_seconds *= 2
+            answer = self.schedule(point, value, in_seconds, how_long)
+        self.assertEqual((answer.success, answer.message), (True, by))
+        return answer.number
+
+    def outcome(self, number):
+        return self.scheduled.wait_for(lambda message: message.number == number)
+
+    def done(self, number):
+        outcome = self.outcome(number)
+        self.assertEqual((outcome.result, outcome.reason), (Scheduled.DONE, ""))
+        return outcome
+
+    def cancelled(self, number, reason):
+        outcome = self.outcome(number)
+        self.assertEqual((outcome.result, outcome.reason), (Scheduled.CANCELLED, reason))
+
+    def refused(self, text, *arguments, **options):
+        answer = self.schedule(*arguments, **options)
+        self.assertEqual((answer.success, answer.number), (False, 0))
+        self.assertIn(text, answer.message)
+
+
+class ByTheDriver(ScheduleTest):
+    """A foreign coupler."""
+
+    def setUp(self):
+        self.peer = Peer().start()
+        self.addCleanup(self.peer.stop)
+        self.start(self.peer.port)
+
+    def get(self, table, address):
+        return int(self.peer.get(table, address)[0])
+
+    def test_it_is_never_early(self):
+        for point, value in (("lamp", "true"), ("speed", "7"), ("part", "true"), ("horn", "true")):
+            outcome = self.done(self.accepted(BY_DRIVER, point, value))
+            self.assertEqual(outcome.point, point)
+            self.assertGreaterEqual(outcome.lateness, 0)
+            self.assertGreaterEqual(seconds(outcome.header.stamp), seconds(outcome.due) - outcome.uncertainty - ROUNDING)
+        self.assertEqual((self.get("coils", 4), self.get("holding_registers", 2), self.get("holding_registers", 9)), (1, 7, 8))
+
+    def test_the_due_time_is_told_as_it_was_asked_for(self):
+        number = self.accepted(BY_DRIVER, "lamp", "true")
+        self.assertEqual(seconds(self.done(number).due), seconds(self.at))
+
+    def test_another_write_cancels_it(self):
+        number = self.accepted(BY_DRIVER, "speed", "40", NEVER)
+        self.assertTrue(self.write("lamp", "true").success)
+        self.assertTrue(self.write("speed", "41").success)
+        self.cancelled(number, "another write to the same point")
+        self.assertEqual(self.get("holding_registers", 2), 41)
+
+    def test_the_end_of_the_connection_cancels_it(self):
+        number = self.accepted(BY_DRIVER, "lamp", "true", NEVER)
+        self.peer.stop()
+        self.cancelled(number, "the connection ended")
+        self.refused("ask again when the device is back", "lamp", "true")
+
+    def test_what_is_not_possible_is_refused_with_what_is(self):
+        self.refused("there is no point 'nothing'", "nothing", "1")
+        self.refused("pressure cannot be written", "pressure", "1")
+        self.refused("0 to 65535", "speed", "70000")
+        self.refused("at most 1000", "speed", "1001")
+        self.refused("s past; send a time to come", "speed", "1", -NEVER)
+        self.refused("an hour (3600 s) is the most", "speed", "1", 3 * NEVER)
+        self.refused("up to an hour (3600 s)", "speed", "1", how_long=3 * NEVER)
+        self.refused("Schedule a second write of horn", "horn", "true", how_long=SOON)
+
+    def test_there_are_64_at_most(self):
+        numbers = {self.accepted(BY_DRIVER, "speed", "1", NEVER) for _ in range(64)}
+        self.assertEqual(len(numbers), 64)
+        self.refused("64 scheduled writes wait", "speed", "1", NEVER)
+
+
+class Failures(ScheduleTest):
+    def setUp(self):
+        self.device = Device().start()
+        self.addCleanup(self.device.stop)
+
+    def test_an_exception_is_a_failure(self):
+        def answer(request):
+            if request.function == 5:
+                raise Refuse(FAILURE)
+            return self.device.serve(request)
+
+        self.start(self.device.port)
+        self.device.answer = answer
+        outcome = self.outcome(self.accepted(BY_DRIVER, "lamp", "true"))
+        self.assertEqual(outcome.result, Scheduled.FAILED)
+        self.assertIn("exception 04", outcome.reason)
+
+    def test_what_the_device_did_not_answer_is_unknown(self):
+        def answer(request):
+            if request.function == 5:
+                request.connection.close()
+                raise OSError
+            return self.device.serve(request)
+
+        self.start(self.device.port)
+        self.device.answer = answer
+        outcome = self.outcome(self.accepted(BY_DRIVER, "lamp", "true"))
+        self.assertEqual(outcome.result, Scheduled.UNKNOWN)
+        self.assertIn("lost: ", outcome.reason)
+
+
+@unittest.skipUnless(process.has_node(), "coupler-node was not built")
+class ByTheNode(ScheduleTest):
+    def begin(self, by=BY_NODE, text=MAP):
+        self.map = process.write_map(text)
+        self.node = process.Node(self.map, free_port())
+        self.addCleanup(lambda: self.node.end())  # pylint: disable=unnecessary-lambda
+        self.start(self.node.port, by, text)
+        self.lamp = self.topic("/cell/lamp", Bool)
+        self.lamp.becomes(False)
+
+    def test_it_is_driven_and_told(self):
+        self.begin()
+        numbers = self.accepted(BY_NODE, "speed", "7", LATER), self.accepted(BY_NODE, "lamp", "true", 2 * LATER)
+        self.assertEqual([self.done(number).point for number in numbers], ["speed", "lamp"])
+        self.lamp.becomes(True)
+        told = [message for message in self.scheduled.values if message.number in numbers]
+        self.assertEqual(told, sorted(told, key=lambda message: seconds(message.due)))
+
+    def test_after_a_duration_the_value_from_before_is_there_again(self):
+        self.begin()
+        self.done(self.accepted(BY_NODE, "lamp", "true", how_long=LATER))
+        self.lamp.wait_for(lambda on: on)
+        self.lamp.becomes(False)
+
+    def test_a_part_of_a_register_is_the_drivers(self):
+        self.begin()
+        self.done(self.accepted(BY_DRIVER, "part", "true"))
+
+    def test_with_changes_off_it_is_the_drivers(self):
+        self.begin(BY_DRIVER, "changes: off\n" + MAP)
+        self.done(self.accepted(BY_DRIVER, "lamp", "true"))
+        self.lamp.becomes(True)
+
+    def test_another_write_cancels_it(self):
+        self.begin()
+        number = self.accepted(BY_NODE, "lamp", "true", NEVER)
+        self.assertTrue(self.write("lamp", "false").success)
+        self.cancelled(number, "another write to the same point")
+
+    def test_a_new_map_cancels_it(self):
+        self.begin()
+        number = self.accepted(BY_NODE, "lamp", "true", NEVER)
+        self.node.reload()
+        self.cancelled(number, "the node read a new map or ended")
+        self.settles(BY_NODE)
+        self.done(self.accepted(BY_NODE, "lamp", "true"))
+
+    def test_the_end_of_the_node_is_an_outcome(self):
+        """Heard of in its last answer, unless a request comes too late for that."""
+        self.begin()
+        number = self.accepted(BY_NODE, "lamp", "true", NEVER)
+        self.node.end()
+        outcome = self.outcome(number)
+        self.assertIn((outcome.result, outcome.reason),
+                      ((Scheduled.CANCELLED, "the node read a new map or ended"),
+                       (Scheduled.UNKNOWN, "the connection ended before the outcome was heard")))
+
+
+if __name__ == "__main__":
+    testing.main()
