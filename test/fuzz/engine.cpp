@@ -65,7 +65,10 @@ void check_file(Bytes request, Bytes reply) {
 /// Points of every table, a hole, something that must not be written, and a text of more than one file.
 MapPtr make_map() {
   return fakes::MapBuilder()
-      .many(Table::coils, 0, 20)
+      .many(Table::coils, 0, 18)
+      .add(Table::coils, "ejector", 18, codec::Type::BOOL,
+           [](Point& point) { point.pulse = 2 * time_between_requests; })
+      .many(Table::coils, 19, 1)
       .many(Table::coils, 65530, 6)
       .many(Table::discrete_inputs, 0, 20)
       .many(Table::input_registers, 0, 10)
@@ -221,8 +224,8 @@ class Engine {
   std::vector<device::ChangeRing::Entry> ring_{8};
   std::vector<std::uint16_t> told_;
   device::Changes changes_;
-  std::vector<device::ScheduledOutput> scheduled_{4};
-  device::OutputSchedule schedule_{scheduled_, &changes_};
+  std::vector<device::ScheduledOutput> scheduled_{4 + 1};
+  device::OutputSchedule schedule_{scheduled_, &changes_, 1};
   device::Handler handler_;
   device::Server server_;
   modbus::Framer framer_;

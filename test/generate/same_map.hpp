@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 8, "Compare the new fields of the model here, too");
+static_assert(model_version == 9, "Compare the new fields of the model here, too");
 
 /// What fields_of() lists.
 template <class Struct>
@@ -62,6 +62,7 @@ inline void expect_same(const Point& a, const Point& b) {
                          [](const NamedValue& one, const NamedValue& other) {
                            return one.value == other.value && one.name == other.name;
                          }));
+  EXPECT_EQ(a.pulse, b.pulse);
   expect_same(a.host, b.host);
 }
 

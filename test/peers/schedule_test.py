@@ -19,7 +19,7 @@ import peer
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent)]
 from support.raw_client import Listener  # noqa: E402
 
-MOTOR, BRAKE, LAMP = 0, 1, 2
+MOTOR, BRAKE, LAMP, EJECTOR = 0, 1, 2, 3
 OFF, ON, DONE, CANCELLED = 0, 1, 3, 4
 BY_CLIENT, OVERWRITTEN, WATCHDOG, RELOAD, CONNECTION = 1, 2, 3, 5, 6
 MS = 1_000_000
@@ -115,6 +115,20 @@ def a_duration_ends_though_its_client_is_gone(port, checks):
         checks.equal("the wires", watcher.inputs(), [0, 0, 0])
 
 
+def a_pulse_ends_by_itself(port, checks):
+    """A client that knows of nothing writes it."""
+    with clients(port) as watcher:
+        plain = peer.pymodbus_client(port)
+        before = time.monotonic_ns()
+        checks.equal("pymodbus writes", plain.write_coil(EJECTOR, True, 1).isError(), False)
+        plain.close()
+        changes = []
+        while len(changes) < 2:
+            changes += watcher.coil_changes(EJECTOR, 1)
+        checks.equal("on, then off", [level for level, _ in changes], [ON, OFF])
+        checks.equal("not early", changes[0][1] >= before and changes[1][1] - changes[0][1] >= 200 * MS, True)
+
+
 def what_cancels(port, checks):
     with clients(port, 2) as (client, other):
         later = time.monotonic_ns() + HOUR // 2
@@ -142,7 +156,7 @@ def what_is_refused(port, checks):
                      bytes([0xC2, 3]))
         checks.equal("past", client.schedule(time.monotonic_ns() - 10 * MS, MOTOR, [1]), bytes([0xC2, 3]))
         checks.equal("too far", client.schedule(time.monotonic_ns() + 2 * HOUR, MOTOR, [1]), bytes([0xC2, 3]))
-        checks.equal("no such coil", client.schedule(due, LAMP, [1, 1]), bytes([0xC2, 2]))
+        checks.equal("no such coil", client.schedule(due, EJECTOR, [1, 1]), bytes([0xC2, 2]))
         checks.equal("above its largest", client.schedule_register(soon(), 0, 1001), bytes([0xC2, 3]))
         checks.equal("nothing happened", client.inputs(), [0, 0, 0])
 
@@ -245,6 +259,7 @@ def the_watchdog_cancels(port, checks):
 def without_watchdog(node, served, checks):
     with peer.running_node([node, str(served), "--sim"]) as port:
         for test in (they_are_driven_at_their_times_in_their_order, a_duration_ends_though_its_client_is_gone,
+                     a_pulse_ends_by_itself,
                      what_cancels, what_is_refused, sixty_four_places_for_all_clients, a_reload_cancels_and_durations_go_on,
                      a_killed_worker_process_leaves_nothing_on):
             test(port, checks)

@@ -95,6 +95,7 @@ std::vector<Detail> details_of(const Point& point) {
       {"initial-changed", compatible, initial_text(point)},
       {"safe-changed", compatible, safe_text(point)},
       {"line-changed", compatible, text_of(point.line)},
+      {"pulse-changed", meaning, is_pulsed(point) ? fmt::format("{}ms", point.pulse.count()) : ""},
       {"active-low-changed", meaning, point.line.active_low ? "true" : "false"},
       {"counter-changed", meaning, text_of(point.counter)},
       {"latched-changed", meaning, text_of(point.latched)},

@@ -60,6 +60,7 @@ constexpr std::array columns{
            }},
     Column{"initial", false, [](auto&, auto& point) { return markdown(point.initial); }},
     Column{"safe", false, [](auto&, auto& point) { return markdown(point.safe); }},
+    Column{"pulse", false, [](auto&, auto& point) { return point.pulse; }},
     Column{"deadman", false, [](auto&, auto& point) { return markdown(point.deadman); }},
     Column{"priority", false, [](auto&, auto& point) { return point.priority; }},
     Column{"polled", true, [](auto&, auto& point) { return point.rate; }},

@@ -88,6 +88,7 @@ PointDescription describe(const Point& point, int line) {
   put_source(point, out);
   out.initial = value_words(point, point.initial);
   out.safe = safe_of(point);
+  if (is_pulsed(point)) out.pulse = words(point.pulse);
   if (point.host.deadman.present()) {
     const std::string value = value_words(point, point.host.deadman.value);
     out.deadman = fmt::format("{} after {}", value, words(point.host.deadman.timeout));

@@ -31,6 +31,7 @@ struct PointDescription {
   std::string source_details;  ///< "active low, pull-up, debounce 5 ms"
   std::string initial;
   std::string safe;
+  std::string pulse;     ///< "200 ms"
   std::string deadman;   ///< "0 after 500 ms"
   std::string priority;  ///< "high", of writes that go first
   std::string rate;      ///< "50 Hz", of a point that is read at a rate of its own

@@ -33,7 +33,7 @@ std::string list_of(const std::vector<std::string>& points) {
 
 bool is_of_the_node(const Point& point) {
   return point.line.present() || is_analogue(point) || point.counter.present() || point.latched.present() ||
-         !point.initial.empty() || point.safe != Safe::off;
+         !point.initial.empty() || point.safe != Safe::off || is_pulsed(point);
 }
 
 /// The rate is not, and a deadband and a queue for subscribers have no meaning by themselves.
@@ -79,7 +79,7 @@ const Exporter* find_exporter(std::string_view name) {
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) {
   for (const Point& point : map.points) {
     if (is_of_the_node(point))
-      warnings.add("lines, channels, counters, initial and safe values belong to the node and are left out",
+      warnings.add("lines, channels, counters, initial and safe values and pulses belong to the node and are left out",
                    "no action is needed: the node has the map", point.name);
     if (is_of_the_driver(point))
       warnings.add("the driver's options of points are left out",

@@ -70,10 +70,10 @@ static_assert(::coupler::identity::size == {identity_size},
 /// on_POINT(value): a client writes. `false` refuses: the client gets exception 04, and nothing of its request is
 /// done. When a later point of the same request is refused, on_POINT is called once more with the value before.
 /// set_POINT(value): clients read it from then on. `false`: the point cannot hold it.
-class NodeCore : public ::coupler::device::NodeCore<{areas}, {cells}, {bits}, {links}> {{
+class NodeCore : public ::coupler::device::NodeCore<{areas}, {cells}, {bits}, {links}, {pulses}> {{
  public:
   explicit NodeCore(::coupler::device::Lines& lines, ::coupler::device::Channels* channels = nullptr)
-      : ::coupler::device::NodeCore<{areas}, {cells}, {bits}, {links}>(::coupler::maps::{name}::map, lines, channels) {{}}
+      : ::coupler::device::NodeCore<{areas}, {cells}, {bits}, {links}, {pulses}>(::coupler::maps::{name}::map, lines, channels) {{}}
 {members}}};
 
 }}  // namespace coupler::maps::{name}
@@ -160,7 +160,7 @@ std::string node_core(const Map& map, const Provenance& provenance) {
                      fmt::arg("source", comment(provenance.source)), fmt::arg("version", provenance.version),
                      fmt::arg("fingerprint", map.fingerprint), fmt::arg("identity_size", identity::size),
                      fmt::arg("areas", memory.areas), fmt::arg("cells", memory.cells),
-                     fmt::arg("bits", memory.bits), fmt::arg("links", memory.links),
+                     fmt::arg("bits", memory.bits), fmt::arg("links", memory.links), fmt::arg("pulses", memory.pulses),
                      fmt::arg("members", hook_members(map, core_style)), fmt::arg("before", macros.before),
                      fmt::arg("after", macros.after));
 }

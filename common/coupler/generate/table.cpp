@@ -114,12 +114,12 @@ std::string values_name(const Point& point) {
 }
 
 /// What few points have behind counter and latched: count, scale, iio, pwm, safe registers, read address,
-/// bounds, names of values, host.
+/// bounds, names of values, pulse, host.
 std::string rest(const Point& point) {
-  return fmt::format("{}, {}, {}, {}, {}, {}, {}, {}, {}", point.count, aggregate(point.scale),
+  return fmt::format("{}, {}, {}, {}, {}, {}, {}, {}, {}ms, {}", point.count, aggregate(point.scale),
                      aggregate(point.iio), aggregate(point.pwm), registers(point.safe_value),
                      point.read_address ? fmt::format("::std::uint16_t{{{}}}", *point.read_address) : "{}",
-                     aggregate(point.bounds), values_name(point), host(point.host));
+                     aggregate(point.bounds), values_name(point), point.pulse.count(), host(point.host));
 }
 
 /// All that most points do not have.

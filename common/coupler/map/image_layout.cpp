@@ -15,7 +15,10 @@ NodeMemory node_memory(const Map& map) {
     for (const Mapped which : {Mapped::readable, Mapped::writable})
       each_range(map, table, which, [&](modbus::Range) { ++memory.areas; });
   }
-  for (const Point& point : map.points) memory.links += point.counter.present() + point.latched.present();
+  for (const Point& point : map.points) {
+    memory.links += point.counter.present() + point.latched.present();
+    if (is_pulsed(point)) memory.pulses += point.count;
+  }
   return memory;
 }
 

@@ -17,6 +17,7 @@ struct NodeMemory {
   std::size_t cells = 0;  ///< mapped addresses, two bytes each
   std::size_t bits = 0;   ///< of these cells: coils and discrete inputs
   std::size_t links = 0;  ///< counters and latches: device::EdgePoints::Link
+  std::size_t pulses = 0;  ///< coils that end by themselves: device::ScheduledOutput
 };
 NodeMemory node_memory(const Map& map);
 

@@ -15,7 +15,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 8;
+constexpr int model_version = 9;
 
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {

@@ -131,6 +131,9 @@ struct Point {
   Bounds bounds{};
   /// Of an integer without a scale: what its values are called, in ascending order; others are not written.
   Span<const NamedValue> values{};
+  /// Coils of a node: how long 1 is driven; 0: until it is written otherwise. The host does not restore or
+  /// verify what ends by itself.
+  std::chrono::milliseconds pulse{0};
   HostOptions host{};
 };
 
@@ -160,6 +163,9 @@ constexpr bool is_hooked_output(const Point& point) { return is_writable(point) 
 
 /// The firmware's code may set its value.
 constexpr bool is_set_by_firmware(const Point& point) { return is_readable(point) && !has_hardware(point); }
+
+/// Goes back to 0 by itself.
+constexpr bool is_pulsed(const Point& point) { return point.pulse.count() > 0; }
 
 /// Shares its register with others. Bits of the bit tables share nothing.
 constexpr bool is_partial(const Point& point) {

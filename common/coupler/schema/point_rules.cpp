@@ -62,6 +62,13 @@ Json not_true() {
       {"not", {{"anyOf", {{{"const", true}}, {{"type", "string"}, {"pattern", any_case({"yes", "on"})}}}}}}};
 }
 
+/// Of a coil: neither is 1.
+Json not_on() {
+  return {{"not",
+           {{"anyOf",
+             {{{"enum", {true, 1}}}, {{"type", "string"}, {"pattern", any_case({"yes", "on"})}}}}}}};
+}
+
 /// "not" with "required" would refuse a point that is no map, too.
 Json not_both(std::string_view a, std::string_view b) { return {{"dependencies", {{a, only(b, false)}}}}; }
 
@@ -186,6 +193,9 @@ void add_rules_of_bits(Section section, Rules& rules) {
   rules.push_back(reference("point_of_a_bit"));
   if (section == Section::coil) {
     rules.push_back(not_both("latched", "line"));
+    rules.push_back(not_both("latched", "pulse"));
+    Json pulsed{{"properties", {{"safe", not_on()}, {"initial", not_on()}, {"verify_write", not_true()}}}};
+    rules.push_back(when(has("pulse"), std::move(pulsed)));
     rules.push_back(when({{"not", is_an_array()}}, only("safe", {{"not", {{"type", "array"}}}})));
   }
   for (const std::string_view key : {"active_low", "bias", "drive", "debounce"}) {
@@ -211,12 +221,12 @@ void add_rules_of_the_host(Section section, Rules& rules) {
   unread["properties"]["verify_write"] = not_true();
   rules.push_back(when(has("access", is("write")), std::move(unread)));
   Words writing = host_keys(About::writing);
-  writing.insert(writing.end(), {"deadman", "latched"});
+  writing.insert(writing.end(), {"deadman", "latched", "pulse"});
   rules.push_back(when(has("access", is("read")), none_of(writing, section)));
 }
 
 void add_rules_of_arrays(Section section, Rules& rules) {
-  Json array = none_of({"line", "counter", "latched", "iio", "pwm"}, section);
+  Json array = none_of({"line", "counter", "latched", "pulse", "iio", "pwm"}, section);
   array["properties"]["stamped"] = not_true();
   if (loader::overlap(section, outputs)) array["properties"]["write_function"] = {{"not", is("single")}};
   rules.push_back(when(is_an_array(), std::move(array)));

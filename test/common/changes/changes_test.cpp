@@ -111,6 +111,8 @@ TEST(Changes, What_makes_a_value_mean_something_else_is_of_meaning) {
   EXPECT_THAT(changes_by("units: rpm", "units: Hz"), ElementsAre("meaning units-changed speed: rpm -> Hz"));
   EXPECT_THAT(changes_by("GPIO27", "GPIO27, active_low: true"),
               ElementsAre("meaning active-low-changed lamp: false -> true"));
+  EXPECT_THAT(changes_by("GPIO27", "GPIO27, pulse: 1s"),
+              ElementsAre("meaning pulse-changed lamp:  -> 1000ms"));
   EXPECT_THAT(changes_by("units: rpm", "units: rpm, values: {5: five}"),
               ElementsAre("meaning values-changed speed:  -> 5: five"));
 }

@@ -147,6 +147,13 @@ TEST(PointDescription, The_deadman_says_what_is_written_and_when) {
   EXPECT_EQ(describe(point, 0).rate, "2.5 Hz");
 }
 
+TEST(PointDescription, A_pulse_has_its_length) {
+  Point point;
+  EXPECT_EQ(describe(point, 0).pulse, "");
+  point.pulse = std::chrono::milliseconds(200);
+  EXPECT_EQ(describe(point, 0).pulse, "200 ms");
+}
+
 TEST(PointDescription, A_priority_is_named_where_it_is_not_the_usual_one) {
   Point point = point_of(Type::INT);
   EXPECT_EQ(describe(point, 0).priority, "");

@@ -70,10 +70,10 @@ KEYS = """bit: 3|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|or
     deadman: {timeout: 61min, value: 1}|deadman: {timeout: 1s}|read_address: 7|allow_nonfinite: true|safe: on|
     safe: hold|safe: 1|safe: [on, off]|safe: 70000|line: GPIO1|line: 5|line: ""|line: {chip: a, offset: 1}|
     line: {chip: a}|line: {name: b, offset: 2}|line: {name: b}|line: {}|line: {name: b, active_low: true}|
-    active_low: true|bias: pull_up|drive: open_drain|debounce: 5ms|debounce: 2min|debounce: 0|units: mm|
+    active_low: true|bias: pull_up|drive: open_drain|pulse: 200ms|pulse: 2h|debounce: 5ms|debounce: 2min|debounce: 0|units: mm|
     units: true|description: 5""" % ((BITS_OF_A_WORD,) * 3)
 CONTEXTS = ["count: 2", "access: read", "access: write", "scale: 0.5", "values: {0: idle, 100: run}", "publish: on_change",
-            "line: GPIO7", "iio: {device: d, channel: c}"]
+            "line: GPIO7", "pulse: 1s", "iio: {device: d, channel: c}"]
 DIFFERENT_TYPES = {"BOOL", "SINT", "WORD", "INT", "REAL", "STRING"}
 # What no schema can say: it compares no numbers, adds none, and counts no list or text by another key's number.
 BETWEEN_KEYS = re.compile("is published from|is set to 0|is not one of its values|below 'min'|lists 16 values, the array has 2|"

@@ -65,9 +65,9 @@ struct NodeUnderTest {
   std::vector<ChangeRing::Entry> ring{32};
   std::vector<std::uint16_t> told = std::vector<std::uint16_t>(image.bits().size());
   Changes changes{image, ring, told};
-  std::vector<ScheduledOutput> scheduled{64};
+  std::vector<ScheduledOutput> scheduled{64 + node_memory(map).pulses};
   FakeScheduleSink outcomes;
-  OutputSchedule schedule{scheduled, &outcomes};
+  OutputSchedule schedule{scheduled, &outcomes, node_memory(map).pulses};
   FakeClock clock{now};
   Handler handler{
       map, Hardware(lines, &analogue), {image, statistics, watchdog, links, changes, schedule}, &clock};

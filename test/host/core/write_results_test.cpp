@@ -116,6 +116,27 @@ TEST_F(WriteResultsTest, What_was_sent_when_the_link_broke_is_lost_and_what_wait
   EXPECT_THAT(results.outcomes, ElementsAre(Outcome::lost, Outcome::dropped));
 }
 
+TEST_F(WriteResultsTest, What_ends_by_itself_is_not_restored) {
+  start_online([](Map& map) { map.on_reconnect = OnReconnect::restore; },
+               [](Point& point) {
+                 if (point.table == Table::coils) point.pulse = milliseconds(200);
+               });
+  push("k0", 1);
+  engine->step();
+  push("r0", 5);
+  engine->step();
+  device.next_errors.push_back(TransportFailure{"reset"});
+  run_for(milliseconds(99));
+  device.values.clear();
+  push("k1", 1, &results);
+  run_for(milliseconds(300));
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::dropped));
+  EXPECT_THAT(results.text, testing::HasSubstr("a pulse is not written when the device is back"));
+  EXPECT_EQ((device.values[{Table::coils, 0}]), 0);
+  EXPECT_EQ((device.values[{Table::coils, 1}]), 0);
+  EXPECT_EQ((device.values[{Table::holding_registers, 0}]), 5);
+}
+
 TEST_F(WriteResultsTest, With_restore_the_last_values_are_written_again_before_new_ones) {
   start_online([](Map& map) { map.on_reconnect = OnReconnect::restore; });
   push("r0", 5);

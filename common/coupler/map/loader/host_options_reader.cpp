@@ -52,6 +52,9 @@ std::vector<Complaint> complaints(const Reader& reader, const Point& point) {
   if (!is_readable(point) && point.host.verify_write)
     refuse("verify_write", "'verify_write' reads the point back, but this one has 'access: write'",
            "remove one of the two");
+  if (is_pulsed(point) && point.host.verify_write)
+    refuse("verify_write", "'verify_write' reads the point back, when its 'pulse' may be over",
+           "remove one of the two");
   if (!on_change)
     refuse("max_interval", "'max_interval' needs 'publish: on_change'", "add that, or remove 'max_interval'");
   if (is_readable(point) && point.count > 1 && point.host.stamped)
@@ -114,7 +117,7 @@ void read_host_options(const Reader& reader, const HostDefaults& defaults, Draft
     });
     return;
   }
-  if (!is_readable(point)) options.verify_write = false;
+  if (!is_readable(point) || is_pulsed(point)) options.verify_write = false;
   check_write_function(reader, point, context);
   const Entry* own = reader.find("deadman");
   if (const Entry* deadman = own != nullptr ? own : defaults.deadman)

@@ -169,6 +169,8 @@ constexpr Key keys[] = {
         .otherwise("off")
         .one_of<Safe>()
         .or_bits(),
+    project("pulse", S::coil, K::duration, "200ms", "how long the node drives a 1 before it ends it")
+        .within(0.001, 3600),
     project("active_low", bits | line, K::boolean, "true", "on is the low level").otherwise("false"),
     project("bias", bits | line, K::choice, "pull_up", "the line's resistor").one_of<Bias>(),
     project("drive", S::coil | S::coil_line, K::choice, "open_drain", "how the line is driven")

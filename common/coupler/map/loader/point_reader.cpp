@@ -58,12 +58,30 @@ void read_count(const Reader& reader, Point& point, const Context& context) {
 /// Hardware is behind single values.
 void check_array(const Reader& reader, const Point& point, const Context& context) {
   if (point.count == 1) return;
-  for (const std::string_view key : {"line", "counter", "latched", "iio", "pwm"}) {
+  for (const std::string_view key : {"line", "counter", "latched", "pulse", "iio", "pwm"}) {
     if (find_key(key, section_of(point.table)) == nullptr) continue;
     if (const Entry* entry = reader.find(key))
       context.problems.error(entry->key_at, fmt::format("'{}' does not apply to an array", key),
                              "write one point for each value");
   }
+}
+
+/// What ends by itself begins as 0, and is not left at 1.
+void read_pulse(const Reader& reader, Point& point, const Context& context) {
+  if (point.table != Table::coils || !reader.has("pulse")) return;
+  const std::size_t errors = context.problems.errors();
+  reader.duration("pulse", point.pulse);
+  if (!is_writable(point))
+    reader.refuse("pulse", "'pulse' is for a point that is written, but this one has 'access: read'",
+                  "remove it");
+  if (point.latched.present())
+    reader.refuse("pulse", "a point has 'pulse' or 'latched', not both", "remove one of the two");
+  if (point.safe == Safe::on)
+    reader.refuse("safe", "'safe' is on, but a pulse ends by itself", "write 'safe: off', or remove 'pulse'");
+  if (!point.initial.empty() && point.initial[0] != 0)
+    reader.refuse("initial", "'initial' is on, but a pulse begins when it is written",
+                  "remove 'initial', or 'pulse'");
+  if (context.problems.errors() != errors) point.pulse = {};
 }
 
 void read_read_address(const Reader& reader, Addressing addressing, Point& point, const Context& context) {
@@ -149,6 +167,7 @@ void read_rest(const PointDefaults& defaults, DraftPoint& draft, const Context& 
     read_channel(options, draft, context);
   check_start(options, point, context);
   read_edges(options, draft, context);
+  read_pulse(options, point, context);
   check_array(options, point, context);
   read_host_options(options, defaults.host, draft, context);
   options.text("description", point.description);

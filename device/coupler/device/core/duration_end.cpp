@@ -45,7 +45,7 @@ void DurationEnd::put(const Point& point, ScheduledOutput& which) {
   each_shared_address(own, which.range, [&](std::uint32_t at) {
     const std::size_t i = at - which.range.start();
     if (safe) which.set_value(i, (*safe)[at - own.start()]);  // what is tried again, unless it is written
-    const std::uint16_t value = which.value(i);
+    const std::uint16_t value = is_pulsed(point) ? std::uint16_t{0} : which.value(i);
     const auto back_in = [&](std::uint16_t now) {
       return static_cast<std::uint16_t>((now & ~mask) | (value & mask));
     };

@@ -9,7 +9,8 @@
 
 namespace coupler::device {
 
-/// The end of what was driven for a duration: outputs go back to the values from before it, each for itself.
+/// The end of what was driven for a duration: outputs go back to the values from before it, each for itself;
+/// those with a pulse, and at the end of one, to 0.
 /// What another duration that began later has driven since goes back at the end of that one. Latches and
 /// counters stay as they are, and so does what is in its safe state since, if that is not `hold`. What was to
 /// go there and could not goes there.

@@ -38,7 +38,8 @@ Handler::Handler(const Map& map, Hardware hardware, const NodeState& state, cons
       clock_(clock),
       limits_values_(std::any_of(map.points.begin(), map.points.end(), [](const Point& point) {
         return is_writable(point) && limits_values(point);
-      })) {
+      })),
+      has_pulses_(std::any_of(map.points.begin(), map.points.end(), is_pulsed)) {
   set_machine({});
   show_outputs();
 }
@@ -151,16 +152,38 @@ tl::expected<void, Exception> Handler::drive_and_store(Table table, modbus::Rang
   edge_points_.keep_latches(table, range, cells, next);
   if (watchdog_.is_locked() && hardware_.driven(table, range, next))
     return tl::unexpected(Exception::server_device_failure);
+  const bool pulses = has_pulses_ && table == Table::coils;
+  if (pulses) begin_pulses(range, now);
   if (const auto driven = hardware_.drive(table, range, next); !driven) {
+    if (pulses) follow_pulses(range, false, now);
     if (driven.error().hardware_failed) ++statistics_.hardware_errors;
     return tl::unexpected(driven.error().exception);
   }
   std::copy(next.begin(), next.end(), cells.begin());
   if (hardware_.driven(table, range, cells)) wrote_output_ = true;
   schedule_.driven(table, range, cells);
-  changes_.set_time(later(now));
+  const TimePoint done = later(now);
+  if (pulses) follow_pulses(range, true, done);
+  changes_.set_time(done);
   changes_.compare(table, range);
   return {};
+}
+
+void Handler::begin_pulses(modbus::Range coils, TimePoint now) {
+  for (const Point& point : touched_points(map_, Table::coils, coils))
+    if (is_pulsed(point) && next_[point.address - coils.start()] != 0 &&
+        image_.find(Table::coils, range(point))[0] == 0)
+      schedule_.pulse(point.address, now + point.pulse);
+}
+
+void Handler::follow_pulses(modbus::Range coils, bool written, TimePoint now) {
+  for (const Point& point : touched_points(map_, Table::coils, coils)) {
+    if (!is_pulsed(point)) continue;
+    if (image_.find(Table::coils, range(point))[0] == 0)
+      schedule_.end_pulse(point.address);
+    else if (written)
+      schedule_.pulse(point.address, now + point.pulse);
+  }
 }
 
 Handler::Answer Handler::carry_out(const modbus::WriteBits& write, const Call& call) {

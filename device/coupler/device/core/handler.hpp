@@ -115,6 +115,11 @@ class Handler {
   void expire_watchdog(TimePoint now);
   tl::expected<void, modbus::Exception> drive_and_store(Table table, modbus::Range range,
                                                         Span<std::uint16_t> cells, TimePoint now);
+  /// Pulses of the range that begin with what next_ says, before it is driven: if this process dies
+  /// meanwhile, they end all the same.
+  void begin_pulses(modbus::Range coils, TimePoint now);
+  /// A coil of the range that is 0 has no pulse. One that is 1, and was written so, has all of it before it.
+  void follow_pulses(modbus::Range coils, bool written, TimePoint now);
   bool drive_safe(TimePoint now);
   void show_outputs();
   bool read_hardware(Table table, modbus::Range range, Span<std::uint16_t> cells, TimePoint now);
@@ -143,6 +148,7 @@ class Handler {
   OutputSchedule& schedule_;
   const Clock* clock_;
   bool limits_values_;                                        ///< the map does, of a point that is written
+  bool has_pulses_;                                           ///< the map has
   bool wrote_output_ = false;                                 ///< the request that is being answered has
   std::array<std::uint16_t, modbus::max_write_bits> next_{};  ///< what a write stores, before it is committed
 };

@@ -20,11 +20,11 @@ namespace coupler::device {
 constexpr std::size_t kept_changes = 48;
 
 /// What the generated coupler::maps::NAME::NodeCore of every map has in common: a node in static memory, for
-/// microcontrollers. `Areas`, `Cells`, `Bits` and `Links` are the map's NodeMemory, `Scheduled` is how many
+/// microcontrollers. `Areas`, `Cells`, `Bits`, `Links` and `Pulses` are the map's NodeMemory, `Scheduled` is how many
 /// outputs clients can schedule. All of it is called in one task: requests, tick(), and what the firmware
 /// sets. No heap, no exceptions, no threads.
 template <std::size_t Areas, std::size_t Cells, std::size_t Bits, std::size_t Links,
-          std::size_t KeptChanges = kept_changes, std::size_t Scheduled = 4>
+          std::size_t Pulses = 0, std::size_t KeptChanges = kept_changes, std::size_t Scheduled = 4>
 class NodeCore : public Hooks {
  public:
   NodeCore(const NodeCore&) = delete;
@@ -54,7 +54,7 @@ class NodeCore : public Hooks {
                                       : std::optional<AnaloguePoints>(std::in_place, map, image_, *channels)),
         watchdog_(map.service.watchdog),
         changes_(image_, ring_, told_),
-        schedule_(scheduled_, &changes_),
+        schedule_(scheduled_, &changes_, Pulses),
         handler_(map, {lines, analogue_ ? &*analogue_ : nullptr, &hooked_},
                  {image_, statistics_, watchdog_, links_, changes_, schedule_}),
         server_(map.connection.unit, handler_, statistics_) {}
@@ -87,7 +87,7 @@ class NodeCore : public Hooks {
   Statistics statistics_;
   OutputWatchdog watchdog_;
   Changes changes_;
-  std::array<ScheduledOutput, Scheduled> scheduled_{};
+  std::array<ScheduledOutput, Scheduled + Pulses> scheduled_{};
   OutputSchedule schedule_;
   Handler handler_;
   Server server_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <tuple>
 
 #include "coupler/device/core/clock.hpp"
@@ -25,8 +26,8 @@ void ScheduledOutput::set_value(std::size_t i, std::uint16_t value) {
   packed[i / 8] = static_cast<std::uint8_t>(value != 0 ? packed[i / 8] | bit : packed[i / 8] & ~bit);
 }
 
-OutputSchedule::OutputSchedule(Span<ScheduledOutput> places, ScheduleSink* sink)
-    : places_(places), sink_(sink) {
+OutputSchedule::OutputSchedule(Span<ScheduledOutput> places, ScheduleSink* sink, std::size_t pulses)
+    : places_(places), pulses_(places.sub(places.size() - pulses, pulses)), sink_(sink) {
   for (ScheduledOutput& place : places_) {
     if (place.state == State::waiting) place.state = State::free;
     if (place.state != State::begun) continue;
@@ -38,9 +39,9 @@ OutputSchedule::OutputSchedule(Span<ScheduledOutput> places, ScheduleSink* sink)
 
 ScheduledOutput* OutputSchedule::add(const modbus::ScheduleOutput& wanted, Table table, TimePoint due,
                                      const ClientSession& owner) {
-  const auto place = std::find_if(places_.begin(), places_.end(),
+  const auto place = std::find_if(places_.begin(), pulses_.begin(),
                                   [](const ScheduledOutput& one) { return one.state == State::free; });
-  if (place == places_.end()) return nullptr;
+  if (place == pulses_.begin()) return nullptr;
   place->number = unused_number();
   place->state = State::waiting;
   place->safety = ScheduledOutput::Safety::unasked;
@@ -96,6 +97,44 @@ void OutputSchedule::begin(ScheduledOutput& which, TimePoint end, Span<const std
   std::atomic_signal_fence(std::memory_order_seq_cst);
   which.state = State::begun;
   find_earliest();
+}
+
+/// Null: it has none.
+ScheduledOutput* OutputSchedule::pulse_of(std::uint16_t coil) {
+  const auto found = std::find_if(pulses_.begin(), pulses_.end(), [coil](const ScheduledOutput& one) {
+    return one.state == State::begun && one.range.start() == coil;
+  });
+  return found == pulses_.end() ? nullptr : &*found;
+}
+
+void OutputSchedule::pulse(std::uint16_t coil, TimePoint end) {
+  ScheduledOutput* place = pulse_of(coil);
+  const bool begins = place == nullptr;
+  if (begins) {
+    place = std::find_if(pulses_.begin(), pulses_.end(),
+                         [](const ScheduledOutput& one) { return one.state == State::free; });
+    assert(place != pulses_.end());  // each coil has one
+    if (place == pulses_.end()) return;
+  }
+  place->safety = ScheduledOutput::Safety::unasked;
+  place->is_overdue = false;
+  place->order = ++last_order_;
+  place->at = end;
+  if (begins) {
+    place->number = 0;
+    place->table = Table::coils;
+    place->range = Range::of(coil, 1);
+    place->duration = {};
+    place->owner = nullptr;
+    place->set_value(0, 0);
+    std::atomic_signal_fence(std::memory_order_seq_cst);  // as in begin()
+    place->state = State::begun;
+  }
+  find_earliest();
+}
+
+void OutputSchedule::end_pulse(std::uint16_t coil) {
+  if (ScheduledOutput* running = pulse_of(coil)) remove(*running);
 }
 
 void OutputSchedule::postpone(ScheduledOutput& which, TimePoint end) {

@@ -26,7 +26,7 @@ class ScheduleSink {
   ~ScheduleSink() = default;
 };
 
-/// An output that is driven at a time, and one that was driven for a duration: it has begun.
+/// An output that is driven at a time, and one that was driven for a duration or a pulse: it has begun.
 struct ScheduledOutput {
   enum class State : std::uint8_t { free, waiting, begun };
 
@@ -50,17 +50,19 @@ struct ScheduledOutput {
   void set_value(std::size_t i, std::uint16_t value);
 };
 
-/// What clients have scheduled, in a fixed number of places. It decides what is due and what is cancelled;
-/// others drive the outputs. Places may be in memory that outlives the process: what has begun there goes on.
+/// What clients have scheduled, and the pulses that run (Point::pulse), in a fixed number of places. It decides
+/// what is due and what is cancelled; others drive the outputs. Places may be in memory that outlives the
+/// process: what has begun there goes on.
 class OutputSchedule {
  public:
-  /// Those that wait in `places` are dropped: their clients are gone. `sink` may be null. Both outlive it.
-  explicit OutputSchedule(Span<ScheduledOutput> places, ScheduleSink* sink = nullptr);
+  /// Those that wait in `places` are dropped: their clients are gone. `sink` may be null. Both outlive it. The
+  /// last `pulses` places are for pulses: NodeMemory's number of them.
+  explicit OutputSchedule(Span<ScheduledOutput> places, ScheduleSink* sink = nullptr, std::size_t pulses = 0);
 
-  /// False: there are no places at all.
-  bool is_present() const { return !places_.empty(); }
+  /// False: there are no places for what clients schedule.
+  bool is_present() const { return places_.size() > pulses_.size(); }
 
-  /// Null: every place is taken.
+  /// Null: every place of clients is taken.
   ScheduledOutput* add(const modbus::ScheduleOutput& wanted, Table table, TimePoint due,
                        const ClientSession& owner);
 
@@ -73,6 +75,10 @@ class OutputSchedule {
   /// It is about to be driven until `end`: keeps the values from before, one for each address. If this
   /// process dies while it is driven, it ends all the same.
   void begin(ScheduledOutput& which, TimePoint end, Span<const std::uint16_t> before);
+  /// The coil is 1, or is about to be driven to it, until `end`: its pulse begins, or goes on for longer.
+  void pulse(std::uint16_t coil, TimePoint end);
+  /// The coil is 0.
+  void end_pulse(std::uint16_t coil);
   /// Ends at another time.
   void postpone(ScheduledOutput& which, TimePoint end);
   /// It could not be ended, and is due again at this time.
@@ -113,10 +119,12 @@ class OutputSchedule {
   void cancel_if(modbus::Reason reason, TimePoint at, Which which);
   void tell(const ScheduledOutput& which, modbus::Change::Kind kind, modbus::Reason reason, TimePoint at);
   ScheduledOutput* first_begun(std::uint64_t order);
+  ScheduledOutput* pulse_of(std::uint16_t coil);
   std::uint16_t unused_number();
   void find_earliest();
 
   Span<ScheduledOutput> places_;
+  Span<ScheduledOutput> pulses_;  ///< the last of them
   ScheduleSink* sink_;
   std::size_t waiting_ = 0;
   bool any_overdue_ = false;  ///< there was one

@@ -93,7 +93,7 @@ IoService::IoService(const ServingContext& context, Loop& loop, Log& log)
       ring_(kept_changes),
       told_(context.state->image().bits().size()),
       changes_(context.state->image(), ring_, told_),
-      schedule_(context.state->scheduled(), &changes_),
+      schedule_(context.state->scheduled(), &changes_, context.state->pulses()),
       handler_(*context.map, context.hardware(),
                {context.state->image(), context.state->statistics(), context.state->watchdog(),
                 context.state->links(), changes_, schedule_},

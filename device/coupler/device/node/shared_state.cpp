@@ -52,7 +52,7 @@ SharedState::SharedState(const Map& map, TimePoint now, NodeMemory size, const i
       cells_(size.cells),
       image_(map, areas_, cells_.all()),
       lasting_(1, {started_at(now), OutputWatchdog(map.service.watchdog)}),
-      scheduled_(scheduled_outputs),
+      scheduled_(scheduled_outputs + size.pulses),
       links_(size.links),
       machine_(machine) {}
 
@@ -74,23 +74,36 @@ bool SharedState::fits(const ScheduledOutput& begun, const SharedState& before) 
       static_cast<std::size_t>(std::count_if(carried_.begin(), carried_.end(), [&](const Carried& carried) {
         const Point& old = *carried.before;
         return old.table == begun.table && range(old).overlaps(begun.range) &&
-               old.address == carried.point->address && same_hardware(old, *carried.point);
+               old.address == carried.point->address && same_hardware(old, *carried.point) &&
+               is_pulsed(old) == is_pulsed(*carried.point);
       }));
   return same == touched_points(before.map_, begun.table, begun.range).size() &&
          same == touched_points(map_, begun.table, begun.range).size();
 }
 
+/// Those of clients keep their places, pulses get the next one.
+void SharedState::take_over_schedule(const SharedState& before) {
+  std::size_t pulse = scheduled_outputs;
+  for (std::size_t i = 0; i < before.scheduled_.all().size(); ++i) {
+    const ScheduledOutput& begun = before.scheduled_[i];
+    if (begun.state != ScheduledOutput::State::begun || !fits(begun, before)) continue;
+    scheduled_[i < scheduled_outputs ? i : pulse++] = begun;
+  }
+}
+
 void SharedState::take_over(const SharedState& before, TimePoint now) {
   statistics() = before.lasting_[0].statistics;
   watchdog().take_over(before.lasting_[0].watchdog, now);
-  for (std::size_t i = 0; i < scheduled_outputs; ++i)
-    if (const ScheduledOutput& begun = before.scheduled_[i];
-        begun.state == ScheduledOutput::State::begun && fits(begun, before))
-      scheduled_[i] = begun;
-  for (const Carried& carried : std::exchange(carried_, {}))
+  take_over_schedule(before);
+  OutputSchedule schedule(scheduled(), nullptr, pulses());
+  for (const Carried& carried : std::exchange(carried_, {})) {
     for (std::size_t i = 0; i < carried.to.size(); ++i)
       carried.to[i] =
           static_cast<std::uint16_t>((carried.to[i] & ~carried.mask) | (carried.from[i] & carried.mask));
+    const Point& point = *carried.point;
+    if (is_pulsed(point) && !is_pulsed(*carried.before) && carried.to[0] != 0)
+      schedule.pulse(point.address, now + point.pulse);
+  }
 }
 
 }  // namespace coupler::device

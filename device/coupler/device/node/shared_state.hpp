@@ -29,8 +29,8 @@ class SharedState {
   /// there are many points.
   void prepare_take_over(const SharedState& before);
   /// Takes over from the other state what both have: statistics, the watchdog's state, and the value of
-  /// every point that has the same name, table, type and layout in both; and scheduled outputs that have
-  /// begun, if they fit().
+  /// every point that has the same name, table, type and layout in both; and scheduled outputs and pulses that
+  /// have begun, if they fit(). A coil that is 1 and has a pulse here only begins it.
   void take_over(const SharedState& before, TimePoint now);
 
   /// Whether an output of `before`, for which take_over() was prepared, is of the same points here, at the
@@ -42,6 +42,8 @@ class SharedState {
   OutputWatchdog& watchdog() { return lasting_[0].watchdog; }
   Span<EdgePoints::Link> links() { return links_; }
   Span<ScheduledOutput> scheduled() { return scheduled_.all(); }
+  /// How many of these, the last ones, are for pulses.
+  std::size_t pulses() const { return scheduled_.all().size() - scheduled_outputs; }
   const identity::Machine& machine() const { return machine_; }
 
  private:
@@ -57,6 +59,7 @@ class SharedState {
     Span<std::uint16_t> to;
     std::uint16_t mask;
   };
+  void take_over_schedule(const SharedState& before);
   SharedState(const Map& map, TimePoint now, NodeMemory size, const identity::Machine& machine);
 
   const Map& map_;

@@ -256,7 +256,7 @@ void Writer::disconnected(const Error& why) {
 }
 
 void Writer::remember(const Write& write) {
-  if (!restores()) return;
+  if (!restores(write)) return;
   Write& value = last_written_[write.point];
   value = write;
   value.listener = nullptr;
@@ -264,12 +264,14 @@ void Writer::remember(const Write& write) {
 }
 
 void Writer::drop(const Write& write) {
-  const bool keeps = restores() && !write.of_schedule;  // that has a time of its own
+  const bool keeps = restores(write) && !write.of_schedule;  // that has a time of its own
   if (keeps) remember(write);
   if (write.of_deadman) deadmen_.put_back(write.point);
-  const WriteResult result = {
-      keeps ? Outcome::kept : Outcome::dropped, std::nullopt,
-      "not connected; with 'on_reconnect: restore' in the map it would be written when the device is back"};
+  const std::string_view why =
+      is_pulsed(map_.points[write.point])
+          ? "not connected; a pulse is not written when the device is back"
+          : "not connected; with 'on_reconnect: restore' in the map it would be written when the device is back";
+  const WriteResult result = {keeps ? Outcome::kept : Outcome::dropped, std::nullopt, why};
   queue_.settled(write.point);
   tell(write, result);
   if (keeps || dropped_++ > 0) return;

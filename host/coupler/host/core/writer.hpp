@@ -103,7 +103,9 @@ class Writer {
   void settle(const Write& write, const WriteResult& result);
   void report(const Write& write, const WriteResult& result);
   void drop(const Write& write);
-  bool restores() const { return map_.on_reconnect == OnReconnect::restore; }
+  bool restores(const Write& write) const {
+    return map_.on_reconnect == OnReconnect::restore && !is_pulsed(map_.points[write.point]);
+  }
   std::string_view name(std::uint32_t point) const { return map_.points[point].name; }
 
   const Map& map_;
