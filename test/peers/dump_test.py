@@ -134,8 +134,8 @@ def a_watchdog_of_the_map_is_left_alone(coupler, device, checks):
 class Watch:
     """`coupler dump --watch`, and the lines it has said."""
 
-    def __init__(self, coupler, *arguments):
-        self.program = subprocess.Popen([coupler, "dump", *map(str, arguments), "--watch", "0.1"], text=True,
+    def __init__(self, coupler, *arguments, every="0.1"):
+        self.program = subprocess.Popen([coupler, "dump", *map(str, arguments), "--watch", every], text=True,
                                         encoding="utf-8", stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         self.lines = []
         self._news = threading.Condition()
@@ -288,6 +288,24 @@ def a_nodes_watchdog_stays_idle(coupler, node, checks):
         client.close()
 
 
+def changes_of_a_node_are_told_as_they_come(coupler, node, checks):
+    """Between two looks that are an hour apart."""
+    here = pathlib.Path(__file__).resolve().parent
+    with peer.running_node([node, str(here / "schedule.yaml"), "--sim"]) as port:
+        watch = Watch(coupler, f"tcp://127.0.0.1:{port}", "--points", "motor,motor_runs,ejector", every="3600")
+        client = peer.pymodbus_client(port)
+        checks.equal("a first look", watch.await_line(lambda line: line.endswith(" motor_runs false")) is not None, True)
+        for coil, level in ((0, True), (0, False), (3, True)):
+            checks.equal("pymodbus writes", client.write_coil(coil, level, 1).isError(), False)
+        client.close()
+        last = watch.await_line(lambda line: line.endswith(" ejector false"), 3)
+        told = [line.split(" ", 1)[1] for line in watch.lines[3:(last or 0) + 1]]
+        for point in ("motor", "motor_runs", "ejector"):
+            checks.equal(f"{point}: each change, a pulse's end too", [line for line in told if line.startswith(point + " ")],
+                         [f"{point} true", f"{point} false"])
+        checks.equal("status after SIGINT", watch.end(), 0)
+
+
 def main():
     coupler, map_file, command = sys.argv[1], sys.argv[2], sys.argv[3:]
     checks = peer.Checks()
@@ -304,6 +322,7 @@ def main():
         checks.equal("functions that the device was asked for by --watch", device.store.asked, READS)
     a_node_needs_no_file(coupler, command, checks)
     a_nodes_watchdog_stays_idle(coupler, command[0], checks)
+    changes_of_a_node_are_told_as_they_come(coupler, command[0], checks)
     checks.done("coupler dump shows what pymodbus and a node hold, tells changes, and writes nothing")
 
 

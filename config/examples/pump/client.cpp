@@ -16,6 +16,16 @@ bool is_taken(const char* what, coupler::client::PendingWrite pending) {
   return static_cast<bool>(result);
 }
 
+/// The node's own timer stops it, even if this program has ended by then. Here the outcome is waited for.
+bool stops_in(std::chrono::seconds time, coupler::maps::pump::Client& pump) {
+  auto stop = pump.run.schedule(false, std::chrono::steady_clock::now() + time);
+  std::printf("stop in %d s: %s\n", static_cast<int>(time.count()), stop.text().c_str());
+  const auto result = stop.wait(time + 10s);
+  if (!result) return false;
+  std::printf("it %s\n", *result ? "has stopped" : result->reason.c_str());
+  return static_cast<bool>(*result);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -51,7 +61,7 @@ int main(int argc, char** argv) {
     }
     if (running->value && pressure->value > 4) {
       std::printf("%.2f bar after %u starts\n", pressure->value, starts->value);
-      return is_taken("stop", pump.run.set(false)) ? 0 : 1;
+      return stops_in(5s, pump) ? 0 : 1;
     }
     std::this_thread::sleep_for(20ms);
   }

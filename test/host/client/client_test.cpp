@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <optional>
 
 #include "pump_client.hpp"
 #include "test/host/modbus/modbus_server.hpp"
@@ -125,6 +126,72 @@ TEST_F(PumpClient, Changes_are_told_and_nothing_else) {
   ASSERT_TRUE(seen(2));
   pump.disconnect();
   EXPECT_THAT(told, ElementsAre(0, 1.5));
+}
+
+TEST_F(PumpClient, A_change_has_the_time_at_which_it_was_true) {
+  std::mutex mutex;
+  std::optional<host::Stamp> told;
+  pump.running.on_stamped_change([&](bool, host::Stamp stamp) {
+    const std::lock_guard lock(mutex);
+    told = stamp;
+  });
+  const auto before = std::chrono::steady_clock::now();
+  pump.connect();
+  ASSERT_TRUE(becomes([&] {
+    const std::lock_guard lock(mutex);
+    return told.has_value();
+  }));
+  EXPECT_GE(told->at + told->uncertainty, before);
+  EXPECT_LE(told->at - told->uncertainty, std::chrono::steady_clock::now());
+}
+
+/// Accepted in time, on any machine.
+template <class Point, class Value>
+PendingSchedule soon_set(Point& point, Value value) {
+  for (auto ahead = 50ms;; ahead *= 2) {
+    PendingSchedule pending = point.schedule(value, std::chrono::steady_clock::now() + ahead);
+    if (pending.accepted() || ahead > std::chrono::minutes(30)) return pending;
+  }
+}
+
+TEST_F(PumpClient, A_value_is_written_when_its_time_has_come) {
+  pump.connect();
+  ASSERT_TRUE(pump.wait_online(soon));
+  PendingSchedule valve = soon_set(pump.valve, true);
+  PendingSchedule speed = soon_set(pump.speed, 80);
+  for (PendingSchedule* each : {&valve, &speed}) {
+    const auto result = each->wait(std::chrono::minutes(1));
+    ASSERT_TRUE(result) << each->text();
+    EXPECT_TRUE(*result) << result->reason;
+    EXPECT_GE(result->lateness, host::Duration(0));
+  }
+  EXPECT_EQ(server.tables().tab_bits[0], 1);
+  EXPECT_EQ(server.tables().tab_registers[0], 800);
+}
+
+TEST_F(PumpClient, What_cannot_be_scheduled_says_why) {
+  const auto later = std::chrono::steady_clock::now() + 30min;
+  PendingSchedule offline = pump.valve.schedule(true, later);
+  EXPECT_FALSE(offline.accepted());
+  EXPECT_THAT(offline.text(), HasSubstr("connect()"));
+  EXPECT_FALSE(offline.wait(soon)) << "at once";
+  pump.connect();
+  ASSERT_TRUE(pump.wait_online(soon));
+  EXPECT_THAT(pump.speed.schedule(7000, later).text(), HasSubstr("0 to 6553.5 %"));
+  EXPECT_THAT(pump.valve.schedule(true, later, 1s).text(), HasSubstr("only a node ends by itself"));
+  EXPECT_THAT(pump.valve.schedule(true, later + 2h).text(), HasSubstr("an hour (3600 s) is the most"));
+}
+
+TEST_F(PumpClient, Disconnected_it_drives_nothing_any_more) {
+  pump.connect();
+  ASSERT_TRUE(pump.wait_online(soon));
+  PendingSchedule pending = pump.valve.schedule(true, std::chrono::steady_clock::now() + 30min);
+  ASSERT_TRUE(pending.accepted()) << pending.text();
+  EXPECT_FALSE(pending.wait(1ms));
+  pump.disconnect();
+  const auto result = pending.wait(soon);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->outcome, ScheduleResult::Outcome::cancelled);
 }
 
 TEST_F(PumpClient, A_change_may_be_answered_by_setting_a_point) {

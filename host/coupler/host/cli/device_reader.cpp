@@ -89,11 +89,14 @@ IdentityFindings findings(const Map& map, const Identity& identity) {
 }  // namespace
 
 DeviceReader::DeviceReader(const Map& map, const std::vector<bool>& chosen, host::Transport& transport,
-                           host::Clock& clock, host::MapLoader load)
+                           host::Clock& clock, host::MapLoader load, ChangeWatch::Use use)
     : map_(map),
       load_(std::move(load)),
       planner_(map),
       transport_(transport, clock, map.limits, statistics_),
+      clock_(clock),
+      changes_(map_, transport_, clock, statistics_, std::move(use),
+               [this](std::string text) { note(std::move(text)); }),
       chosen_(chosen),
       place_(map.points.size()) {
   for (std::uint32_t point = 0; point < map.points.size(); ++point) {
@@ -123,10 +126,19 @@ Snapshot DeviceReader::look() {
   return now_;
 }
 
+void DeviceReader::wait_until(host::Time time) {
+  if (!connected_ || !changes_.is_active()) return clock_.sleep_until(time);
+  if (changes_.wait_until(time)) return;
+  transport_.close();
+  connected_ = false;
+}
+
 Result<> DeviceReader::connect() {
   known_ = blank_;
   if (auto opened = transport_.connect(); !opened) return opened;
   if (auto identified = identify(); !identified) return identified;
+  const bool is_node = known_.identity.value_or(Identity::Verdict::foreign) != Identity::Verdict::foreign;
+  if (auto started = changes_.start(is_node); !started) return started;
   plan();
   connected_ = true;
   return {};

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "coupler/host/cli/change_watch.hpp"
 #include "coupler/host/cli/snapshot.hpp"
 #include "coupler/host/core/paced_transport.hpp"
 #include "coupler/plan/planner.hpp"
@@ -18,13 +19,18 @@ namespace coupler::cli {
 /// Nothing is read from a place that means something else in the device's own map.
 class DeviceReader {
  public:
-  /// `chosen` by point. What `map` views, and everything given by reference, must outlive it.
+  /// `chosen` by point. Changes that the device announces go to `use`, if it is not empty: those that come
+  /// during a look() are older than its snapshot. What `map` views, and everything given by reference, must
+  /// outlive it.
   DeviceReader(const Map& map, const std::vector<bool>& chosen, host::Transport& transport,
-               host::Clock& clock, host::MapLoader load);
+               host::Clock& clock, host::MapLoader load, ChangeWatch::Use use = {});
 
   /// Reads every chosen point once, after connecting if there is no connection. If the device falls silent,
   /// the snapshot says so and has the readings until then.
   Snapshot look();
+
+  /// Returns then, or before if everything should be looked at anew.
+  void wait_until(host::Time time);
 
  private:
   using ReadSpan = plan::ReadSpan;
@@ -46,6 +52,8 @@ class DeviceReader {
   plan::Planner planner_;
   host::DeviceStatistics statistics_;
   host::PacedTransport transport_;
+  host::Clock& clock_;
+  ChangeWatch changes_;
   std::vector<bool> chosen_;
   std::vector<std::size_t> place_;  ///< by point: of its reading
   Snapshot blank_;                  ///< before anything is read

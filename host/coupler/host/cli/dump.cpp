@@ -17,6 +17,7 @@
 #include "coupler/host/cli/interruption.hpp"
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/schedule.hpp"
+#include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/modbus/modbus_transport.hpp"
 #include "coupler/map/diagnostic.hpp"
 #include "coupler/map/node_address.hpp"
@@ -86,15 +87,26 @@ Exit again_and_again(const Map& map, const DumpOptions& options) {
   const Interruption interruption([&] {
     stopped = true;
     transport.interrupt();
+    transport.wake();
     clock.stop();
   });
-  DeviceReader reader(map, options.chosen, transport, clock, load_served_map);
   host::Backoff backoff;
   const bool terminal = !options.json && is_screen();
   const auto show = options.json ? show_json : terminal ? show_frame : show_changes;
   if (terminal) std::fputs(begin_frames, stdout);
   Snapshot before;
   Snapshot online;  // the last that was
+  host::WallTime wall;
+  DeviceReader reader(
+      map, options.chosen, transport, clock, load_served_map,
+      [&](const modbus::Change& bit, host::Stamp stamp) {
+        if (!before.online() || !take_change(map, bit, before)) return;
+        wall.measure();
+        before.at = std::chrono::system_clock::time_point(
+            std::chrono::duration_cast<std::chrono::system_clock::duration>(wall.of(stamp.at)));
+        online = before;
+        show(map, &before, before);
+      });
   for (bool first = true; !stopped; first = false) {
     host::Time next = clock.now() + *options.every;
     Snapshot now = reader.look();
@@ -108,7 +120,7 @@ Exit again_and_again(const Map& map, const DumpOptions& options) {
     }
     show(map, first ? nullptr : &before, now);
     before = std::move(now);
-    clock.sleep_until(next);
+    reader.wait_until(next);
   }
   if (terminal) put(end_frames);
   return ok;

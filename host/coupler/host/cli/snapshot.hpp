@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coupler/host/core/identity_check.hpp"
+#include "coupler/modbus/changes.hpp"
 
 namespace coupler::cli {
 
@@ -40,6 +41,9 @@ struct Snapshot {
 
 /// Which readings are others than the last time.
 void mark_changes(const Snapshot& before, Snapshot& now);
+
+/// Puts a bit that has changed since into the readings that hold it: they alone are marked. False: none does.
+bool take_change(const Map& map, const modbus::Change& bit, Snapshot& now);
 
 /// "2026-11-21T13:20:11.123Z"
 std::string time_text(std::chrono::system_clock::time_point time);

@@ -18,7 +18,7 @@ bool LastValues::keep(Entry& entry, const Point& point, const std::uint16_t* reg
   return first || changed;
 }
 
-void LastValues::set(const plan::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at) {
+void LastValues::set(const plan::ReadSpan& span, Span<const std::uint16_t> registers, host::Stamp stamp) {
   std::vector<News> news;
   {
     const std::lock_guard lock(mutex_);
@@ -26,11 +26,11 @@ void LastValues::set(const plan::ReadSpan& span, Span<const std::uint16_t> regis
       const Point& point = map_.points[index];
       const std::uint16_t* value = &registers[read_range(point).start() - std::size_t{span.range.start()}];
       Entry& entry = entries_[index];
-      if (keep(entry, point, value, at) && entry.listener) news.push_back({entry.listener, value});
+      if (keep(entry, point, value, stamp.at) && entry.listener) news.push_back({entry.listener, value});
     }
     came_.notify_all();
   }
-  for (const News& each : news) (*each.listener)(each.registers);
+  for (const News& each : news) (*each.listener)(each.registers, stamp);
 }
 
 void LastValues::listen(std::uint32_t point, Listener listener) {

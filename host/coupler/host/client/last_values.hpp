@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "coupler/host/core/clock.hpp"
+#include "coupler/host/core/stamp.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/plan/read_span.hpp"
 
@@ -18,8 +18,8 @@ namespace coupler::client {
 /// The last value of each point, as registers (bit tables: each bit as one, 0 or 1). For any thread.
 class LastValues {
  public:
-  /// Gets the registers of a value that differs from the one before.
-  using Listener = std::function<void(const std::uint16_t* registers)>;
+  /// Gets the registers of a value that differs from the one before, and when it was true.
+  using Listener = std::function<void(const std::uint16_t* registers, host::Stamp stamp)>;
 
   struct Value {
     std::vector<std::uint16_t> registers;
@@ -31,7 +31,7 @@ class LastValues {
 
   /// Keeps values that were read, all at once. Then calls, in this thread, the listeners of points that have
   /// another value than before, or their first one.
-  void set(const plan::ReadSpan& span, Span<const std::uint16_t> registers, host::Time at);
+  void set(const plan::ReadSpan& span, Span<const std::uint16_t> registers, host::Stamp stamp);
   void listen(std::uint32_t point, Listener listener);
 
   /// nullopt: none was read yet.

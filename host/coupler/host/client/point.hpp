@@ -39,8 +39,14 @@ class Input : public PointHandle {
   /// connect() to miss none. It replaces the one before; an empty one ends that.
   void on_change(std::function<void(const T&)> use) {
     if (!use) return listen({});
-    listen([use = std::move(use), point = &point()](const std::uint16_t* registers) {
-      use(TypedValue<T>::decode(registers, *point));
+    on_stamped_change([use = std::move(use)](const T& value, host::Stamp) { use(value); });
+  }
+  /// The same with the time at which the value was true: of a node that tells changes that of the change,
+  /// otherwise of the reading (docs/time.md).
+  void on_stamped_change(std::function<void(const T&, host::Stamp)> use) {
+    if (!use) return listen({});
+    listen([use = std::move(use), point = &point()](const std::uint16_t* registers, host::Stamp stamp) {
+      use(TypedValue<T>::decode(registers, *point), stamp);
     });
   }
 
@@ -66,29 +72,52 @@ class Settable : public Base {
 
   /// Sends the value to the device. A value that is not valid for the point is refused; the text then says
   /// what is.
-  PendingWrite set(const T& value) {
-    return send(
-        [&](std::uint16_t* registers) { return TypedValue<T>::encode(value, this->point(), registers); });
-  }
+  PendingWrite set(const T& value) { return send(value); }
   /// A number of another type, checked: 300 does not fit std::uint8_t, and 1.5 is not an integer.
   template <class U, std::enable_if_t<is_other_number<T, U>, int> = 0>
   PendingWrite set(U value) {
-    if (this->point().scale.present()) return set(static_cast<T>(value));
-    return send([&](std::uint16_t* registers) -> std::string {
-      using Wide = std::conditional_t<std::is_floating_point_v<U>, double,
-                                      std::conditional_t<std::is_signed_v<U>, std::int64_t, std::uint64_t>>;
-      const auto done =
-          codec::encode(codec::Value{static_cast<Wide>(value)}, this->point().format, registers);
-      return done ? std::string() : done.error();
-    });
+    return send(value);
+  }
+
+  /// The device has the value from `due` on: at most an hour ahead and not more than a millisecond past. A
+  /// node that can does it by its own timer, and gives the point its value from before again after `duration`
+  /// if that is not 0; for every other device the client does it, without a duration (docs/driver.md).
+  PendingSchedule schedule(const T& value, host::Time due, std::chrono::milliseconds duration = {}) {
+    return send_at(value, due, duration);
+  }
+  template <class U, std::enable_if_t<is_other_number<T, U>, int> = 0>
+  PendingSchedule schedule(U value, host::Time due, std::chrono::milliseconds duration = {}) {
+    return send_at(value, due, duration);
   }
 
  private:
-  template <class Encode>
-  PendingWrite send(Encode encode) {
-    std::array<std::uint16_t, modbus::max_read_bits> registers{};
-    const std::string wrong = encode(registers.data());
+  using Registers = std::array<std::uint16_t, modbus::max_read_bits>;
+
+  /// Empty, or why the point cannot have the value.
+  std::string encode(const T& value, Registers& registers) const {
+    return TypedValue<T>::encode(value, this->point(), registers.data());
+  }
+  template <class U, std::enable_if_t<is_other_number<T, U>, int> = 0>
+  std::string encode(U value, Registers& registers) const {
+    if (this->point().scale.present()) return encode(static_cast<T>(value), registers);
+    using Wide = std::conditional_t<std::is_floating_point_v<U>, double,
+                                    std::conditional_t<std::is_signed_v<U>, std::int64_t, std::uint64_t>>;
+    const auto done =
+        codec::encode(codec::Value{static_cast<Wide>(value)}, this->point().format, registers.data());
+    return done ? std::string() : done.error();
+  }
+
+  template <class U>
+  PendingWrite send(const U& value) {
+    Registers registers{};
+    const std::string wrong = encode(value, registers);
     return wrong.empty() ? this->write(registers.data()) : refused(wrong);
+  }
+  template <class U>
+  PendingSchedule send_at(const U& value, host::Time due, std::chrono::milliseconds duration) {
+    Registers registers{};
+    const std::string wrong = encode(value, registers);
+    return wrong.empty() ? this->write_at(registers.data(), due, duration) : this->refuse_at(wrong);
   }
 };
 

@@ -47,6 +47,12 @@ PendingWrite listen_to(host::Write& write) {
   return future;
 }
 
+std::future<host::ScheduleAnswer> known(host::ScheduleAnswer answer) {
+  std::promise<host::ScheduleAnswer> promise;
+  promise.set_value(std::move(answer));
+  return promise.get_future();
+}
+
 }  // namespace
 
 struct Session::Engine {
@@ -130,6 +136,13 @@ PendingWrite Session::write(host::Write& write) {
   return pending;
 }
 
+PendingSchedule Session::schedule(const host::ScheduledWrite& what) {
+  return scheduled_.expect(what, [this](const host::ScheduledWrite& expected) {
+    const std::shared_lock lock(engine_mutex_);
+    return engine_ ? engine_->thread.schedule(expected) : known({0, "not connected; call connect() first"});
+  });
+}
+
 void Session::on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits, host::Stamp stamp) {
   std::copy(bits.begin(), bits.end(), bits_.begin());
   on_registers(span, {bits_.data(), bits.size()}, stamp);
@@ -137,7 +150,7 @@ void Session::on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits,
 
 void Session::on_registers(const host::ReadSpan& span, Span<const std::uint16_t> registers,
                            host::Stamp stamp) {
-  values_.set(span, registers, stamp.at);
+  values_.set(span, registers, stamp);
 }
 
 void Session::on_online(bool online) {
@@ -150,7 +163,7 @@ void Session::on_report(Level level, const std::string& text) {
   if (options_.on_report) options_.on_report(level, text);
 }
 
-PendingWrite PointHandle::write(const std::uint16_t* registers) {
+host::Write PointHandle::make_write(const std::uint16_t* registers) const {
   host::Write write;
   write.point = index_;
   const std::size_t count = range(point()).count();
@@ -160,7 +173,21 @@ PendingWrite PointHandle::write(const std::uint16_t* registers) {
   } else {
     std::copy(registers, registers + count, write.registers.begin());
   }
+  return write;
+}
+
+PendingWrite PointHandle::write(const std::uint16_t* registers) {
+  host::Write write = make_write(registers);
   return session_.write(write);
+}
+
+PendingSchedule PointHandle::write_at(const std::uint16_t* registers, host::Time due,
+                                      std::chrono::milliseconds duration) {
+  return session_.schedule({make_write(registers), due, duration, {}});
+}
+
+PendingSchedule PointHandle::refuse_at(std::string why) {
+  return ScheduleResults().expect({}, [&](const auto&) { return known({0, std::move(why)}); });
 }
 
 }  // namespace coupler::client

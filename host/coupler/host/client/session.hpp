@@ -16,6 +16,7 @@
 #include <tl/expected.hpp>
 
 #include "coupler/host/client/last_values.hpp"
+#include "coupler/host/client/scheduling.hpp"
 #include "coupler/host/core/device_thread.hpp"
 
 namespace coupler::client {
@@ -96,18 +97,21 @@ class Session : private host::Sink {
   tl::expected<Sample, NoValue> judge(std::uint32_t point, std::optional<LastValues::Value> value) const;
   host::PointQuality quality(std::uint32_t point) const;
   PendingWrite write(host::Write& write);
+  PendingSchedule schedule(const host::ScheduledWrite& what);
 
   void on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits, host::Stamp stamp) override;
   void on_registers(const host::ReadSpan& span, Span<const std::uint16_t> registers,
                     host::Stamp stamp) override;
   void on_online(bool online) override;
   void on_report(Level level, const std::string& text) override;
+  void on_scheduled(const host::ScheduledOutcome& outcome) override { scheduled_.tell(outcome); }
 
   struct Engine;
 
   const Options options_;
   const Map map_;
   LastValues values_;
+  ScheduleResults scheduled_;
   std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of the connection's thread
   mutable std::mutex online_mutex_;
   mutable std::condition_variable came_online_;
@@ -136,8 +140,14 @@ class PointHandle {
   void listen(LastValues::Listener listener) { session_.values_.listen(index_, std::move(listener)); }
   /// `registers` as TypedValue encodes them.
   PendingWrite write(const std::uint16_t* registers);
+  PendingSchedule write_at(const std::uint16_t* registers, host::Time due,
+                           std::chrono::milliseconds duration);
+  /// The answer to what is not valid.
+  static PendingSchedule refuse_at(std::string why);
 
  private:
+  host::Write make_write(const std::uint16_t* registers) const;
+
   Session& session_;
   std::uint32_t index_;
 };

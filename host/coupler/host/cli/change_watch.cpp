@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/cli/change_watch.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace coupler::cli {
+
+using host::Result;
+
+ChangeWatch::ChangeWatch(const Map& map, host::PacedTransport& transport, host::Clock& clock,
+                         host::DeviceStatistics& statistics, Use use, Note note)
+    : wanted_(map.changes && use),
+      transport_(transport),
+      clock_(clock),
+      use_(std::move(use)),
+      note_(std::move(note)),
+      listener_(map.connection.timeout, transport, clock, statistics, *this, *this) {}
+
+Result<> ChangeWatch::start(bool is_node) {
+  listener_.stop();
+  if (!wanted_ || !is_node || !transport_.can_wait()) return {};
+  const Result<identity::Further> node = host::read_further(transport_);
+  if (!node) return tl::make_unexpected(node.error());
+  if (!node->functions.tells_changes) return {};
+  listener_.start(std::chrono::milliseconds(node->watchdog_timeout));
+  return listener_.step();
+}
+
+Result<> ChangeWatch::wait_until(host::Time time) {
+  while (is_active() && !std::exchange(missed_, false) && clock_.now() < time) {
+    if (listener_.asks_for_watchdog()) {
+      const Result<identity::Further> further = host::read_further(transport_);
+      if (!further) return tl::make_unexpected(further.error());
+      listener_.set_watchdog(std::chrono::milliseconds(further->watchdog_timeout));
+    }
+    if (auto asked = listener_.step(); !asked) return asked;
+    switch (transport_.wait_until(std::min(time, listener_.due()))) {
+      case host::Transport::Woken::by_time: break;
+      case host::Transport::Woken::by_call: return {};
+      case host::Transport::Woken::by_bytes:
+        if (!listener_.is_waiting())
+          return host::fail(
+              host::TransportFailure{"the device closed the connection, or sent an unexpected reply"});
+        if (auto heard = listener_.receive(); !heard) return heard;
+    }
+  }
+  return {};
+}
+
+void ChangeWatch::on_change(const modbus::Change& change, std::uint64_t /*number*/, host::Stamp stamp) {
+  if (change.is_bit()) use_(change, stamp);
+}
+
+void ChangeWatch::on_heard(std::uint64_t /*newest*/, std::optional<host::Stamp> /*stamp*/) {}
+
+}  // namespace coupler::cli
