@@ -87,3 +87,17 @@ class Listener(RawClient):
         self.seen = reply.newest if reply.epoch != self.epoch else self.seen + reply.lost + len(reply.changes)
         self.epoch = reply.epoch
         return reply
+
+    def requests(self):
+        """How many requests the node has counted (docs/identity.md)."""
+        return struct.unpack(">I", self.ask(struct.pack(">BHH", 4, 0xFF0F, 2))[2:])[0]
+
+
+def wait(client, other):
+    """The client waits, and the node knows: it counts the request. What two connections bring need not come in the order in
+    which it was sent."""
+    before = other.requests()
+    client.send(client.request())
+    own = 1  # each question is a request, too
+    while other.requests() - before == own:
+        own += 1
