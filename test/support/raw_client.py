@@ -13,8 +13,13 @@ def adu(pdu, transaction=1):
 
 
 class RawClient:
-    def __init__(self, address):
-        self.socket = socket.create_connection(address, PATIENCE)
+    def __init__(self, address, receive_buffer=None):
+        """`receive_buffer`: bytes. A connection that exists already would have its window shrunk, and lose what is under way."""
+        self.socket = socket.socket()
+        if receive_buffer is not None:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
+        self.socket.settimeout(PATIENCE)
+        self.socket.connect(address)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def __enter__(self):
