@@ -18,7 +18,7 @@ import time
 import peer
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent)]
-from support.raw_client import LONGEST_WAIT, Listener, read_changes, wait_for_changes  # noqa: E402
+from support.raw_client import LONGEST_WAIT, Listener, read_changes, wait, wait_for_changes  # noqa: E402
 from support.served import Served  # noqa: E402
 
 try:
@@ -36,10 +36,6 @@ READ = struct.pack(">BHH", 1, 0, OUTPUTS)
 class Client(Listener):
     def write(self, coil, level):
         assert self.ask(struct.pack(">BHH", 5, coil, 0xFF00 if level else 0))[0] == 5
-
-    def requests(self):
-        """How many requests the node has counted (docs/identity.md)."""
-        return struct.unpack(">I", self.ask(struct.pack(">BHH", 4, 0xFF0F, 2))[2:])[0]
 
     def has_answer(self):
         self.socket.setblocking(False)
@@ -70,16 +66,6 @@ def the_clock():
 def connected(port, count=1):
     with contextlib.ExitStack() as stack:
         yield [stack.enter_context(Client(("127.0.0.1", port))) for _ in range(count)]
-
-
-def wait(client, other):
-    """The client waits, and the node knows: it counts the request. What two connections bring need not come in the order in
-    which it was sent."""
-    before = other.requests()
-    client.send(client.request())
-    own = 1  # each question is a request, too
-    while other.requests() - before == own:
-        own += 1
 
 
 def an_edge_announces_itself(port, checks):

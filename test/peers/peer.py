@@ -2,6 +2,7 @@
 """What the peer tests share: starting a node, and saying what was proved."""
 import contextlib
 import re
+import signal
 import socket
 import subprocess
 import sys
@@ -10,6 +11,9 @@ import time
 
 SKIPPED = 77
 PATIENCE = 120  # seconds for whatever must come: tells hanging from working, on any machine
+
+# `nohup ./check` leaves it ignored, and a node that is started so takes no SIGHUP.
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def skip(reason):

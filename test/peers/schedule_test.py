@@ -17,13 +17,17 @@ import time
 import peer
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent)]
-from support.raw_client import Listener  # noqa: E402
+from support.raw_client import Listener, wait  # noqa: E402
 
 MOTOR, BRAKE, LAMP, EJECTOR = 0, 1, 2, 3
 OFF, ON, DONE, CANCELLED = 0, 1, 3, 4
 BY_CLIENT, OVERWRITTEN, WATCHDOG, RELOAD, CONNECTION = 1, 2, 3, 5, 6
 MS = 1_000_000
 HOUR = 3600 * 1000 * MS
+SOON = 1000 * MS
+LONG, LONGEST = 20_000, 3_600_000  # ms: durations of which the test sees the end, and of which it does not
+COIL, INPUT = 1, 2  # tables
+NO_ADDRESS, NOT_ALLOWED, LOCKED, NO_PLACE = (bytes([0xC2, code]) for code in (2, 3, 4, 6))
 
 
 class Client(Listener):
@@ -32,27 +36,41 @@ class Client(Listener):
         told = self.take(self.ask(self.request(wait))).changes
         return [(kind, table, address, at) for table, kind, address, at in told]
 
-    def outcomes(self, count):
-        """The next ones of scheduled outputs: (kind, reason, number, time)."""
+    def await_changes(self, count, is_one):
+        """At least so many of those for which it is true."""
         found = []
         end = time.monotonic() + peer.PATIENCE
         while len(found) < count and time.monotonic() < end:
-            found += [change for change in self.changes(1000) if change[0] >= DONE]
+            found += [change for change in self.changes(1000) if is_one(change)]
         return found
+
+    def outcomes(self, *numbers):
+        """Of these scheduled outputs, in the order in which they are told: (kind, reason, number, time)."""
+        return self.await_changes(len(numbers), lambda change: change[0] >= DONE and change[2] in numbers)
 
     def coil_changes(self, coil, count):
         """The next ones of a coil: (level, time)."""
-        found = []
-        end = time.monotonic() + peer.PATIENCE
-        while len(found) < count and time.monotonic() < end:
-            found += [(kind, at) for kind, table, address, at in self.changes(1000)
-                      if kind <= ON and table == 1 and address == coil]
-        return found
+        return [(kind, at) for kind, *_, at in
+                self.await_changes(count, lambda change: change[0] <= ON and change[1:3] == (COIL, coil))]
 
     def schedule(self, due, coil, bits, duration=0, epoch=None):
         packed = sum(bit << i for i, bit in enumerate(bits)).to_bytes((len(bits) + 7) // 8, "little")
         epoch = self.epoch if epoch is None else epoch
         return self.ask(struct.pack(">BBBIQIBHHB", 66, 1, 1, epoch, due, duration, 1, coil, len(bits), len(packed)) + packed)
+
+    def ahead(self, coil, bits, duration=0):
+        """Soon, but not past when the request arrives, however long the machine pauses: the due time, and the reply."""
+        lead = SOON
+        while True:
+            due = time.monotonic_ns() + lead
+            reply = self.schedule(due, coil, bits, duration)
+            if reply != NOT_ALLOWED or lead > HOUR // 2:
+                return due, reply
+            lead *= 2
+
+    def later(self, coil, bits):
+        """Not while a test runs. The reply."""
+        return self.schedule(time.monotonic_ns() + HOUR // 2, coil, bits)
 
     def schedule_register(self, due, address, value):
         return self.ask(struct.pack(">BBBIQIBHHBH", 66, 1, 1, self.epoch, due, 0, 3, address, 1, 2, value))
@@ -66,11 +84,6 @@ class Client(Listener):
     def inputs(self):
         bits = self.ask(struct.pack(">BHH", 2, 0, 3))[2]
         return [bits >> i & 1 for i in range(3)]
-
-
-def soon():
-    """Not past when the request arrives, on any machine."""
-    return time.monotonic_ns() + 2000 * MS
 
 
 def number_of(reply):
@@ -89,13 +102,19 @@ def clients(port, count=1):
 
 def they_are_driven_at_their_times_in_their_order(port, checks):
     with clients(port) as client:
-        now = time.monotonic_ns()
-        late, early = now + 2300 * MS, now + 2100 * MS
-        second = client.schedule(late, MOTOR, [0, 1])
-        first = client.schedule(early, MOTOR, [1, 0])
+        lead, replies = SOON, [NOT_ALLOWED]
+        while NOT_ALLOWED in replies and lead < HOUR // 2:
+            for reply in replies:  # one of them came too late
+                if reply != NOT_ALLOWED:
+                    client.cancel(number_of(reply))
+            now = time.monotonic_ns()
+            late, early = now + lead + 200 * MS, now + lead
+            replies = [client.schedule(late, MOTOR, [0, 1]), client.schedule(early, MOTOR, [1, 0])]
+            lead *= 2
+        second, first = replies
         arrived, replied = struct.unpack(">QQ", first[4:])
         checks.equal("the times in the reply", now <= arrived <= replied <= time.monotonic_ns(), True)
-        outcomes = client.outcomes(2)
+        outcomes = client.outcomes(number_of(first), number_of(second))
         checks.equal("in the order of their times", [outcome[:3] for outcome in outcomes],
                      [(DONE, 0, number_of(first)), (DONE, 0, number_of(second))])
         checks.equal("none is early", [at >= due for (*_, at), due in zip(outcomes, (early, late))], [True, True])
@@ -106,8 +125,7 @@ def they_are_driven_at_their_times_in_their_order(port, checks):
 def a_duration_ends_though_its_client_is_gone(port, checks):
     with clients(port) as watcher:
         with clients(port) as client:
-            due = soon()
-            client.schedule(due, MOTOR, [1], 200)
+            due, _ = client.ahead(MOTOR, [1], 200)
             on = watcher.coil_changes(MOTOR, 1)
         changes = on + watcher.coil_changes(MOTOR, 2 - len(on))
         checks.equal("on, then off", [level for level, _ in changes], [ON, OFF])
@@ -122,58 +140,54 @@ def a_pulse_ends_by_itself(port, checks):
         before = time.monotonic_ns()
         checks.equal("pymodbus writes", plain.write_coil(EJECTOR, True, 1).isError(), False)
         plain.close()
-        changes = []
-        while len(changes) < 2:
-            changes += watcher.coil_changes(EJECTOR, 1)
+        changes = watcher.coil_changes(EJECTOR, 2)
         checks.equal("on, then off", [level for level, _ in changes], [ON, OFF])
         checks.equal("not early", changes[0][1] >= before and changes[1][1] - changes[0][1] >= 200 * MS, True)
 
 
 def what_cancels(port, checks):
     with clients(port, 2) as (client, other):
-        later = time.monotonic_ns() + HOUR // 2
-        number = number_of(client.schedule(later, MOTOR, [1]))
-        checks.equal("another client cannot cancel it", other.cancel(number), bytes([0xC2, 2]))
+        number = number_of(client.later(MOTOR, [1]))
+        checks.equal("another client cannot cancel it", other.cancel(number), NO_ADDRESS)
         checks.equal("its client can", number_of(client.cancel(number)), number)
-        checks.equal("and hears so", [o[:3] for o in client.outcomes(1)], [(CANCELLED, BY_CLIENT, number)])
-        checks.equal("only once", client.cancel(number), bytes([0xC2, 2]))
+        checks.equal("and hears so", [o[:3] for o in client.outcomes(number)], [(CANCELLED, BY_CLIENT, number)])
+        checks.equal("only once", client.cancel(number), NO_ADDRESS)
 
-        number = number_of(client.schedule(later, MOTOR, [1, 1]))
+        number = number_of(client.later(MOTOR, [1, 1]))
         other.write(BRAKE, 0)
-        checks.equal("a plain write of another client", [o[:3] for o in client.outcomes(1)],
+        checks.equal("a plain write of another client", [o[:3] for o in client.outcomes(number)],
                      [(CANCELLED, OVERWRITTEN, number)])
 
-        number = number_of(client.schedule(later, MOTOR, [1]))
+        number = number_of(client.later(MOTOR, [1]))
         client.close()
-        outcomes = [o[:3] for o in other.outcomes(3)]
-        checks.equal("the end of the connection", outcomes[-1], (CANCELLED, CONNECTION, number))
+        checks.equal("the end of the connection", [o[:3] for o in other.outcomes(number)], [(CANCELLED, CONNECTION, number)])
 
 
 def what_is_refused(port, checks):
     with clients(port) as client:
-        due = soon()
-        checks.equal("the epoch of another boot", client.schedule(due, MOTOR, [1], epoch=client.epoch ^ 1),
-                     bytes([0xC2, 3]))
-        checks.equal("past", client.schedule(time.monotonic_ns() - 10 * MS, MOTOR, [1]), bytes([0xC2, 3]))
-        checks.equal("too far", client.schedule(time.monotonic_ns() + 2 * HOUR, MOTOR, [1]), bytes([0xC2, 3]))
-        checks.equal("no such coil", client.schedule(due, EJECTOR, [1, 1]), bytes([0xC2, 2]))
-        checks.equal("above its largest", client.schedule_register(soon(), 0, 1001), bytes([0xC2, 3]))
+        due = time.monotonic_ns() + HOUR // 2
+        checks.equal("the epoch of another boot", client.schedule(due, MOTOR, [1], epoch=client.epoch ^ 1), NOT_ALLOWED)
+        checks.equal("past", client.schedule(time.monotonic_ns() - 10 * MS, MOTOR, [1]), NOT_ALLOWED)
+        checks.equal("too far", client.schedule(time.monotonic_ns() + 2 * HOUR, MOTOR, [1]), NOT_ALLOWED)
+        checks.equal("no such coil", client.schedule(due, EJECTOR, [1, 1]), NO_ADDRESS)
+        checks.equal("above its largest", client.schedule_register(due, 0, 1001), NOT_ALLOWED)
         checks.equal("nothing happened", client.inputs(), [0, 0, 0])
 
 
 def sixty_four_places_for_all_clients(port, checks):
     with clients(port) as watcher:
-        later = time.monotonic_ns() + HOUR // 2
         with clients(port, 4) as every:
-            numbers = [number_of(every[i % 4].schedule(later, MOTOR, [1])) for i in range(64)]
+            numbers = [number_of(every[i % 4].later(MOTOR, [1])) for i in range(64)]
             checks.equal("64 numbers", len(set(numbers)), 64)
             checks.equal("0 is none", 0 in numbers or None in numbers, False)
             for client in (*every, watcher):
-                checks.equal("no place", client.schedule(later, BRAKE, [1]), bytes([0xC2, 6]))
-        outcomes = watcher.outcomes(64)
+                checks.equal("no place", client.later(BRAKE, [1]), NO_PLACE)
+        outcomes = watcher.outcomes(*numbers)
         checks.equal("their connections have ended", sorted(o[2] for o in outcomes if o[:2] == (CANCELLED, CONNECTION)),
                      sorted(numbers))
-        checks.equal("there is room again", number_of(watcher.schedule(later, BRAKE, [1])) is not None, True)
+        again = watcher.later(BRAKE, [1])
+        checks.equal("there is room again", again[0], 66)
+        watcher.cancel(number_of(again))
 
 
 def children_of(process):
@@ -195,29 +209,30 @@ def the_worker():
 
 
 def a_reload_cancels_and_durations_go_on(port, checks):
-    with clients(port) as client:
+    with clients(port, 2) as (client, other):
         before = client.epoch
-        due = soon()
-        client.schedule(due, LAMP, [1], 5000)
-        checks.equal("it has begun", client.coil_changes(LAMP, 1)[0][0], ON)
-        number = number_of(client.schedule(time.monotonic_ns() + HOUR // 2, MOTOR, [1]))
-        client.send(client.request())  # who asks only afterwards asks the next process, which does not know
+        due, begun = client.ahead(LAMP, [1], LONG)
+        it_burns = {(ON, COIL, LAMP), (ON, INPUT, LAMP), (DONE, 0, number_of(begun))}
+        # All three, or else the last ones end the wait.
+        told = client.await_changes(3, lambda change: change[:3] in it_burns)
+        checks.equal("it has begun", {change[:3] for change in told}, it_burns)
+        number = number_of(client.later(MOTOR, [1]))
+        wait(client, other)  # who asks only afterwards asks the next process, which does not know
         os.kill(the_node(), signal.SIGHUP)
         checks.equal("told before the reload", [change[:3] for change in client.take(client.receive()).changes],
                      [(RELOAD, CANCELLED, number)])
         peer.await_true("a new epoch", lambda: client.changes() is not None and client.epoch != before, checks)
-        checks.equal("the epoch before", client.schedule(soon(), MOTOR, [1], epoch=before),
-                     bytes([0xC2, 3]))
+        checks.equal("the epoch before", client.schedule(time.monotonic_ns() + HOUR // 2, MOTOR, [1], epoch=before),
+                     NOT_ALLOWED)
         peer.await_true("it ends", lambda: client.inputs() == [0, 0, 0], checks)
-        checks.equal("not early", time.monotonic_ns() >= due + 5000 * MS, True)
+        checks.equal("not early", time.monotonic_ns() >= due + LONG * MS, True)
 
 
 def a_killed_worker_process_leaves_nothing_on(port, checks):
     with clients(port) as client:
-        client.schedule(soon(), MOTOR, [1, 0, 1], 3_600_000)
-        checks.equal("it has begun", [o[0] for o in client.outcomes(1)], [DONE])
-        due = soon()
-        client.schedule(due, BRAKE, [1])
+        _, begun = client.ahead(MOTOR, [1, 0, 1], LONGEST)
+        checks.equal("it has begun", [o[0] for o in client.outcomes(number_of(begun))], [DONE])
+        due, _ = client.ahead(BRAKE, [1])
         killed = the_worker()
         os.kill(killed, signal.SIGKILL)
     peer.await_true("another one serves", lambda: the_worker() not in (None, killed), checks)
@@ -226,15 +241,15 @@ def a_killed_worker_process_leaves_nothing_on(port, checks):
         while time.monotonic_ns() < due:
             time.sleep(0.05)
         checks.equal("what the killed one had to do is not done", client.inputs(), [0, 0, 0])
-        taken = client.schedule(soon(), MOTOR, [1], 1)
-        checks.equal("and the new one takes orders", number_of(taken) is not None, True)
+        taken = client.later(MOTOR, [1])
+        checks.equal("and the new one takes orders", taken[0], 66)
+        client.cancel(number_of(taken))
 
 
 def another_map_ends_what_it_has_elsewhere(port, checks, served):
     with clients(port) as client:
-        client.schedule(soon(), MOTOR, [1], 3_600_000)
-        client.schedule(soon(), LAMP, [1], 3_600_000)
-        client.outcomes(2)
+        begun = [client.ahead(coil, [1], LONGEST)[1] for coil in (MOTOR, LAMP)]
+        client.outcomes(*map(number_of, begun))
         checks.equal("both are on", client.inputs(), [1, 0, 1])
     before = the_worker()
     moved = served.read_text(encoding="utf-8").replace("lamp:  {address: 2", "lamp:  {address: 7")
@@ -247,12 +262,17 @@ def another_map_ends_what_it_has_elsewhere(port, checks, served):
 
 def the_watchdog_cancels(port, checks):
     with clients(port, 2) as (client, monitor):
-        begun = client.schedule(soon(), LAMP, [1], 5000)
-        number = number_of(client.schedule(time.monotonic_ns() + HOUR // 2, MOTOR, [1]))
-        checks.equal("the monitor hears it", [o[:3] for o in monitor.outcomes(2)],
-                     [(DONE, 0, number_of(begun)), (CANCELLED, WATCHDOG, number)])
+        begun = number_of(client.ahead(LAMP, [1], LONG)[1])
+        told = []
+        end = time.monotonic() + peer.PATIENCE
+        while not told and time.monotonic() < end:
+            client.inputs()  # feeds the watchdog
+            told += [change for change in monitor.changes() if change[0] >= DONE]
+        checks.equal("the monitor hears it", [o[:3] for o in told], [(DONE, 0, begun)])
+        number = number_of(client.later(MOTOR, [1]))
+        checks.equal("then its client is silent", [o[:3] for o in monitor.outcomes(number)], [(CANCELLED, WATCHDOG, number)])
         checks.equal("the lamp holds", monitor.inputs(), [0, 1, 1])
-        checks.equal("locked", client.schedule(soon(), MOTOR, [1]), bytes([0xC2, 4]))
+        checks.equal("locked", client.later(MOTOR, [1]), LOCKED)
         peer.await_true("the duration ends all the same", lambda: monitor.inputs() == [0, 1, 0], checks)
 
 
@@ -275,7 +295,7 @@ def main():
         without_watchdog(node, own, checks)
         # Longer, so that the lamp's duration begins before and ends after it, on any machine.
         patient = pathlib.Path(folder) / "watchdog.yaml"
-        patient.write_text(pathlib.Path(guarded).read_text(encoding="utf-8").replace("timeout: 500ms", "timeout: 5s"),
+        patient.write_text(pathlib.Path(guarded).read_text(encoding="utf-8").replace("timeout: 500ms", "timeout: 10s"),
                            encoding="utf-8")
         with peer.running_node([node, str(patient), "--sim"]) as port:
             the_watchdog_cancels(port, checks)

@@ -9,7 +9,7 @@ from std_msgs.msg import Bool
 from support import process, testing
 from support.device import ILLEGAL_FUNCTION, NO_RESPONSE
 from support.gateway import Gateway
-from support.patience import QUIET
+from support.patience import PATIENCE, QUIET
 from support.ports import free_port
 
 # At this rate it is polled again after the test is over.
@@ -46,13 +46,16 @@ class Changes(testing.RosTest):
         self.lamp = self.topic("/cell/lamp", Bool)
         self.lamp.becomes(False)
 
+    def another_client(self):
+        return ModbusTcpClient("127.0.0.1", port=self.port, timeout=PATIENCE)
+
     def set_lamp(self, level):
         """By another client."""
-        with ModbusTcpClient("127.0.0.1", port=self.port) as client:
+        with self.another_client() as client:
             self.assertFalse(client.write_coil(4, level).isError())
 
     def requests(self):
-        with ModbusTcpClient("127.0.0.1", port=self.port) as client:
+        with self.another_client() as client:
             high, low = client.read_input_registers(REQUESTS, 2).registers
         return high << 16 | low
 
@@ -82,7 +85,7 @@ class Changes(testing.RosTest):
     def test_a_burst_of_changes_comes_whole(self):
         self.begin()
         levels = [number % 2 == 0 for number in range(1 + IN_ONE_REPLY)]  # the first ends the wait, and comes alone
-        with self.process.frozen(), ModbusTcpClient("127.0.0.1", port=self.port) as client:
+        with self.process.frozen(), self.another_client() as client:
             for level in levels:
                 self.assertFalse(client.write_coil(4, level).isError())
         self.lamp.wait_for(lambda _: self.lamp.values[-len(levels):] == levels)
@@ -125,7 +128,7 @@ class Changes(testing.RosTest):
 
     def test_an_idle_node_is_hardly_asked(self):
         self.begin(rate=100)
-        before, begun = self.requests(), time.monotonic()
+        begun, before = time.monotonic(), self.requests()
         time.sleep(QUIET)
         asked, passed = self.requests() - before, time.monotonic() - begun
         self.assertLess(asked, 5 + 2 * passed)  # a hundred a second, if it was polled
@@ -150,6 +153,7 @@ class Changes(testing.RosTest):
         self.node.reload()
         self.set_lamp(True)
         self.lamp.becomes(True)
+        self.node.wait_for("read the map again")  # or else both are written before it
         self.set_lamp(False)
         self.lamp.becomes(False)
 
@@ -157,8 +161,9 @@ class Changes(testing.RosTest):
         self.begin(timeout=1)
         online = self.topic("/cell/online", Bool)
         online.becomes(True)
+        online.values.clear()
         self.node.hang()
-        online.becomes(False)
+        online.wait_for(lambda is_online: not is_online)  # perhaps not for long
         online.becomes(True)
         self.set_lamp(True)
         self.lamp.becomes(True)

@@ -106,8 +106,9 @@ class ScheduleTest(testing.RosTest):
         outcome = self.outcome(number)
         self.assertEqual((outcome.result, outcome.reason), (Scheduled.CANCELLED, reason))
 
-    def refused(self, text, *arguments, **options):
-        answer = self.schedule(*arguments, **options)
+    def refused(self, text, point, value, in_seconds=NEVER, how_long=0):
+        """For what the text says, and not since the call came after the time."""
+        answer = self.schedule(point, value, in_seconds, how_long)
         self.assertEqual((answer.success, answer.number), (False, 0))
         self.assertIn(text, answer.message)
 

@@ -13,8 +13,13 @@ def adu(pdu, transaction=1):
 
 
 class RawClient:
-    def __init__(self, address):
-        self.socket = socket.create_connection(address, PATIENCE)
+    def __init__(self, address, receive_buffer=None):
+        """`receive_buffer`: bytes. A connection that exists already would have its window shrunk, and lose what is under way."""
+        self.socket = socket.socket()
+        if receive_buffer is not None:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
+        self.socket.settimeout(PATIENCE)
+        self.socket.connect(address)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def __enter__(self):
@@ -87,3 +92,17 @@ class Listener(RawClient):
         self.seen = reply.newest if reply.epoch != self.epoch else self.seen + reply.lost + len(reply.changes)
         self.epoch = reply.epoch
         return reply
+
+    def requests(self):
+        """How many requests the node has counted (docs/identity.md)."""
+        return struct.unpack(">I", self.ask(struct.pack(">BHH", 4, 0xFF0F, 2))[2:])[0]
+
+
+def wait(client, other):
+    """The client waits, and the node knows: it counts the request. What two connections bring need not come in the order in
+    which it was sent."""
+    before = other.requests()
+    client.send(client.request())
+    own = 1  # each question is a request, too
+    while other.requests() - before == own:
+        own += 1

@@ -197,9 +197,7 @@ TEST_F(WaitForChangesTest, An_answer_that_does_not_end_is_a_timeout_long_before_
 }
 
 TEST_F(WaitForChangesTest, Silence_is_a_timeout) {
-  connection.timeout = milliseconds(1);
-  transport.emplace(connection);
-  ASSERT_TRUE(transport->connect());
+  ASSERT_TRUE(transport->select(connection.unit, milliseconds(1)));
   ASSERT_TRUE(wait(1));
   const auto heard = transport->receive_wait();
   ASSERT_FALSE(heard);
