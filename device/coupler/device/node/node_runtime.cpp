@@ -204,16 +204,14 @@ bool NodeRuntime::drive_safe() {
   // A process that was forked for this has ordinary priority, and only a second. The supervisor has this
   // priority already.
   if (options_.realtime) (void)take_priority(RealtimePriority::supervisor);
+  Ending ending(*context_);
+  // If this process is killed while they are driven, the next worker process brings none of them back.
+  ending.schedule.outputs_went_safe(false, ending.now);
   const bool safe = Hardware(context_->wiring->lines(), context_->analogue.get()).drive_safe();
   context_->state->watchdog().disarm();
+  ending.schedule.outputs_went_safe(safe, ending.now);
   // The next worker process may be long in coming.
-  return end_durations(safe) && safe;
-}
-
-bool NodeRuntime::end_durations(bool outputs_are_safe) {
-  Ending ending(*context_);
-  ending.schedule.outputs_went_safe(outputs_are_safe);
-  return ending.end.of_all(ending.now);
+  return ending.end.of_all(ending.now) && safe;
 }
 
 /// The new map has its points elsewhere, or has them no longer.
