@@ -38,8 +38,19 @@ OutputSchedule::OutputSchedule(Span<ScheduledOutput> places, ScheduleSink* sink,
   find_earliest();
 }
 
+/// Durations cannot be cancelled, and their clients may be gone.
+bool OutputSchedule::has_room_for(std::chrono::milliseconds duration) const {
+  if (duration <= longest_short) return true;
+  const Span<const ScheduledOutput> clients = places_.first(places_.size() - pulses_.size());
+  const auto taken = std::count_if(clients.begin(), clients.end(), [](const ScheduledOutput& one) {
+    return one.state != State::free && one.duration > longest_short;
+  });
+  return static_cast<std::size_t>(taken) < (clients.size() + 1) / 2;
+}
+
 ScheduledOutput* OutputSchedule::add(const modbus::ScheduleOutput& wanted, Table table, TimePoint due,
                                      const ClientSession& owner) {
+  if (!has_room_for(wanted.duration)) return nullptr;
   const auto place = std::find_if(places_.begin(), pulses_.begin(),
                                   [](const ScheduledOutput& one) { return one.state == State::free; });
   if (place == pulses_.begin()) return nullptr;

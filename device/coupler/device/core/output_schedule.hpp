@@ -62,7 +62,11 @@ class OutputSchedule {
   /// False: there are no places for what clients schedule.
   bool is_present() const { return places_.size() > pulses_.size(); }
 
-  /// Null: every place of clients is taken.
+  /// Durations that are longer get half of the places at most: a client that takes them and leaves does not
+  /// shut out the others for an hour.
+  static constexpr std::chrono::minutes longest_short{1};
+
+  /// Null: every place of clients is taken, or every one for such a duration.
   ScheduledOutput* add(const modbus::ScheduleOutput& wanted, Table table, TimePoint due,
                        const ClientSession& owner);
 
@@ -122,6 +126,7 @@ class OutputSchedule {
   ScheduledOutput* first_begun(std::uint64_t order);
   bool are_overdue_after(const ScheduledOutput& which, std::uint32_t address);
   ScheduledOutput* pulse_of(std::uint16_t coil);
+  bool has_room_for(std::chrono::milliseconds duration) const;
   std::uint16_t unused_number();
   void find_earliest();
 
