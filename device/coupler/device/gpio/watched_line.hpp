@@ -101,6 +101,8 @@ class WatchedLine {
   /// The line had this level at `now`, when the reported edges had been taken. If that is news, an edge was
   /// not reported, or nobody reports edges of this line.
   void look(bool level, TimePoint now, ChangeQueue& changes) {
+    error_ = 0;
+    doubted_.reset();
     if (level == latest()) return;
     edge(level, now, changes);
     looked_ = now;
@@ -109,10 +111,19 @@ class WatchedLine {
   /// The same of a line whose edges the kernel reports: the edge to this level may be on its way, so the line
   /// is to be checked again when its doubt is due.
   void check(bool level, TimePoint now, ChangeQueue& changes) {
+    error_ = 0;
     if (level == latest()) return doubted_.reset();
     if (!doubted_) doubted_ = now;
     if (now - *doubted_ >= patience) look(level, now, changes);
   }
+  /// Looking at it failed, with this errno: it is to be checked again, but not at once. Returns whether that
+  /// is news.
+  bool fail(int error, TimePoint now) {
+    doubted_ = now;
+    return std::exchange(error_, error) == 0;
+  }
+  /// Of the last look; 0: it was good.
+  int error() const { return error_; }
   /// When it is to be checked again; nullopt: there is no doubt.
   std::optional<TimePoint> doubt_due() const {
     return doubted_ ? std::optional(*doubted_ + patience) : std::nullopt;
@@ -150,7 +161,8 @@ class WatchedLine {
   bool level_;
   TimePoint last_ = TimePoint::min();    ///< of the last edge
   TimePoint looked_ = TimePoint::min();  ///< when looking found what no edge had told
-  std::optional<TimePoint> doubted_;     ///< since then it has a level that no edge has told
+  std::optional<TimePoint> doubted_;  ///< since then it has a level that no edge has told, or an unknown one
+  int error_ = 0;
 };
 
 }  // namespace coupler::device
