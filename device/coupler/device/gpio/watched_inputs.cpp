@@ -47,8 +47,13 @@ void WatchedInputs::tell(TimePoint now, LineSink& sink) {
   settle(now);
   for (std::size_t i = 0; i < size(); ++i)
     if (const Edges edges = lines_[i].take_edges(); edges.any()) sink.edges(i, edges);
-  while (const auto change = changes_.take())
-    sink.changed(change->line, change->level.level, change->level.at);
+  while (const auto change = changes_.take()) {
+    const bool level = change->level.level;
+    if (lines_[change->line].tell(level))
+      sink.changed(change->line, level, change->level.at);
+    else
+      changes_.lose(1);  // behind an odd number of lost ones: nobody can tell it from no change
+  }
   if (const std::uint32_t lost = changes_.take_lost(); lost != 0) sink.lost(lost);
 }
 

@@ -70,7 +70,8 @@ class WatchedLine {
       : line_(line),
         is_counted_(counted.has_value()),
         tally_(counted.value_or(Edge::both), level),
-        level_(level) {
+        level_(level),
+        told_(level) {
     if (debounce.count() > 0) debounce_.emplace(debounce, level);
   }
 
@@ -141,6 +142,10 @@ class WatchedLine {
   /// The line's own level, as it bounces.
   bool latest() const { return debounce_ ? debounce_->latest() : level_; }
 
+  /// Whether a change to this level, which is told now, brings another one than was told before. If not,
+  /// others between them were lost.
+  bool tell(bool level) { return std::exchange(told_, level) != level; }
+
   /// Edges that counters and latched points want, since the last call.
   Edges take_edges() {
     const Edges edges = tally_.take();
@@ -159,6 +164,7 @@ class WatchedLine {
   EdgeTally tally_;
   std::optional<Debounce> debounce_;
   bool level_;
+  bool told_;
   TimePoint last_ = TimePoint::min();    ///< of the last edge
   TimePoint looked_ = TimePoint::min();  ///< when looking found what no edge had told
   std::optional<TimePoint> doubted_;  ///< since then it has a level that no edge has told, or an unknown one
