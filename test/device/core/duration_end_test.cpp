@@ -67,6 +67,19 @@ TEST_F(ScheduledOutputs, A_duration_that_begins_while_another_is_overdue_ends_wi
   EXPECT_EQ(node_.handler.next_scheduled(), TimePoint::max());
 }
 
+TEST_F(ScheduledOutputs, A_write_stays_while_two_durations_that_overlap_cannot_end) {
+  accept(coils(in(milliseconds(5)), 0, {1, 0, 1}, milliseconds(50)));
+  accept(coils(in(milliseconds(6)), 2, {0, 1}, milliseconds(60)));
+  pass(milliseconds(6));
+  node_.lines.broken = true;
+  pass(milliseconds(60));
+  node_.lines.broken = false;
+  node_.lines.stuck = 0;
+  node_.ask(pdu(5, {2, 0xFF00}));
+  pass(retry);
+  EXPECT_THAT(levels(), ElementsAre(1, 0, 1, 0, 0, 0));
+}
+
 TEST_F(ScheduledOutputs, A_write_to_what_went_to_its_safe_state_late_stays_while_another_output_is_stuck) {
   accept(coils(in(milliseconds(5)), 0, {1, 0, 1}, 2 * timeout));
   pass(milliseconds(5));
@@ -109,6 +122,42 @@ TEST_F(ScheduledOutputs, What_the_watchdog_could_not_make_safe_is_safe_at_the_en
     pass(timeout / 2);
   }
   EXPECT_THAT(levels(), ElementsAre(0, 1, 0, 1, 0, 0)) << "not the level from before, which was on";
+}
+
+TEST_F(ScheduledOutputs, An_end_that_is_tried_again_brings_nothing_out_of_its_safe_state) {
+  for (const int coil : {0, 2}) node_.ask(pdu(5, {coil, 0xFF00}));
+  accept(coils(in(milliseconds(5)), 0, {0, 1, 0}, milliseconds(50)));
+  pass(milliseconds(5));
+  node_.lines.stuck = 0;
+  pass(milliseconds(50));
+  EXPECT_THAT(levels(), ElementsAre(0, 0, 1, 0, 0, 0));
+  pass(timeout);
+  EXPECT_THAT(levels(), ElementsAre(0, 1, 0, 0, 0, 0)) << "the watchdog expired";
+  node_.ask(pdu(5, {2, 0xFF00}));
+  pass(retry);
+  EXPECT_THAT(levels(), ElementsAre(0, 1, 1, 0, 0, 0)) << "nor does it undo a later write";
+  node_.ask(pdu(5, {2, 0}));
+  node_.lines.stuck.reset();
+  pass(retry);
+  EXPECT_THAT(levels(), ElementsAre(0, 1, 0, 0, 0, 0));
+  EXPECT_EQ(node_.handler.next_scheduled(), TimePoint::max());
+}
+
+TEST_F(ScheduledOutputs, A_process_that_dies_on_the_way_to_the_safe_state_leaves_it_to_the_next_one) {
+  node_.ask(pdu(5, {2, 0xFF00}));
+  accept(coils(in(milliseconds(5)), 0, {1, 0, 0}, 4 * timeout));
+  pass(milliseconds(5));
+  std::vector<ScheduledOutput> left;  // what is in the shared memory when it dies
+  node_.lines.on_safe = [&] { left = node_.scheduled; };
+  pass(timeout);
+  NodeUnderTest next(node_.owner);
+  next.lines.outputs = node_.lines.outputs;
+  next.scheduled = left;
+  OutputSchedule schedule(next.scheduled);
+  Hardware hardware(next.lines);
+  std::vector<std::uint16_t> space(modbus::max_scheduled_bits);
+  EXPECT_TRUE(DurationEnd(next.map, next.image, hardware, schedule, space).of_all(in(4 * timeout)));
+  EXPECT_EQ(next.lines.outputs[2].level, 0) << "not on, as it was before";
 }
 
 TEST_F(ScheduledOutputs,

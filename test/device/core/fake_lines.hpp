@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -43,6 +44,7 @@ class FakeLines : public Lines {
   }
   bool drive_safe() override {
     ++safe_calls;
+    if (on_safe) on_safe();
     if (broken) return false;
     for (auto& [address, output] : outputs)
       if (address != stuck) output.level = output.safe;
@@ -79,6 +81,7 @@ class FakeLines : public Lines {
   bool unplugged = false;              ///< and known to be
   bool remembers = true;
   int safe_calls = 0;
+  std::function<void()> on_safe;            ///< is called when they are about to be driven to it
   std::map<std::uint16_t, Output> outputs;  ///< the coils that have a line
 
  private:

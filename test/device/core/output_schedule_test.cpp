@@ -32,8 +32,9 @@ class Scheduling : public testing::Test {
     return add(client_, due, range, table);
   }
   ScheduledOutput* add(const ClientSession& owner, int due, Range range = Range::of(0, 1),
-                       Table table = Table::coils) {
+                       Table table = Table::coils, milliseconds duration = {}) {
     modbus::ScheduleOutput wanted;
+    wanted.duration = duration;
     wanted.range = range;
     wanted.values = values_;
     return schedule_.add(wanted, table, at(due), owner);
@@ -87,6 +88,20 @@ TEST_F(Scheduling, One_more_than_there_are_places_finds_none_until_one_is_free) 
   EXPECT_EQ(add(9), nullptr);
   schedule_.remove(*schedule_.due(at(0)));
   EXPECT_NE(add(9), nullptr);
+}
+
+TEST_F(Scheduling, Durations_of_more_than_a_minute_take_half_of_the_places_at_most) {
+  const auto add_one = [&](milliseconds duration) {
+    return add(client_, 5, Range::of(0, 1), Table::coils, duration);
+  };
+  const auto longer = std::chrono::minutes(1) + milliseconds(1);
+  ScheduledOutput* begun = add_one(longer);
+  schedule_.begin(*begun, at(9), std::vector<std::uint16_t>{0});
+  EXPECT_NE(add_one(longer), nullptr);
+  EXPECT_EQ(add_one(longer), nullptr);
+  EXPECT_NE(add_one(std::chrono::minutes(1)), nullptr);
+  schedule_.remove(*begun);
+  EXPECT_NE(add_one(longer), nullptr);
 }
 
 TEST_F(Scheduling, A_number_is_never_0_and_never_one_in_use) {

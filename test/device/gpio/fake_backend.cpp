@@ -2,6 +2,7 @@
 #include "test/device/gpio/fake_backend.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <memory>
 
 #include "coupler/device/gpio/backend.hpp"
@@ -40,6 +41,7 @@ class FakeOutputs : public OutputGroup {
   const std::string& name() const override { return lines_.name(); }
   bool is_plugged() override { return lines_.is_plugged(); }
   int drive(Span<const int> levels) override {
+    if (!lines_.is_plugged()) return ENODEV;
     for (std::size_t i = 0; i < levels.size(); ++i)
       if (machine.levels[lines_.offset(i)] != levels[i]) put("drive", lines_.offset(i), levels[i]);
     return 0;

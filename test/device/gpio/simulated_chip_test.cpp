@@ -189,6 +189,22 @@ TEST(SimulatedChip, Of_very_many_changes_the_newest_are_told_and_none_is_unaccou
   EXPECT_EQ(total.changes.size() + total.lost_changes, 2000U);
 }
 
+TEST(SimulatedChip, The_first_change_behind_lost_ones_brings_another_level_than_was_told_last) {
+  const auto map = MapBuilder()
+                       .add(coils, "out", 0, Type::BOOL)
+                       .add(inputs, "in", 0, Type::BOOL)
+                       .wire("out", "in")
+                       .build();
+  SimulatedChip chip(map->map(), {});
+  constexpr std::uint32_t made = SimulatedChip::most_changes + 1;
+  for (std::uint32_t i = 0; i < made; ++i) EXPECT_TRUE(chip.drive(Range::of(0, 1), Levels{i % 2 == 0}));
+  Total total;
+  chip.take_edges({}, total);
+  EXPECT_EQ(total.changes.front(), Change(0, true, {}));
+  EXPECT_EQ(total.changes.back(), Change(0, true, {}));
+  EXPECT_EQ(total.changes.size() + total.lost_changes, made);
+}
+
 TEST(SimulatedChip, Changes_that_a_write_makes_wait_to_be_told) {
   const auto map = MapBuilder()
                        .add(coils, "out", 0, Type::BOOL)

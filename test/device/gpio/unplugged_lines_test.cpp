@@ -42,6 +42,17 @@ TEST_F(Wires, A_chip_that_comes_back_has_its_outputs_driven_as_before_wherever_i
   EXPECT_THAT(log_.lines, Contains(HasSubstr("gpiochip3 line 0, gpiochip3 line 1 works again")));
 }
 
+TEST_F(Wires, An_output_is_known_to_be_unplugged_from_the_first_call_that_says_so) {
+  EXPECT_EQ(change_to(two_lamps()), "");
+  const auto are_plugged = [&] { return wiring_->lines().are_plugged(modbus::Range::of(0, 2)); };
+  unplug();
+  EXPECT_TRUE(are_plugged()) << "the kernel is not asked, which takes memory";
+  EXPECT_FALSE(write(0, 1));
+  EXPECT_FALSE(are_plugged());
+  EXPECT_TRUE(wiring_->reconnect(false));
+  EXPECT_FALSE(are_plugged());
+}
+
 TEST_F(Wires, After_the_watchdog_it_comes_back_safe) {
   EXPECT_EQ(change_to(two_lamps()), "");
   EXPECT_TRUE(write(0, 1));

@@ -6,17 +6,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <memory>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "coupler/map/point.hpp"
+#include "test/device/gpio/line_news.hpp"
 
 namespace coupler::device {
 namespace {
@@ -24,18 +23,6 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::IsEmpty;
-using Told = std::tuple<std::size_t, bool, TimePoint>;
-
-TimePoint at(int ms) { return TimePoint(1h) + std::chrono::milliseconds(ms); }
-
-struct Sink : LineSink {
-  void edges(std::size_t line, const Edges& edges) override { counted.emplace_back(line, edges.rising); }
-  void changed(std::size_t line, bool level, TimePoint when) override { all.emplace_back(line, level, when); }
-  void lost(std::uint32_t count) override { lost_changes += count; }
-  std::vector<Told> all;
-  std::vector<std::pair<std::size_t, std::uint32_t>> counted;
-  std::uint32_t lost_changes = 0;
-};
 
 /// Two lines; the second one is debounced, with 10 ms. The first one counts.
 class Events : public testing::Test {
@@ -45,6 +32,9 @@ class Events : public testing::Test {
     explicit Group(const std::vector<LineSpec>& lines) : WatchedInputs(lines, std::array{0, 0}) {}
     using WatchedInputs::check;
     using WatchedInputs::edge;
+    using WatchedInputs::error;
+    using WatchedInputs::fail;
+    using WatchedInputs::fail_all;
     using WatchedInputs::look;
     using WatchedInputs::lose;
     const std::string& name() const override { return name_; }
@@ -70,7 +60,7 @@ class Events : public testing::Test {
   Point plain_{};
   Point debounced_ = debounced();
   Group group_{{{&plain_, {}, Edge::rising}, {&debounced_, {}, std::nullopt}}};
-  Sink sink_;
+  LineNews sink_;
 };
 
 TEST_F(Events, Each_edge_is_a_change_at_its_own_time_and_told_once) {
@@ -104,8 +94,21 @@ TEST_F(Events, A_level_that_was_read_has_been_told_or_will_be) {
 TEST_F(Events, Equal_edges_in_a_row_hide_a_change_that_is_lost) {
   group_.edge(0, true, at(1));
   group_.edge(0, true, at(2));
-  EXPECT_THAT(told(5), ElementsAre(Told(0, true, at(1)), Told(0, true, at(2))));
-  EXPECT_EQ(sink_.lost_changes, 1U);
+  EXPECT_THAT(told(5), ElementsAre(Told(0, true, at(1))));
+  EXPECT_EQ(sink_.lost_changes, 2U) << "and so is the change back, which nobody can tell from none";
+  EXPECT_THAT(sink_.counted, ElementsAre(std::pair(0, 2)));
+}
+
+TEST_F(Events, What_is_told_and_what_is_lost_is_what_was_made) {
+  group_.edge(0, true, at(1));
+  group_.lose(0, 1);
+  group_.edge(0, true, at(3));
+  EXPECT_THAT(told(3), ElementsAre(Told(0, true, at(1))));
+  EXPECT_EQ(sink_.lost_changes, 2U) << "off and on";
+  group_.lose(0, 2);
+  group_.edge(0, false, at(6));
+  EXPECT_THAT(told(6), ElementsAre(Told(0, false, at(6))));
+  EXPECT_EQ(sink_.lost_changes, 4U);
 }
 
 TEST_F(Events, What_the_kernel_dropped_is_lost) {
@@ -153,6 +156,28 @@ TEST_F(Events, A_level_that_no_edge_has_told_for_20_ms_is_a_change) {
   EXPECT_EQ(group_.next_change(at(21)), std::nullopt);
 }
 
+TEST_F(Events, A_line_that_cannot_be_looked_at_is_tried_again_but_not_at_once) {
+  group_.check(0, true, at(1));
+  group_.fail(0, EIO, at(21));
+  EXPECT_EQ(group_.next_change(at(22)), at(22)) << "one is lost, for once";
+  EXPECT_THAT(told(22), IsEmpty());
+  EXPECT_EQ(group_.next_change(at(22)), at(41));
+  group_.fail(0, EIO, at(41));
+  EXPECT_EQ(group_.next_change(at(41)), at(61));
+  EXPECT_EQ(group_.error(), EIO);
+  group_.check(0, true, at(61));
+  EXPECT_THAT(told(61), ElementsAre(Told(0, true, at(61))));
+  EXPECT_EQ(group_.next_change(at(61)), std::nullopt);
+  EXPECT_EQ(group_.error(), 0);
+  EXPECT_EQ(sink_.lost_changes, 1U);
+}
+
+TEST_F(Events, Lines_that_fail_together_are_one_loss) {
+  group_.fail_all(EIO, at(1));
+  told(1);
+  EXPECT_EQ(sink_.lost_changes, 1U);
+}
+
 TEST_F(Events, A_level_that_went_back_is_forgotten) {
   group_.check(0, true, at(1));
   group_.check(0, false, at(5));
@@ -176,6 +201,14 @@ TEST_F(Events, The_newest_ones_are_kept_if_nobody_asks_for_them) {
   EXPECT_THAT(sink_.counted, ElementsAre(std::pair(0, made / 2))) << "all are counted";
 }
 
+TEST_F(Events, Of_those_that_are_kept_the_first_one_brings_another_level_than_was_told_last) {
+  constexpr int made = 5001;
+  for (int i = 1; i <= made; ++i) group_.edge(0, i % 2 == 1, at(i));
+  const auto all = told(made);
+  EXPECT_TRUE(std::get<bool>(all.front()));
+  EXPECT_EQ(all.size() + sink_.lost_changes, std::size_t{made});
+}
+
 TEST_F(Events, What_a_process_that_died_had_taken_the_next_one_tells_once) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
@@ -187,83 +220,6 @@ TEST_F(Events, What_a_process_that_died_had_taken_the_next_one_tells_once) {
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_EQ(group_.level(0), true);
   EXPECT_THAT(told(5), ElementsAre(Told(0, true, at(1))));
-}
-
-/// Three lines that report no edges; the third one is debounced, with 10 ms.
-class Samples : public testing::Test {
- protected:
-  class Wires : public InputGroup {
-   public:
-    explicit Wires(Samples& test) : test_(test) {}
-    const std::string& name() const override { return name_; }
-    int read(Span<int> levels, TimePoint) override {
-      ++test_.reads_;
-      std::copy(test_.levels_.begin(), test_.levels_.end(), levels.begin());
-      return test_.error_;
-    }
-
-   private:
-    std::string name_ = "chip0";
-    Samples& test_;
-  };
-
-  std::vector<LineSpec> specs() {
-    debounced_.line.debounce = 10ms;
-    return {{&plain_, {}, {}}, {&plain_, {}, {}}, {&debounced_, {}, {}}};
-  }
-  std::vector<Told> told(int ms) {
-    inputs_.tell(at(ms), sink_);
-    return std::exchange(sink_.all, {});
-  }
-
-  std::vector<int> levels_{0, 1, 0};
-  int error_ = 0;
-  int reads_ = 0;
-  Point plain_{};
-  Point debounced_{};
-  SampledInputs inputs_{std::make_unique<Wires>(*this), specs(), at(0)};
-  Sink sink_;
-};
-
-TEST_F(Samples, They_are_looked_at_every_5_ms_and_changes_have_that_time) {
-  EXPECT_THAT(told(0), IsEmpty()) << "these are their first levels";
-  EXPECT_EQ(inputs_.next_change(at(0)), at(5));
-  levels_ = {1, 0, 0};
-  reads_ = 0;
-  EXPECT_THAT(told(4), IsEmpty());
-  EXPECT_EQ(reads_, 0);
-  EXPECT_THAT(told(6), ElementsAre(Told(0, true, at(6)), Told(1, false, at(6))));
-  EXPECT_EQ(inputs_.next_change(at(6)), at(11));
-}
-
-TEST_F(Samples, A_read_sees_the_lines_as_they_are_and_that_is_told) {
-  told(0);
-  levels_ = {1, 1, 0};
-  std::vector<int> levels(3);
-  EXPECT_EQ(inputs_.read(levels, at(1)), 0);
-  EXPECT_THAT(levels, ElementsAre(1, 1, 0));
-  EXPECT_EQ(inputs_.next_change(at(1)), at(1));
-  EXPECT_THAT(told(2), ElementsAre(Told(0, true, at(1))));
-}
-
-TEST_F(Samples, They_can_be_debounced) {
-  EXPECT_TRUE(inputs_.has_to_look()) << "though nobody asks for changes";
-  EXPECT_FALSE(SampledInputs(std::make_unique<Wires>(*this), {{&plain_, {}, {}}}, at(0)).has_to_look());
-  told(0);
-  levels_[2] = 1;
-  EXPECT_THAT(told(5), IsEmpty());
-  EXPECT_THAT(told(10), IsEmpty());
-  EXPECT_THAT(told(15), ElementsAre(Told(2, true, at(5))));
-}
-
-TEST_F(Samples, What_cannot_be_read_does_not_change) {
-  told(0);
-  levels_ = {1, 0, 1};
-  error_ = ENODEV;
-  EXPECT_THAT(told(5), IsEmpty());
-  std::vector<int> levels(3);
-  EXPECT_EQ(inputs_.read(levels, at(6)), ENODEV);
-  EXPECT_THAT(told(6), IsEmpty());
 }
 
 }  // namespace

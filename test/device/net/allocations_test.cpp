@@ -12,8 +12,9 @@ using fakes::allocations;
 constexpr std::uint32_t epoch = 7;
 
 Pdu wait_for_changes(std::uint32_t of) {
+  constexpr std::uint64_t seen = 10;  // all that the requests before it make
   Pdu bytes(modbus::changes_request_size);
-  modbus::build_changes_request({30000, of, 1}, bytes);
+  modbus::build_changes_request({30000, of, seen}, bytes);
   return bytes;
 }
 
@@ -59,7 +60,9 @@ TEST(Allocations, From_the_socket_to_the_reply_there_is_none) {
     while (node.node.statistics.requests == requests)
       node.tcp.tick(node.loop.run_once(node.tcp.time_until_due(TimePoint::clock::now())));
     EXPECT_EQ(allocations(), before) << "function " << int{request[0]};
-    client.received();
+    const bool waits = request == wait_for_changes(epoch);
+    EXPECT_EQ((waits ? client.received() : client.awaited()).empty(), waits)
+        << "function " << int{request[0]};
   }
 }
 

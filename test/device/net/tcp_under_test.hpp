@@ -54,6 +54,12 @@ class Client {
   void finish_sending() { ::shutdown(socket_.get(), SHUT_WR); }
   void vanish() { socket_.close(); }
 
+  /// What arrives next: the kernel may take its time. Nothing after a minute.
+  Pdu awaited() {
+    pollfd readable{socket_.get(), POLLIN, 0};
+    (void)::poll(&readable, 1, 60000);
+    return received();
+  }
   /// What has arrived.
   Pdu received() {
     Pdu bytes(65536);

@@ -2,13 +2,71 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <utility>
 
 #include "coupler/device/node/io_service.hpp"
+#include "test/device/net/tcp_under_test.hpp"
 
 namespace coupler::device {
 namespace {
 
 using namespace std::chrono_literals;
+
+using modbus::Change;
+
+/// A simulated node with a coil, and a client of it.
+struct Serving : testing::Test {
+  Serving() {
+    Options options;
+    options.simulated = true;
+    options.listen = "127.0.0.1";
+    options.port = 0;
+    auto prepared = ServingContext::prepare(map->map(), nullptr, options, nullptr, nullptr, log);
+    EXPECT_TRUE(prepared.has_value());
+    context = *std::move(prepared);
+    context->wiring = std::exchange(context->prepared, nullptr)->take_over();
+  }
+  /// Until so many requests were answered, or wait.
+  void run_until(IoService& service, std::uint32_t requests) const {
+    service.run([&](TimePoint) { return context->state->statistics().requests >= requests; }, [] {});
+  }
+  static Pdu wait(const modbus::ChangesRequest& request) {
+    Pdu bytes(modbus::changes_request_size);
+    modbus::build_changes_request(request, bytes);
+    return adu(1, bytes);
+  }
+  static modbus::ChangesReply changes(const Pdu& bytes) {
+    const auto reply = modbus::parse_changes_reply(modbus::Bytes(bytes).from(modbus::mbap_size));
+    EXPECT_TRUE(reply.has_value());
+    return reply.value_or(modbus::ChangesReply{});
+  }
+
+  MapPtr map = fakes::MapBuilder().many(Table::coils, 0, 1).build();
+  FakeLog log;
+  Loop loop;
+  std::unique_ptr<ServingContext> context;
+};
+
+TEST_F(Serving, Who_waits_for_changes_hears_that_the_outputs_went_to_their_safe_state) {
+  IoService service(*context, loop, log);
+  Client client(context->listener.name);
+  client.send(wait({1000, 0, 0}));
+  run_until(service, 1);
+  const auto first = changes(client.awaited());
+  const std::vector<std::uint16_t> on{1};
+  const auto schedule = modbus::ScheduleRequest::coils(
+      {first.epoch, first.replied + 1h, 0ms, modbus::Function::read_coils, modbus::Range::of(0, 1), {}}, on);
+  client.send(adu(2, Pdu(schedule.pdu().begin(), schedule.pdu().end())));
+  run_until(service, 2);
+  EXPECT_FALSE(client.awaited().empty());
+  client.send(wait({30000, first.epoch, first.newest}));
+  run_until(service, 3);
+  EXPECT_TRUE(service.make_safe(modbus::Reason::safe_state));
+  const auto reply = changes(client.awaited());
+  ASSERT_EQ(reply.count, 1);
+  EXPECT_EQ(reply.changes[0].kind, Change::Kind::cancelled);
+  EXPECT_EQ(reply.changes[0].table, static_cast<std::uint8_t>(modbus::Reason::safe_state));
+}
 
 TEST(ShutdownSummary, Of_an_idle_node_is_short) {
   EXPECT_EQ(shutdown_summary(SIGTERM, true, {}, TimePoint() + 90s),

@@ -36,9 +36,9 @@ Handler::Handler(const Map& map, Hardware hardware, const NodeState& state, cons
       edge_points_(map, state.image, state.statistics, state.links, state.changes),
       schedule_(state.schedule),
       clock_(clock),
-      limits_values_(std::any_of(map.points.begin(), map.points.end(), [](const Point& point) {
-        return is_writable(point) && limits_values(point);
-      })),
+      limits_values_(
+          std::any_of(map.points.begin(), map.points.end(),
+                      [](const Point& point) { return is_writable(point) && limits_values(point); })),
       has_pulses_(std::any_of(map.points.begin(), map.points.end(), is_pulsed)) {
   set_machine({});
   show_outputs();
@@ -87,10 +87,12 @@ void Handler::expire_watchdog(TimePoint now) {
 }
 
 bool Handler::drive_safe(TimePoint now) {
+  // If this process dies while they are driven, the next one brings none of them back.
+  schedule_.outputs_went_safe(false, now);
   const bool is_safe = hardware_.drive_safe();
   changes_.set_time(later(now));
   show_outputs();
-  schedule_.outputs_went_safe(is_safe);
+  schedule_.outputs_went_safe(is_safe, now);
   return is_safe;
 }
 

@@ -52,7 +52,7 @@ class Handler {
   /// Exceptions: those of parse_request(); 02 an address that is not
   /// mapped, not readable or not writable; 03 a value that does not reset the watchdog, that the
   /// map does not allow, or that an output cannot take; 04 hardware that cannot be read or driven, or an
-  /// output that the watchdog keeps in its safe state; 06 no place left to schedule an output.
+  /// output that the watchdog keeps in its safe state; 06 no place left to schedule such an output.
   std::size_t handle(modbus::Bytes request, ClientSession& session, TimePoint now, Span<std::uint8_t> reply);
 
   /// Drives the outputs to their safe state if the watchdog is due, drives what is scheduled for now or

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cassert>
 #include <tuple>
+#include <utility>
 
 #include "coupler/device/core/clock.hpp"
 
@@ -37,8 +38,19 @@ OutputSchedule::OutputSchedule(Span<ScheduledOutput> places, ScheduleSink* sink,
   find_earliest();
 }
 
+/// Durations cannot be cancelled, and their clients may be gone.
+bool OutputSchedule::has_room_for(std::chrono::milliseconds duration) const {
+  if (duration <= longest_short) return true;
+  const Span<const ScheduledOutput> clients = places_.first(places_.size() - pulses_.size());
+  const auto taken = std::count_if(clients.begin(), clients.end(), [](const ScheduledOutput& one) {
+    return one.state != State::free && one.duration > longest_short;
+  });
+  return static_cast<std::size_t>(taken) < (clients.size() + 1) / 2;
+}
+
 ScheduledOutput* OutputSchedule::add(const modbus::ScheduleOutput& wanted, Table table, TimePoint due,
                                      const ClientSession& owner) {
+  if (!has_room_for(wanted.duration)) return nullptr;
   const auto place = std::find_if(places_.begin(), pulses_.begin(),
                                   [](const ScheduledOutput& one) { return one.state == State::free; });
   if (place == pulses_.begin()) return nullptr;
@@ -198,10 +210,16 @@ void OutputSchedule::cancel_all(Reason reason, TimePoint at) {
   cancel_if(reason, at, [](const ScheduledOutput&) { return true; });
 }
 
-void OutputSchedule::outputs_went_safe(bool all) {
+void OutputSchedule::outputs_went_safe(bool all, TimePoint now) {
   using Safety = ScheduledOutput::Safety;
-  for (ScheduledOutput& one : places_)
-    if (one.state == State::begun) one.safety = all ? Safety::reached : Safety::failed;
+  for (ScheduledOutput& one : places_) {
+    if (one.state != State::begun) continue;
+    one.safety = all ? Safety::reached : Safety::failed;
+    // What it was tried with is from before the safe state. At once: no write comes between that it would
+    // undo.
+    if (std::exchange(one.is_overdue, false)) one.at = now;
+  }
+  find_earliest();
 }
 
 void OutputSchedule::driven(Table table, Range range, Span<const std::uint16_t> cells) {
@@ -209,10 +227,17 @@ void OutputSchedule::driven(Table table, Range range, Span<const std::uint16_t> 
   for (ScheduledOutput& one : places_) {
     if (one.state != State::begun || !one.is_overdue || one.table != table) continue;
     each_shared_address(one.range, range, [&](std::uint32_t at) {
-      if (begun_after(one, at) == nullptr)  // else it is that one's, which ends with this one's value
-        one.set_value(at - one.range.start(), cells[at - range.start()]);
+      // Else it is that of one that still runs, which ends with this one's value.
+      if (are_overdue_after(one, at)) one.set_value(at - one.range.start(), cells[at - range.start()]);
     });
   }
+}
+
+/// All that began after `which` and have the address.
+bool OutputSchedule::are_overdue_after(const ScheduledOutput& which, std::uint32_t address) {
+  const ScheduledOutput* later = begun_after(which, address);
+  while (later != nullptr && later->is_overdue) later = begun_after(*later, address);
+  return later == nullptr;
 }
 
 ScheduledOutput* OutputSchedule::begun_after(const ScheduledOutput& which, std::uint32_t address) {

@@ -50,19 +50,23 @@ struct ScheduledOutput {
   void set_value(std::size_t i, std::uint16_t value);
 };
 
-/// What clients have scheduled, and the pulses that run (Point::pulse), in a fixed number of places. It decides
-/// what is due and what is cancelled; others drive the outputs. Places may be in memory that outlives the
-/// process: what has begun there goes on.
+/// What clients have scheduled, and the pulses that run (Point::pulse), in a fixed number of places. It
+/// decides what is due and what is cancelled; others drive the outputs. Places may be in memory that outlives
+/// the process: what has begun there goes on.
 class OutputSchedule {
  public:
-  /// Those that wait in `places` are dropped: their clients are gone. `sink` may be null. Both outlive it. The
-  /// last `pulses` places are for pulses: NodeMemory's number of them.
+  /// Those that wait in `places` are dropped: their clients are gone. `sink` may be null. Both outlive it.
+  /// The last `pulses` places are for pulses: NodeMemory's number of them.
   explicit OutputSchedule(Span<ScheduledOutput> places, ScheduleSink* sink = nullptr, std::size_t pulses = 0);
 
   /// False: there are no places for what clients schedule.
   bool is_present() const { return places_.size() > pulses_.size(); }
 
-  /// Null: every place of clients is taken.
+  /// Durations that are longer get half of the places at most: a client that takes them and leaves does not
+  /// shut out the others for an hour.
+  static constexpr std::chrono::minutes longest_short{1};
+
+  /// Null: every place of clients is taken, or every one for such a duration.
   ScheduledOutput* add(const modbus::ScheduleOutput& wanted, Table table, TimePoint due,
                        const ClientSession& owner);
 
@@ -97,8 +101,9 @@ class OutputSchedule {
   void cancel_all(modbus::Reason reason, TimePoint at);
 
   /// The outputs have gone to their safe state: what has begun does not bring them out of it. False: not all
-  /// of them could be driven there. Then they go there at its end.
-  void outputs_went_safe(bool all);
+  /// of them could be driven there, or are not yet. Then they go there at its end. What could not end in time
+  /// is due at once.
+  void outputs_went_safe(bool all, TimePoint now);
   /// Outputs were driven to this: what could not end in time does not bring them back any more.
   void driven(Table table, modbus::Range range, Span<const std::uint16_t> cells);
 
@@ -119,7 +124,9 @@ class OutputSchedule {
   void cancel_if(modbus::Reason reason, TimePoint at, Which which);
   void tell(const ScheduledOutput& which, modbus::Change::Kind kind, modbus::Reason reason, TimePoint at);
   ScheduledOutput* first_begun(std::uint64_t order);
+  bool are_overdue_after(const ScheduledOutput& which, std::uint32_t address);
   ScheduledOutput* pulse_of(std::uint16_t coil);
+  bool has_room_for(std::chrono::milliseconds duration) const;
   std::uint16_t unused_number();
   void find_earliest();
 

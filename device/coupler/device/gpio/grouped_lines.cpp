@@ -197,7 +197,8 @@ bool GroupedLines::drive_each(Range range, Span<const std::uint16_t> levels) {
 
 bool GroupedLines::are_plugged(Range range) const {
   return std::all_of(outputs_.begin(), outputs_.end(), [&](const Output& output) {
-    return !each_in(range, output.wired.lines, [](auto, auto) {}) || output.wired.group->is_plugged();
+    const bool is_gone = output.wired.request.lost || output.fault.error() == ENODEV;
+    return !is_gone || !each_in(range, output.wired.lines, [](auto, auto) {});
   });
 }
 

@@ -54,8 +54,9 @@ class InputGroup : public LineGroup {
 
   /// Where the kernel reports edges; -1: it reports none. The owner of the event loop watches it.
   virtual int descriptor() const { return -1; }
-  /// Takes the waiting edges without blocking. False: the lines are gone (their chip was unplugged). The
-  /// descriptor stays readable for ever then, so it must not be watched any more.
+  /// Takes the waiting edges without blocking. False: none can be taken any more, for the lines are gone
+  /// (their chip was unplugged). The descriptor stays readable for ever then, so it must not be watched any
+  /// more.
   [[nodiscard]] virtual bool take_edges() { return true; }
   /// Tells what was taken, or seen by looking at the lines, since the last call.
   virtual void tell(TimePoint, LineSink&) {}

@@ -107,7 +107,9 @@ void SimulatedChip::tell(Input& input, TimePoint now, EdgeSink& sink) const {
   sink.add(input.point->address, edges);
   input.told = level;
   const std::uint32_t changes = edges.rising + edges.falling;
-  const std::uint32_t kept = std::min(changes, most_changes);
+  std::uint32_t kept = std::min(changes, most_changes);
+  // Behind an odd number of lost ones would be the level that was told last, which is no change.
+  kept -= (changes - kept) % 2;
   if (changes > kept) sink.lost(changes - kept);
   for (std::uint32_t ago = kept; ago-- > 0;)
     sink.changed(input.point->address, level == (ago % 2 == 0),

@@ -22,8 +22,9 @@ class SimulatedChip : public Lines {
   /// Outputs and unwired inputs are at their initial levels; square waves begin now, with their `on` half.
   SimulatedChip(const Map& map, TimePoint now);
 
-  /// Of more changes of one input than this, the newest are told, and the others are lost; counters and
-  /// latched points have all of them.
+  /// Of more changes of one input than this, the newest are told (or one less, so that the first one brings
+  /// another level than was told last), and the others are lost; counters and latched points have all of
+  /// them.
   static constexpr std::uint32_t most_changes = 64;
 
   void take_edges(TimePoint now, EdgeSink& sink) override;

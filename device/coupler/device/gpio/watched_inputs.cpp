@@ -47,8 +47,13 @@ void WatchedInputs::tell(TimePoint now, LineSink& sink) {
   settle(now);
   for (std::size_t i = 0; i < size(); ++i)
     if (const Edges edges = lines_[i].take_edges(); edges.any()) sink.edges(i, edges);
-  while (const auto change = changes_.take())
-    sink.changed(change->line, change->level.level, change->level.at);
+  while (const auto change = changes_.take()) {
+    const bool level = change->level.level;
+    if (lines_[change->line].tell(level))
+      sink.changed(change->line, level, change->level.at);
+    else
+      changes_.lose(1);  // behind an odd number of lost ones: nobody can tell it from no change
+  }
   if (const std::uint32_t lost = changes_.take_lost(); lost != 0) sink.lost(lost);
 }
 
@@ -65,6 +70,19 @@ bool WatchedInputs::has_doubts() const {
                      [](const WatchedLine& line) { return line.doubt_due().has_value(); });
 }
 
+void WatchedInputs::fail_all(int error, TimePoint now) {
+  bool is_news = false;
+  for (WatchedLine& line : lines_.all()) is_news |= line.fail(error, now);
+  if (is_news) changes_.lose(1);
+}
+
+int WatchedInputs::error() const {
+  const auto lines = lines_.all();
+  const auto* failed =
+      std::find_if(lines.begin(), lines.end(), [](const WatchedLine& line) { return line.error() != 0; });
+  return failed == lines.end() ? 0 : failed->error();
+}
+
 SampledInputs::SampledInputs(std::unique_ptr<InputGroup> inputs, const std::vector<LineSpec>& lines,
                              TimePoint now)
     : WatchedInputs(lines, levels_of(*inputs, lines.size(), now)),
@@ -76,7 +94,10 @@ SampledInputs::SampledInputs(std::unique_ptr<InputGroup> inputs, const std::vect
 
 int SampledInputs::read(Span<int> levels, TimePoint now) {
   next_ = now + period;
-  if (const int error = inputs_->read(levels, now); error != 0) return error;
+  if (const int error = inputs_->read(levels, now); error != 0) {
+    fail_all(error, now);
+    return error;
+  }
   for (std::size_t i = 0; i < levels.size(); ++i) look(i, levels[i] != 0, now);
   put_levels(levels, now);
   return 0;
@@ -84,7 +105,7 @@ int SampledInputs::read(Span<int> levels, TimePoint now) {
 
 void SampledInputs::tell(TimePoint now, LineSink& sink) {
   std::array<int, max_group_size> levels{};
-  if (now >= next_) (void)read(Span<int>(levels).first(size()), now);  // who reads them is told if it fails
+  if (now >= next_) (void)read(Span<int>(levels).first(size()), now);  // if it fails, that is told
   WatchedInputs::tell(now, sink);
 }
 

@@ -36,6 +36,14 @@ class WatchedInputs : public InputGroup {
     return due && now >= *due;
   }
   bool has_doubts() const;
+  /// The line could not be looked at, and is tried again soon. Who waits for changes is told, once, of one
+  /// that was lost: it reads everything then, and so hears of it.
+  void fail(std::size_t line, int error, TimePoint now) {
+    if (lines_[line].fail(error, now)) changes_.lose(1);
+  }
+  void fail_all(int error, TimePoint now);
+  /// 0, or why a line could not be looked at the last time.
+  int error() const;
   /// The levels that count now.
   void put_levels(Span<int> levels, TimePoint now);
 

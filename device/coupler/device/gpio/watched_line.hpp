@@ -70,7 +70,8 @@ class WatchedLine {
       : line_(line),
         is_counted_(counted.has_value()),
         tally_(counted.value_or(Edge::both), level),
-        level_(level) {
+        level_(level),
+        told_(level) {
     if (debounce.count() > 0) debounce_.emplace(debounce, level);
   }
 
@@ -101,6 +102,8 @@ class WatchedLine {
   /// The line had this level at `now`, when the reported edges had been taken. If that is news, an edge was
   /// not reported, or nobody reports edges of this line.
   void look(bool level, TimePoint now, ChangeQueue& changes) {
+    error_ = 0;
+    doubted_.reset();
     if (level == latest()) return;
     edge(level, now, changes);
     looked_ = now;
@@ -109,10 +112,19 @@ class WatchedLine {
   /// The same of a line whose edges the kernel reports: the edge to this level may be on its way, so the line
   /// is to be checked again when its doubt is due.
   void check(bool level, TimePoint now, ChangeQueue& changes) {
+    error_ = 0;
     if (level == latest()) return doubted_.reset();
     if (!doubted_) doubted_ = now;
     if (now - *doubted_ >= patience) look(level, now, changes);
   }
+  /// Looking at it failed, with this errno: it is to be checked again, but not at once. Returns whether that
+  /// is news.
+  bool fail(int error, TimePoint now) {
+    doubted_ = now;
+    return std::exchange(error_, error) == 0;
+  }
+  /// Of the last look; 0: it was good.
+  int error() const { return error_; }
   /// When it is to be checked again; nullopt: there is no doubt.
   std::optional<TimePoint> doubt_due() const {
     return doubted_ ? std::optional(*doubted_ + patience) : std::nullopt;
@@ -129,6 +141,10 @@ class WatchedLine {
   bool level() const { return level_; }
   /// The line's own level, as it bounces.
   bool latest() const { return debounce_ ? debounce_->latest() : level_; }
+
+  /// Whether a change to this level, which is told now, brings another one than was told before. If not,
+  /// others between them were lost.
+  bool tell(bool level) { return std::exchange(told_, level) != level; }
 
   /// Edges that counters and latched points want, since the last call.
   Edges take_edges() {
@@ -148,9 +164,11 @@ class WatchedLine {
   EdgeTally tally_;
   std::optional<Debounce> debounce_;
   bool level_;
+  bool told_;
   TimePoint last_ = TimePoint::min();    ///< of the last edge
   TimePoint looked_ = TimePoint::min();  ///< when looking found what no edge had told
-  std::optional<TimePoint> doubted_;     ///< since then it has a level that no edge has told
+  std::optional<TimePoint> doubted_;  ///< since then it has a level that no edge has told, or an unknown one
+  int error_ = 0;
 };
 
 }  // namespace coupler::device

@@ -127,9 +127,14 @@ std::vector<OpenConnection> IoService::release() {
   return tcp_.release();
 }
 
+bool IoService::make_safe(modbus::Reason reason) {
+  const bool is_safe = handler_.make_safe(reason, TimePoint::clock::now());
+  tcp_.end_waits();
+  return is_safe;
+}
+
 void IoService::end(int signal) {
   const bool is_safe = make_safe(modbus::Reason::reload);
-  tcp_.end_waits();
   log_.write(shutdown_summary(signal, is_safe, statistics_, TimePoint::clock::now()));
 }
 

@@ -33,8 +33,9 @@ class IoService {
   /// The end after a signal: drives the outputs to their safe state, tells those that wait for changes, and
   /// logs the summary.
   void end(int signal);
-  /// Drives the outputs to their safe state. False: one of them could not be driven.
-  bool make_safe(modbus::Reason reason) { return handler_.make_safe(reason, TimePoint::clock::now()); }
+  /// Drives the outputs to their safe state, and tells those that wait for changes. False: one of them could
+  /// not be driven.
+  bool make_safe(modbus::Reason reason);
 
  private:
   class EdgeHandler;

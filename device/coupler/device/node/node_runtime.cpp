@@ -204,23 +204,25 @@ bool NodeRuntime::drive_safe() {
   // A process that was forked for this has ordinary priority, and only a second. The supervisor has this
   // priority already.
   if (options_.realtime) (void)take_priority(RealtimePriority::supervisor);
+  Ending ending(*context_);
+  // If this process is killed while they are driven, the next worker process brings none of them back.
+  ending.schedule.outputs_went_safe(false, ending.now);
   const bool safe = Hardware(context_->wiring->lines(), context_->analogue.get()).drive_safe();
   context_->state->watchdog().disarm();
+  ending.schedule.outputs_went_safe(safe, ending.now);
   // The next worker process may be long in coming.
-  return end_durations(safe) && safe;
-}
-
-bool NodeRuntime::end_durations(bool outputs_are_safe) {
-  Ending ending(*context_);
-  ending.schedule.outputs_went_safe(outputs_are_safe);
-  return ending.end.of_all(ending.now);
+  return ending.end.of_all(ending.now) && safe;
 }
 
 /// The new map has its points elsewhere, or has them no longer.
 void NodeRuntime::end_durations_that_do_not_fit() {
   Ending ending(*context_);
   ending.schedule.each_begun([&](ScheduledOutput& begun) {
-    if (!next_->state->fits(begun, *context_->state)) (void)ending.end.of(begun, ending.now);
+    if (next_->state->fits(begun, *context_->state) || ending.end.of(begun, ending.now)) return;
+    log_.warn(fmt::format(
+        "{} {} to {}: not every output could be driven back at the end of its duration, and the new map does "
+        "not have them so: such an output stays as it is until it is written",
+        to_string(begun.table), begun.range.start(), begun.range.last()));
   });
 }
 

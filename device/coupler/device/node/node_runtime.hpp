@@ -47,7 +47,6 @@ class NodeRuntime final : public Workload {
   bool take_map();
   void refuse(const ServeError& error);
   bool reconnect(TimePoint now);
-  bool end_durations(bool outputs_are_safe);
   void end_durations_that_do_not_fit();
   int end_without_supervisor(IoService& service);
 

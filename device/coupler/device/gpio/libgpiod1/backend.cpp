@@ -84,8 +84,8 @@ class EventLines : public WatchedInputs {
  private:
   bool take_waiting();
   bool take(std::size_t line);
-  int look_at(std::size_t line);
-  int look_at_doubtful();
+  void look_at(std::size_t line);
+  void look_at_doubtful();
 
   std::vector<std::unique_ptr<Request>> requests_;
   int ready_;
@@ -112,8 +112,8 @@ bool EventLines::take(std::size_t line) {
     lose(line, 1);
     was_full = true;
   }
-  // The newest edges are those that the kernel dropped.
-  return !was_full || look_at(line) == 0;
+  if (was_full) look_at(line);  // the newest edges are those that the kernel dropped
+  return true;
 }
 
 /// False: the lines are gone.
@@ -126,37 +126,42 @@ bool EventLines::take_waiting() {
 }
 
 bool EventLines::take_edges() {
-  if (!take_waiting()) return false;
-  if (is_known_) return !has_doubts() || look_at_doubtful() == 0;
-  // A process that died may have taken edges and not noted them.
-  is_known_ = true;
-  for (std::size_t line = 0; line < size(); ++line)
-    if (look_at(line) != 0) return false;
+  if (!take_waiting()) {
+    fail_all(errno, TimePoint::clock::now());
+    return false;
+  }
+  if (std::exchange(is_known_, true)) {
+    look_at_doubtful();
+  } else {
+    // A process that died may have taken edges and not noted them.
+    for (std::size_t line = 0; line < size(); ++line) look_at(line);
+  }
   return true;
 }
 
-int EventLines::look_at_doubtful() {
+void EventLines::look_at_doubtful() {
+  if (!has_doubts()) return;
   const TimePoint now = TimePoint::clock::now();
   for (std::size_t line = 0; line < size(); ++line)
-    if (is_doubtful(line, now))
-      if (const int error = look_at(line); error != 0) return error;
-  return 0;
+    if (is_doubtful(line, now)) look_at(line);
 }
 
-/// Returns 0 or an errno.
-int EventLines::look_at(std::size_t line) {
+/// If that fails, read() says so until it works again.
+void EventLines::look_at(std::size_t line) {
   const int level = gpiod_line_get_value(requests_[line]->first());
-  if (level < 0) return errno;
-  check(line, level == 1, TimePoint::clock::now());
-  return 0;
+  if (level < 0)
+    fail(line, errno, TimePoint::clock::now());
+  else
+    check(line, level == 1, TimePoint::clock::now());
 }
 
 int EventLines::read(Span<int> levels, TimePoint now) {
-  if (!take_edges()) return errno;
-  next_ = (next_ + 1) % size();
-  const int error = look_at(next_);
+  if (take_edges()) {
+    next_ = (next_ + 1) % size();
+    look_at(next_);
+  }
   put_levels(levels, now);
-  return error;
+  return error();
 }
 
 tl::expected<std::unique_ptr<InputGroup>, std::string> request_event_lines(

@@ -124,19 +124,26 @@ bool EventInputs::take_waiting() {
 }
 
 bool EventInputs::take_edges() {
-  if (!take_waiting()) return false;
-  // A process that died may have taken edges and not noted them.
-  if (std::exchange(is_known_, true) && !has_doubts()) return true;
-  return look_at_all() == 0;
+  if (!take_waiting()) {
+    fail_all(errno, TimePoint::clock::now());
+    return false;
+  }
+  // A process that died may have taken edges and not noted them. Edges can be taken if looking fails, too.
+  if (!std::exchange(is_known_, true) || has_doubts()) (void)look_at_all();
+  return true;
 }
 
 /// Returns 0 or an errno.
 int EventInputs::look_at_all() {
   std::array<int, max_group_size> space{};
   const auto levels = Span<int>(space).first(size());
-  if (const int error = request_.read(levels); error != 0) return error;
-  if (!take_waiting()) return errno;  // first the edges that were reported
+  int error = request_.read(levels);
+  if (error == 0 && !take_waiting()) error = errno;  // first the edges that were reported
   const TimePoint now = TimePoint::clock::now();
+  if (error != 0) {
+    fail_all(error, now);
+    return error;
+  }
   for (std::size_t i = 0; i < size(); ++i) check(i, levels[i] != 0, now);
   return 0;
 }
