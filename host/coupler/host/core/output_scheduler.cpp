@@ -52,8 +52,8 @@ void OutputScheduler::connected(bool by_node) {
 }
 
 Result<> OutputScheduler::step(const ChangeListener& listener) {
-  auto call = calls_.take();
-  Result<> done = call ? answer(std::move(*call), listener) : Result<>{};
+  auto call = calls_.take_one_of([this](const AskedSchedule& asked) { return is_next(asked); });
+  Result<> done = call ? answer(call->what.what, call->answer, listener) : Result<>{};
   note();
   return done;
 }
@@ -67,23 +67,24 @@ std::string OutputScheduler::why_refused(const ScheduledWrite& what, Time now) c
   return why_impossible(what, now);
 }
 
-Result<> OutputScheduler::answer(ScheduleCalls::Call call, const ChangeListener& listener) {
-  if (const std::string why = why_refused(call.what, clock_.now()); !why.empty()) {
-    call.answer.set_value({0, why});
+Result<> OutputScheduler::answer(const ScheduledWrite& what, std::promise<ScheduleAnswer>& to,
+                                 const ChangeListener& listener) {
+  if (const std::string why = why_refused(what, clock_.now()); !why.empty()) {
+    to.set_value({0, why});
     return {};
   }
-  if (can_node(call.what, listener)) {
-    const Result<ScheduleAnswer> given = give_to_node(call.what, listener);
+  if (can_node(what, listener)) {
+    const Result<ScheduleAnswer> given = give_to_node(what, listener);
     if (!given) {
-      call.answer.set_value({0, "it may be carried out or not: " + to_string(given.error())});
+      to.set_value({0, "it may be carried out or not: " + to_string(given.error())});
       return tl::make_unexpected(given.error());
     }
     if (node_can_) {
-      call.answer.set_value(*given);
+      to.set_value(*given);
       return {};
     }
   }
-  call.answer.set_value(keep(call.what));
+  to.set_value(keep(what));
   return {};
 }
 
