@@ -156,6 +156,40 @@ TEST_F(NodeOutputsTest, What_the_node_drove_for_good_is_restored_after_a_reconne
   EXPECT_EQ(device.count("write register 2"), 0U);
 }
 
+TEST_F(NodeOutputsTest, What_was_written_since_the_node_drove_it_is_restored_and_not_that) {
+  auto builder = press();
+  builder.head().on_reconnect = OnReconnect::restore;
+  begin_node(builder);
+  schedule("lamp", 1, milliseconds(100));
+  run_for(milliseconds(100));
+  push("lamp", 0);
+  engine->step();
+  device.decide(1, Kind::done);  // told late
+  run_for(milliseconds(10));
+  EXPECT_EQ(outcome().result, Became::done);
+  device.values[{Table::coils, 5}] = 1;
+  device.next_errors = {TransportFailure{"it has gone"}};
+  run_for(seconds(3));
+  EXPECT_EQ(device.count("write coil 5"), 2U);
+  EXPECT_EQ(lamp(), 0);
+}
+
+TEST_F(NodeOutputsTest, What_the_node_drove_before_safe_values_is_not_restored) {
+  auto builder = press();
+  builder.head().on_reconnect = OnReconnect::restore;
+  begin_node(builder);
+  schedule("lamp", 1, milliseconds(100));
+  run_for(milliseconds(100));
+  auto safe = engine->make_safe();
+  device.decide(1, Kind::done);  // the answer to the wait tells it when the values have been chosen
+  engine->step();
+  EXPECT_EQ(outcome().result, Became::done);
+  device.values[{Table::coils, 5}] = 1;
+  device.next_errors = {TransportFailure{"it has gone"}};
+  run_for(seconds(3));
+  EXPECT_EQ(lamp(), 0);
+}
+
 TEST_F(NodeOutputsTest, At_the_end_of_the_driver_it_is_cancelled_at_the_node) {
   begin_node(press());
   schedule("lamp", 1, seconds(100));

@@ -61,6 +61,11 @@ void NodeOutputs::settle(std::uint16_t number, ScheduledOutcome::Result result, 
     tell(one, result, {clock_.now(), {}}, reason);
 }
 
+void NodeOutputs::on_written(std::uint32_t point) {
+  for (Waiting& one : waiting_)
+    if (one.what.what.write.point == point) one.what.is_overwritten = true;
+}
+
 void NodeOutputs::lose(const std::string& reason) {
   for (const Waiting& one : std::exchange(waiting_, {})) tell(one, Kind::unknown, {clock_.now(), {}}, reason);
 }

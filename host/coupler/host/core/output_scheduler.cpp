@@ -162,17 +162,20 @@ void OutputScheduler::cancel_at_node(const ChangeListener& listener) {
 void OutputScheduler::on_outcome(const AcceptedWrite& which, ScheduledOutcome::Result result, Stamp at,
                                  const std::string& reason) {
   const ScheduledWrite& what = which.what;
-  // What the node drove for good is what a write has written.
-  if (result == ScheduledOutcome::Result::done && what.duration.count() == 0) writer_.remember(what.write);
+  // What the node drove for good is what a write has written. It may be told late, after a newer one.
+  if (result == ScheduledOutcome::Result::done && what.duration.count() == 0 && !which.is_overwritten)
+    writer_.remember(what.write);
   sink_.on_scheduled({which.number, what.write.point, result, reason, what.asked, what.due, at});
   note();
 }
 
 void OutputScheduler::on_written(const Write& write) {
+  by_node_.on_written(write.point);
   if (by_driver_.size() > 0) by_driver_.on_written(write);
 }
 
 void OutputScheduler::on_made_safe(const std::vector<Write>& values) {
+  for (const Write& value : values) by_node_.on_written(value.point);
   if (by_driver_.size() > 0) by_driver_.on_made_safe(values);
 }
 
