@@ -180,6 +180,16 @@ TEST_F(ChangesTest, A_told_point_does_not_become_stale) {
   EXPECT_LE(clock.now() - *engine->quality(barrier()).last_good, seconds(2));
 }
 
+TEST_F(ChangesTest, When_a_point_is_told_no_more_its_value_is_as_old_as_what_was_heard_last) {
+  begin(cell());
+  run_for(seconds(60));
+  engine->want(barrier(), false);
+  EXPECT_EQ(engine->quality(barrier()).state, PointQuality::State::good);
+  EXPECT_LE(clock.now() - *engine->quality(barrier()).last_good, seconds(2));
+  run_for(seconds(10));
+  EXPECT_EQ(engine->quality(barrier()).state, PointQuality::State::stale);
+}
+
 TEST_F(ChangesTest, Who_begins_to_listen_gets_a_value_that_is_read_now) {
   begin(cell());
   engine->want(barrier(), true);  // again
