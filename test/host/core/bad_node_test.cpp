@@ -69,6 +69,18 @@ TEST_F(BadNodeTest, Losses_without_end_do_not_mean_reading_without_end) {
   EXPECT_GE(reads(), 90U) << "changes may be lost at a good node, too, where an input bounces";
 }
 
+TEST_F(BadNodeTest, A_node_that_counts_changes_and_tells_none_is_read_less_and_less_often) {
+  watch();
+  begin(cell());
+  device.holds_changes_back = true;
+  run_for(seconds(20));
+  EXPECT_LE(reads(), 100U) << "identity and both points, each time";
+  EXPECT_LE(asked.size(), 60U);
+  device.values[{Table::coils, 5}] = 1;
+  run_for(seconds(2));
+  EXPECT_EQ(sink->values["lamp"].back(), 1);
+}
+
 TEST_F(BadNodeTest, Answers_that_bring_nothing_are_not_asked_for_at_once) {
   watch();
   begin(cell());

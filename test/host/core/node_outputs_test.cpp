@@ -128,6 +128,35 @@ TEST_F(NodeOutputsTest, An_outcome_among_changes_that_were_lost_is_unknown) {
   EXPECT_EQ(outcome().result, Became::unknown);
 }
 
+TEST_F(NodeOutputsTest, A_number_that_is_given_again_had_an_outcome_which_was_lost) {
+  begin_node(press());
+  schedule("lamp", 1, milliseconds(20));
+  run_for(milliseconds(30));
+  device.scheduled.clear();
+  schedule("speed", 7, seconds(1));
+  ScheduledOutcome told = outcome();
+  EXPECT_EQ(told.number, 1U);
+  EXPECT_EQ(told.result, Became::unknown);
+  device.decide(1, Kind::done);
+  run_for(milliseconds(10));
+  told = outcome();
+  EXPECT_EQ(told.number, 2U);
+  EXPECT_EQ(told.result, Became::done);
+}
+
+TEST_F(NodeOutputsTest, Where_more_changes_follow_without_end_an_outcome_is_unknown_all_the_same) {
+  begin_node(press());
+  schedule("lamp", 1, seconds(1));
+  device.during_wait = [this] {
+    clock.advance(milliseconds(10));
+    for (int i = 0; i < 19; ++i) device.change(Table::coils, 5, i % 2 == 0);
+  };
+  run_for(seconds(2));
+  EXPECT_TRUE(sink->outcomes.empty()) << "it may follow";
+  run_for(seconds(3));
+  EXPECT_EQ(outcome().result, Became::unknown);
+}
+
 TEST_F(NodeOutputsTest, A_node_that_was_started_anew_has_cancelled_what_was_not_due) {
   begin_node(press());
   schedule("lamp", 1, seconds(100));

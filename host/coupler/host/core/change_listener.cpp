@@ -95,8 +95,9 @@ void ChangeListener::on_wait_answer(const WaitAnswer& answer) {
 
 void ChangeListener::take(const modbus::ChangesReply& reply, const WaitAnswer& answer) {
   const std::uint64_t last = seen_ + reply.lost + reply.count;
+  const bool holds_back = last == seen_ && reply.newest > seen_;  // and would for ever
   // Numbers that do not go on from those before belong to another epoch, whatever it is called.
-  const bool counts_anew = epoch_ != reply.epoch || last < seen_ || last > reply.newest;
+  const bool counts_anew = epoch_ != reply.epoch || last < seen_ || last > reply.newest || holds_back;
   if (counts_anew) begin_epoch(reply);
   map_clock(reply, answer);
   if (!counts_anew) tell_changes(reply, answer);
