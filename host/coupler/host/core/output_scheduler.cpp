@@ -22,7 +22,9 @@ std::string refusal(modbus::Exception code) {
     case Exception::illegal_data_address: return what + ": its map has no such output";
     case Exception::illegal_data_value:
       return what +
-             ": it does not take that value, its clock has jumped or it has just read a new map; try again";
+             ": it does not take that value, its time was over when the request arrived, its clock has "
+             "jumped or "
+             "it has just read a new map; try again with a later time";
     case Exception::server_device_failure:
       return what +
              ": its watchdog keeps outputs in their safe state until it is reset, or its hardware is gone";
