@@ -69,6 +69,18 @@ TEST_F(BadNodeTest, Losses_without_end_do_not_mean_reading_without_end) {
   EXPECT_GE(reads(), 90U) << "changes may be lost at a good node, too, where an input bounces";
 }
 
+TEST_F(BadNodeTest, A_node_that_counts_changes_and_tells_none_is_read_less_and_less_often) {
+  watch();
+  begin(cell());
+  device.holds_changes_back = true;
+  run_for(seconds(20));
+  EXPECT_LE(reads(), 100U) << "identity and both points, each time";
+  EXPECT_LE(asked.size(), 60U);
+  device.values[{Table::coils, 5}] = 1;
+  run_for(seconds(2));
+  EXPECT_EQ(sink->values["lamp"].back(), 1);
+}
+
 TEST_F(BadNodeTest, Answers_that_bring_nothing_are_not_asked_for_at_once) {
   watch();
   begin(cell());
@@ -139,7 +151,7 @@ TEST_F(BadNodeTest, Where_a_gateway_refuses_the_wait_everything_is_polled) {
   }
 }
 
-TEST_F(BadNodeTest, Where_a_gateway_drops_the_wait_everything_is_polled_on_the_next_connection) {
+TEST_F(BadNodeTest, Where_a_gateway_drops_the_wait_everything_is_polled_after_two_connections) {
   device.drops_waits = true;
   begin(cell());
   run_for(seconds(1));
@@ -162,6 +174,18 @@ TEST_F(BadNodeTest, Where_a_gateway_dropped_the_wait_it_is_tried_again_after_the
   run_for(seconds(10));
   EXPECT_EQ(reads(), 0U);
   EXPECT_GE(waits(), 9U);
+}
+
+TEST_F(BadNodeTest, A_connection_that_ends_before_the_first_answer_may_do_so_by_chance) {
+  device.drops_waits = true;
+  begin(cell());
+  ASSERT_THAT(sink->online, ElementsAre(true, false));
+  device.drops_waits = false;
+  run_for(seconds(1));
+  device.requests.clear();
+  run_for(seconds(10));
+  EXPECT_EQ(reads(), 0U);
+  EXPECT_EQ(sink->reported("polled while this connection lasts"), 0);
 }
 
 TEST_F(BadNodeTest, A_node_that_has_told_changes_and_falls_silent_is_asked_for_them_again) {

@@ -60,6 +60,22 @@ TEST_F(ChangesTest, The_stamp_is_the_time_of_the_change) {
   EXPECT_LT(stamp.uncertainty, milliseconds(30));
 }
 
+TEST_F(ChangesTest, A_change_whose_time_makes_no_sense_came_after_the_answer_before) {
+  begin(cell());
+  run_for(milliseconds(2500));
+  clock.sleep_until(device.answers_wait_at());
+  engine->arrived();
+  const Time edge = clock.now();
+  device.change(Table::discrete_inputs, 3, true);
+  device.changes.back().at = modbus::NodeTime(-1);
+  clock.advance(milliseconds(5));
+  engine->step();  // the next wait
+  engine->arrived();
+  const Stamp stamp = sink->stamps.back();
+  EXPECT_LE(std::chrono::abs(stamp.at - edge), stamp.uncertainty);
+  EXPECT_LE(stamp.uncertainty, milliseconds(1100));
+}
+
 TEST_F(ChangesTest, What_is_published_always_is_polled_and_heard_of) {
   begin(fakes::MapBuilder().input("barrier", 3));
   sink->values.clear();
@@ -178,6 +194,16 @@ TEST_F(ChangesTest, A_told_point_does_not_become_stale) {
   run_for(seconds(60));
   EXPECT_EQ(engine->quality(barrier()).state, PointQuality::State::good);
   EXPECT_LE(clock.now() - *engine->quality(barrier()).last_good, seconds(2));
+}
+
+TEST_F(ChangesTest, When_a_point_is_told_no_more_its_value_is_as_old_as_what_was_heard_last) {
+  begin(cell());
+  run_for(seconds(60));
+  engine->want(barrier(), false);
+  EXPECT_EQ(engine->quality(barrier()).state, PointQuality::State::good);
+  EXPECT_LE(clock.now() - *engine->quality(barrier()).last_good, seconds(2));
+  run_for(seconds(10));
+  EXPECT_EQ(engine->quality(barrier()).state, PointQuality::State::stale);
 }
 
 TEST_F(ChangesTest, Who_begins_to_listen_gets_a_value_that_is_read_now) {

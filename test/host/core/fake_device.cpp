@@ -89,7 +89,7 @@ Result<> FakeDevice::send_wait(const modbus::ChangesRequest& request) {
 Time FakeDevice::answers_wait_at() const {
   if (!wait_ || ignores_waits || drops_waits) return Time::max();
   const bool has_news = wait_->epoch != epoch || wait_->seen < changes.size() || refuses_waits ||
-                        begins_epochs || answers_waits_early;
+                        begins_epochs || answers_waits_early || holds_changes_back;
   return has_news ? wait_sent_ : wait_sent_ + std::chrono::milliseconds(wait_->wait);
 }
 
@@ -120,6 +120,11 @@ void FakeDevice::answer_wait() {
     reply.lost = static_cast<std::uint32_t>(first - wait->seen);
     for (auto i = first; i < changes.size() && reply.count < modbus::max_changes; ++i)
       reply.changes[reply.count++] = changes[i];
+  }
+  if (holds_changes_back) {
+    reply.newest = wait->seen + 1;
+    reply.count = 0;
+    reply.lost = 0;
   }
   wait_answer_ = WaitAnswer{reply, wait_sent_, now()};
 }

@@ -44,6 +44,7 @@ class FakeDevice : public Transport {
   bool ignores_waits = false;
   bool drops_waits = false;                       ///< a gateway before it does, and lets all else through
   bool begins_epochs = false;                     ///< with each answer to a wait
+  bool holds_changes_back = false;                ///< counts one more than it tells
   bool answers_waits_early = false;               ///< as if something had changed
   std::function<void()> during_wait;              ///< what happens when a wait is sent
   std::vector<modbus::ScheduleOutput> scheduled;  ///< number i + 1; without the values

@@ -76,6 +76,8 @@ TEST_F(NodeOutputsTest, An_exception_is_told_with_its_remedy) {
   EXPECT_EQ(answer.number, 0U);
   EXPECT_THAT(answer.text, HasSubstr("exception 06"));
   EXPECT_THAT(answer.text, HasSubstr("ask again when one of them is over"));
+  code = modbus::Exception::illegal_data_value;
+  EXPECT_THAT(schedule("lamp", 1, seconds(1)).text, HasSubstr("its time was over when the request arrived"));
   code = modbus::Exception::server_device_failure;
   EXPECT_THAT(schedule("lamp", 1, seconds(1)).text, HasSubstr("until it is reset"));
   code.reset();
@@ -128,6 +130,35 @@ TEST_F(NodeOutputsTest, An_outcome_among_changes_that_were_lost_is_unknown) {
   EXPECT_EQ(outcome().result, Became::unknown);
 }
 
+TEST_F(NodeOutputsTest, A_number_that_is_given_again_had_an_outcome_which_was_lost) {
+  begin_node(press());
+  schedule("lamp", 1, milliseconds(20));
+  run_for(milliseconds(30));
+  device.scheduled.clear();
+  schedule("speed", 7, seconds(1));
+  ScheduledOutcome told = outcome();
+  EXPECT_EQ(told.number, 1U);
+  EXPECT_EQ(told.result, Became::unknown);
+  device.decide(1, Kind::done);
+  run_for(milliseconds(10));
+  told = outcome();
+  EXPECT_EQ(told.number, 2U);
+  EXPECT_EQ(told.result, Became::done);
+}
+
+TEST_F(NodeOutputsTest, Where_more_changes_follow_without_end_an_outcome_is_unknown_all_the_same) {
+  begin_node(press());
+  schedule("lamp", 1, seconds(1));
+  device.during_wait = [this] {
+    clock.advance(milliseconds(10));
+    for (int i = 0; i < 19; ++i) device.change(Table::coils, 5, i % 2 == 0);
+  };
+  run_for(seconds(2));
+  EXPECT_TRUE(sink->outcomes.empty()) << "it may follow";
+  run_for(seconds(3));
+  EXPECT_EQ(outcome().result, Became::unknown);
+}
+
 TEST_F(NodeOutputsTest, A_node_that_was_started_anew_has_cancelled_what_was_not_due) {
   begin_node(press());
   schedule("lamp", 1, seconds(100));
@@ -154,6 +185,40 @@ TEST_F(NodeOutputsTest, What_the_node_drove_for_good_is_restored_after_a_reconne
   run_for(seconds(3));
   EXPECT_EQ(device.count("write coil 5"), 1U);
   EXPECT_EQ(device.count("write register 2"), 0U);
+}
+
+TEST_F(NodeOutputsTest, What_was_written_since_the_node_drove_it_is_restored_and_not_that) {
+  auto builder = press();
+  builder.head().on_reconnect = OnReconnect::restore;
+  begin_node(builder);
+  schedule("lamp", 1, milliseconds(100));
+  run_for(milliseconds(100));
+  push("lamp", 0);
+  engine->step();
+  device.decide(1, Kind::done);  // told late
+  run_for(milliseconds(10));
+  EXPECT_EQ(outcome().result, Became::done);
+  device.values[{Table::coils, 5}] = 1;
+  device.next_errors = {TransportFailure{"it has gone"}};
+  run_for(seconds(3));
+  EXPECT_EQ(device.count("write coil 5"), 2U);
+  EXPECT_EQ(lamp(), 0);
+}
+
+TEST_F(NodeOutputsTest, What_the_node_drove_before_safe_values_is_not_restored) {
+  auto builder = press();
+  builder.head().on_reconnect = OnReconnect::restore;
+  begin_node(builder);
+  schedule("lamp", 1, milliseconds(100));
+  run_for(milliseconds(100));
+  auto safe = engine->make_safe();
+  device.decide(1, Kind::done);  // the answer to the wait tells it when the values have been chosen
+  engine->step();
+  EXPECT_EQ(outcome().result, Became::done);
+  device.values[{Table::coils, 5}] = 1;
+  device.next_errors = {TransportFailure{"it has gone"}};
+  run_for(seconds(3));
+  EXPECT_EQ(lamp(), 0);
 }
 
 TEST_F(NodeOutputsTest, At_the_end_of_the_driver_it_is_cancelled_at_the_node) {

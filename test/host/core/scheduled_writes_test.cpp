@@ -68,6 +68,51 @@ TEST_F(ScheduledWritesTest, Another_write_to_the_point_cancels_it) {
   EXPECT_EQ(lamp(), 0);
 }
 
+TEST_F(ScheduledWritesTest, A_write_that_was_queued_before_goes_before_and_does_not_cancel_it) {
+  begin_foreign(press());
+  push("lamp", 0);
+  auto accepted = engine->schedule(wanted("lamp", 1, milliseconds(300)));
+  run_for(milliseconds(10));
+  EXPECT_NE(accepted.get().number, 0U);
+  EXPECT_TRUE(sink->outcomes.empty());
+  run_for(milliseconds(300));
+  EXPECT_EQ(outcome().result, Became::done);
+  EXPECT_EQ(lamp(), 1);
+}
+
+TEST_F(ScheduledWritesTest, Writes_of_other_points_hold_it_not_back) {
+  begin_foreign(press());
+  push("speed", 3);
+  auto accepted = engine->schedule(wanted("lamp", 1, milliseconds(300)));
+  auto held = engine->schedule(wanted("speed", 4, milliseconds(300)));
+  engine->step();
+  EXPECT_EQ(accepted.wait_for(seconds(0)), std::future_status::ready);
+  EXPECT_NE(held.wait_for(seconds(0)), std::future_status::ready);
+  EXPECT_EQ(device.count("write register 2"), 0U);
+  run_for(milliseconds(10));
+  EXPECT_EQ(held.wait_for(seconds(0)), std::future_status::ready);
+}
+
+TEST_F(ScheduledWritesTest, Writes_without_end_do_not_hold_it_back) {
+  begin_foreign(press());
+  device.await_write = [this] { push("lamp", 0); };
+  push("lamp", 0);
+  push("lamp", 1);
+  auto accepted = engine->schedule(wanted("lamp", 1, seconds(300)));
+  for (int i = 0; i < 20; ++i) engine->step();
+  EXPECT_EQ(accepted.wait_for(seconds(0)), std::future_status::ready);
+}
+
+TEST_F(ScheduledWritesTest, The_end_of_the_connection_refuses_what_is_held_back) {
+  begin_foreign(press());
+  device.next_errors = {TransportFailure{"it has gone"}};
+  push("lamp", 0);
+  auto refused = engine->schedule(wanted("lamp", 1, milliseconds(300)));
+  run_for(milliseconds(10));
+  ASSERT_EQ(refused.wait_for(seconds(0)), std::future_status::ready);
+  EXPECT_EQ(refused.get().number, 0U);
+}
+
 TEST_F(ScheduledWritesTest, What_was_scheduled_cancels_nothing) {
   begin_foreign(press());
   schedule("lamp", 1, milliseconds(100));

@@ -81,6 +81,23 @@ TEST_F(ChangesTest, What_was_left_out_for_a_write_that_fails_is_read) {
   EXPECT_THAT(sink->values["lamp"], ElementsAre(0, 1));
 }
 
+TEST_F(ChangesTest, An_array_of_which_a_change_was_left_out_is_not_shown_before_it_is_read) {
+  MapBuilder builder = cell();
+  builder.add(Table::coils, "lights", 20, codec::Type::BOOL, [](Point& point) {
+    point.count = 4;
+    point.host.publish = Publish::on_change;
+  });
+  begin(builder);
+  for (int i = 0; i < 18; ++i) device.change(Table::discrete_inputs, 3, i % 2 == 0);
+  device.change(Table::coils, 20, true);  // the nineteenth
+  device.next_errors.emplace_back(ExceptionReply{modbus::Exception::server_device_failure});
+  push("lights", 0);
+  engine->step();
+  device.change(Table::coils, 21, true);
+  run_for(milliseconds(200));
+  EXPECT_THAT(sink->values["lights"], ElementsAre(0, 1)) << "the first of four";
+}
+
 TEST_F(ChangesTest, An_answer_that_comes_too_late_is_followed_by_a_wait_before_anything_is_polled) {
   begin(fakes::MapBuilder().input("barrier", 3));
   clock.advance(seconds(20));  // the process was stopped

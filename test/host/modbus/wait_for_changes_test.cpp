@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "coupler/host/modbus/modbus_transport.hpp"
@@ -19,6 +20,8 @@ using modbus::WriteRequest;
 using std::chrono::milliseconds;
 using Bytes = std::vector<std::uint8_t>;
 
+constexpr milliseconds late(1500);
+
 /// Holds a wait back until another request comes or `answer_waits` is set; answers reads with `bits`.
 class ScriptedNode {
  public:
@@ -27,6 +30,7 @@ class ScriptedNode {
   std::atomic<bool> swaps_replies{false};  ///< the wait's answer comes second
   std::atomic<bool> refuses_waits{false};
   std::atomic<bool> ends_no_answer{false};  ///< to a wait: its last byte does not come
+  std::atomic<bool> drops_reads{false};     ///< and answers the wait before them late
   std::atomic<bool> is_full{false};         ///< no place for scheduled outputs
 
  private:
@@ -78,6 +82,10 @@ class ScriptedNode {
                                        : adu(request, pdu[0] < 5 ? Bytes{pdu[0], 1, 1}
                                                                  : Bytes(pdu.begin(), pdu.begin() + 5));
       const Bytes before = wait_.empty() ? Bytes{} : wait_answer();
+      if (drops_reads) {
+        std::this_thread::sleep_for(late);
+        return ::send(fd, before.data(), before.size(), MSG_NOSIGNAL) > 0;
+      }
       answer = swaps_replies ? own : before;
       const Bytes& second = swaps_replies ? before : own;
       answer.insert(answer.end(), second.begin(), second.end());
@@ -193,6 +201,19 @@ TEST_F(WaitForChangesTest, An_answer_that_does_not_end_is_a_timeout_long_before_
   const auto heard = transport->receive_wait();
   ASSERT_FALSE(heard);
   EXPECT_TRUE(std::holds_alternative<Timeout>(heard.error()));
+  EXPECT_LT(std::chrono::steady_clock::now(), over);
+}
+
+TEST_F(WaitForChangesTest, The_answers_to_the_wait_and_to_the_read_have_one_timeout_together) {
+  node.drops_reads = true;
+  connection.timeout = milliseconds(2000);
+  transport.emplace(connection);
+  ASSERT_TRUE(transport->connect());
+  ASSERT_TRUE(wait());
+  const Time over = std::chrono::steady_clock::now() + late + connection.timeout;
+  const auto read = transport->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit);
+  ASSERT_FALSE(read);
+  EXPECT_TRUE(std::holds_alternative<Timeout>(read.error()));
   EXPECT_LT(std::chrono::steady_clock::now(), over);
 }
 

@@ -22,10 +22,12 @@ TEST(TopicDepth, A_bit_has_more_than_one_reply_tells) {
   EXPECT_GT(topic_depth(point_of(Table::discrete_inputs)), 18U);
 }
 
-TEST(TopicDepth, What_the_map_says_holds) {
-  Point newest_only = point_of(Table::coils);
-  newest_only.host.queue_size = 1;
-  EXPECT_EQ(topic_depth(newest_only), 1U);
+TEST(TopicDepth, What_the_map_says_holds_unless_it_is_ten) {
+  Point bit = point_of(Table::coils);
+  for (const std::uint32_t said : {1U, 5U, 50U}) {
+    bit.host.queue_size = said;
+    EXPECT_EQ(topic_depth(bit), said);
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <future>
@@ -37,12 +38,21 @@ class CallQueue {
     return answer;
   }
   bool any() const { return any_; }
-  /// The oldest call, for the caller to answer; nullopt: none waits.
-  std::optional<Call> take() {
+  /// A call waits of which `which(what)` is true.
+  template <class Which>
+  bool any_of(Which which) {
+    if (!any_) return false;
     const std::lock_guard lock(mutex_);
-    if (waiting_.empty()) return std::nullopt;
-    std::optional<Call> call(std::move(waiting_.front()));
-    waiting_.pop_front();
+    return find(which) != waiting_.end();
+  }
+  /// The oldest of them, for the caller to answer; nullopt: none waits.
+  template <class Which>
+  std::optional<Call> take_one_of(Which which) {
+    const std::lock_guard lock(mutex_);
+    const auto found = find(which);
+    if (found == waiting_.end()) return std::nullopt;
+    std::optional<Call> call(std::move(*found));
+    waiting_.erase(found);
     any_ = !waiting_.empty();
     return call;
   }
@@ -65,6 +75,10 @@ class CallQueue {
   }
 
  private:
+  template <class Which>
+  typename std::deque<Call>::iterator find(Which which) {
+    return std::find_if(waiting_.begin(), waiting_.end(), [&](const Call& call) { return which(call.what); });
+  }
   void answer_all(const Answer& answer) {
     for (Call& call : waiting_) call.answer.set_value(answer);
     waiting_.clear();

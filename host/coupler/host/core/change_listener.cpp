@@ -44,6 +44,7 @@ void ChangeListener::start(milliseconds watchdog) {
   epoch_.reset();
   seen_ = 0;
   resume_at_ = {};
+  all_told_ = clock_.now();
   mapping_.forget();
 }
 
@@ -95,8 +96,9 @@ void ChangeListener::on_wait_answer(const WaitAnswer& answer) {
 
 void ChangeListener::take(const modbus::ChangesReply& reply, const WaitAnswer& answer) {
   const std::uint64_t last = seen_ + reply.lost + reply.count;
+  const bool holds_back = last == seen_ && reply.newest > seen_;  // and would for ever
   // Numbers that do not go on from those before belong to another epoch, whatever it is called.
-  const bool counts_anew = epoch_ != reply.epoch || last < seen_ || last > reply.newest;
+  const bool counts_anew = epoch_ != reply.epoch || last < seen_ || last > reply.newest || holds_back;
   if (counts_anew) begin_epoch(reply);
   map_clock(reply, answer);
   if (!counts_anew) tell_changes(reply, answer);
@@ -104,6 +106,7 @@ void ChangeListener::take(const modbus::ChangesReply& reply, const WaitAnswer& a
   const bool brings_nothing = !counts_anew && reply.lost == 0 && reply.count == 0;
   if (brings_nothing && alone_) resume_at_ = std::min<Time>(answer.sent + shortest, silent_from_ - timeout_);
   const bool is_all = seen_ >= reply.newest;
+  if (is_all) all_told_ = answer.sent;
   changes_.on_heard(reply.newest, is_all ? std::optional(stamp(reply.replied, answer)) : std::nullopt);
 }
 
@@ -160,10 +163,11 @@ void ChangeListener::report_held_back() {
   if (const auto line = epochs_.due(now)) sink_.on_report(Level::info, *line);
 }
 
-/// Nothing that was told has happened after it was received.
+/// Nothing that was told has happened after it was received, nor before all was told that had happened. The
+/// reply itself is not older than its request: that is `all_told_` then.
 Stamp ChangeListener::stamp(modbus::NodeTime at, const WaitAnswer& answer) const {
   const auto mapped = mapping_.map(at);
-  if (!mapped) return {answer.received, answer.received - answer.sent};
+  if (!mapped) return {answer.received, answer.received - all_told_};
   return {std::min(mapped->at, answer.received), mapped->uncertainty};
 }
 

@@ -104,6 +104,7 @@ class ChangeListener : private WaitListener {
   Time resume_at_{};                    ///< no request before
   Duration pause_{0};                   ///< after the last gap
   std::optional<Time> gap_at_;          ///< changes were lost, or an epoch began
+  Time all_told_{};                     ///< an answer to a request sent then had all there was
   std::optional<std::uint32_t> epoch_;  ///< nullopt until the first answer
   std::uint64_t seen_ = 0;              ///< number of the last change
 };

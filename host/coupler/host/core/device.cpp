@@ -10,6 +10,9 @@ namespace coupler::host {
 
 namespace {
 
+/// Then everything is polled over the next connection.
+constexpr int most_unheard_waits = 2;
+
 std::string loss_text(const Map& map, const Error& error, bool was_online) {
   const std::string why = to_string(error);
   if (is_unit_away(error))
@@ -166,16 +169,17 @@ Time Device::connect() {
 
 void Device::listen() {
   const bool tells = map_.changes && node_.functions.tells_changes && transport_.can_wait();
-  if (tells && lets_waits_through_)
+  const bool lets_waits_through = unheard_waits_ < most_unheard_waits;
+  if (tells && lets_waits_through)
     listener_.start(std::chrono::milliseconds(node_.watchdog_timeout));
   else
     listener_.stop();
-  if (!tells || lets_waits_through_) return;
+  if (!tells || lets_waits_through) return;
   sink_.on_report(
       Level::warning,
       "the node says that it tells changes, but the question for them (function code 65) ended the "
-      "last connection; its points are polled while this connection lasts. Where a gateway does "
-      "not let the question through, say so in the map: changes: off");
+      "last two connections that it was sent on; its points are polled while this connection lasts. Where a "
+      "gateway does not let the question through, say so in the map: changes: off");
 }
 
 Result<> Device::ask_for_watchdog() {
@@ -242,7 +246,12 @@ void Device::came_online() {
 
 void Device::lost(const Error& error) {
   const bool was_online = state_ == State::online;
-  if (is_verified()) lets_waits_through_ = !listener_.is_active() || listener_.has_heard();
+  if (listener_.has_heard())
+    unheard_waits_ = 0;
+  else if (is_verified() && listener_.is_active())
+    ++unheard_waits_;
+  else if (is_verified())
+    unheard_waits_ = std::min(unheard_waits_, most_unheard_waits - 1);  // to be tried again, once
   state_ = state_ != State::none && is_unit_away(error) ? State::open : State::none;
   if (state_ == State::none) transport_.close();
   retry_at_ = clock_.now() + backoff_.next();

@@ -132,7 +132,8 @@ class Device {
   std::uint64_t replies_at_connect_ = 0;  ///< PacedTransport::replies() when the maps were verified
   /// A verified device is online at once. Not one that answered nothing else the last time: it would flicker.
   bool identity_suffices_ = true;
-  bool lets_waits_through_ = true;  ///< the last connection to a node that tells changes
+  /// Connections in a row that ended before the first wait had its answer. One may end so by chance.
+  int unheard_waits_ = 0;
   Time retry_at_ = Time::min();
   std::string last_error_text_;             ///< of the last attempt, so that it is logged once
   bool explains_silence_ = true;            ///< until the identity was answered, or silence_text() logged

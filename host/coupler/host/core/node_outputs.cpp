@@ -13,6 +13,9 @@ using modbus::Change;
 
 /// A node tells at once; this is for one that is busy.
 constexpr std::chrono::seconds told_within(1);
+/// All that a node keeps, in replies that follow each other at once.
+constexpr std::chrono::seconds all_told_within(2);
+constexpr auto not_told = "the node could not tell all its changes, and this one was among them";
 /// Two clocks drift apart by less than this part of the time that passes.
 constexpr int drift_part = 500;
 
@@ -30,6 +33,7 @@ std::optional<Kind> result_of(Change::Kind kind) {
 }  // namespace
 
 void NodeOutputs::add(std::uint16_t number, const AcceptedWrite& what) {
+  settle(number, Kind::unknown, not_told);  // an older one is over, or the number would not be given again
   const Time due = what.what.due;
   waiting_.push_back({number, what, due + told_within + (due - clock_.now()) / drift_part});
 }
@@ -61,6 +65,11 @@ void NodeOutputs::settle(std::uint16_t number, ScheduledOutcome::Result result, 
     tell(one, result, {clock_.now(), {}}, reason);
 }
 
+void NodeOutputs::on_written(std::uint32_t point) {
+  for (Waiting& one : waiting_)
+    if (one.what.what.write.point == point) one.what.is_overwritten = true;
+}
+
 void NodeOutputs::lose(const std::string& reason) {
   for (const Waiting& one : std::exchange(waiting_, {})) tell(one, Kind::unknown, {clock_.now(), {}}, reason);
 }
@@ -89,9 +98,11 @@ void NodeOutputs::on_new_epoch() {
 
 void NodeOutputs::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
   bits_.on_heard(newest, stamp);
-  if (!stamp) return;
-  for (const Waiting& one : take_if([&stamp](const Waiting& which) { return which.told_by < stamp->at; }))
-    tell(one, Kind::unknown, *stamp, "the node could not tell all its changes, and this one was among them");
+  // Where more follow it may be among them: not for long, but a node may have more without end.
+  const Time now = clock_.now();
+  const Time told = stamp ? stamp->at : now - all_told_within;
+  for (const Waiting& one : take_if([told](const Waiting& which) { return which.told_by < told; }))
+    tell(one, Kind::unknown, stamp.value_or(Stamp{now, {}}), not_told);
 }
 
 void NodeOutputs::on_end() {

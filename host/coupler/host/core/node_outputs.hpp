@@ -27,6 +27,8 @@ class NodeOutputs : public ChangeSink {
   std::vector<std::uint16_t> numbers() const;
   /// It has this outcome now, if it waits still.
   void settle(std::uint16_t number, ScheduledOutcome::Result result, const std::string& reason);
+  /// A write of its own to the point was carried out.
+  void on_written(std::uint32_t point);
   /// The outcomes will not be heard.
   void lose(const std::string& reason);
 

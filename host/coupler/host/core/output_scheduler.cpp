@@ -22,7 +22,9 @@ std::string refusal(modbus::Exception code) {
     case Exception::illegal_data_address: return what + ": its map has no such output";
     case Exception::illegal_data_value:
       return what +
-             ": it does not take that value, its clock has jumped or it has just read a new map; try again";
+             ": it does not take that value, its time was over when the request arrived, its clock has "
+             "jumped or "
+             "it has just read a new map; try again with a later time";
     case Exception::server_device_failure:
       return what +
              ": its watchdog keeps outputs in their safe state until it is reset, or its hardware is gone";
@@ -52,8 +54,8 @@ void OutputScheduler::connected(bool by_node) {
 }
 
 Result<> OutputScheduler::step(const ChangeListener& listener) {
-  auto call = calls_.take();
-  Result<> done = call ? answer(std::move(*call), listener) : Result<>{};
+  auto call = calls_.take_one_of([this](const AskedSchedule& asked) { return is_next(asked); });
+  Result<> done = call ? answer(call->what.what, call->answer, listener) : Result<>{};
   note();
   return done;
 }
@@ -67,23 +69,24 @@ std::string OutputScheduler::why_refused(const ScheduledWrite& what, Time now) c
   return why_impossible(what, now);
 }
 
-Result<> OutputScheduler::answer(ScheduleCalls::Call call, const ChangeListener& listener) {
-  if (const std::string why = why_refused(call.what, clock_.now()); !why.empty()) {
-    call.answer.set_value({0, why});
+Result<> OutputScheduler::answer(const ScheduledWrite& what, std::promise<ScheduleAnswer>& to,
+                                 const ChangeListener& listener) {
+  if (const std::string why = why_refused(what, clock_.now()); !why.empty()) {
+    to.set_value({0, why});
     return {};
   }
-  if (can_node(call.what, listener)) {
-    const Result<ScheduleAnswer> given = give_to_node(call.what, listener);
+  if (can_node(what, listener)) {
+    const Result<ScheduleAnswer> given = give_to_node(what, listener);
     if (!given) {
-      call.answer.set_value({0, "it may be carried out or not: " + to_string(given.error())});
+      to.set_value({0, "it may be carried out or not: " + to_string(given.error())});
       return tl::make_unexpected(given.error());
     }
     if (node_can_) {
-      call.answer.set_value(*given);
+      to.set_value(*given);
       return {};
     }
   }
-  call.answer.set_value(keep(call.what));
+  to.set_value(keep(what));
   return {};
 }
 
@@ -161,17 +164,20 @@ void OutputScheduler::cancel_at_node(const ChangeListener& listener) {
 void OutputScheduler::on_outcome(const AcceptedWrite& which, ScheduledOutcome::Result result, Stamp at,
                                  const std::string& reason) {
   const ScheduledWrite& what = which.what;
-  // What the node drove for good is what a write has written.
-  if (result == ScheduledOutcome::Result::done && what.duration.count() == 0) writer_.remember(what.write);
+  // What the node drove for good is what a write has written. It may be told late, after a newer one.
+  if (result == ScheduledOutcome::Result::done && what.duration.count() == 0 && !which.is_overwritten)
+    writer_.remember(what.write);
   sink_.on_scheduled({which.number, what.write.point, result, reason, what.asked, what.due, at});
   note();
 }
 
 void OutputScheduler::on_written(const Write& write) {
+  by_node_.on_written(write.point);
   if (by_driver_.size() > 0) by_driver_.on_written(write);
 }
 
 void OutputScheduler::on_made_safe(const std::vector<Write>& values) {
+  for (const Write& value : values) by_node_.on_written(value.point);
   if (by_driver_.size() > 0) by_driver_.on_made_safe(values);
 }
 

@@ -17,7 +17,13 @@
 
 namespace coupler::host {
 
-using ScheduleCalls = CallQueue<ScheduledWrite, ScheduleAnswer>;
+/// Made when the writes of its point that were queued before have their results: one of them would be another
+/// write to the same point, and cancel it.
+struct AskedSchedule {
+  ScheduledWrite what;
+  std::uint32_t after = 0;  ///< WriteQueue::queued()
+};
+using ScheduleCalls = CallQueue<AskedSchedule, ScheduleAnswer>;
 
 /// Writes at a time: by a node that drives outputs by itself and tells what became of that, otherwise by the
 /// driver.
@@ -30,7 +36,9 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
                   Sink& sink);
 
   /// To a writable point. Refused while there is no connection; what is not done when that ends is cancelled.
-  std::future<ScheduleAnswer> ask(const ScheduledWrite& what) { return calls_.ask(what); }
+  std::future<ScheduleAnswer> ask(const ScheduledWrite& what) {
+    return calls_.ask({what, writer_.queued(what.write.point)});
+  }
   /// shut_down() has something to do.
   bool is_busy() const { return busy_; }
 
@@ -39,7 +47,8 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
 
   /// A new connection; `by_node`: to a node that drives outputs at a time.
   void connected(bool by_node);
-  /// When queue_due() or step() has something to do; the past if it has now.
+  /// When queue_due() or step() has something to do; the past if it has now, or will have when the writer has
+  /// made the writes before.
   Time due() const { return calls_.any() ? Time::min() : by_driver_.due(); }
   /// Queues the writes whose time has come.
   void queue_due(Time now) {
@@ -47,7 +56,9 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
     by_driver_.queue_due(now);
     note();
   }
-  bool has_request() const { return calls_.any(); }
+  bool has_request() {
+    return calls_.any_of([this](const AskedSchedule& asked) { return is_next(asked); });
+  }
   /// Makes one request. An error means that the connection can no longer be used.
   Result<> step(const ChangeListener& listener);
   /// There is no connection, and the writer knows that: what waits is cancelled.
@@ -63,7 +74,11 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
 
   std::string why_refused(const ScheduledWrite& what, Time now) const;
   bool can_node(const ScheduledWrite& what, const ChangeListener& listener) const;
-  Result<> answer(ScheduleCalls::Call call, const ChangeListener& listener);
+  bool is_next(const AskedSchedule& asked) const {
+    return writer_.has_results(asked.what.write.point, asked.after);
+  }
+  Result<> answer(const ScheduledWrite& what, std::promise<ScheduleAnswer>& to,
+                  const ChangeListener& listener);
   Result<ScheduleAnswer> give_to_node(const ScheduledWrite& what, const ChangeListener& listener);
   ScheduleAnswer keep(const ScheduledWrite& what);
   void cancel_at_node(const ChangeListener& listener);

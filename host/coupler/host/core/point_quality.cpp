@@ -67,7 +67,10 @@ void PointQualities::rejected(Span<const std::uint32_t> points, modbus::Exceptio
 
 void PointQualities::told(std::uint32_t point, bool told) {
   const std::lock_guard lock(mutex_);
-  if (std::exchange(points_[point].told, told) != told) ++revision_;
+  Entry& entry = points_[point];
+  if (std::exchange(entry.told, told) == told) return;
+  if (!told && entry.last_good) entry.last_good = std::max(*entry.last_good, heard_);
+  ++revision_;
 }
 
 void PointQualities::heard(Time at) {

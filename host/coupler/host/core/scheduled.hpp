@@ -52,6 +52,8 @@ struct ScheduledOutcome {
 struct AcceptedWrite {
   std::uint32_t number = 0;
   ScheduledWrite what;
+  /// Another write to the point was carried out since: that one is the newer, or this one is cancelled.
+  bool is_overwritten = false;
 };
 
 /// Gets the outcomes. Calls come from the connection's thread.

@@ -156,14 +156,15 @@ void ToldBits::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
     if (repeats(told) && repeat_at(told) <= stamp->at && !writer_.hides(told.point)) show(told, *stamp);
 }
 
-/// More changes follow, and are older than what waits to be written, too.
+/// More changes follow, and are older than what waits to be written, too. Without them the bits are not those
+/// of the device: nothing is shown of them until they are read.
 void ToldBits::leave_out_older_than_writes() {
   if (!writer_.hides_any()) return;
   for (Told& told : points_) {
     if (!told.known || !writer_.hides(told.point)) continue;
-    told.newer_than = newest_;
+    told.known = false;
     told.pending.reset();
-    cycle_.rest(told.point, false);  // should the write fail, it has the value
+    cycle_.read_soon(told.point);
   }
 }
 

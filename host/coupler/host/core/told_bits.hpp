@@ -20,8 +20,10 @@ namespace coupler::host {
 ///
 /// An array whose bits change in one step of the node is shown once.
 ///
-/// No value flickers back: a change is not shown if it is older than a value that has been read, or than one
-/// that is to be written.
+/// No value flickers back: a change is not shown if it is older than a value that is to be written, or if the
+/// device had counted it before a value was read. Of one between the answers to the wait and to the read
+/// nobody can tell, so it is shown. A bit that was read has the level that it has had or has next, so it does
+/// not flicker even then; an array may.
 class ToldBits : public ChangeSink {
  public:
   /// Everything given by reference must outlive it.

@@ -61,8 +61,7 @@ WriteQueue::Pushed WriteQueue::push(const Write& write) {
     if (own.ordered >= capacity) return {false, {}};
   } else if (older != none) {
     pushed.superseded = remove(older);
-    --waiting.pending;
-    --pending_writes_;
+    settle(waiting);
   }
   const Index place = insert(write, ordered, none);
   if (ordered) {
@@ -108,8 +107,25 @@ bool WriteQueue::overtakes(const Write& taken) const {
 
 void WriteQueue::settled(std::uint32_t point) {
   const std::lock_guard lock(mutex_);
-  --waiting_[point].pending;
+  settle(waiting_[point]);
+}
+
+void WriteQueue::settle(Waiting& waiting) {
+  --waiting.pending;
+  ++waiting.settled;
   --pending_writes_;
+}
+
+std::uint32_t WriteQueue::queued(std::uint32_t point) const {
+  const std::lock_guard lock(mutex_);
+  return waiting_[point].settled + waiting_[point].pending;
+}
+
+bool WriteQueue::has_results(std::uint32_t point, std::uint32_t queued) const {
+  const std::lock_guard lock(mutex_);
+  const Waiting& waiting = waiting_[point];
+  const std::uint32_t left = queued - waiting.settled;  // of those; it wraps when newer ones are settled
+  return left == 0 || left > waiting.pending;
 }
 
 bool WriteQueue::is_pending(std::uint32_t point) const {

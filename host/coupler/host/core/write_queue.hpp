@@ -55,6 +55,10 @@ class WriteQueue {
   /// A value of the point was pushed and has no result yet.
   bool is_pending(std::uint32_t point) const;
   bool any_pending() const { return pending_writes_.load() != 0; }
+  /// How many writes of the point have taken a place so far; for has_results().
+  std::uint32_t queued(std::uint32_t point) const;
+  /// So many of them, the oldest ones, have their results, however many have come since.
+  bool has_results(std::uint32_t point, std::uint32_t queued) const;
 
  private:
   using Index = std::uint32_t;
@@ -72,6 +76,7 @@ class WriteQueue {
     Index number = none;   ///< the place of a number
     Index ordered = none;  ///< the newest ordered one
     std::uint16_t pending = 0;
+    std::uint32_t settled = 0;  ///< were pending; it wraps
   };
 
   /// A class: the writes of one priority, as a list through their places.
@@ -82,6 +87,7 @@ class WriteQueue {
     std::uint64_t last_ordered = 0;  ///< Place::number of the last that was queued
   };
 
+  void settle(Waiting& waiting);
   bool is_ordered(const Write& write) const;
   bool joins(const Write& newer, const Write& older) const;
   Class& class_of(const Write& write);

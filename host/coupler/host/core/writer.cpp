@@ -201,6 +201,7 @@ Result<std::vector<RejectedValue>> Writer::write_safe_values() {
   for (const Write& write : safe_values_) remember(write);
   transport_.rank(Rank::safe);
   auto rejected = write_values(safe_values_, map_, transport_);
+  for (const Write& write : safe_values_) remember(write);  // an older value may have been told meanwhile
   transport_.rank(Rank::write);
   return rejected;
 }
@@ -267,10 +268,10 @@ void Writer::drop(const Write& write) {
   const bool keeps = restores(write) && !write.of_schedule;  // that has a time of its own
   if (keeps) remember(write);
   if (write.of_deadman) deadmen_.put_back(write.point);
-  const std::string_view why =
-      is_pulsed(map_.points[write.point])
-          ? "not connected; a pulse is not written when the device is back"
-          : "not connected; with 'on_reconnect: restore' in the map it would be written when the device is back";
+  const std::string_view why = is_pulsed(map_.points[write.point])
+                                   ? "not connected; a pulse is not written when the device is back"
+                                   : "not connected; with 'on_reconnect: restore' in the map it would be "
+                                     "written when the device is back";
   const WriteResult result = {keeps ? Outcome::kept : Outcome::dropped, std::nullopt, why};
   queue_.settled(write.point);
   tell(write, result);

@@ -53,6 +53,11 @@ class Writer {
   /// Logs the lines about writes that were held back because there were too many. To be called now and then.
   void report_held_back();
   bool is_safe_asked() const { return safe_calls_.any(); }
+  /// As WriteQueue's, from any thread.
+  std::uint32_t queued(std::uint32_t point) const { return queue_.queued(point); }
+  bool has_results(std::uint32_t point, std::uint32_t queued) const {
+    return queue_.has_results(point, queued);
+  }
 
   /// Sends the next writes without waiting for the answer, if nothing is in flight and no pause or reading
   /// must come first. True if there is nothing else to do until the answer has come.

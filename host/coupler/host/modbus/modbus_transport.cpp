@@ -61,11 +61,7 @@ Result<> ModbusTransport::select(std::uint8_t unit, std::chrono::milliseconds ti
   unit_ = unit;
   if (modbus_set_slave(context_.get(), unit_) != 0)
     return fail(NotConnected{fmt::format("unit {} is reserved; Modbus has units 0 to 247 and 255", unit_)});
-  if (std::exchange(timeout_, timeout) == timeout) return {};
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout_);
-  const auto rest = std::chrono::microseconds(timeout_ - seconds);
-  modbus_set_response_timeout(context_.get(), static_cast<std::uint32_t>(seconds.count()),
-                              static_cast<std::uint32_t>(rest.count()));
+  timeout_ = timeout;
   return {};
 }
 
@@ -104,10 +100,13 @@ void ModbusTransport::hang_up() {
 
 Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
   if (socket_ < 0) return fail(NotConnected{"not connected"});
+  const Deadline deadline(timeout_);
   if (auto sent = send_request(socket_, next_header(), request.pdu()); !sent)
     return tl::make_unexpected(sent.error());
-  if (auto before = receive_wait_before(Deadline(timeout_)); !before)
-    return tl::make_unexpected(before.error());
+  if (auto before = receive_wait_before(deadline); !before) return tl::make_unexpected(before.error());
+  const int left = std::max(deadline.left(), 1);  // libmodbus takes no 0
+  modbus_set_response_timeout(context_.get(), static_cast<std::uint32_t>(left / 1000),
+                              static_cast<std::uint32_t>(left % 1000 * 1000));
   const int size = modbus_receive_confirmation(context_.get(), reply_.data());
   if (size < 0) return tl::make_unexpected(receive_error(errno, timeout_));
   const Span<const std::uint8_t> adu(reply_.data(), static_cast<std::size_t>(size));
