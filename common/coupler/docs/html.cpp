@@ -106,9 +106,8 @@ Cell behind(const Document&, const PointDescription& point) {
 }
 
 Cell initial(const Document&, const PointDescription& point) {
-  return {html(point.initial),
-          joined({prefixed("safe: ", html(point.safe)), prefixed("pulse: ", point.pulse),
-                  prefixed("deadman: ", html(point.deadman))})};
+  return {html(point.initial), joined({prefixed("safe: ", html(point.safe)), prefixed("pulse: ", point.pulse),
+                                       prefixed("deadman: ", html(point.deadman))})};
 }
 
 Cell message(const Document&, const PointDescription& point) {

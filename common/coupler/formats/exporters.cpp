@@ -79,8 +79,9 @@ const Exporter* find_exporter(std::string_view name) {
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) {
   for (const Point& point : map.points) {
     if (is_of_the_node(point))
-      warnings.add("lines, channels, counters, initial and safe values and pulses belong to the node and are left out",
-                   "no action is needed: the node has the map", point.name);
+      warnings.add(
+          "lines, channels, counters, initial and safe values and pulses belong to the node and are left out",
+          "no action is needed: the node has the map", point.name);
     if (is_of_the_driver(point))
       warnings.add("the driver's options of points are left out",
                    "look for similar options in the other program", point.name);

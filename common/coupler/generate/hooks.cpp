@@ -160,9 +160,9 @@ std::string node_core(const Map& map, const Provenance& provenance) {
                      fmt::arg("source", comment(provenance.source)), fmt::arg("version", provenance.version),
                      fmt::arg("fingerprint", map.fingerprint), fmt::arg("identity_size", identity::size),
                      fmt::arg("areas", memory.areas), fmt::arg("cells", memory.cells),
-                     fmt::arg("bits", memory.bits), fmt::arg("links", memory.links), fmt::arg("pulses", memory.pulses),
-                     fmt::arg("members", hook_members(map, core_style)), fmt::arg("before", macros.before),
-                     fmt::arg("after", macros.after));
+                     fmt::arg("bits", memory.bits), fmt::arg("links", memory.links),
+                     fmt::arg("pulses", memory.pulses), fmt::arg("members", hook_members(map, core_style)),
+                     fmt::arg("before", macros.before), fmt::arg("after", macros.after));
 }
 
 }  // namespace coupler::generate

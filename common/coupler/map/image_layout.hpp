@@ -13,10 +13,10 @@ namespace coupler {
 
 /// How many elements the arrays have that a node of a map works on.
 struct NodeMemory {
-  std::size_t areas = 0;  ///< addresses without a hole: device::Image::Area
-  std::size_t cells = 0;  ///< mapped addresses, two bytes each
-  std::size_t bits = 0;   ///< of these cells: coils and discrete inputs
-  std::size_t links = 0;  ///< counters and latches: device::EdgePoints::Link
+  std::size_t areas = 0;   ///< addresses without a hole: device::Image::Area
+  std::size_t cells = 0;   ///< mapped addresses, two bytes each
+  std::size_t bits = 0;    ///< of these cells: coils and discrete inputs
+  std::size_t links = 0;   ///< counters and latches: device::EdgePoints::Link
   std::size_t pulses = 0;  ///< coils that end by themselves: device::ScheduledOutput
 };
 NodeMemory node_memory(const Map& map);

@@ -65,8 +65,7 @@ Json not_true() {
 /// Of a coil: neither is 1.
 Json not_on() {
   return {{"not",
-           {{"anyOf",
-             {{{"enum", {true, 1}}}, {{"type", "string"}, {"pattern", any_case({"yes", "on"})}}}}}}};
+           {{"anyOf", {{{"enum", {true, 1}}}, {{"type", "string"}, {"pattern", any_case({"yes", "on"})}}}}}}};
 }
 
 /// "not" with "required" would refuse a point that is no map, too.

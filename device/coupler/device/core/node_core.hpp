@@ -20,11 +20,11 @@ namespace coupler::device {
 constexpr std::size_t kept_changes = 48;
 
 /// What the generated coupler::maps::NAME::NodeCore of every map has in common: a node in static memory, for
-/// microcontrollers. `Areas`, `Cells`, `Bits`, `Links` and `Pulses` are the map's NodeMemory, `Scheduled` is how many
-/// outputs clients can schedule. All of it is called in one task: requests, tick(), and what the firmware
-/// sets. No heap, no exceptions, no threads.
-template <std::size_t Areas, std::size_t Cells, std::size_t Bits, std::size_t Links,
-          std::size_t Pulses = 0, std::size_t KeptChanges = kept_changes, std::size_t Scheduled = 4>
+/// microcontrollers. `Areas`, `Cells`, `Bits`, `Links` and `Pulses` are the map's NodeMemory, `Scheduled` is
+/// how many outputs clients can schedule. All of it is called in one task: requests, tick(), and what the
+/// firmware sets. No heap, no exceptions, no threads.
+template <std::size_t Areas, std::size_t Cells, std::size_t Bits, std::size_t Links, std::size_t Pulses = 0,
+          std::size_t KeptChanges = kept_changes, std::size_t Scheduled = 4>
 class NodeCore : public Hooks {
  public:
   NodeCore(const NodeCore&) = delete;
