@@ -102,11 +102,17 @@ TEST_F(Pulse, Each_coil_of_a_write_has_its_own_and_others_stay) {
   EXPECT_THAT(levels(), ElementsAre(0, 0, 1));
 }
 
-TEST_F(Pulse, What_the_hardware_refuses_begins_none_and_prolongs_none) {
+TEST_F(Pulse, What_the_hardware_refuses_ends_all_the_same_since_a_line_may_have_moved) {
   node.lines.broken = true;
   write(0, true);
-  EXPECT_FALSE(runs());
   node.lines.broken = false;
+  node.lines.outputs[0].level = 1;
+  pass(length);
+  EXPECT_EQ(node.lines.outputs[0].level, 0);
+  EXPECT_FALSE(runs());
+}
+
+TEST_F(Pulse, What_the_hardware_refuses_prolongs_none) {
   write(0, true);
   pass(milliseconds(150));
   node.lines.broken = true;
@@ -150,6 +156,29 @@ TEST_F(Pulse, No_duration_makes_it_longer) {
   EXPECT_FALSE(runs());
 }
 
+TEST_F(Pulse, A_shorter_duration_ends_it) {
+  ASSERT_NE(schedule(milliseconds(50), true, milliseconds(50)), 0);
+  pass(milliseconds(50));
+  EXPECT_THAT(levels(), ElementsAre(1, 0, 0));
+  pass(milliseconds(50));
+  EXPECT_THAT(levels(), ElementsAre(0, 0, 0));
+  EXPECT_FALSE(runs());
+}
+
+TEST_F(Pulse, A_coil_that_is_on_when_its_node_begins_ends_too) {
+  const std::uint16_t on[] = {1};
+  NodeUnderTest other(MapBuilder()
+                          .add(Table::coils, "horn", 0, codec::Type::BOOL,
+                               [&](Point& point) {
+                                 point.pulse = length;
+                                 point.initial = on;
+                               })
+                          .build());
+  EXPECT_EQ(other.handler.next_scheduled(), TimePoint(length));
+  other.handler.tick(TimePoint(length));
+  EXPECT_EQ(other.image.find(Table::coils, Range::of(0, 1))[0], 0);
+}
+
 TEST_F(Pulse, A_duration_that_interrupts_it_does_not_bring_it_back) {
   write(0, true);
   ASSERT_NE(schedule(milliseconds(50), false, milliseconds(50)), 0);
@@ -189,6 +218,45 @@ TEST_F(Pulse, Another_process_that_takes_its_memory_ends_it) {
   write(1, true);
   OutputSchedule next(node.scheduled, nullptr, 2);
   EXPECT_EQ(next.earliest(), node.now + length);
+}
+
+/// Code that leaves outputs as they are in the safe state.
+struct Firmware : Hooks {
+  void put_new_values(Image&, Changes&) override {}
+  bool accept(std::uint32_t, const std::uint16_t* registers) override {
+    level = registers[0];
+    return true;
+  }
+  int level = 0;
+};
+
+TEST(PulseOfAFirmware, Ends_after_the_safe_state_too) {
+  const MapPtr owner =
+      MapBuilder()
+          .add(Table::coils, "bell", 0, codec::Type::BOOL, [](Point& point) { point.pulse = length; })
+          .watchdog({milliseconds(100), Watchdog::FedBy::any, Watchdog::Recovery::automatic})
+          .build();
+  const Map& map = owner->map();
+  OwnedImage memory(map);
+  FakeLines lines;
+  Firmware firmware;
+  HookedPoints hooked(map, memory.image, firmware);
+  Statistics statistics;
+  OutputWatchdog watchdog(map.service.watchdog);
+  Changes changes;
+  std::vector<ScheduledOutput> places(1);
+  OutputSchedule schedule(places, nullptr, 1);
+  Handler handler(map, Hardware(lines, nullptr, &hooked),
+                  {memory.image, statistics, watchdog, {}, changes, schedule});
+  ClientSession session;
+  std::array<std::uint8_t, modbus::max_pdu_size> reply{};
+  const TimePoint begun(std::chrono::hours(1));
+  handler.handle(pdu(5, {0, 0xFF00}), session, begun, reply);
+  EXPECT_EQ(firmware.level, 1);
+  handler.tick(begun + milliseconds(100));
+  EXPECT_EQ(watchdog.state(), OutputWatchdog::State::expired);
+  handler.tick(begun + length);
+  EXPECT_EQ(firmware.level, 0);
 }
 
 }  // namespace

@@ -278,5 +278,14 @@ TEST_F(WriteQueueTest, A_value_is_on_its_way_from_push_to_result) {
   EXPECT_FALSE(queue.any_pending());
 }
 
+TEST_F(WriteQueueTest, A_write_that_a_newer_one_replaces_has_its_result_then) {
+  push(number, 1);
+  const std::uint32_t first = queue.queued(number);
+  EXPECT_FALSE(queue.has_results(number, first));
+  EXPECT_EQ(push(number, 2), 1) << "in its place";
+  EXPECT_TRUE(queue.has_results(number, first));
+  EXPECT_FALSE(queue.has_results(number, queue.queued(number)));
+}
+
 }  // namespace
 }  // namespace coupler::host

@@ -31,7 +31,7 @@ Registers safe_state_of(const Point& output) {
 bool DurationEnd::goes_back(const Point& point, const ScheduledOutput& which) const {
   if (point.latched.present() || point.counter.present()) return false;
   if (which.safety == Safety::unasked) return true;
-  if (!has_hardware(point)) return !hardware_.has_code();
+  if (!has_hardware(point)) return is_pulsed(point) || !hardware_.has_code();
   return point.safe == Safe::hold || which.safety == Safety::failed;
 }
 

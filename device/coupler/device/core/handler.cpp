@@ -42,6 +42,7 @@ Handler::Handler(const Map& map, Hardware hardware, const NodeState& state, cons
       has_pulses_(std::any_of(map.points.begin(), map.points.end(), is_pulsed)) {
   set_machine({});
   show_outputs();
+  if (has_pulses_) begin_pulses_that_are_missing();
 }
 
 void Handler::set_machine(const identity::Machine& machine) {
@@ -157,7 +158,6 @@ tl::expected<void, Exception> Handler::drive_and_store(Table table, modbus::Rang
   const bool pulses = has_pulses_ && table == Table::coils;
   if (pulses) begin_pulses(range, now);
   if (const auto driven = hardware_.drive(table, range, next); !driven) {
-    if (pulses) follow_pulses(range, false, now);
     if (driven.error().hardware_failed) ++statistics_.hardware_errors;
     return tl::unexpected(driven.error().exception);
   }
@@ -165,7 +165,7 @@ tl::expected<void, Exception> Handler::drive_and_store(Table table, modbus::Rang
   if (hardware_.driven(table, range, cells)) wrote_output_ = true;
   schedule_.driven(table, range, cells);
   const TimePoint done = later(now);
-  if (pulses) follow_pulses(range, true, done);
+  if (pulses) follow_pulses(range, done);
   changes_.set_time(done);
   changes_.compare(table, range);
   return {};
@@ -178,14 +178,22 @@ void Handler::begin_pulses(modbus::Range coils, TimePoint now) {
       schedule_.pulse(point.address, now + point.pulse);
 }
 
-void Handler::follow_pulses(modbus::Range coils, bool written, TimePoint now) {
+void Handler::follow_pulses(modbus::Range coils, TimePoint now, std::chrono::milliseconds longest) {
   for (const Point& point : touched_points(map_, Table::coils, coils)) {
     if (!is_pulsed(point)) continue;
     if (image_.find(Table::coils, range(point))[0] == 0)
       schedule_.end_pulse(point.address);
-    else if (written)
-      schedule_.pulse(point.address, now + point.pulse);
+    else
+      schedule_.pulse(point.address, now + std::min(point.pulse, longest));
   }
+}
+
+void Handler::begin_pulses_that_are_missing() {
+  const TimePoint now = later({});
+  for (const Point& point : map_.points)
+    if (is_pulsed(point) && image_.find(Table::coils, range(point))[0] != 0 &&
+        !schedule_.has_pulse(point.address))
+      schedule_.pulse(point.address, now + point.pulse);
 }
 
 Handler::Answer Handler::carry_out(const modbus::WriteBits& write, const Call& call) {

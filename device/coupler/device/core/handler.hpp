@@ -115,11 +115,15 @@ class Handler {
   void expire_watchdog(TimePoint now);
   tl::expected<void, modbus::Exception> drive_and_store(Table table, modbus::Range range,
                                                         Span<std::uint16_t> cells, TimePoint now);
-  /// Pulses of the range that begin with what next_ says, before it is driven: if this process dies
-  /// meanwhile, they end all the same.
+  /// Pulses of the range that begin with what next_ says, before it is driven: they end all the same if this
+  /// process dies meanwhile, and if that fails, for a line may have moved.
   void begin_pulses(modbus::Range coils, TimePoint now);
-  /// A coil of the range that is 0 has no pulse. One that is 1, and was written so, has all of it before it.
-  void follow_pulses(modbus::Range coils, bool written, TimePoint now);
+  /// What was driven: a coil of the range that is 0 has no pulse, one that is 1 has all of it before it, or
+  /// as much as `longest`.
+  void follow_pulses(modbus::Range coils, TimePoint now,
+                     std::chrono::milliseconds longest = std::chrono::milliseconds::max());
+  /// A coil that was 1 when this process, or this map, came into force ends, too.
+  void begin_pulses_that_are_missing();
   bool drive_safe(TimePoint now);
   void show_outputs();
   bool read_hardware(Table table, modbus::Range range, Span<std::uint16_t> cells, TimePoint now);

@@ -91,6 +91,8 @@ void Handler::drive(ScheduledOutput& which, TimePoint now) {
     schedule_.tell_done(which, at);
   else
     schedule_.tell_failed(which, watchdog_.is_locked() ? Reason::locked : Reason::hardware, at);
+  if (driven && lasts && has_pulses_ && which.table == Table::coils)
+    follow_pulses(which.range, at, which.duration);
   if (driven && lasts)
     schedule_.postpone(which, at + which.duration);
   else

@@ -83,6 +83,7 @@ class OutputSchedule {
   void pulse(std::uint16_t coil, TimePoint end);
   /// The coil is 0.
   void end_pulse(std::uint16_t coil);
+  bool has_pulse(std::uint16_t coil) { return pulse_of(coil) != nullptr; }
   /// Ends at another time.
   void postpone(ScheduledOutput& which, TimePoint end);
   /// It could not be ended, and is due again at this time.

@@ -95,15 +95,10 @@ void SharedState::take_over(const SharedState& before, TimePoint now) {
   statistics() = before.lasting_[0].statistics;
   watchdog().take_over(before.lasting_[0].watchdog, now);
   take_over_schedule(before);
-  OutputSchedule schedule(scheduled(), nullptr, pulses());
-  for (const Carried& carried : std::exchange(carried_, {})) {
+  for (const Carried& carried : std::exchange(carried_, {}))
     for (std::size_t i = 0; i < carried.to.size(); ++i)
       carried.to[i] =
           static_cast<std::uint16_t>((carried.to[i] & ~carried.mask) | (carried.from[i] & carried.mask));
-    const Point& point = *carried.point;
-    if (is_pulsed(point) && !is_pulsed(*carried.before) && carried.to[0] != 0)
-      schedule.pulse(point.address, now + point.pulse);
-  }
 }
 
 }  // namespace coupler::device

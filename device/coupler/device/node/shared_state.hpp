@@ -30,7 +30,7 @@ class SharedState {
   void prepare_take_over(const SharedState& before);
   /// Takes over from the other state what both have: statistics, the watchdog's state, and the value of
   /// every point that has the same name, table, type and layout in both; and scheduled outputs and pulses
-  /// that have begun, if they fit(). A coil that is 1 and has a pulse here only begins it.
+  /// that have begun, if they fit().
   void take_over(const SharedState& before, TimePoint now);
 
   /// Whether an output of `before`, for which take_over() was prepared, is of the same points here, at the

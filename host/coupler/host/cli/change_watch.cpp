@@ -8,6 +8,13 @@ namespace coupler::cli {
 
 using host::Result;
 
+namespace {
+
+/// A gateway may let no such question through, and ends the connection then.
+constexpr int most_unheard = 2;
+
+}  // namespace
+
 ChangeWatch::ChangeWatch(const Map& map, host::PacedTransport& transport, host::Clock& clock,
                          host::DeviceStatistics& statistics, Use use, Note note)
     : wanted_(map.changes && use),
@@ -23,8 +30,18 @@ Result<> ChangeWatch::start(bool is_node) {
   const Result<identity::Further> node = host::read_further(transport_);
   if (!node) return tl::make_unexpected(node.error());
   if (!node->functions.tells_changes) return {};
+  if (unheard_ >= most_unheard) {
+    note_(
+        "the node says that it tells changes, but the question for them ended two connections: it is polled");
+    return {};
+  }
   listener_.start(std::chrono::milliseconds(node->watchdog_timeout));
   return listener_.step();
+}
+
+void ChangeWatch::lost() {
+  if (is_active()) unheard_ = listener_.has_heard() ? 0 : unheard_ + 1;
+  listener_.stop();
 }
 
 Result<> ChangeWatch::wait_until(host::Time time) {

@@ -24,6 +24,8 @@ class ChangeWatch : private host::ChangeSink, private host::Sink {
   /// A new connection. Asks for changes before anything else is read, so that none is missed. An error means
   /// that the connection can no longer be used.
   host::Result<> start(bool is_node);
+  /// The connection has ended.
+  void lost();
   /// The device announces its changes.
   bool is_active() const { return listener_.is_active(); }
   /// Waits until then; returns early if everything should be read once more, or after the transport's wake().
@@ -48,6 +50,7 @@ class ChangeWatch : private host::ChangeSink, private host::Sink {
   Note note_;
   host::ChangeListener listener_;
   bool missed_ = false;  ///< since all was read
+  int unheard_ = 0;      ///< connections in a row that ended without an answer
 };
 
 }  // namespace coupler::cli

@@ -119,8 +119,7 @@ Snapshot DeviceReader::look() {
     now_.error_text = to_string(read.error());
     for (Reading& reading : now_.readings)
       if (reading.state == State::failed && reading.why.empty()) reading.why = now_.error_text;
-    transport_.close();
-    connected_ = false;
+    lose_connection();
   }
   now_.at = std::chrono::system_clock::now();
   return now_;
@@ -129,6 +128,12 @@ Snapshot DeviceReader::look() {
 void DeviceReader::wait_until(host::Time time) {
   if (!connected_ || !changes_.is_active()) return clock_.sleep_until(time);
   if (changes_.wait_until(time)) return;
+  lose_connection();
+  clock_.sleep_until(std::min<host::Time>(time, clock_.now() + std::chrono::seconds(1)));  // not without end
+}
+
+void DeviceReader::lose_connection() {
+  changes_.lost();
   transport_.close();
   connected_ = false;
 }

@@ -36,6 +36,7 @@ class DeviceReader {
   using ReadSpan = plan::ReadSpan;
 
   host::Result<> connect();
+  void lose_connection();
   host::Result<> identify();
   void judge(const host::Identity& identity);
   void plan();

@@ -53,8 +53,10 @@ WriteQueue::Pushed WriteQueue::push(const Write& write) {
   const Index older = ordered ? waiting.ordered : waiting.number;
   if (older != none) {
     Place& place = places_[older];
-    if (ordered ? joins(write, place.write) : place.number > own.last_ordered)
+    if (ordered ? joins(write, place.write) : place.number > own.last_ordered) {
+      ++waiting.settled;  // the older one: the newer has its place
       return {true, std::exchange(place.write, write)};
+    }
   }
   Pushed pushed;
   if (ordered) {

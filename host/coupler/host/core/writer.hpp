@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "coupler/base/line_limit.hpp"
 #include "coupler/host/core/calls.hpp"
@@ -55,8 +57,11 @@ class Writer {
   bool is_safe_asked() const { return safe_calls_.any(); }
   /// As WriteQueue's, from any thread.
   std::uint32_t queued(std::uint32_t point) const { return queue_.queued(point); }
+  /// As WriteQueue's; one that was taken from there has none yet.
   bool has_results(std::uint32_t point, std::uint32_t queued) const {
-    return queue_.has_results(point, queued);
+    const auto is_taken = [point](const Write& write) { return write.point == point; };
+    const std::vector<Write>& taken = batch_.writes();
+    return queue_.has_results(point, queued) && std::none_of(taken.begin(), taken.end(), is_taken);
   }
 
   /// Sends the next writes without waiting for the answer, if nothing is in flight and no pause or reading
