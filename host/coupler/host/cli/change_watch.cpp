@@ -69,6 +69,4 @@ void ChangeWatch::on_change(const modbus::Change& change, std::uint64_t /*number
   if (change.is_bit()) use_(change, stamp);
 }
 
-void ChangeWatch::on_heard(std::uint64_t /*newest*/, std::optional<host::Stamp> /*stamp*/) {}
-
 }  // namespace coupler::cli

@@ -34,7 +34,7 @@ class ChangeWatch : private host::ChangeSink, private host::Sink {
  private:
   void on_change(const modbus::Change& change, std::uint64_t number, host::Stamp stamp) override;
   void on_gap() override { missed_ = true; }
-  void on_heard(std::uint64_t newest, std::optional<host::Stamp> stamp) override;
+  void on_heard(std::uint64_t, std::optional<host::Stamp>) override {}
   void on_end() override {}
   host::Time answer_wanted() override { return host::Time::max(); }
 

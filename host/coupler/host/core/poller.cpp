@@ -55,7 +55,7 @@ Result<> Poller::step(Time until) {
 
 void Poller::publish(const ReadSpan& span) {
   const Stamp stamp = transport_.last_stamp();
-  const ReadSpan& fresh = writer_.hides_any() ? without_hidden(span) : span;
+  const ReadSpan& fresh = writer_.hides_any() || told_.leaves_out_any() ? without_hidden(span) : span;
   if (holds_bits(span.table))
     publish_bits(fresh, stamp);
   else
@@ -74,7 +74,7 @@ const ReadSpan& Poller::without_hidden(const ReadSpan& span) {
   rest_.range = span.range;
   rest_.points.clear();
   for (const std::uint32_t point : span.points)
-    if (!writer_.hides(point)) rest_.points.push_back(point);
+    if (!told_.leave_out(point) && !writer_.hides(point)) rest_.points.push_back(point);
   return rest_;
 }
 

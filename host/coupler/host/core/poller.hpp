@@ -18,6 +18,7 @@ namespace coupler::host {
 /// Reads one device: makes the requests of the polling cycle and gives the values to the sink.
 ///
 /// A value that was requested before a newer one was written is not given on: the old one would flicker back.
+/// Neither is one that changes are older than which still come: see ToldBits.
 class Poller {
  public:
   /// Everything given by reference must outlive it.

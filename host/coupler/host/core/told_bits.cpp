@@ -61,6 +61,7 @@ Time ToldBits::repeat_at(Told& told) {
 void ToldBits::start(bool told) {
   active_ = told;
   newest_ = 0;
+  more_follow_ = false;
   for (Told& point : points_) forget(point);
 }
 
@@ -80,6 +81,13 @@ void ToldBits::want(std::uint32_t point, bool wanted) {
     forget(told);
   else if (told.known)
     cycle_.read_soon(point);
+}
+
+bool ToldBits::leave_out(std::uint32_t point) {
+  if (!leaves_out_any() || !index_[point]) return false;
+  const Told& told = points_[*index_[point]];
+  if (told.known && rests(told)) cycle_.read_soon(point);
+  return told.known;
 }
 
 Stamp ToldBits::read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
@@ -149,6 +157,7 @@ void ToldBits::on_gap() {
 
 void ToldBits::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
   newest_ = newest;
+  more_follow_ = !stamp;
   if (!stamp) return leave_out_older_than_writes();
   qualities_.heard(stamp->at);
   for (Told& told : points_) show_pending(told);

@@ -20,10 +20,12 @@ namespace coupler::host {
 ///
 /// An array whose bits change in one step of the node is shown once.
 ///
-/// No value flickers back: a change is not shown if it is older than a value that is to be written, or if the
-/// device had counted it before a value was read. Of one between the answers to the wait and to the read
-/// nobody can tell, so it is shown. A bit that was read has the level that it has had or has next, so it does
-/// not flicker even then; an array may.
+/// No value flickers back, and no change is left out for one that was read: where more changes follow than one
+/// answer holds, a value that is read meanwhile is newer than they are, and is not shown; it is read again.
+/// Only where changes were lost it is, and then those that it is newer than are not. A change is not shown
+/// either if it is older than a value that is to be written. Of one between the answers to the wait and to
+/// the read nobody can tell, so it is shown. A bit that was read has the level that it has had or has next,
+/// so it does not flicker even then; an array may.
 class ToldBits : public ChangeSink {
  public:
   /// Everything given by reference must outlive it.
@@ -33,6 +35,10 @@ class ToldBits : public ChangeSink {
   void start(bool told);
   /// As PollCycle's. If it is wanted again, or still, it is read soon, since somebody has not seen it.
   void want(std::uint32_t point, bool wanted);
+  /// What was read of some points is not to be shown.
+  bool leaves_out_any() const { return active_ && more_follow_; }
+  /// Whether that is so of this point. If somebody waits for it, it is read again.
+  bool leave_out(std::uint32_t point);
   /// These points have been read, and are to be shown. Returns the stamp to show them with: that of a point
   /// does not go back.
   Stamp read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp);
@@ -76,6 +82,7 @@ class ToldBits : public ChangeSink {
   std::vector<std::uint8_t> bits_;
   bool active_ = false;
   std::uint64_t newest_ = 0;
+  bool more_follow_ = false;  ///< up to this
   ReadSpan one_{Table::coils, modbus::Range::of(0, 1), {}};  ///< kept for its memory
 };
 
