@@ -72,7 +72,8 @@ std::size_t Handler::handle(modbus::Bytes request, ClientSession& session, TimeP
 
 void Handler::tick(TimePoint now) {
   drive_due(now);
-  if (wants_news(now)) take_news(now);
+  if (!took_news_ && wants_news(now)) take_news(now);
+  took_news_ = false;
 }
 
 /// The watchdog first: what it cancels is not driven.

@@ -56,7 +56,8 @@ class Handler {
   std::size_t handle(modbus::Bytes request, ClientSession& session, TimePoint now, Span<std::uint8_t> reply);
 
   /// Drives the outputs to their safe state if the watchdog is due, drives what is scheduled for now or
-  /// before, and takes news if a client asks for changes. handle() does so too, first.
+  /// before, and takes news if a client asks for changes, unless they were taken since the last call.
+  /// handle() does so too, first.
   void tick(TimePoint now);
   /// How long tick() need not be called; nullopt: not before the next request.
   std::optional<std::chrono::milliseconds> time_until_due(TimePoint now) const;
@@ -147,6 +148,7 @@ class Handler {
   Statistics& statistics_;
   OutputWatchdog& watchdog_;
   Changes& changes_;
+  bool took_news_ = false;               ///< since the last tick()
   std::optional<TimePoint> listened_{};  ///< when a client asked for changes, the last time
   EdgePoints edge_points_;
   OutputSchedule& schedule_;

@@ -18,6 +18,7 @@ void Handler::tell_changes(std::uint32_t epoch, TimePoint now) {
 }
 
 void Handler::take_news(TimePoint now) {
+  took_news_ = true;
   changes_.set_time(now);
   hardware_.take_news(now, edge_points_, changes_);
 }

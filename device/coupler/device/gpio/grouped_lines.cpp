@@ -119,7 +119,7 @@ void GroupedLines::take_edges(TimePoint now, EdgeSink& sink) {
     Teller teller(input, now, sink);
     if (!input.wired.request.lost) teller.changed_meanwhile();
     // Edges that were taken count, even if the chip is unplugged since; read() reports that.
-    (void)input.wired.group->take_edges();
+    input.wired.group->take_edges();
     input.wired.group->tell(now, teller);
   }
 }

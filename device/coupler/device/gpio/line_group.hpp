@@ -54,10 +54,11 @@ class InputGroup : public LineGroup {
 
   /// Where the kernel reports edges; -1: it reports none. The owner of the event loop watches it.
   virtual int descriptor() const { return -1; }
-  /// Takes the waiting edges without blocking. False: none can be taken any more, for the lines are gone
-  /// (their chip was unplugged). The descriptor stays readable for ever then, so it must not be watched any
-  /// more.
-  [[nodiscard]] virtual bool take_edges() { return true; }
+  /// Takes the waiting edges without blocking.
+  virtual void take_edges() {}
+  /// False, after take_edges(): none can be taken any more, for the lines are gone (their chip was unplugged).
+  /// The descriptor stays readable for ever then, so it must not be watched any more.
+  virtual bool reports_edges() const { return true; }
   /// Tells what was taken, or seen by looking at the lines, since the last call.
   virtual void tell(TimePoint, LineSink&) {}
   /// When tell() is to be called again although the descriptor is not ready.

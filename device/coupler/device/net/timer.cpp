@@ -42,10 +42,11 @@ void Timer::set(TimePoint at) {
 }
 
 void Timer::ready(TimePoint now) {
-  std::uint64_t times = 0;
-  if (::read(timer_.get(), &times, sizeof times) != sizeof times) return;
+  if (now < at_) return;  // it was set anew since
   at_ = TimePoint::max();
   on_time_(now);
+  std::uint64_t times = 0;  // read last, for it is late already
+  [[maybe_unused]] const auto taken = ::read(timer_.get(), &times, sizeof times);
 }
 
 }  // namespace coupler::device

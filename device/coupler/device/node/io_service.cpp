@@ -76,8 +76,8 @@ class IoService::EdgeHandler : public EventHandler {
   ~EdgeHandler() { loop_.forget(group_.descriptor(), *this); }
 
   void ready(TimePoint now) override {
-    if (!group_.take_edges()) loop_.forget(group_.descriptor(), *this);
     handler_.take_news(now);
+    if (!group_.reports_edges()) loop_.forget(group_.descriptor(), *this);
   }
 
  private:

@@ -79,7 +79,8 @@ class EventLines : public WatchedInputs {
   bool is_plugged() override { return requests_.front()->is_plugged(); }
   int read(Span<int> levels, TimePoint now) override;
   int descriptor() const override { return ready_; }
-  bool take_edges() override;
+  void take_edges() override;
+  bool reports_edges() const override { return reports_edges_; }
 
  private:
   bool take_waiting();
@@ -91,6 +92,7 @@ class EventLines : public WatchedInputs {
   int ready_;
   std::size_t next_ = 0;   ///< is looked at with the next read
   bool is_known_ = false;  ///< this process has looked at all of them
+  bool reports_edges_ = true;
   std::string name_;
 };
 
@@ -125,18 +127,15 @@ bool EventLines::take_waiting() {
   return true;
 }
 
-bool EventLines::take_edges() {
-  if (!take_waiting()) {
-    fail_all(errno, TimePoint::clock::now());
-    return false;
-  }
+void EventLines::take_edges() {
+  reports_edges_ = take_waiting();
+  if (!reports_edges_) return fail_all(errno, TimePoint::clock::now());
   if (std::exchange(is_known_, true)) {
     look_at_doubtful();
   } else {
     // A process that died may have taken edges and not noted them.
     for (std::size_t line = 0; line < size(); ++line) look_at(line);
   }
-  return true;
 }
 
 void EventLines::look_at_doubtful() {
@@ -156,7 +155,8 @@ void EventLines::look_at(std::size_t line) {
 }
 
 int EventLines::read(Span<int> levels, TimePoint now) {
-  if (take_edges()) {
+  take_edges();
+  if (reports_edges_) {
     next_ = (next_ + 1) % size();
     look_at(next_);
   }

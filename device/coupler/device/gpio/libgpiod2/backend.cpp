@@ -67,7 +67,8 @@ class EventInputs : public WatchedInputs {
   bool is_plugged() override { return request_.is_plugged(); }
   int read(Span<int> levels, TimePoint now) override;
   int descriptor() const override { return gpiod_line_request_get_fd(request_.lines.get()); }
-  bool take_edges() override;
+  void take_edges() override;
+  bool reports_edges() const override { return reports_edges_; }
 
  private:
   struct Reported {
@@ -83,6 +84,7 @@ class EventInputs : public WatchedInputs {
   Owned<gpiod_edge_event_buffer, gpiod_edge_event_buffer_free> events_;
   SharedArray<Reported> reported_;  ///< shared: a process that is started anew sees no gap in their sequence
   bool is_known_ = false;           ///< this process has looked at the lines
+  bool reports_edges_ = true;
   std::string name_;
 };
 
@@ -123,14 +125,11 @@ bool EventInputs::take_waiting() {
   }
 }
 
-bool EventInputs::take_edges() {
-  if (!take_waiting()) {
-    fail_all(errno, TimePoint::clock::now());
-    return false;
-  }
+void EventInputs::take_edges() {
+  reports_edges_ = take_waiting();
+  if (!reports_edges_) return fail_all(errno, TimePoint::clock::now());
   // A process that died may have taken edges and not noted them. Edges can be taken if looking fails, too.
   if (!std::exchange(is_known_, true) || has_doubts()) (void)look_at_all();
-  return true;
 }
 
 /// Returns 0 or an errno.
