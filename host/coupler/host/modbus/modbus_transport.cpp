@@ -192,13 +192,18 @@ Result<> ModbusTransport::send_wait(const modbus::ChangesRequest& request) {
 
 Result<> ModbusTransport::receive_wait() {
   if (!wait_) return fail(NotConnected{"nothing was asked for"});
-  return receive_wait_before(std::min(wait_->answer_by, Deadline(timeout_)));
+  modbus::Framer framer;
+  const Deadline deadline = std::min(wait_->answer_by, Deadline(timeout_));
+  return take_wait_reply(receive_reply(socket_, wait_->header, timeout_, deadline, framer, true));
 }
 
 Result<> ModbusTransport::receive_wait_before(const Deadline& deadline) {
   if (!wait_) return {};
   modbus::Framer framer;
-  const auto pdu = receive_first_reply(socket_, wait_->header, timeout_, deadline, framer);
+  return take_wait_reply(receive_first_reply(socket_, wait_->header, timeout_, deadline, framer));
+}
+
+Result<> ModbusTransport::take_wait_reply(const Result<modbus::Bytes>& pdu) {
   if (!pdu) return tl::make_unexpected(pdu.error());
   const auto reply = modbus::parse_changes_reply(*pdu);
   if (!reply && !reply.error().exception) return fail(BadFrame{"not the reply to a wait for changes"});

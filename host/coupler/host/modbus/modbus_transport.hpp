@@ -64,6 +64,7 @@ class ModbusTransport : public Transport {
   modbus::Frame next_header();
   /// The answer to a wait comes before that to the request which has been sent now.
   Result<> receive_wait_before(const Deadline& deadline);
+  Result<> take_wait_reply(const Result<modbus::Bytes>& pdu);
 
   /// A wait for changes that is outstanding.
   struct Wait {

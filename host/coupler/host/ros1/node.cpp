@@ -64,7 +64,7 @@ class Ros1ServiceThread : public TypedServiceThread<Ros1ServiceThread, Ros1Servi
   void start() override {
     thread_ = std::thread([this] {
       while (queue_.isEnabled())
-        queue_.callOne(ros::WallDuration(1));  // the wait; a call is answered at once
+        queue_.callOne(ros::WallDuration(3600));  // the wait: a call, or disable(), ends it at once
     });
   }
   void stop() override { queue_.disable(); }
