@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes at a time: by the node's timer where a node can, otherwise by the driver's. Nothing here says how late they may be,
 but none is early."""
-import os
 import time
 import unittest
 
@@ -14,6 +13,7 @@ from support.device import FAILURE, Device, Refuse
 from support.patience import NO_TIMEOUT, wait_until
 from support.peer import Peer
 from support.ports import free_port
+from support.times import ROUNDING, ros_duration, ros_time, seconds
 
 MAP = f"""
 name: cell
@@ -29,38 +29,6 @@ mapping:
 """
 SOON, LATER, NEVER = 0.3, 0.6, 3000  # seconds
 BY_DRIVER, BY_NODE = "accepted: the driver does it", "accepted: the node does it"
-ROUNDING = 1e-6  # of a time as a double
-
-
-def seconds(stamp):
-    """ROS 1 and ROS 2 have other names for them."""
-    return stamp.secs + stamp.nsecs / 1e9 if hasattr(stamp, "secs") else stamp.sec + stamp.nanosec / 1e9
-
-
-def parts(value):
-    return int(value), int(value % 1 * 1e9)
-
-
-# Of the request's types, which ROS 1 has without a message.
-# pylint: disable=import-outside-toplevel,import-error
-if os.environ.get("ROS_VERSION") == "2":
-    from builtin_interfaces.msg import Duration, Time
-
-    def ros_time(at):
-        second, rest = parts(at)
-        return Time(sec=second, nanosec=rest)
-
-    def ros_duration(length):
-        second, rest = parts(length)
-        return Duration(sec=second, nanosec=rest)
-else:
-    import rospy
-
-    def ros_time(at):
-        return rospy.Time(*parts(at))
-
-    def ros_duration(length):
-        return rospy.Duration(*parts(length))
 
 
 class ScheduleTest(testing.RosTest):

@@ -11,6 +11,7 @@ from std_msgs.msg import Bool, UInt16
 from support import process, testing
 from support.patience import NO_TIMEOUT
 from support.peer import Peer
+from support.times import ROUNDING, seconds
 from support.topics import type_of, wait_until
 
 MAP = f"""
@@ -54,11 +55,6 @@ WANTED = {
 }
 
 
-def seconds(stamp):
-    """ROS 1 and ROS 2 have other names for them."""
-    return stamp.secs + stamp.nsecs / 1e9 if hasattr(stamp, "secs") else stamp.sec + stamp.nanosec / 1e9
-
-
 class Slow(ModbusSequentialDataBlock):
     """Counts how often it is read. A number was true at the moment of its reading only."""
 
@@ -96,8 +92,7 @@ class WhenItWasTrue(StampedTest):
         for message in topic.values[:20]:
             stamp = seconds(message.header.stamp)
             error = abs(stamp - device.read_at[message.value])
-            rounding = 1e-6  # of a time as a double
-            self.assertLessEqual(error, message.uncertainty + rounding)
+            self.assertLessEqual(error, message.uncertainty + ROUNDING)
             self.assertGreaterEqual(message.uncertainty, (before + after) / 2, "half of what the device takes at least")
 
     def test_of_a_device_that_answers_at_once(self):
