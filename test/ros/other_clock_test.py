@@ -38,7 +38,6 @@ class Edge:
     after: float
     stamp: float
     uncertainty: float
-    heard: float  # when its message was here
 
     @property
     def error(self):
@@ -75,9 +74,8 @@ class OtherClockTest(testing.RosTest):
         self.set_lamp(self.level)
         after = time.time()
         wait_until(lambda: self.lamp.values[came:] and self.lamp.values[-1].value == self.level, "the edge")
-        heard = time.time()
         message = self.lamp.values[-1]
-        return Edge(before, after, seconds(message.header.stamp), message.uncertainty, heard)
+        return Edge(before, after, seconds(message.header.stamp), message.uncertainty)
 
     def edges(self, count, pause=0.0):
         edges = []

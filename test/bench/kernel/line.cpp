@@ -41,4 +41,10 @@ void Line::drive(bool level) const {
   if (::ioctl(descriptor_, GPIO_V2_LINE_SET_VALUES_IOCTL, &values) != 0) give_up("cannot drive a line");
 }
 
+Line::Edge Line::next_edge() const {
+  gpio_v2_line_event event{};
+  if (::read(descriptor_, &event, sizeof event) != sizeof event) give_up("cannot wait for an edge");
+  return {static_cast<std::int64_t>(event.timestamp_ns), event.id == GPIO_V2_LINE_EVENT_RISING_EDGE};
+}
+
 }  // namespace coupler::bench

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 namespace coupler::bench {
 
 /// One line of a chip by the kernel's own interface (v2 of the GPIO character device), nothing between. What
@@ -15,6 +17,13 @@ class Line {
 
   bool read() const;
   void drive(bool level) const;
+
+  struct Edge {
+    std::int64_t at;  ///< ns, CLOCK_MONOTONIC: the kernel's stamp
+    bool level;
+  };
+  /// The next edge, of a line that was requested with GPIO_V2_LINE_FLAG_EDGE_*. Waits for it.
+  Edge next_edge() const;
 
  private:
   int descriptor_;

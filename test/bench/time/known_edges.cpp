@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "test/bench/time/known_edges.hpp"
+
+#include <linux/gpio.h>
+
+namespace coupler::bench {
+namespace {
+
+constexpr auto both_edges =
+    GPIO_V2_LINE_FLAG_INPUT | GPIO_V2_LINE_FLAG_EDGE_RISING | GPIO_V2_LINE_FLAG_EDGE_FALLING;
+/// ns; a tick of the kernel is longer.
+constexpr std::int64_t one_tick = 1'000'000;
+
+}  // namespace
+
+KnownEdges::KnownEdges(const char* chip, const std::string& wires)
+    : before_(wires + "/sim_gpio0"),
+      behind_(wires + "/sim_gpio4"),
+      first_(chip, 0, both_edges),
+      last_(chip, 4, both_edges) {}
+
+void KnownEdges::pull(const Wire& wire, bool level) const {
+  before_.pull(level);
+  wire.pull(level);
+  behind_.pull(level);
+}
+
+std::optional<KnownEdges::Stamp> KnownEdges::stamp() const {
+  const Stamp stamp{first_.next_edge().at, last_.next_edge().at};
+  if (stamp.latest - stamp.earliest > one_tick) return std::nullopt;
+  return stamp;
+}
+
+}  // namespace coupler::bench
