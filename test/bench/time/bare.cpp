@@ -5,8 +5,7 @@
 //   coupler_bench_bare relay FROM TO                      the same for each byte that comes on another port
 //   coupler_bench_bare publisher PORT                     publishes each byte that comes, on bare/input
 //   coupler_bench_bare reaction CHIP INPUT OUTPUT NS      repeats each edge so much later, by a timer; prints
-//   after
-//                                                         how many ns it was done
+//                                                         after how many ns it was done
 #include <arpa/inet.h>
 #include <linux/gpio.h>
 #include <netinet/in.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // From an edge to the message that tells of it, through a node and a driver and through a bare chain, in
-// turn. Each line of its output is a sample: the side and ns.
-//   coupler_bench_edges wire CHIP WIRES ROUNDS           in the test kernel: from the kernel's stamps of
-//   lines 1 and 2 coupler_bench_edges coil NODE_PORT BARE_PORT ROUNDS  a node with --sim, whose input follows
-//   its coil: from the
-//                                                        request to write it
-// With "wire" also "stamp" with three figures: the kernel's stamp of an edge, which is between the first two,
-// less the driver's; and the uncertainty of that.
+// turn. Each line of its output is a sample: the side and ns. ROUNDS is even.
+//   coupler_bench_edges wire CHIP WIRES ROUNDS
+// In the test kernel, from the kernel's stamps of lines 1 and 2. Also "stamp" with three figures: the
+// kernel's stamp of an edge, which is between the first two, less the driver's; and the uncertainty of that.
+// If one was not within it, the exit status is 1.
+//   coupler_bench_edges coil NODE_PORT BARE_PORT ROUNDS
+// A node with --sim, whose input follows its coil, from the request that writes it.
 #include <coupler_driver/BoolStamped.h>
 #include <std_msgs/Bool.h>
 #include <sys/socket.h>
@@ -36,7 +36,7 @@ constexpr std::chrono::milliseconds pause(8);
 
 void measure(const char* side, int rounds, const MakeEdge& make_edge, Heard<Bool>& heard) {
   for (int i = 0; i < rounds; ++i) {
-    const bool level = i % 2 == 0;
+    const bool level = i % 2 == 0;  // the last one is low
     std::this_thread::sleep_for(pause);
     const auto when = make_edge(level);
     const auto told = heard.wait_for([&](const Bool& message) { return (message.data != 0) == level; });
@@ -57,7 +57,9 @@ class Sides {
     }
   }
 
-  void check_stamps(int rounds, const KnownEdges& edges, const Wire& wire) {
+  /// Whether all were right.
+  bool check_stamps(int rounds, const KnownEdges& edges, const Wire& wire) {
+    bool good = true;
     Heard<BoolStamped> stamped(handle_, "plant/input/stamped");
     stamped.connect();
     for (int i = 0; i < rounds; ++i) {
@@ -65,11 +67,16 @@ class Sides {
       std::this_thread::sleep_for(pause);
       edges.pull(wire, level);
       const auto told = stamped.wait_for([&](const BoolStamped& one) { return (one.value != 0) == level; });
-      const auto stamp = static_cast<std::int64_t>(told.message->header.stamp.toNSec()) - wall_offset();
-      if (const auto edge = edges.stamp())
-        std::printf("stamp %lld %lld %.0f\n", static_cast<long long>(edge->earliest - stamp),
-                    static_cast<long long>(edge->latest - stamp), told.message->uncertainty * 1e9);
+      const WallOffset wall = wall_offset();
+      const auto stamp = static_cast<std::int64_t>(told.message->header.stamp.toNSec()) - wall.offset;
+      const auto uncertainty = static_cast<std::int64_t>(told.message->uncertainty * 1e9) + wall.error;
+      const auto edge = edges.stamp();
+      if (!edge) continue;
+      good &= edge->earliest <= stamp + uncertainty && edge->latest >= stamp - uncertainty;
+      std::printf("stamp %lld %lld %lld\n", static_cast<long long>(edge->earliest - stamp),
+                  static_cast<long long>(edge->latest - stamp), static_cast<long long>(uncertainty));
     }
+    return good;
   }
 
  private:
@@ -79,7 +86,7 @@ class Sides {
   ros::AsyncSpinner spinner_;
 };
 
-void on_wires(const char* chip, const std::string& wires, int rounds) {
+bool on_wires(const char* chip, const std::string& wires, int rounds) {
   const Wire of_node(wires + "/sim_gpio1");
   const Wire of_bare(wires + "/sim_gpio2");
   const KnownEdges edges(chip, wires);
@@ -94,7 +101,7 @@ void on_wires(const char* chip, const std::string& wires, int rounds) {
   };
   Sides sides;
   sides.measure_in_turn(rounds, pull(of_node), pull(of_bare));
-  sides.check_stamps(rounds, edges, of_node);
+  return sides.check_stamps(rounds, edges, of_node);
 }
 
 void of_a_coil(std::uint16_t node_port, std::uint16_t bare_port, int rounds) {
@@ -125,11 +132,8 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "edges", ros::init_options::NoSigintHandler);
   const std::string_view how = argc == 5 ? argv[1] : "";
   const auto port = [&](int i) { return static_cast<std::uint16_t>(std::atoi(argv[i])); };
-  if (how == "wire")
-    on_wires(argv[2], argv[3], std::atoi(argv[4]));
-  else if (how == "coil")
-    of_a_coil(port(2), port(3), std::atoi(argv[4]));
-  else
-    return 2;
+  if (how == "wire") return on_wires(argv[2], argv[3], std::atoi(argv[4])) ? 0 : 1;
+  if (how != "coil") return 2;
+  of_a_coil(port(2), port(3), std::atoi(argv[4]));
   return 0;
 }

@@ -24,20 +24,20 @@ inline std::int64_t now(clockid_t clock) {
   return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec;
 }
 
-/// What to add to CLOCK_MONOTONIC for CLOCK_REALTIME, in ns; true within 10 µs, unless the machine is too
-/// busy for that.
-inline std::int64_t wall_offset() {
-  std::int64_t best = std::numeric_limits<std::int64_t>::max();
+/// What to add to CLOCK_MONOTONIC for CLOCK_REALTIME, true within plus or minus `error`; ns.
+struct WallOffset {
   std::int64_t offset = 0;
-  for (int i = 0; i < 100 && best > 20'000; ++i) {
+  std::int64_t error = std::numeric_limits<std::int64_t>::max();
+};
+inline WallOffset wall_offset() {
+  WallOffset best;
+  for (int i = 0; i < 10; ++i) {
     const std::int64_t before = now(CLOCK_MONOTONIC);
     const std::int64_t wall = now(CLOCK_REALTIME);
-    const std::int64_t took = now(CLOCK_MONOTONIC) - before;
-    if (took >= best) continue;
-    best = took;
-    offset = wall - before - took / 2;
+    const std::int64_t half = (now(CLOCK_MONOTONIC) - before + 1) / 2;
+    if (half < best.error) best = {wall - before - half, half};
   }
-  return offset;
+  return best;
 }
 
 /// The messages of a topic, and when they came; somebody else spins. What does not come within a minute ends

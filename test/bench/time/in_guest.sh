@@ -27,6 +27,6 @@ check "and hears of edges" wait_until says sender sending
 start reaction "$bench/coupler_bench_bare" reaction "$chip" 3 6 "$4"
 check "the bare timer waits" wait_until says reaction reacting
 wires=$(dirname "$(sim_wire plant 0)")
-check "edges are told" "$bench/coupler_bench_edges" wire "$chip" "$wires" "$2"
+check "edges are told, each with a stamp that is right" "$bench/coupler_bench_edges" wire "$chip" "$wires" "$2"
 check "outputs follow" "$bench/coupler_bench_reaction" "$chip" "$wires" "$3" "$4"
 grep timer "$(log reaction)"

@@ -86,9 +86,11 @@ void compare(const char* chip, const std::string& wires, int rounds, std::int64_
   const Wire of_driver(wires + "/sim_gpio1");
   const Wire of_timer(wires + "/sim_gpio3");
   Changes changes;
+  bool level = false;
+  bool of_timer_level = false;
   for (int run = 0; run < repetitions; ++run) {
     for (int i = 0; i < rounds; ++i) {
-      const bool level = i % 2 == 0;
+      level = !level;
       edges.pull(of_driver, level);
       schedule_it(level);
       const std::int64_t driven = changes.coil_became(level);
@@ -96,7 +98,8 @@ void compare(const char* chip, const std::string& wires, int rounds, std::int64_
         std::printf("driver %lld\n", static_cast<long long>(driven - edge->earliest));
     }
     for (int i = 0; i < rounds; ++i) {
-      of_timer.pull(i % 2 == 0);
+      of_timer_level = !of_timer_level;
+      of_timer.pull(of_timer_level);
       std::this_thread::sleep_for(std::chrono::nanoseconds(delay) + std::chrono::milliseconds(30));
     }
   }

@@ -54,18 +54,15 @@ class OtherClock(Relay):
             places = [PDU + 4, PDU + 12]
         else:
             return
+        offset = self.offset  # one for the whole frame
         for place in places:
             at, = struct.unpack_from(">Q", frame, place)
-            struct.pack_into(">Q", frame, place, self._shown(at))
+            struct.pack_into(">Q", frame, place, at + offset + round((at - self._begun) * self.drift))
 
     def _request(self, frame):
         is_to_schedule = frame[PDU] == SCHEDULE and frame[PDU + 2] == 1
         if is_to_schedule:
             due, = struct.unpack_from(">Q", frame, PDU + 7)
-            struct.pack_into(">Q", frame, PDU + 7, self._true(due))
+            true = self._begun + round((due - self.offset - self._begun) / (1 + self.drift))
+            struct.pack_into(">Q", frame, PDU + 7, true)
 
-    def _shown(self, at):
-        return at + self.offset + round((at - self._begun) * self.drift)
-
-    def _true(self, shown):
-        return self._begun + round((shown - self.offset - self._begun) / (1 + self.drift))
