@@ -150,10 +150,10 @@ class Schedules(OtherClockTest):
             return answer.message == "accepted: the node does it"
 
         wait_until(is_known, "the node to be known")
-        ahead = 0.5
+        ahead, before = 0.5, time.time()
         while not (answer := in_seconds(ahead)).success:  # on a busy machine the call may come after the time
-            ahead *= 2
-        before, after = self.driven()
+            ahead, before = 2 * ahead, time.time()
+        before, after = self.driven(before)
         outcome = scheduled.wait_for(lambda message: message.number == answer.number)
         self.assertEqual((outcome.result, outcome.reason), (Scheduled.DONE, ""))
         stamp = seconds(outcome.header.stamp)
@@ -161,9 +161,8 @@ class Schedules(OtherClockTest):
         self.assertGreaterEqual(after, stamp - outcome.uncertainty - ROUNDING)
         self.assertLess(abs(stamp - outcome.lateness - seconds(outcome.due)), ROUNDING)
 
-    def driven(self):
-        """The last time at which the lamp was seen off, and the first at which it was seen on."""
-        before = time.time()
+    def driven(self, before):
+        """The last time at which the lamp was seen off, of `before` and those since, and the first at which it was seen on."""
         while True:
             asked = time.time()
             if self.client.read_coils(4, 1).bits[0]:

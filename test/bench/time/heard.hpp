@@ -40,8 +40,8 @@ inline WallOffset wall_offset() {
   return best;
 }
 
-/// The messages of a topic, and when they came; somebody else spins. What does not come within a minute ends
-/// the program with status 1.
+/// The messages of a topic, and when they came; somebody else spins. What does not come within three minutes
+/// ends the program with status 1.
 template <class M>
 class Heard {
  public:
@@ -72,7 +72,7 @@ class Heard {
   /// The last one, once it is as wanted.
   Message wait_for(const std::function<bool(const M&)>& is_wanted) {
     std::unique_lock lock(mutex_);
-    if (!news_.wait_for(lock, std::chrono::minutes(1),
+    if (!news_.wait_for(lock, std::chrono::minutes(3),
                         [&] { return last_.message && is_wanted(*last_.message); }))
       give_up("a message did not come");
     return last_;

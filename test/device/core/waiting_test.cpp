@@ -68,8 +68,17 @@ TEST_F(Waiting, Lines_that_have_to_be_looked_at_are_though_nobody_asks_for_chang
   EXPECT_EQ(node_.handler.time_until_due(node_.now), std::nullopt);
   node_.lines.looks = true;
   EXPECT_EQ(node_.handler.time_until_due(node_.now), milliseconds(5));
-  node_.handler.tick(node_.now);  // the first one: news were taken when it began
   node_.lines.changes = {{1, true, node_.now}};
+  node_.handler.tick(node_.now);
+  EXPECT_THAT(node_.lines.changes, IsEmpty());
+}
+
+TEST_F(Waiting, What_was_taken_when_an_edge_woke_the_node_is_not_taken_again_in_that_turn) {
+  node_.lines.looks = true;
+  node_.handler.take_news(node_.now);
+  node_.lines.changes = {{1, true, node_.now}};
+  node_.handler.tick(node_.now);
+  EXPECT_FALSE(node_.lines.changes.empty());
   node_.handler.tick(node_.now);
   EXPECT_THAT(node_.lines.changes, IsEmpty());
 }
@@ -200,7 +209,6 @@ TEST_F(Waiting, While_a_client_asks_the_node_turns_when_the_lines_want_it_to) {
   EXPECT_EQ(node_.handler.time_until_due(node_.now), std::nullopt) << "nobody asks";
   send(request(1000));
   EXPECT_EQ(node_.handler.time_until_due(node_.now), milliseconds(5));
-  node_.handler.tick(node_.now);  // of the turn that has carried it out, with the news before it
   node_.lines.next.reset();
   node_.lines.changes = {{0, true, node_.now}};
   node_.handler.tick(node_.now);

@@ -30,7 +30,6 @@ struct WaitingClients : testing::Test {
     Client client = node.connect();
     client.send(request(1));
     node.settle();
-    turn();
     EXPECT_THAT(client.received(), IsEmpty());
     return client;
   }
@@ -143,7 +142,6 @@ TEST_F(WaitingClients, The_reply_says_when_the_request_came_and_when_it_left) {
   const auto sent = TimePoint::clock::now().time_since_epoch();
   client.send(request(1));
   node.settle();
-  turn();
   press_button();
   const auto pressed = TimePoint::clock::now().time_since_epoch();
   turn();

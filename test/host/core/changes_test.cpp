@@ -115,15 +115,27 @@ TEST_F(ChangesTest, Changes_that_are_older_than_a_poll_all_come_and_before_its_v
   EXPECT_THAT(sink->values["barrier"], testing::ElementsAreArray(levels));
 }
 
-TEST_F(ChangesTest, Someone_who_begins_to_listen_while_more_changes_follow_gets_the_value_that_is_read_after_them) {
+TEST_F(ChangesTest, What_stays_as_it_is_is_published_while_changes_of_others_follow) {
+  begin(fakes::MapBuilder().input("barrier", 3).input("door", 4));
+  run_for(milliseconds(85));  // the next poll is near
+  for (int i = 0; i < 41; ++i) device.change(Table::discrete_inputs, 3, i % 2 == 0);
+  sink->values.clear();
+  clock.advance(milliseconds(20));
+  engine->step();  // the poll: its wait tells of 18 changes
+  EXPECT_EQ(sink->values["barrier"].size(), 18U);
+  EXPECT_THAT(sink->values["door"], ElementsAre(0));
+}
+
+TEST_F(ChangesTest,
+       Someone_who_begins_to_listen_while_more_changes_follow_gets_the_value_that_is_read_after_them) {
   begin(cell());
   for (int i = 0; i < 41; ++i) device.change(Table::discrete_inputs, 3, i % 2 == 0);
   engine->want(barrier(), true);
   sink->values.clear();
   run_for(milliseconds(200));
-  ASSERT_EQ(sink->values["barrier"].size(), 42U);
+  ASSERT_GE(sink->values["barrier"].size(), 42U);
   EXPECT_EQ(sink->values["barrier"].back(), 1);
-  EXPECT_EQ(reads(), 3U) << "two were left out: after two answers more followed";
+  EXPECT_LE(reads(), 3U) << "no more than one while changes follow, unless it was shown";
 }
 
 TEST_F(ChangesTest, After_lost_changes_a_value_counts_though_older_changes_follow) {

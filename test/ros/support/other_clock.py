@@ -65,4 +65,3 @@ class OtherClock(Relay):
             due, = struct.unpack_from(">Q", frame, PDU + 7)
             true = self._begun + round((due - self.offset - self._begun) / (1 + self.drift))
             struct.pack_into(">Q", frame, PDU + 7, true)
-

@@ -2,6 +2,7 @@
 #include "coupler/device/core/handler.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "coupler/device/core/each_point.hpp"
 #include "coupler/device/core/identity.hpp"
@@ -56,7 +57,7 @@ void Handler::set_machine(const identity::Machine& machine) {
 std::size_t Handler::handle(modbus::Bytes request, ClientSession& session, TimePoint now,
                             Span<std::uint8_t> reply) {
   drive_due(now);
-  take_news(now);
+  take(now);
   ++statistics_.requests;
   wrote_output_ = false;
   const Answer done = answer({request, session, now, reply});
@@ -72,8 +73,9 @@ std::size_t Handler::handle(modbus::Bytes request, ClientSession& session, TimeP
 
 void Handler::tick(TimePoint now) {
   drive_due(now);
-  if (!took_news_ && wants_news(now)) take_news(now);
-  took_news_ = false;
+  // A firmware may have set values since; it wakes the loop once for all of them.
+  const bool are_taken = std::exchange(took_news_, false) && !hardware_.has_code();
+  if (!are_taken && wants_news(now)) take(now);
 }
 
 /// The watchdog first: what it cancels is not driven.

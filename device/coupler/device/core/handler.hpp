@@ -56,7 +56,7 @@ class Handler {
   std::size_t handle(modbus::Bytes request, ClientSession& session, TimePoint now, Span<std::uint8_t> reply);
 
   /// Drives the outputs to their safe state if the watchdog is due, drives what is scheduled for now or
-  /// before, and takes news if a client asks for changes, unless they were taken since the last call.
+  /// before, and takes news if a client asks for changes, unless take_news() did since the last tick.
   /// handle() does so too, first.
   void tick(TimePoint now);
   /// How long tick() need not be called; nullopt: not before the next request.
@@ -85,6 +85,7 @@ class Handler {
     Span<std::uint8_t> reply;
   };
 
+  void take(TimePoint now);
   Answer answer(const Call& call);
   Answer carry_out(const modbus::Read& read, const Call& call);
   Answer carry_out(const modbus::WriteBits& write, const Call& call);
@@ -148,7 +149,7 @@ class Handler {
   Statistics& statistics_;
   OutputWatchdog& watchdog_;
   Changes& changes_;
-  bool took_news_ = false;               ///< since the last tick()
+  bool took_news_ = false;               ///< take_news() did, since the last tick()
   std::optional<TimePoint> listened_{};  ///< when a client asked for changes, the last time
   EdgePoints edge_points_;
   OutputSchedule& schedule_;

@@ -7,7 +7,7 @@ namespace coupler::device {
 using modbus::Exception;
 
 void Handler::tell_changes(std::uint32_t epoch, TimePoint now) {
-  take_news(now);
+  take(now);
   // Changes are told from the levels that the inputs have now. One that cannot be read says so in the log.
   for (const Image::Area& area : image_.mapped(Table::discrete_inputs)) {
     const auto range = modbus::Range::of(area.start, area.end - area.start);
@@ -18,7 +18,11 @@ void Handler::tell_changes(std::uint32_t epoch, TimePoint now) {
 }
 
 void Handler::take_news(TimePoint now) {
+  take(now);
   took_news_ = true;
+}
+
+void Handler::take(TimePoint now) {
   changes_.set_time(now);
   hardware_.take_news(now, edge_points_, changes_);
 }
@@ -34,7 +38,7 @@ bool Handler::wants_news(TimePoint now) const {
 bool Handler::read_hardware(Table table, modbus::Range range, Span<std::uint16_t> cells, TimePoint now) {
   const bool is_read = hardware_.read(table, range, cells, now);
   if (table == Table::discrete_inputs && changes_.differs(table, range)) {
-    take_news(now);
+    take(now);
     changes_.compare(table, range);
   }
   return is_read;

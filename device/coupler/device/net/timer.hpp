@@ -11,7 +11,7 @@ namespace coupler::device {
 /// (timerfd).
 class Timer : public EventHandler {
  public:
-  /// Both outlive it.
+  /// Both outlive it. `on_time` does not call set().
   Timer(Loop& loop, std::function<void(TimePoint now)> on_time);
   Timer(const Timer&) = delete;
   Timer& operator=(const Timer&) = delete;

@@ -73,8 +73,9 @@ const ReadSpan& Poller::without_hidden(const ReadSpan& span) {
   rest_.table = span.table;
   rest_.range = span.range;
   rest_.points.clear();
+  const Span<const std::uint8_t> bits(bits_.data(), span.range.count());
   for (const std::uint32_t point : span.points)
-    if (!told_.leave_out(point) && !writer_.hides(point)) rest_.points.push_back(point);
+    if (!told_.leave_out(point, span, bits) && !writer_.hides(point)) rest_.points.push_back(point);
   return rest_;
 }
 

@@ -67,6 +67,7 @@ void ToldBits::start(bool told) {
 
 void ToldBits::forget(Told& told) {
   told.known = false;
+  told.left_out = false;
   told.pending.reset();
   told.newer_than = 0;
   cycle_.rest(told.point, false);
@@ -83,11 +84,25 @@ void ToldBits::want(std::uint32_t point, bool wanted) {
     cycle_.read_soon(point);
 }
 
-bool ToldBits::leave_out(std::uint32_t point) {
-  if (!leaves_out_any() || !index_[point]) return false;
-  const Told& told = points_[*index_[point]];
-  if (told.known && rests(told)) cycle_.read_soon(point);
-  return told.known;
+const std::uint8_t* ToldBits::in(const ReadSpan& span, Span<const std::uint8_t> bits,
+                                 const Told& told) const {
+  return &bits[read_range(point_of(told)).start() - std::size_t{span.range.start()}];
+}
+
+bool ToldBits::leave_out(std::uint32_t point, const ReadSpan& span, Span<const std::uint8_t> bits) {
+  if (!leaves_out_any() || !holds_bits(span.table)) return false;
+  Told& told = points_[*index_[point]];
+  if (!told.known) return false;
+  const std::uint8_t* shown = &bits_[told.first];
+  const std::size_t count = read_range(point_of(told)).count();
+  if (!told.pending && std::equal(shown, shown + count, in(span, bits, told))) return false;
+  told.left_out = rests(told);
+  return true;
+}
+
+void ToldBits::read_what_was_left_out() {
+  for (Told& told : points_)
+    if (std::exchange(told.left_out, false)) cycle_.read_soon(told.point);
 }
 
 Stamp ToldBits::read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
@@ -95,12 +110,9 @@ Stamp ToldBits::read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp 
   for (const std::uint32_t point : span.points) stamp = not_before(points_[*index_[point]].stamp, stamp);
   for (const std::uint32_t point : span.points) {
     Told& told = points_[*index_[point]];
-    const modbus::Range range = read_range(map_.points[point]);
-    const std::uint8_t* from = &bits[range.start() - std::size_t{span.range.start()}];
-    std::copy_n(from, range.count(), &bits_[told.first]);
-    told.known = true;
+    std::copy_n(in(span, bits, told), read_range(point_of(told)).count(), &bits_[told.first]);
+    if (!std::exchange(told.known, true) || !more_follow_) told.newer_than = newest_;
     told.pending.reset();
-    told.newer_than = newest_;
     told.stamp = stamp;
     told.repeat_at.reset();
     if (!rests(told)) continue;
@@ -161,6 +173,7 @@ void ToldBits::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
   if (!stamp) return leave_out_older_than_writes();
   qualities_.heard(stamp->at);
   for (Told& told : points_) show_pending(told);
+  read_what_was_left_out();
   for (Told& told : points_)
     if (repeats(told) && repeat_at(told) <= stamp->at && !writer_.hides(told.point)) show(told, *stamp);
 }

@@ -20,12 +20,12 @@ namespace coupler::host {
 ///
 /// An array whose bits change in one step of the node is shown once.
 ///
-/// No value flickers back, and no change is left out for one that was read: where more changes follow than one
-/// answer holds, a value that is read meanwhile is newer than they are, and is not shown; it is read again.
-/// Only where changes were lost it is, and then those that it is newer than are not. A change is not shown
-/// either if it is older than a value that is to be written. Of one between the answers to the wait and to
-/// the read nobody can tell, so it is shown. A bit that was read has the level that it has had or has next,
-/// so it does not flicker even then; an array may.
+/// No value flickers back, and no change is left out for one that was read: where more changes follow than
+/// one answer holds, a value that is read meanwhile is newer than they are, and is not shown unless it is the
+/// one that was shown last. Only where changes were lost it is, and then those that it is newer than are not.
+/// A change is not shown either if it is older than a value that is to be written. Of one between the answers
+/// to the wait and to the read nobody can tell, so it is shown. A bit that was read has the level that it has
+/// had or has next, so it does not flicker even then; an array may.
 class ToldBits : public ChangeSink {
  public:
   /// Everything given by reference must outlive it.
@@ -35,10 +35,11 @@ class ToldBits : public ChangeSink {
   void start(bool told);
   /// As PollCycle's. If it is wanted again, or still, it is read soon, since somebody has not seen it.
   void want(std::uint32_t point, bool wanted);
-  /// What was read of some points is not to be shown.
+  /// What was read of some points may not be shown.
   bool leaves_out_any() const { return active_ && more_follow_; }
-  /// Whether that is so of this point. If somebody waits for it, it is read again.
-  bool leave_out(std::uint32_t point);
+  /// Whether that is so of this point of the span. If somebody waits for it, it is read again when all
+  /// changes have come.
+  bool leave_out(std::uint32_t point, const ReadSpan& span, Span<const std::uint8_t> bits);
   /// These points have been read, and are to be shown. Returns the stamp to show them with: that of a point
   /// does not go back.
   Stamp read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp);
@@ -54,6 +55,7 @@ class ToldBits : public ChangeSink {
     std::uint32_t point;
     std::size_t first;                ///< its bits begin there
     bool known = false;               ///< they are those of the device
+    bool left_out = false;            ///< and somebody waits
     std::uint64_t newer_than = 0;     ///< they are newer than this change
     Stamp stamp{};                    ///< the last one
     std::optional<Time> repeat_at{};  ///< as Sink's; nullopt: to be asked for
@@ -61,6 +63,9 @@ class ToldBits : public ChangeSink {
     std::optional<Stamp> pending{};
     modbus::NodeTime pending_at{};  ///< the step's time
   };
+  /// Its bits in what was read.
+  const std::uint8_t* in(const ReadSpan& span, Span<const std::uint8_t> bits, const Told& told) const;
+  void read_what_was_left_out();
   const Point& point_of(const Told& told) const { return map_.points[told.point]; }
   bool rests(const Told& told) const;
   bool repeats(const Told& told) const;
@@ -82,7 +87,7 @@ class ToldBits : public ChangeSink {
   std::vector<std::uint8_t> bits_;
   bool active_ = false;
   std::uint64_t newest_ = 0;
-  bool more_follow_ = false;  ///< up to this
+  bool more_follow_ = false;                                 ///< up to this
   ReadSpan one_{Table::coils, modbus::Range::of(0, 1), {}};  ///< kept for its memory
 };
 
