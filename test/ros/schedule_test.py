@@ -207,7 +207,7 @@ class ByTheNode(ScheduleTest):
         self.begin()
         number = self.accepted(BY_NODE, "lamp", "true", NEVER)
         self.node.reload()
-        self.cancelled(number, "the node read a new map or ended")
+        self.cancelled(number, "the node read a new map, lost or found a chip, or ended")
         self.settles(BY_NODE)
         self.done(self.accepted(BY_NODE, "lamp", "true"))
 
@@ -218,7 +218,7 @@ class ByTheNode(ScheduleTest):
         self.node.end()
         outcome = self.outcome(number)
         self.assertIn((outcome.result, outcome.reason),
-                      ((Scheduled.CANCELLED, "the node read a new map or ended"),
+                      ((Scheduled.CANCELLED, "the node read a new map, lost or found a chip, or ended"),
                        (Scheduled.UNKNOWN, "the connection ended before the outcome was heard")))
 
 

@@ -4,8 +4,8 @@ local wait_code, schedule_code = 65, 66
 local time_tables = { "coils", "discrete_inputs", "holding_registers", "input_registers" }
 local reasons = {
   "its client cancelled it", "another write to the same point", "the watchdog expired", "outputs went to their safe state",
-  "the node read a new map or ended", "its connection ended", "the line or channel could not be driven",
-  "the watchdog keeps outputs safe",
+  "the node read a new map, lost or found a chip, or ended", "its connection ended",
+  "the line or channel could not be driven", "the watchdog keeps outputs safe",
 }
 
 -- Nanoseconds, 8 bytes, as seconds of the node's clock.

@@ -167,7 +167,7 @@ TEST_F(NodeOutputsTest, A_node_that_was_started_anew_has_cancelled_what_was_not_
   run_for(seconds(3));
   ASSERT_EQ(sink->outcomes.size(), 2U);
   EXPECT_EQ(sink->outcomes[0].result, Became::cancelled);
-  EXPECT_EQ(sink->outcomes[0].reason, "the node read a new map or ended");
+  EXPECT_EQ(sink->outcomes[0].reason, "the node read a new map, lost or found a chip, or ended");
   EXPECT_EQ(sink->outcomes[1].result, Became::unknown);
 }
 
