@@ -56,8 +56,8 @@ class InputGroup : public LineGroup {
   virtual int descriptor() const { return -1; }
   /// Takes the waiting edges without blocking.
   virtual void take_edges() {}
-  /// False, after take_edges(): none can be taken any more, for the lines are gone (their chip was unplugged).
-  /// The descriptor stays readable for ever then, so it must not be watched any more.
+  /// False, after take_edges(): none can be taken any more, for the lines are gone (their chip was
+  /// unplugged). The descriptor stays readable for ever then, so it must not be watched any more.
   virtual bool reports_edges() const { return true; }
   /// Tells what was taken, or seen by looking at the lines, since the last call.
   virtual void tell(TimePoint, LineSink&) {}
