@@ -12,6 +12,9 @@
 
 namespace coupler::bench {
 
+const unsigned long long both_edges =
+    GPIO_V2_LINE_FLAG_INPUT | GPIO_V2_LINE_FLAG_EDGE_RISING | GPIO_V2_LINE_FLAG_EDGE_FALLING;
+
 Line::Line(const char* chip, unsigned offset, unsigned long long flags) {
   const int device = ::open(chip, O_RDWR | O_CLOEXEC);
   if (device < 0) give_up("cannot open the chip");

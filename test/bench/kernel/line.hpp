@@ -5,6 +5,9 @@
 
 namespace coupler::bench {
 
+/// Flags of an input whose edges are reported.
+extern const unsigned long long both_edges;
+
 /// One line of a chip by the kernel's own interface (v2 of the GPIO character device), nothing between. What
 /// must not happen in a benchmark ends the program with status 1 and a line on stderr.
 class Line {
@@ -22,7 +25,7 @@ class Line {
     std::int64_t at;  ///< ns, CLOCK_MONOTONIC: the kernel's stamp
     bool level;
   };
-  /// The next edge, of a line that was requested with GPIO_V2_LINE_FLAG_EDGE_*. Waits for it.
+  /// The next edge, of a line that was requested with both_edges. Waits for it.
   Edge next_edge() const;
 
  private:

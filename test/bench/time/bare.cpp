@@ -25,9 +25,6 @@
 namespace coupler::bench {
 namespace {
 
-constexpr auto both_edges =
-    GPIO_V2_LINE_FLAG_INPUT | GPIO_V2_LINE_FLAG_EDGE_RISING | GPIO_V2_LINE_FLAG_EDGE_FALLING;
-
 void send_edges(const Line& input, std::uint16_t port) {
   const LockStepClient connection(port);
   std::fprintf(stderr, "sending\n");

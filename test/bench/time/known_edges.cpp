@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "test/bench/time/known_edges.hpp"
 
-#include <linux/gpio.h>
-
 namespace coupler::bench {
 namespace {
 
-constexpr auto both_edges =
-    GPIO_V2_LINE_FLAG_INPUT | GPIO_V2_LINE_FLAG_EDGE_RISING | GPIO_V2_LINE_FLAG_EDGE_FALLING;
 /// ns; a tick of the kernel is longer.
 constexpr std::int64_t one_tick = 1'000'000;
 

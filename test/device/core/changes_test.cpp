@@ -202,13 +202,18 @@ struct SettingHooks : Hooks {
   std::optional<std::uint16_t> level;
 };
 
-TEST_F(Told, A_bit_that_a_firmware_sets_with_the_time_at_which_it_is_taken) {
+/// The same node with a firmware's code.
+struct ToldByFirmware : Told {
+  ToldByFirmware() { handler.tell_changes(epoch, node_.now); }
   SettingHooks hooks;
-  HookedPoints hooked(node_.map, node_.image, hooks);
-  Changes changes(node_.image, node_.ring, node_.told);
-  Handler handler(node_.map, Hardware(node_.lines, nullptr, &hooked),
-                  {node_.image, node_.statistics, node_.watchdog, node_.links, changes, node_.schedule});
-  handler.tell_changes(epoch, node_.now);
+  HookedPoints hooked{node_.map, node_.image, hooks};
+  Changes changes{node_.image, node_.ring, node_.told};
+  Handler handler{node_.map,
+                  Hardware(node_.lines, nullptr, &hooked),
+                  {node_.image, node_.statistics, node_.watchdog, node_.links, changes, node_.schedule}};
+};
+
+TEST_F(ToldByFirmware, A_bit_that_a_firmware_sets_with_the_time_at_which_it_is_taken) {
   hooks.level = 1;
   later();
   handler.take_news(node_.now);
@@ -217,13 +222,7 @@ TEST_F(Told, A_bit_that_a_firmware_sets_with_the_time_at_which_it_is_taken) {
   EXPECT_EQ(changes.ring().reply_to({0, epoch, 0}).changes[0], bit(2, 2, on, node_.now));
 }
 
-TEST_F(Told, A_bit_that_a_firmware_sets_when_edges_of_the_same_turn_are_taken) {
-  SettingHooks hooks;
-  HookedPoints hooked(node_.map, node_.image, hooks);
-  Changes changes(node_.image, node_.ring, node_.told);
-  Handler handler(node_.map, Hardware(node_.lines, nullptr, &hooked),
-                  {node_.image, node_.statistics, node_.watchdog, node_.links, changes, node_.schedule});
-  handler.tell_changes(epoch, node_.now);
+TEST_F(ToldByFirmware, A_bit_that_a_firmware_sets_when_edges_of_the_same_turn_are_taken) {
   ClientSession session;
   std::array<std::uint8_t, modbus::max_pdu_size> request{};
   const std::size_t size = modbus::build_changes_request({1000, epoch, 0}, request);

@@ -100,11 +100,6 @@ bool ToldBits::leave_out(std::uint32_t point, const ReadSpan& span, Span<const s
   return true;
 }
 
-void ToldBits::read_what_was_left_out() {
-  for (Told& told : points_)
-    if (std::exchange(told.left_out, false)) cycle_.read_soon(told.point);
-}
-
 Stamp ToldBits::read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
   if (!active_ || !holds_bits(span.table)) return stamp;
   for (const std::uint32_t point : span.points) stamp = not_before(points_[*index_[point]].stamp, stamp);
@@ -172,8 +167,10 @@ void ToldBits::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
   more_follow_ = !stamp;
   if (!stamp) return leave_out_older_than_writes();
   qualities_.heard(stamp->at);
-  for (Told& told : points_) show_pending(told);
-  read_what_was_left_out();
+  for (Told& told : points_) {
+    show_pending(told);
+    if (std::exchange(told.left_out, false)) cycle_.read_soon(told.point);
+  }
   for (Told& told : points_)
     if (repeats(told) && repeat_at(told) <= stamp->at && !writer_.hides(told.point)) show(told, *stamp);
 }

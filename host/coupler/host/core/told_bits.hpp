@@ -65,7 +65,6 @@ class ToldBits : public ChangeSink {
   };
   /// Its bits in what was read.
   const std::uint8_t* in(const ReadSpan& span, Span<const std::uint8_t> bits, const Told& told) const;
-  void read_what_was_left_out();
   const Point& point_of(const Told& told) const { return map_.points[told.point]; }
   bool rests(const Told& told) const;
   bool repeats(const Told& told) const;
