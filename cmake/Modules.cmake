@@ -2,7 +2,7 @@
 # One library and one test program a module.
 #
 # A cold build reads the same headers hundreds of times, so they are translated once (precompiled headers), and the files
-# of a test program three at a time. Neither may hide a missing include: scripts/lint compiles each file by itself.
+# of a test program four at a time. Neither may hide a missing include: scripts/lint compiles each file by itself.
 # -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON and -DCOUPLER_TEST_UNITY=1 build each file by itself, too.
 include(GNUInstallDirs)
 include(GoogleTest)
@@ -108,7 +108,7 @@ endfunction()
 
 # Several files as one. CMake's own UNITY_BUILD writes absolute paths, with which no two clones could share the
 # compiler's cache.
-set(COUPLER_TEST_UNITY 3 CACHE STRING "How many files of a test program are compiled as one")
+set(COUPLER_TEST_UNITY 4 CACHE STRING "How many files of a test program are compiled as one")
 function(coupler_unite out)
   set(files ${ARGN})
   set(united)

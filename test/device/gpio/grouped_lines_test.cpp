@@ -219,7 +219,7 @@ class FakeEvents : public FakeInputs {
   bool is_on = false;
 };
 
-struct Told : EdgeSink {
+struct ToldEdges : EdgeSink {
   void add(std::uint16_t input, const Edges& edges) override { all.emplace_back(input, edges.rising); }
   void changed(std::uint16_t input, bool level, TimePoint at) override {
     changes.emplace_back(input, level, at);
@@ -237,7 +237,7 @@ TEST(CountedLines, Edges_are_told_by_address_and_losses_logged_once_per_burst) {
   std::vector<WiredInputs> inputs;
   inputs.push_back({std::move(group), {4, 6}});
   GroupedLines lines({}, std::move(inputs), log);
-  Told told;
+  ToldEdges told;
   TimePoint now{std::chrono::hours(1)};
 
   events.waiting = {3, 2, 0};
@@ -271,7 +271,7 @@ class Changes : public testing::Test {
   std::shared_ptr<FakeEvents> first_ = std::make_shared<FakeEvents>(hardware_);
   std::shared_ptr<FakeEvents> second_ = std::make_shared<FakeEvents>(hardware_);
   GroupedLines lines_{{}, {}, log_};
-  Told told_;
+  ToldEdges told_;
   TimePoint now_{std::chrono::hours(1)};
 };
 

@@ -15,7 +15,7 @@ Line named(std::string_view name) {
   return line;
 }
 
-Line at(std::string_view chip, std::uint32_t offset) {
+Line by_offset(std::string_view chip, std::uint32_t offset) {
   Line line;
   line.chip = chip;
   line.offset = offset;
@@ -29,7 +29,7 @@ class Finding : public testing::Test {
 };
 
 TEST_F(Finding, A_line_is_found_by_name_or_by_chip_name_or_label_and_offset) {
-  for (const Line& line : {named("B"), at("gpiochip1", 1), at("expander", 1)}) {
+  for (const Line& line : {named("B"), by_offset("gpiochip1", 1), by_offset("expander", 1)}) {
     const auto found = inventory_.find(line);
     ASSERT_TRUE(found.has_value()) << found.error();
     EXPECT_EQ(to_string(*found), "gpiochip1 line 1 (B)");
@@ -44,8 +44,9 @@ TEST_F(Finding, A_name_that_two_lines_have_is_refused_with_both) {
 
 TEST_F(Finding, What_is_not_there_is_answered_with_what_is) {
   EXPECT_THAT(inventory_.find(named("C")).error(), HasSubstr("named on gpiochip0: 'A', 'TWICE'"));
-  EXPECT_THAT(inventory_.find(at("gpiochip7", 0)).error(), HasSubstr("gpiochip1 'expander' (2 lines)"));
-  EXPECT_THAT(inventory_.find(at("board", 3)).error(),
+  EXPECT_THAT(inventory_.find(by_offset("gpiochip7", 0)).error(),
+              HasSubstr("gpiochip1 'expander' (2 lines)"));
+  EXPECT_THAT(inventory_.find(by_offset("board", 3)).error(),
               HasSubstr("gpiochip0 has no line 3; it has lines 0 to 2"));
 }
 
