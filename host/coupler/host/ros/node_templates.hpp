@@ -24,24 +24,42 @@ struct NoStamp {
   void operator()(Message&, Stamp) const {}
 };
 
-/// Publishes a point as a kind of message (message.hpp), or with Stamper (stamped_message.hpp).
-template <class Kind, class Publisher, class PutStamp = NoStamp>
-class TypedPublisher : public PointPublisher {
+/// What a point's publisher does whatever its message is.
+class CountingPublisher : public PointPublisher {
  public:
-  using Message = typename Kind::Message;
-
-  TypedPublisher(const Point& point, std::uint32_t index, SubscriberCounts& subscribers,
-                 PutStamp put_stamp = {})
-      : point_(point), policy_(point), index_(index), subscribers_(subscribers), put_stamp_(put_stamp) {}
-
-  /// Before anything is published. The publisher may call add_subscriber() and remove_subscriber() already.
-  void set_publisher(Publisher publisher) { publisher_ = std::move(publisher); }
+  CountingPublisher(const Point& point, std::uint32_t index, SubscriberCounts& subscribers)
+      : point_(point), policy_(point), index_(index), subscribers_(subscribers) {}
 
   void add_subscriber() {
     policy_.renew();
     subscribers_.add(index_);
   }
   void remove_subscriber() { subscribers_.remove(index_); }
+
+  Time repeat_at() const override { return policy_.repeat_at(); }
+  void renew() override { policy_.renew(); }
+
+ protected:
+  const Point& point_;
+  PublishPolicy policy_;
+
+ private:
+  std::uint32_t index_;
+  SubscriberCounts& subscribers_;
+};
+
+/// Publishes a point as a kind of message (message.hpp), or with Stamper (stamped_message.hpp).
+template <class Kind, class Publisher, class PutStamp = NoStamp>
+class TypedPublisher : public CountingPublisher {
+ public:
+  using Message = typename Kind::Message;
+
+  TypedPublisher(const Point& point, std::uint32_t index, SubscriberCounts& subscribers,
+                 PutStamp put_stamp = {})
+      : CountingPublisher(point, index, subscribers), put_stamp_(put_stamp) {}
+
+  /// Before anything is published. The publisher may call add_subscriber() and remove_subscriber() already.
+  void set_publisher(Publisher publisher) { publisher_ = std::move(publisher); }
 
   void publish(const std::uint16_t* registers, Stamp stamp) override {
     if (!policy_.calls_news(registers, stamp.at)) return;
@@ -50,14 +68,7 @@ class TypedPublisher : public PointPublisher {
     publisher_.publish(message_);
   }
 
-  Time repeat_at() const override { return policy_.repeat_at(); }
-  void renew() override { policy_.renew(); }
-
  private:
-  const Point& point_;
-  PublishPolicy policy_;
-  std::uint32_t index_;
-  SubscriberCounts& subscribers_;
   PutStamp put_stamp_;
   Message message_;
   Publisher publisher_;

@@ -22,6 +22,7 @@
 #include "coupler/host/ros/topic_depth.hpp"
 #include "coupler/host/ros1/logger_service.hpp"
 #include "coupler/host/ros1/messages.hpp"
+#include "coupler/host/ros1/topics.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::host {
@@ -93,7 +94,15 @@ void log_info(const std::string& text) { ROS_INFO("%s", text.c_str()); }
 void log_warning(const std::string& text) { ROS_WARN("%s", text.c_str()); }
 void log_error(const std::string& text) { ROS_ERROR("%s", text.c_str()); }
 
+void count_subscribers(ros::AdvertiseOptions& options, CountingPublisher& publisher) {
+  options.connect_cb = [&publisher](const auto&) { publisher.add_subscriber(); };
+  options.disconnect_cb = [&publisher](const auto&) { publisher.remove_subscriber(); };
+  options.callback_queue = &InPlaceQueue::instance();
+}
+
 }  // namespace
+
+void TopicPublisher::publish_any(const OutgoingMessage& message) const { publisher_.publish(message); }
 
 Ros1Node::Ros1Node() : loggers_(advertise_loggers(InPlaceQueue::instance())) {
   diagnostics_.setHardwareID("coupler_driver");  // each device has its own
@@ -102,19 +111,18 @@ Ros1Node::Ros1Node() : loggers_(advertise_loggers(InPlaceQueue::instance())) {
 template <class Publisher>
 std::unique_ptr<PointPublisher> Ros1Node::advertise_as(const std::string& topic, const Point& point,
                                                        std::unique_ptr<Publisher> publisher) {
-  auto options = ros::AdvertiseOptions::create<typename Publisher::Message>(
-      topic, topic_depth(point), [p = publisher.get()](const auto&) { p->add_subscriber(); },
-      [p = publisher.get()](const auto&) { p->remove_subscriber(); }, ros::VoidPtr(),
-      &InPlaceQueue::instance());
+  ros::AdvertiseOptions options;
+  options.init<typename Publisher::Message>(topic, topic_depth(point));
   options.latch = point.host.latch;
-  publisher->set_publisher(handle_.advertise(options));
+  count_subscribers(options, *publisher);
+  publisher->set_publisher(TopicPublisher(handle_.advertise(options)));
   return publisher;
 }
 
 std::unique_ptr<PointPublisher> Ros1Node::advertise(const std::string& topic, const Point& point,
                                                     std::uint32_t index, SubscriberCounts& subscribers) {
   return with_message<Ros1Messages>(point, [&](auto kind) {
-    using Publisher = TypedPublisher<decltype(kind), ros::Publisher>;
+    using Publisher = TypedPublisher<decltype(kind), TopicPublisher>;
     return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers));
   });
 }
@@ -124,7 +132,7 @@ std::unique_ptr<PointPublisher> Ros1Node::advertise_stamped(const std::string& t
                                                             SubscriberCounts& subscribers,
                                                             const WallTime& wall) {
   return with_stamped_message<Ros1Messages>(point, [&](auto kind) {
-    using Publisher = TypedPublisher<decltype(kind), ros::Publisher, Stamper>;
+    using Publisher = TypedPublisher<decltype(kind), TopicPublisher, Stamper>;
     return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)));
   });
 }
@@ -133,13 +141,12 @@ std::shared_ptr<void> Ros1Node::subscribe(const std::string& topic, const Map& m
                                           const WriteHandler& handler) {
   return with_message<Ros1Messages>(map.points[index], [&](auto kind) {
     using Kind = decltype(kind);
-    using Message = typename Kind::Message;
-    auto options = ros::SubscribeOptions::create<Message>(
-        topic, writes_per_value * map.points[index].host.queue_size,
-        [topic, &map, index, &handler](const boost::shared_ptr<const Message>& message) {
-          receive<Kind>(*message, topic, map, index, handler);
-        },
-        ros::VoidPtr(), &InPlaceQueue::instance());
+    auto options =
+        subscribe_options<typename Kind::Message>(topic, writes_per_value * map.points[index].host.queue_size,
+                                                  [topic, &map, index, &handler](const auto& message) {
+                                                    receive<Kind>(message, topic, map, index, handler);
+                                                  });
+    options.callback_queue = &InPlaceQueue::instance();
     // Otherwise ROS may ask to try again, which the queue cannot do.
     options.allow_concurrent_callbacks = true;
     options.transport_hints = ros::TransportHints().tcpNoDelay();
