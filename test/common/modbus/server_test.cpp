@@ -89,14 +89,14 @@ TEST(Request, A_write_carries_its_values) {
   ASSERT_TRUE(single.has_value());
   EXPECT_THAT(bytes_of(std::get<WriteRegisters>(*single).values), ElementsAre(0xAB, 0xCD));
 
-  const Pdu coils_bytes = pdu(15, {19, 10}, {2, 0xCD, 0x01});
-  const auto coils = parse_request(coils_bytes);
+  const Pdu bytes_of_coils = pdu(15, {19, 10}, {2, 0xCD, 0x01});
+  const auto coils = parse_request(bytes_of_coils);
   ASSERT_TRUE(coils.has_value());
   EXPECT_EQ(std::get<WriteBits>(*coils).range, Range::of(19, 10));
   EXPECT_THAT(bytes_of(std::get<WriteBits>(*coils).packed), ElementsAre(0xCD, 0x01));
 
-  const Pdu registers_bytes = pdu(16, {1, 2}, {4, 0, 10, 1, 2});
-  const auto registers = parse_request(registers_bytes);
+  const Pdu bytes_of_registers = pdu(16, {1, 2}, {4, 0, 10, 1, 2});
+  const auto registers = parse_request(bytes_of_registers);
   ASSERT_TRUE(registers.has_value());
   EXPECT_EQ(std::get<WriteRegisters>(*registers).range, Range::of(1, 2));
   EXPECT_THAT(bytes_of(std::get<WriteRegisters>(*registers).values), ElementsAre(0, 10, 1, 2));

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/modbus/rtu_frame.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "coupler/modbus/device_identification.hpp"
+
+namespace coupler::modbus {
+namespace {
+
+constexpr std::size_t crc_size = 2;
+
+constexpr std::array<std::uint16_t, 256> make_crc_table() {
+  std::array<std::uint16_t, 256> table{};
+  for (unsigned byte = 0; byte < table.size(); ++byte) {
+    unsigned crc = byte;
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ ((crc & 1) != 0 ? 0xA001U : 0U);
+    table[byte] = static_cast<std::uint16_t>(crc);
+  }
+  return table;
+}
+constexpr std::array<std::uint16_t, 256> crc_table = make_crc_table();
+
+/// MAP 6.21: seven bytes, and objects that each have their number, their size and themselves.
+std::size_t identification_size(Bytes reply) {
+  constexpr std::size_t at_count = 6;
+  if (reply.size() <= at_count) return 0;
+  std::size_t size = at_count + 1;
+  for (unsigned object = 0; object < reply[at_count]; ++object) {
+    if (reply.size() < size + 2) return 0;
+    size += std::size_t{2} + reply[size + 1];
+  }
+  return size;
+}
+
+bool starts_with(Bytes bytes, Bytes beginning) {
+  return bytes.size() >= beginning.size() && std::equal(beginning.begin(), beginning.end(), bytes.begin());
+}
+
+}  // namespace
+
+std::uint16_t crc16(Bytes bytes) {
+  unsigned crc = 0xFFFF;
+  for (const std::uint8_t byte : bytes) crc = crc >> 8 ^ crc_table[(crc ^ byte) & 0xFF];
+  return static_cast<std::uint16_t>(crc);
+}
+
+std::size_t put_rtu_frame(std::uint8_t unit, Bytes pdu, std::uint8_t* frame) {
+  assert(!pdu.empty() && pdu.size() <= max_pdu_size);
+  frame[0] = unit;
+  std::copy(pdu.begin(), pdu.end(), frame + 1);
+  const std::size_t size = 1 + pdu.size();
+  const std::uint16_t crc = crc16({frame, size});
+  frame[size] = static_cast<std::uint8_t>(crc);
+  frame[size + 1] = static_cast<std::uint8_t>(crc >> 8);
+  return size + crc_size;
+}
+
+std::optional<std::size_t> reply_size(Bytes request, Bytes beginning) {
+  if (beginning.size() < 2) return 0;
+  if ((beginning[0] & exception_bit) != 0) return 2;
+  switch (static_cast<Function>(beginning[0])) {
+    case Function::read_coils:
+    case Function::read_discrete_inputs:
+    case Function::read_holding_registers:
+    case Function::read_input_registers:
+    case Function::read_file_record:
+    case Function::read_write_multiple_registers: return std::size_t{2} + beginning[1];
+    case Function::write_single_coil:
+    case Function::write_single_register:
+    case Function::write_multiple_coils:
+    case Function::write_multiple_registers: return 5;
+    case Function::mask_write_register: return 7;
+    case Function::diagnostics: return request.size();
+    case Function::encapsulated_interface:
+      if (beginning[1] == mei_device_identification) return identification_size(beginning);
+      return std::nullopt;
+    default: return std::nullopt;
+  }
+}
+
+void RtuFramer::expect(std::uint8_t unit, Bytes pdu) {
+  request_size_ = put_rtu_frame(unit, pdu, request_.data());
+  begin_ = end_ = 0;
+  had_echo_ = false;
+  pdu_ = {};
+}
+
+Span<std::uint8_t> RtuFramer::room() {
+  // So much that is no reply: one that has begun is not longer than a frame.
+  if (end_ == buffer_.size()) {
+    std::copy(buffer_.end() - max_rtu_size, buffer_.end(), buffer_.begin());
+    begin_ = 0;
+    end_ = max_rtu_size;
+  }
+  return Span<std::uint8_t>(buffer_).from(end_);
+}
+
+void RtuFramer::filled(std::size_t bytes) {
+  assert(bytes <= buffer_.size() - end_);
+  end_ += bytes;
+}
+
+/// A reply with the same bytes would be one.
+bool RtuFramer::may_be_its_own_reply() const {
+  return reply_size(request_pdu(), request_pdu()) == request_pdu().size();
+}
+
+/// False: what has come may be the beginning of the echo.
+bool RtuFramer::skip_echo() {
+  if (had_echo_ || (may_be_its_own_reply() && has_echo_ != true)) return true;
+  const Bytes received = Bytes(buffer_).first(end_);
+  if (!starts_with(received, request())) return !starts_with(request(), received);
+  begin_ = request_size_;
+  had_echo_ = true;
+  has_echo_ = true;
+  return true;
+}
+
+RtuFramer::Found RtuFramer::look_at(std::size_t begin) {
+  const Bytes bytes = Bytes(buffer_).sub(begin, end_ - begin);
+  if (bytes[0] != request_[0]) return Found::none;
+  if (bytes.size() == 1) return Found::beginning;
+  if ((bytes[1] & ~exception_bit) != request_[1]) return Found::none;
+  const auto size = reply_size(request_pdu(), bytes.from(1));
+  // Where the length is not known, the CRC says that this may be the end.
+  const std::size_t whole = size ? 1 + *size + crc_size : std::max(bytes.size(), 2 + crc_size);
+  if (whole > max_rtu_size) return Found::none;
+  if (size == std::size_t{0} || bytes.size() < whole) return Found::beginning;
+  if (crc16(bytes.first(whole)) != 0) return size ? Found::none : Found::beginning;
+  pdu_ = bytes.sub(1, whole - 1 - crc_size);
+  return Found::reply;
+}
+
+RtuFramer::Outcome RtuFramer::next() {
+  if (!skip_echo()) return Outcome::nothing;
+  bool has_begun = begin_ == end_;
+  for (std::size_t begin = begin_; begin < end_; ++begin) {
+    const Found found = look_at(begin);
+    if (found == Found::reply) {
+      if (!had_echo_ && !may_be_its_own_reply()) has_echo_ = false;
+      return Outcome::reply;
+    }
+    has_begun |= found == Found::beginning;
+  }
+  return has_begun ? Outcome::nothing : Outcome::damaged;
+}
+
+}  // namespace coupler::modbus

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// RTU frames: unit, PDU, CRC ("MODBUS over Serial Line Specification and Implementation Guide V1.02",
+// MSL, 2.5.1).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "coupler/base/span.hpp"
+#include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/pdu.hpp"
+
+namespace coupler::modbus {
+
+constexpr std::size_t max_rtu_size = 1 + max_pdu_size + 2;  ///< MSL 2.5.1.1
+
+/// MSL 6.2.2. In a frame its low byte comes first; over a whole frame, with these two bytes, it is 0.
+std::uint16_t crc16(Bytes bytes);
+
+/// Writes the frame of a PDU of 1 … max_pdu_size bytes into `frame`, which has room for max_rtu_size. Returns
+/// its size.
+std::size_t put_rtu_frame(std::uint8_t unit, Bytes pdu, std::uint8_t* frame);
+
+/// How many bytes the PDU of a reply to `request` has, as far as the beginning of it says; 0: that is too
+/// little to know. nullopt: of such a function that is not known here.
+std::optional<std::size_t> reply_size(Bytes request, Bytes beginning);
+
+/// Finds the reply to a request in what comes over a serial line: by unit, function code, length and CRC.
+/// Silence decides nothing, since USB adapters deliver in bursts. What is not the reply is skipped: noise,
+/// the late reply of another unit, the echo of the request.
+///
+/// Fill room(), say how much with filled(), then look with next().
+class RtuFramer {
+ public:
+  enum class Outcome {
+    nothing,  ///< more bytes are needed
+    reply,    ///< pdu() is the reply
+    damaged,  ///< something has come that is neither the reply nor its beginning; the reply may still follow
+  };
+
+  /// A request is about to be sent: 1 … 247 as `unit`. Forgets what has come.
+  void expect(std::uint8_t unit, Bytes pdu);
+  /// The whole frame of the request.
+  Bytes request() const { return Bytes(request_).first(request_size_); }
+
+  /// Where the next received bytes go; never empty. Ends the validity of pdu().
+  Span<std::uint8_t> room();
+  void filled(std::size_t bytes);
+
+  Outcome next();
+  Bytes pdu() const { return pdu_; }
+
+  /// Whether the line hands back what is sent, as some adapters for RS-485 do; nullopt: not known yet. Then a
+  /// request that is repeated by its reply (function codes 5, 6, 8, 22) has been answered when it comes back,
+  /// by whomever: read first.
+  std::optional<bool> has_echo() const { return has_echo_; }
+  /// The line is another one.
+  void reset() { has_echo_.reset(); }
+
+ private:
+  enum class Found { none, beginning, reply };
+
+  Bytes request_pdu() const { return request().sub(1, request_size_ - 3); }
+  bool may_be_its_own_reply() const;
+  bool skip_echo();
+  Found look_at(std::size_t begin);
+
+  std::array<std::uint8_t, max_rtu_size> request_{};
+  std::size_t request_size_ = 0;
+  std::array<std::uint8_t, 3 * max_rtu_size> buffer_{};  ///< an echo, a reply that is late, the reply
+  std::size_t begin_ = 0;                                ///< of what is not the echo
+  std::size_t end_ = 0;
+  bool had_echo_ = false;  ///< of this request
+  std::optional<bool> has_echo_;
+  Bytes pdu_;
+};
+
+}  // namespace coupler::modbus
