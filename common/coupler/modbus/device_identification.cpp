@@ -84,6 +84,16 @@ std::array<std::uint8_t, 4> build_device_identification(ReadDeviceIdentification
   return {function, mei_device_identification, static_cast<std::uint8_t>(wanted.access), wanted.object};
 }
 
+std::size_t identification_reply_size(Bytes beginning) {
+  if (beginning.size() < header_size) return 0;
+  std::size_t size = header_size;
+  for (unsigned object = 0; object < beginning[6]; ++object) {
+    if (beginning.size() < size + 2) return 0;
+    size += std::size_t{2} + beginning[size + 1];
+  }
+  return size;
+}
+
 tl::expected<IdentificationReply, ReplyError> take_device_identification(Bytes reply,
                                                                          Span<IdentificationObject> objects) {
   if (reply.size() < header_size || reply[0] != function || reply[1] != mei_device_identification)

@@ -55,6 +55,9 @@ struct IdentificationReply {
   std::uint8_t next = 0;
 };
 
+/// How many bytes a reply has, as far as its beginning says; 0: that is too little to know.
+std::size_t identification_reply_size(Bytes beginning);
+
 /// Puts the objects, views of `reply`, into `objects`, which has room for max_identification_objects.
 tl::expected<IdentificationReply, ReplyError> take_device_identification(Bytes reply,
                                                                          Span<IdentificationObject> objects);

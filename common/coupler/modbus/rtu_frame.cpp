@@ -22,18 +22,6 @@ constexpr std::array<std::uint16_t, 256> make_crc_table() {
 }
 constexpr std::array<std::uint16_t, 256> crc_table = make_crc_table();
 
-/// MAP 6.21: seven bytes, and objects that each have their number, their size and themselves.
-std::size_t identification_size(Bytes reply) {
-  constexpr std::size_t at_count = 6;
-  if (reply.size() <= at_count) return 0;
-  std::size_t size = at_count + 1;
-  for (unsigned object = 0; object < reply[at_count]; ++object) {
-    if (reply.size() < size + 2) return 0;
-    size += std::size_t{2} + reply[size + 1];
-  }
-  return size;
-}
-
 bool starts_with(Bytes bytes, Bytes beginning) {
   return bytes.size() >= beginning.size() && std::equal(beginning.begin(), beginning.end(), bytes.begin());
 }
@@ -74,7 +62,7 @@ std::optional<std::size_t> reply_size(Bytes request, Bytes beginning) {
     case Function::mask_write_register: return 7;
     case Function::diagnostics: return request.size();
     case Function::encapsulated_interface:
-      if (beginning[1] == mei_device_identification) return identification_size(beginning);
+      if (beginning[1] == mei_device_identification) return identification_reply_size(beginning);
       return std::nullopt;
     default: return std::nullopt;
   }
@@ -107,15 +95,16 @@ bool RtuFramer::may_be_its_own_reply() const {
   return reply_size(request_pdu(), request_pdu()) == request_pdu().size();
 }
 
-/// False: what has come may be the beginning of the echo.
-bool RtuFramer::skip_echo() {
-  if (had_echo_ || (may_be_its_own_reply() && has_echo_ != true)) return true;
-  const Bytes received = Bytes(buffer_).first(end_);
-  if (!starts_with(received, request())) return !starts_with(request(), received);
+void RtuFramer::skip_echo() {
+  if (had_echo_ || (may_be_its_own_reply() && has_echo_ != true)) return;
+  if (!starts_with(Bytes(buffer_).first(end_), request())) return;
   begin_ = request_size_;
   had_echo_ = true;
   has_echo_ = true;
-  return true;
+}
+
+bool RtuFramer::echo_may_come() const {
+  return !had_echo_ && starts_with(request(), Bytes(buffer_).first(end_));
 }
 
 RtuFramer::Found RtuFramer::look_at(std::size_t begin) {
@@ -134,8 +123,10 @@ RtuFramer::Found RtuFramer::look_at(std::size_t begin) {
 }
 
 RtuFramer::Outcome RtuFramer::next() {
-  if (!skip_echo()) return Outcome::nothing;
-  bool has_begun = begin_ == end_;
+  skip_echo();
+  bool has_begun = begin_ == end_ || echo_may_come();
+  // Only then: a reply to a write of several begins like its request, and its CRC may be what is written.
+  if (has_begun && has_echo_ == true) return Outcome::nothing;
   for (std::size_t begin = begin_; begin < end_; ++begin) {
     const Found found = look_at(begin);
     if (found == Found::reply) {

@@ -64,7 +64,8 @@ class RtuFramer {
 
   Bytes request_pdu() const { return request().sub(1, request_size_ - 3); }
   bool may_be_its_own_reply() const;
-  bool skip_echo();
+  void skip_echo();
+  bool echo_may_come() const;
   Found look_at(std::size_t begin);
 
   std::array<std::uint8_t, max_rtu_size> request_{};

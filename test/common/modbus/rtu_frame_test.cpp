@@ -184,6 +184,20 @@ TEST_F(Echo, Of_a_write_of_several_it_is_not_the_reply) {
   EXPECT_EQ(feed(framer_, frame({16, 0, 0, 0, 1})), Outcome::reply);
 }
 
+TEST_F(Echo, A_reply_that_is_also_the_beginning_of_its_request_is_taken_where_there_is_none) {
+  Buffer reply{16, 0, 0, 0, 1};
+  while (frame(reply)[6] != 2) ++reply[2];  // the number of bytes that one register has
+  const Buffer write = reply + Buffer{2, frame(reply)[7], 0};
+  Buffer beginning = frame(write);
+  beginning.resize(frame(reply).size());
+  ASSERT_EQ(beginning, frame(reply));
+
+  EXPECT_EQ(ask(read, frame(values)), Outcome::reply);
+  EXPECT_EQ(ask(write, frame(reply)), Outcome::reply);
+  EXPECT_EQ(ask(read, frame(read) + frame(values)), Outcome::reply) << "with an echo";
+  EXPECT_EQ(ask(write, frame(reply)), Outcome::nothing) << "its beginning";
+}
+
 TEST_F(Echo, A_line_without_it_answers_a_write_with_the_same_bytes) {
   EXPECT_EQ(ask(read, frame(values)), Outcome::reply);
   EXPECT_EQ(framer_.has_echo(), false);
