@@ -62,10 +62,9 @@ endif()
 
 # Every test program is linked: mold does it in a fraction of the time. What is installed is built without tests, and linked
 # as the distribution does.
-find_program(COUPLER_MOLD mold)
-if(COUPLER_TESTING AND COUPLER_MOLD AND NOT CMAKE_EXE_LINKER_FLAGS MATCHES "-fuse-ld=" AND NOT CMAKE_VERSION VERSION_LESS 3.18)
+if(COUPLER_TESTING AND NOT CMAKE_EXE_LINKER_FLAGS MATCHES "-fuse-ld=" AND NOT CMAKE_VERSION VERSION_LESS 3.18)
   include(CheckLinkerFlag)
-  check_linker_flag(CXX -fuse-ld=mold COUPLER_HAS_MOLD)  # a compiler may be too old for it
+  check_linker_flag(CXX -fuse-ld=mold COUPLER_HAS_MOLD)  # it may be missing, or the compiler too old for it
   if(COUPLER_HAS_MOLD)
     add_link_options(-fuse-ld=mold)
   endif()

@@ -39,7 +39,7 @@ class TopicPublisher {
   }
 
  private:
-  void publish_any(const OutgoingMessage& message) const;
+  void publish_any(const OutgoingMessage& message) const;  // in node.cpp: once, not inlined for each type
 
   ros::Publisher publisher_;
 };
