@@ -2,8 +2,8 @@
 # One library and one test program a module.
 #
 # A cold build reads the same headers hundreds of times, so they are translated once (precompiled headers), and the files
-# of a test program four at a time. Neither may hide a missing include: scripts/lint compiles each file by itself.
-# -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON and -DCOUPLER_TEST_UNITY=1 build each file by itself, too.
+# of a test program or of a large module four at a time. Neither may hide a missing include: scripts/lint compiles each file
+# by itself. -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON and -DCOUPLER_UNITY=1 build each file by itself, too.
 include(GNUInstallDirs)
 include(GoogleTest)
 
@@ -85,36 +85,17 @@ function(coupler_export target name)
   coupler_install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT dev)
 endfunction()
 
-# coupler_module(NAME SOURCES a.cpp … LINKS lib … [EXPORT name] [HEADERS <h> …]): the library of one module. LINKS are public.
-# EXPORT: as coupler_export(). HEADERS are precompiled for it alone, in place of those that most modules share: where they cost
-# more, or where fmt is not linked. COUPLER_INCLUDE is the folder in which #include finds its headers. Who links it gets no
-# flags of ours but C++17.
-function(coupler_module name)
-  cmake_parse_arguments(module "" "EXPORT" "SOURCES;LINKS;HEADERS" ${ARGN})
-  add_library(${name} STATIC ${module_SOURCES})
-  target_compile_features(${name} PUBLIC cxx_std_17)
-  target_compile_options(${name} PRIVATE $<TARGET_PROPERTY:coupler_flags,INTERFACE_COMPILE_OPTIONS>)
-  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${COUPLER_INCLUDE}>)
-  target_link_libraries(${name} PUBLIC ${module_LINKS})
-  if(module_HEADERS)
-    target_precompile_headers(${name} PRIVATE ${module_HEADERS})
-  else()
-    target_precompile_headers(${name} REUSE_FROM coupler_headers)
-  endif()
-  if(module_EXPORT)
-    coupler_export(${name} ${module_EXPORT})
-  endif()
-endfunction()
-
 # Several files as one. CMake's own UNITY_BUILD writes absolute paths, with which no two clones could share the
-# compiler's cache.
-set(COUPLER_TEST_UNITY 4 CACHE STRING "How many files of a test program are compiled as one")
+# compiler's cache. Files that are written while this is configured stay by themselves.
+set(COUPLER_UNITY 4 CACHE STRING "How many files of a test program, or of a large module, are compiled as one")
 function(coupler_unite out)
   set(files ${ARGN})
-  set(united)
+  list(FILTER files EXCLUDE REGEX "^/")
+  set(united ${ARGN})
+  list(FILTER united INCLUDE REGEX "^/")
   set(i 0)
   while(files)
-    list(SUBLIST files 0 ${COUPLER_TEST_UNITY} batch)
+    list(SUBLIST files 0 ${COUPLER_UNITY} batch)
     list(REMOVE_ITEM files ${batch})
     set(text)
     foreach(file IN LISTS batch)
@@ -130,11 +111,39 @@ function(coupler_unite out)
   set(${out} ${united} PARENT_SCOPE)
 endfunction()
 
+# coupler_module(NAME SOURCES a.cpp … LINKS lib … [EXPORT name] [HEADERS <h> …] [UNITE]): the library of one module. LINKS are
+# public. EXPORT: as coupler_export(). UNITE: several files are compiled as one. HEADERS are precompiled for it alone, in place of those that most modules share: where they cost
+# more, or where fmt is not linked. COUPLER_INCLUDE is the folder in which #include finds its headers. Who links it gets no
+# flags of ours but C++17.
+function(coupler_module name)
+  cmake_parse_arguments(module "UNITE" "EXPORT" "SOURCES;LINKS;HEADERS" ${ARGN})
+  if(module_UNITE AND COUPLER_UNITY GREATER 1)
+    coupler_unite(${name} ${module_SOURCES})
+    set(module_SOURCES ${${name}})
+  endif()
+  add_library(${name} STATIC ${module_SOURCES})
+  target_compile_features(${name} PUBLIC cxx_std_17)
+  target_compile_options(${name} PRIVATE $<TARGET_PROPERTY:coupler_flags,INTERFACE_COMPILE_OPTIONS>)
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${COUPLER_INCLUDE}>)
+  if(module_UNITE)
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  endif()
+  target_link_libraries(${name} PUBLIC ${module_LINKS})
+  if(module_HEADERS)
+    target_precompile_headers(${name} PRIVATE ${module_HEADERS})
+  else()
+    target_precompile_headers(${name} REUSE_FROM coupler_headers)
+  endif()
+  if(module_EXPORT)
+    coupler_export(${name} ${module_EXPORT})
+  endif()
+endfunction()
+
 # coupler_test(NAME SOURCES … LINKS …): a test program; each of its tests is a CTest test. The time limit only tells one
 # that hangs from one that works on a slow machine under ThreadSanitizer.
 function(coupler_test name)
   cmake_parse_arguments(test "" "" "SOURCES;LINKS" ${ARGN})
-  if(COUPLER_TEST_UNITY GREATER 1)
+  if(COUPLER_UNITY GREATER 1)
     coupler_unite(${name} ${test_SOURCES})
     set(test_SOURCES ${${name}})
   endif()

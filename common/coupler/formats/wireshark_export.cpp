@@ -11,7 +11,7 @@ namespace coupler::formats {
 namespace {
 
 /// A string of Lua, quotes included, that stands for exactly these bytes.
-std::string literal(std::string_view text) { return double_quoted(text, "\\{:03}", Escapes::bytes); }
+std::string lua_literal(std::string_view text) { return double_quoted(text, "\\{:03}", Escapes::bytes); }
 
 /// Names of protocols and of their fields: lower case, digits, '_'.
 std::string protocol_of(std::string_view name) {
@@ -37,18 +37,18 @@ void add_format(const Point& point, std::string& row) {
 std::string row_of(const Point& point) {
   std::string row = fmt::format(
       "    {{ name = {}, table = \"{}\", address = {}, size = {}, count = {}, readable = {}, writable = {}",
-      literal(point.name), to_string(point.table), point.address, range(point).count(), point.count,
+      lua_literal(point.name), to_string(point.table), point.address, range(point).count(), point.count,
       is_readable(point), is_writable(point));
   if (point.read_address) row += fmt::format(", read_from = {}", *point.read_address);
   if (!holds_bits(point.table)) add_format(point, row);
   if (!point.values.empty()) {
     row += ", names = {";
     for (const NamedValue& named : point.values)
-      row += fmt::format(" [\"{}\"] = {},", named.value, literal(named.name));
+      row += fmt::format(" [\"{}\"] = {},", named.value, lua_literal(named.name));
     row += " }";
   }
-  if (!point.units.empty()) row += ", units = " + literal(point.units);
-  if (!point.description.empty()) row += ", description = " + literal(point.description);
+  if (!point.units.empty()) row += ", units = " + lua_literal(point.units);
+  if (!point.description.empty()) row += ", description = " + lua_literal(point.description);
   return row + " },\n";
 }
 
@@ -69,7 +69,7 @@ Export write_wireshark(const Map& map) {
       "local map = {{\n"
       "  name = {3}, proto = \"{2}\", unit = {4}, port = {1},\n"
       "  points = {{\n",
-      map.name, map.connection.port, proto, literal(map.name), map.connection.unit);
+      map.name, map.connection.port, proto, lua_literal(map.name), map.connection.unit);
   for (const Point& point : map.points) out.text += row_of(point);
   out.text += "  },\n}\n\n";
   out.text += wireshark_body();

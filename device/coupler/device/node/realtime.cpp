@@ -15,7 +15,7 @@ namespace {
 // The supervisor's suffices for both.
 constexpr int limit = static_cast<int>(RealtimePriority::supervisor);
 
-std::string refused(const std::string& what, int error, const std::string& setting,
+std::string refusal(const std::string& what, int error, const std::string& setting,
                     const std::string& command) {
   return fmt::format(
       "--realtime: {} is refused: {}; in a service's unit set {} (the drop-in examples/realtime.conf does), "
@@ -51,12 +51,12 @@ bool take_priority(RealtimePriority priority) {
 tl::expected<void, std::string> become_realtime(RealtimePriority priority) {
   std::string errors;
   if (!take_priority(priority))
-    errors = refused(fmt::format("SCHED_FIFO with priority {}", static_cast<int>(priority)), errno,
+    errors = refusal(fmt::format("SCHED_FIFO with priority {}", static_cast<int>(priority)), errno,
                      fmt::format("LimitRTPRIO={} and RestrictRealtime=no", limit),
                      fmt::format("ulimit -r {}", limit));
   if (const auto locked = lock_memory(); !locked) {
     if (!errors.empty()) errors += '\n';
-    errors += refused("locked memory", locked.error(), "LimitMEMLOCK=infinity", "ulimit -l unlimited");
+    errors += refusal("locked memory", locked.error(), "LimitMEMLOCK=infinity", "ulimit -l unlimited");
   }
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   return {};

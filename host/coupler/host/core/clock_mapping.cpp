@@ -11,12 +11,12 @@ using modbus::NodeTime;
 using Nanoseconds = std::chrono::duration<double, std::nano>;
 
 /// A century. What is further away overflows, and no machine runs that long.
-constexpr NodeTime longest = std::chrono::hours(24 * 365 * 100);
+constexpr NodeTime longest_time = std::chrono::hours(24 * 365 * 100);
 
 /// For a drift to be worth measuring.
 constexpr NodeTime measured_over = std::chrono::seconds(10);
 
-bool is_possible(NodeTime at) { return at >= NodeTime::zero() && at <= longest; }
+bool is_possible(NodeTime at) { return at >= NodeTime::zero() && at <= longest_time; }
 
 double between(NodeTime from, NodeTime to) { return Nanoseconds(to - from).count(); }
 

@@ -19,7 +19,7 @@
 namespace coupler::host {
 namespace {
 
-using Outcome = tl::expected<void, std::string>;
+using Parsed = tl::expected<void, std::string>;
 using codec::Type;
 using codec::Value;
 
@@ -59,7 +59,7 @@ double as_double(const Value& number) {
   return std::get<double>(number);
 }
 
-Outcome parse_element(std::string_view text, const Point& point, std::uint16_t* registers) {
+Parsed parse_element(std::string_view text, const Point& point, std::uint16_t* registers) {
   const codec::Format& format = point.format;
   if (format.type == Type::STRING) return codec::encode(std::string(text), format, registers);
   text = trimmed(text);
@@ -112,7 +112,7 @@ std::string scaled_text(const std::uint16_t* registers, const Point& point) {
 
 }  // namespace
 
-Outcome parse_value(std::string_view text, const Point& point, std::uint16_t* registers) {
+Parsed parse_value(std::string_view text, const Point& point, std::uint16_t* registers) {
   if (point.count == 1) return parse_element(text, point, registers);
   const auto list = elements(text);
   if (list.size() != point.count)
