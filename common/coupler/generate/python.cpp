@@ -168,9 +168,10 @@ std::string keys_left_out(const Map& map) {
   add(map.on_reconnect == OnReconnect::restore, "on_reconnect");
   add(map.on_shutdown == OnShutdown::safe, "on_shutdown");
   add(map.coupler_watchdog.present(), "watchdog (of the coupler)");
+  add(map.connection.serial.present(), "serial");
+  add(map.connection.framing == Framing::rtu, "framing");
   if (out.empty()) return out;
-  return "    # The map has keys that this client does not carry out, as nothing is written by itself: " +
-         out + ".\n";
+  return "    # The map has keys that this client does not carry out: " + out + ".\n";
 }
 
 constexpr auto class_form = R"(

@@ -8,6 +8,7 @@
 #include "coupler/base/enumeration.hpp"
 #include "coupler/base/span.hpp"
 #include "coupler/map/point.hpp"
+#include "coupler/map/serial.hpp"
 #include "coupler/map/watchdog.hpp"
 #include "coupler/modbus/limits.hpp"
 
@@ -15,7 +16,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 9;
+constexpr int model_version = 10;
 
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {
@@ -23,6 +24,11 @@ struct Connection {
   std::uint16_t port = modbus::default_port;
   std::uint8_t unit = 1;
   std::chrono::milliseconds timeout{3000};
+  Framing framing = Framing::tcp;  ///< at `address`; a serial port has RTU
+  Serial serial{};                 ///< instead of `address`
+
+  constexpr bool is_rtu() const { return serial.present() || framing == Framing::rtu; }
+  constexpr bool present() const { return serial.present() || !address.empty(); }
 };
 
 /// How the host reads it. A gap is the distance between the end of one point and the start of the next;

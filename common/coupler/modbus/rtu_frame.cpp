@@ -68,6 +68,23 @@ std::optional<std::size_t> reply_size(Bytes request, Bytes beginning) {
   }
 }
 
+std::size_t longest_reply(Bytes request) {
+  if (request.size() < 5) return max_pdu_size;
+  const std::size_t count = get_u16(&request[3]);
+  switch (static_cast<Function>(request[0])) {
+    case Function::read_coils:
+    case Function::read_discrete_inputs: return 2 + (count + 7) / 8;
+    case Function::read_holding_registers:
+    case Function::read_input_registers: return 2 + 2 * count;
+    case Function::write_single_coil:
+    case Function::write_single_register:
+    case Function::write_multiple_coils:
+    case Function::write_multiple_registers: return 5;
+    case Function::mask_write_register: return 7;
+    default: return max_pdu_size;
+  }
+}
+
 void RtuFramer::expect(std::uint8_t unit, Bytes pdu) {
   request_size_ = put_rtu_frame(unit, pdu, request_.data());
   begin_ = end_ = 0;

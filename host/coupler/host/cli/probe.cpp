@@ -68,6 +68,13 @@ bool add_units(std::string_view text, std::vector<std::uint8_t>& units) {
   return true;
 }
 
+bool names_a_unit(const NodeAddress& where, std::string_view address) {
+  const auto* const end = where.serial.present() ? where.serial.device.end() : where.host.end();
+  const std::string_view rest = address.substr(static_cast<std::size_t>(end - address.begin()));
+  const auto slash = rest.find('/');
+  return slash != std::string_view::npos && slash + 1 < rest.size();
+}
+
 /// Empty: those that are asked by default.
 tl::expected<std::vector<std::uint8_t>, WrongCall> units_of(const Arguments& arguments,
                                                             const NodeAddress& where, bool has_unit) {
@@ -106,14 +113,14 @@ tl::expected<Call, WrongCall> understand(const Arguments& arguments, const std::
   if (arguments.from > arguments.to)
     return tl::make_unexpected(WrongCall{
         fmt::format("--from {} is greater than --to {}", arguments.from, arguments.to), "swap them"});
-  const auto slash = address.find('/', std::string_view("tcp://").size());
-  auto units = units_of(arguments, *where, slash != std::string::npos && slash + 1 < address.size());
+  auto units = units_of(arguments, *where, names_a_unit(*where, address));
   if (!units) return tl::make_unexpected(units.error());
   auto known = known_values(arguments.known);
   if (!known) return tl::make_unexpected(known.error());
   Call call;
-  call.connection = {where->host, where->port, where->unit,
-                     std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000))};
+  call.connection = found_at({}, *where).connection;
+  call.connection.timeout = std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000));
+  if (units->empty() && call.connection.is_rtu()) add_units("1-247", *units);
   if (!units->empty()) call.task.units = std::move(*units);
   call.task.stride = arguments.stride;
   call.task.rate = arguments.rate;

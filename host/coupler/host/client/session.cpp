@@ -15,7 +15,10 @@ namespace {
 using host::WriteResult;
 
 Map moved(Map map, const Options& options) {
-  if (!options.address.empty()) map.connection.address = options.address;
+  if (!options.address.empty()) {
+    map.connection.address = options.address;
+    map.connection.serial = {};
+  }
   if (options.port) map.connection.port = *options.port;
   return map;
 }

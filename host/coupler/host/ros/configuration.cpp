@@ -14,7 +14,8 @@
 
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/host/core/schedule.hpp"
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/make_transports.hpp"
+#include "coupler/host/modbus/multi_unit_transport.hpp"
 #include "coupler/host/ros/diagnostics.hpp"
 #include "coupler/host/ros/program.hpp"
 #include "coupler/map/diagnostic.hpp"
@@ -56,7 +57,7 @@ class MapFinder {
     if (settings.map && names_a_node(*settings.map)) return from_node_address(*settings.map, settings);
     if (settings.map)
       return from_file(*settings.map, settings.name ? std::string_view(*settings.name) : std::string_view());
-    if (settings.address) return from_node(settings, *settings.address);
+    if (settings.address || settings.serial) return from_node({}, settings);
     return fail(
         wrong_call,
         "no map; give one by --map MAP, or --address HOST of a node that serves its map (--help shows "
@@ -117,16 +118,15 @@ class MapFinder {
     return tl::make_unexpected(0);
   }
 
-  /// The map will view `address`.
-  Source from_node(const Settings& settings, std::string_view address) {
-    Map asked;
+  /// The settings override `node`; the map will view both.
+  Source from_node(const NodeAddress& node, const Settings& settings) {
+    Map asked = found_at({}, node);
     apply(settings, asked);
-    asked.connection.address = address;
-    const std::string where = fmt::format("{} port {}", asked.connection.address, asked.connection.port);
-    ModbusTransport transport(asked.connection);
+    const std::string where = place_text(asked.connection);
+    const auto transport = make_transport(asked.connection);
     MapDiagnostics diagnostics(asked.connection, node_);
     diagnostics.say(Level::warning, "waiting for the map of " + where);
-    const auto served = wait_for_map(transport, where, diagnostics);
+    const auto served = wait_for_map(*transport, where, diagnostics);
     if (!served) return tl::make_unexpected(served.error());
     if (!*served)
       return fail(wrong_input, where + " serves no map: it is a foreign coupler; give its map by --map MAP");
@@ -134,23 +134,18 @@ class MapFinder {
     if (!owner)
       return fail(wrong_input, fmt::format("the map of {} cannot be used: {}", where, owner.error()));
     diagnostics.say(Level::info, "read from " + where);
-    // The address where the node was found counts, not the one in its map.
+    // The place where the node was found counts, not the one in its map.
     Map map = (*owner)->map();
-    map.connection.address = address;
-    map.connection.port = asked.connection.port;
-    map.connection.unit = asked.connection.unit;
+    const auto timeout = std::exchange(map.connection, asked.connection).timeout;
+    if (!asked.connection.is_rtu()) map.connection.timeout = timeout;
     return MapSource{*owner, map};
   }
 
-  /// tcp://HOST:PORT/UNIT in place of a file. The settings address, port and unit override it.
   Source from_node_address(const std::string& argument, const Settings& settings) {
     const auto node = parse_node_address(argument);
     if (!node)
       return fail(wrong_call, fmt::format("{}: {}; {}", argument, node.error().what, node.error().remedy));
-    Settings named;
-    named.port = node->port;
-    named.unit = node->unit;
-    return from_node(overlay(named, settings), settings.address ? *settings.address : node->host);
+    return from_node(*node, settings);
   }
 
   const Dialect& dialect_;
@@ -163,11 +158,11 @@ std::string find_conflict(const Map* built_in, const Settings& settings, const D
   if (built_in != nullptr)
     return "this driver has its map built in and takes no other; use coupler_driver for other maps";
   if (settings.map) return "both map and maps are given; give one of them";
-  if (settings.name || settings.address || settings.port || settings.unit)
+  if (settings.name || settings.address || settings.port || settings.unit || settings.serial)
     return fmt::format(
-        "name, address, port and unit are for one device; with several maps write them into the maps, or "
-        "give "
-        "them for each device {}",
+        "name, address, port, unit and serial are for one device; with several maps write them into the "
+        "maps, "
+        "or give them for each device {}",
         dialect.device_setting);
   return {};
 }
@@ -175,16 +170,19 @@ std::string find_conflict(const Map* built_in, const Settings& settings, const D
 /// What is wrong with the devices, or an empty text.
 std::string find_error(const Devices& devices) {
   std::set<std::string_view> names;
+  std::vector<Map> maps;
   for (const auto& [settings, source] : devices) {
-    if (source.map.connection.address.empty())
+    maps.push_back(source.map);
+    if (!source.map.connection.present())
       return fmt::format("the map{} has no address; add 'address: HOST' or give --address HOST",
                          devices.size() > 1 ? fmt::format(" of {}", source.map.name) : "");
+    if (settings.address && settings.serial) return "both address and serial are given; give one of them";
     if (!names.insert(source.map.name).second)
       return fmt::format(
           "two devices have the name {}; give one of them another, as in --maps left=a.yaml,right=a.yaml",
           source.map.name);
   }
-  return {};
+  return line_conflict(maps);
 }
 
 }  // namespace

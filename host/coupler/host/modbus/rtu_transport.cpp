@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/modbus/rtu_transport.hpp"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/host/modbus/open_socket.hpp"
+
+namespace coupler::host {
+namespace {
+
+/// A line on which something babbles is asked all the same.
+constexpr int most_discarded_pieces = 64;
+
+Time now() { return std::chrono::steady_clock::now(); }
+
+bool is_readable(int fd) {
+  pollfd wanted{fd, POLLIN, 0};
+  return ::poll(&wanted, 1, 0) > 0;
+}
+
+/// A gateway that has gone without a word is noticed although nobody closes the connection for a timeout.
+void notice_loss(int socket, std::chrono::milliseconds timeout) {
+  const auto longest = static_cast<unsigned>(std::max(timeout, std::chrono::milliseconds(3000)).count());
+  ::setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &longest, sizeof longest);
+}
+
+}  // namespace
+
+RtuTransport::RtuTransport(const Connection& connection)
+    : host_(connection.address),
+      port_(connection.port),
+      device_(connection.serial.device),
+      line_(connection.serial),
+      unit_(connection.unit),
+      timeout_(connection.timeout) {
+  line_.device = device_;
+}
+
+Duration RtuTransport::time_of(std::size_t characters) const {
+  return line_.present() ? time_of_characters(line_, characters) : Duration::zero();
+}
+
+Result<> RtuTransport::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
+  unit_ = unit;
+  timeout_ = timeout;
+  if (unit >= 1 && unit <= 247) return {};
+  return fail(NotConnected{fmt::format("unit {} cannot be asked; RTU has units 1 to 247", unit)});
+}
+
+Result<> RtuTransport::connect() {
+  wait_for(hung_up_, interrupted_, -1, late_until_);
+  return open(interrupted_);
+}
+
+Result<> RtuTransport::open(const Event& interrupt) {
+  close();
+  if (auto selected = select(unit_, timeout_); !selected) return selected;
+  if (line_.present()) {
+    auto opened = SerialPort::open(line_);
+    if (!opened) return tl::make_unexpected(opened.error());
+    serial_ = std::move(*opened);
+    fd_ = serial_->fd();
+  } else {
+    auto opened = open_socket(host_, port_, timeout_, interrupt);
+    if (!opened) return tl::make_unexpected(opened.error());
+    socket_ = std::move(*opened);
+    fd_ = socket_.get();
+    notice_loss(fd_, timeout_);
+  }
+  if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
+  hung_up_.clear();
+  framer_.reset();
+  last_character_ = now();
+  return {};
+}
+
+void RtuTransport::close() {
+  serial_.reset();
+  socket_ = Descriptor();
+  fd_ = -1;
+}
+
+Result<modbus::Bytes> RtuTransport::exchange(modbus::Bytes pdu) {
+  if (auto sent = send_pdu(pdu); !sent) return tl::make_unexpected(sent.error());
+  return receive_pdu();
+}
+
+Result<> RtuTransport::send_pdu(modbus::Bytes pdu) {
+  if (fd_ < 0) return fail(NotConnected{"not connected"});
+  if (auto discarded = discard(); !discarded) return discarded;
+  if (auto silent = keep_silence(); !silent) return silent;
+  framer_.expect(unit_, pdu);
+  damaged_ = false;
+  const modbus::Bytes frame = framer_.request();
+  last_character_ = now() + time_of(frame.size());
+  answer_by_ = last_character_ + timeout_ + time_of(modbus::longest_reply(pdu) + modbus::rtu_overhead);
+  return put(frame);
+}
+
+Result<modbus::Bytes> RtuTransport::receive_pdu() {
+  for (;;) {
+    switch (wait_for(hung_up_, interrupted_, fd_, answer_by_)) {
+      case Woken::by_call: return fail(NotConnected{"interrupted"});
+      case Woken::by_time:
+        late_until_ = now() + timeout_;
+        if (!damaged_) return fail(Timeout{timeout_});
+        return fail(
+            BadFrame{fmt::format("what has come is no reply of unit {}; check baud rate and parity, and "
+                                 "that no two units have the same number",
+                                 unit_)});
+      case Woken::by_bytes: break;
+    }
+    const auto got = get(framer_.room());
+    if (!got) return tl::make_unexpected(got.error());
+    framer_.filled(got->size());
+    switch (framer_.next()) {
+      case modbus::RtuFramer::Outcome::reply: return framer_.pdu();
+      case modbus::RtuFramer::Outcome::damaged: damaged_ = true; break;
+      case modbus::RtuFramer::Outcome::nothing: break;
+    }
+  }
+}
+
+/// MSL 2.5.1.1
+Result<> RtuTransport::keep_silence() {
+  if (!line_.present()) return {};
+  const Woken woken = wait_for(hung_up_, interrupted_, -1, last_character_ + silence_between_frames(line_));
+  return woken == Woken::by_call ? Result<>(fail(NotConnected{"interrupted"})) : Result<>{};
+}
+
+Result<> RtuTransport::discard() {
+  std::array<std::uint8_t, modbus::max_rtu_size> late{};
+  for (int piece = 0; piece < most_discarded_pieces && is_readable(fd_); ++piece)
+    if (auto got = get(late); !got) return tl::make_unexpected(got.error());
+  return {};
+}
+
+Result<> RtuTransport::put(modbus::Bytes frame) const {
+  const auto sent = line_.present() ? ::write(fd_, frame.data(), frame.size())
+                                    : ::send(fd_, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (sent == static_cast<ssize_t>(frame.size())) return {};
+  return fail(TransportFailure{sent < 0 ? std::strerror(errno) : "only a part of the request could be sent"});
+}
+
+/// There is something to read, or the end.
+Result<Span<const std::uint8_t>> RtuTransport::get(Span<std::uint8_t> room) {
+  const auto got = ::read(fd_, room.data(), room.size());
+  if (got > 0) {
+    last_character_ = now();
+    return Span<const std::uint8_t>(room.data(), static_cast<std::size_t>(got));
+  }
+  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return Span<const std::uint8_t>();
+  if (!line_.present())
+    return fail(TransportFailure{got == 0 ? "the device closed the connection" : std::strerror(errno)});
+  return fail(TransportFailure{fmt::format("the port {} has gone; is its adapter plugged in?", device_)});
+}
+
+}  // namespace coupler::host

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/modbus/serial_port.hpp"
+#include "coupler/modbus/rtu_frame.hpp"
+
+namespace coupler::host {
+
+/// RTU frames over a serial port or, where a gateway does not translate them, over TCP (MSL 2.5.1).
+///
+/// There is no transaction number: the reply to a request is the next one of its unit and function that has
+/// its length. After a Timeout a unit must be left alone until its late reply has passed; what has come
+/// meanwhile is discarded before the next request.
+///
+/// The timeout begins when the last character of the request is out, and does not count those of the reply.
+class RtuTransport : public MultiUnitTransport {
+ public:
+  explicit RtuTransport(const Connection& connection);
+  ~RtuTransport() override { RtuTransport::close(); }
+  RtuTransport(const RtuTransport&) = delete;
+  RtuTransport& operator=(const RtuTransport&) = delete;
+
+  /// After a request without a reply it waits for a timeout first.
+  Result<> connect() override;
+  void close() override;
+  void interrupt() override { interrupted_.set(); }
+  Woken wait_until(Time time) override { return wait_for(wakeup_, interrupted_, fd_, time); }
+  void wake() override { wakeup_.call(); }
+
+  Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout) override;
+  Result<> open(const Event& interrupt) override;
+  void hang_up() override { hung_up_.call(); }
+  bool is_bus() const override { return true; }
+  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
+
+ protected:
+  Result<> send_pdu(modbus::Bytes pdu) override;
+  Result<modbus::Bytes> receive_pdu() override;
+
+ private:
+  Result<> keep_silence();
+  Result<> discard();
+  Result<> put(modbus::Bytes frame) const;
+  Result<Span<const std::uint8_t>> get(Span<std::uint8_t> room);
+  Duration time_of(std::size_t characters) const;
+
+  std::string host_;
+  std::uint16_t port_;
+  std::string device_;
+  Serial line_;  ///< of `device_`; none: RTU over TCP
+  std::uint8_t unit_;
+  std::chrono::milliseconds timeout_;
+  std::optional<SerialPort> serial_;
+  Descriptor socket_;
+  int fd_ = -1;  ///< of one of them
+  Event interrupted_;
+  Wakeup hung_up_;
+  Wakeup wakeup_;
+  modbus::RtuFramer framer_;
+  bool damaged_ = false;   ///< something has come since the request, and is no reply
+  Time last_character_{};  ///< on the line, of either side
+  Time answer_by_{};
+  Time late_until_{};  ///< the reply that was not awaited may still come
+};
+
+}  // namespace coupler::host
