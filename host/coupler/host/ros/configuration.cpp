@@ -210,7 +210,7 @@ tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const S
 
 bool is_map_of_a_node(const Map* built_in, const Settings& settings) {
   if (built_in != nullptr || !settings.maps.empty()) return false;
-  return settings.map ? names_a_node(*settings.map) : settings.address.has_value();
+  return settings.map ? names_a_node(*settings.map) : settings.address || settings.serial;
 }
 
 std::vector<std::string_view> names_of(const std::vector<MapSource>& sources) {
@@ -241,8 +241,8 @@ std::string node_name(std::string_view map_name) {
 }
 
 std::string node_name_by_address(const Settings& settings) {
-  std::string stem = settings.address.value_or("");
-  if (stem.empty() && settings.map) stem = settings.map->substr(settings.map->find("//") + 2);
+  std::string stem = settings.address.value_or(settings.serial.value_or(""));
+  if (stem.empty() && settings.map) stem = settings.map->substr(settings.map->find(':') + 1);
   if (settings.port) stem += fmt::format("_{}", *settings.port);
   if (settings.unit) stem += fmt::format("_unit{}", *settings.unit);
   const auto is_sign = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
