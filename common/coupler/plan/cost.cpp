@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/rtu_frame.hpp"
 #include "coupler/plan/read_span.hpp"
 
 namespace coupler::plan {
@@ -61,6 +62,16 @@ Polling as_pays(const Map& map, const NetworkTiming& timing) {
 }
 
 }  // namespace
+
+NetworkTiming timing_of(const Map& map, std::chrono::nanoseconds answer) {
+  NetworkTiming timing{answer, map.limits.request_gap};
+  const Serial& line = map.connection.serial;
+  if (!line.present()) return timing;
+  timing.round_trip += time_of_characters(line, request_pdu + reply_head + 2 * modbus::rtu_overhead);
+  timing.pause = std::max(timing.pause, silence_between_frames(line));
+  timing.byte_time = time_of_characters(line, 1);
+  return timing;
+}
 
 std::uint32_t value_bytes(Table table, std::uint32_t count) {
   return holds_bits(table) ? (count + 7) / 8 : 2 * count;

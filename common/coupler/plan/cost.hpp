@@ -20,6 +20,10 @@ struct NetworkTiming {
   std::chrono::nanoseconds byte_time{80};
 };
 
+/// On the map's way to the device: on a serial line the characters take their time (MSL 2.5.1.1). `answer`: what
+/// the network and the device take beside that.
+NetworkTiming timing_of(const Map& map, std::chrono::nanoseconds answer);
+
 /// The bytes of values in the reply (MAP 6.1 to 6.4).
 std::uint32_t value_bytes(Table table, std::uint32_t count);
 
