@@ -87,6 +87,11 @@ with tempfile.TemporaryDirectory() as folder:
     checks.equal("probe: the draft has the port", wanted in probed.stdout, True)
     checks.equal("probe: the draft has the unit", f"unit: {UNIT}" in probed.stdout, True)
 
+    # A line without hardware has one rate; what counts is that units are asked until one answers.
+    found = run("probe", line.port, "--units", "15-18", "--baud", "9600,115200", "--parity", "none", "--to", "20",
+                "--rate", "1000")
+    checks.equal("probe by the device's path: the unit", f"unit {UNIT}" in found.stdout or f"/{UNIT}" in found.stdout, True)
+
     over_tcp = RtuServer([UNIT])
     fill(over_tcp)
     checks.equal("RTU over TCP", dumped(path, "--at", f"rtu+tcp://127.0.0.1:{over_tcp.port}/{UNIT}"), VALUES)

@@ -22,7 +22,7 @@ class MultiUnitTransport : public Transport {
   /// From any thread: ends the request in progress; connect() is possible again.
   virtual void hang_up() = 0;
   /// Other units can be asked while the answer of one is late: only its own requests could take that for
-  /// theirs. And it stays open while nobody uses it, since opening it again may restart what is connected.
+  /// theirs.
   virtual bool is_bus() const { return false; }
 
   /// Sends any PDU. Returns that of the reply, which may be an exception, valid until the next request.

@@ -58,14 +58,11 @@ Result<> RtuTransport::select(std::uint8_t unit, std::chrono::milliseconds timeo
   return fail(NotConnected{fmt::format("unit {} cannot be asked; RTU has units 1 to 247", unit)});
 }
 
-Result<> RtuTransport::connect() {
-  wait_for(hung_up_, interrupted_, -1, late_until_);
-  return open(interrupted_);
-}
-
 Result<> RtuTransport::open(const Event& interrupt) {
   close();
   if (auto selected = select(unit_, timeout_); !selected) return selected;
+  hung_up_.clear();
+  if (fd_ >= 0) return {};
   if (line_.present()) {
     auto opened = SerialPort::open(line_);
     if (!opened) return tl::make_unexpected(opened.error());
@@ -79,13 +76,14 @@ Result<> RtuTransport::open(const Event& interrupt) {
     notice_loss(fd_, timeout_);
   }
   if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
-  hung_up_.clear();
+  has_failed_ = false;
   framer_.reset();
   last_character_ = now();
   return {};
 }
 
 void RtuTransport::close() {
+  if (serial_ && !has_failed_) return;
   serial_.reset();
   socket_ = Descriptor();
   fd_ = -1;
@@ -98,6 +96,7 @@ Result<modbus::Bytes> RtuTransport::exchange(modbus::Bytes pdu) {
 
 Result<> RtuTransport::send_pdu(modbus::Bytes pdu) {
   if (fd_ < 0) return fail(NotConnected{"not connected"});
+  if (auto passed = let_late_reply_pass(); !passed) return passed;
   if (auto discarded = discard(); !discarded) return discarded;
   if (auto silent = keep_silence(); !silent) return silent;
   framer_.expect(unit_, pdu);
@@ -113,6 +112,7 @@ Result<modbus::Bytes> RtuTransport::receive_pdu() {
     switch (wait_for(hung_up_, interrupted_, fd_, answer_by_)) {
       case Woken::by_call: return fail(NotConnected{"interrupted"});
       case Woken::by_time:
+        late_unit_ = unit_;
         late_until_ = now() + timeout_;
         if (!damaged_) return fail(Timeout{timeout_});
         return fail(
@@ -132,6 +132,14 @@ Result<modbus::Bytes> RtuTransport::receive_pdu() {
   }
 }
 
+Result<> RtuTransport::let_late_reply_pass() {
+  if (late_unit_ != unit_) return {};
+  const Woken woken = wait_for(hung_up_, interrupted_, -1, late_until_);
+  if (woken == Woken::by_call) return fail(NotConnected{"interrupted"});
+  late_unit_ = 0;
+  return {};
+}
+
 /// MSL 2.5.1.1
 Result<> RtuTransport::keep_silence() {
   if (!line_.present()) return {};
@@ -146,10 +154,11 @@ Result<> RtuTransport::discard() {
   return {};
 }
 
-Result<> RtuTransport::put(modbus::Bytes frame) const {
+Result<> RtuTransport::put(modbus::Bytes frame) {
   const auto sent = line_.present() ? ::write(fd_, frame.data(), frame.size())
                                     : ::send(fd_, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(frame.size())) return {};
+  has_failed_ = true;
   return fail(TransportFailure{sent < 0 ? std::strerror(errno) : "only a part of the request could be sent"});
 }
 
@@ -161,6 +170,7 @@ Result<Span<const std::uint8_t>> RtuTransport::get(Span<std::uint8_t> room) {
     return Span<const std::uint8_t>(room.data(), static_cast<std::size_t>(got));
   }
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return Span<const std::uint8_t>();
+  has_failed_ = true;
   if (!line_.present())
     return fail(TransportFailure{got == 0 ? "the device closed the connection" : std::strerror(errno)});
   return fail(TransportFailure{fmt::format("the port {} has gone; is its adapter plugged in?", device_)});

@@ -13,19 +13,19 @@ namespace coupler::host {
 /// RTU frames over a serial port or, where a gateway does not translate them, over TCP (MSL 2.5.1).
 ///
 /// There is no transaction number: the reply to a request is the next one of its unit and function that has
-/// its length. After a Timeout a unit must be left alone until its late reply has passed; what has come
-/// meanwhile is discarded before the next request.
+/// its length. After a Timeout a unit is left alone for another one, and what has come meanwhile is
+/// discarded: its late reply could be taken for that to the next request.
+///
+/// A serial port stays open until it has failed: opening it again may restart what is connected.
 ///
 /// The timeout begins when the last character of the request is out, and does not count those of the reply.
 class RtuTransport : public MultiUnitTransport {
  public:
   explicit RtuTransport(const Connection& connection);
-  ~RtuTransport() override { RtuTransport::close(); }
   RtuTransport(const RtuTransport&) = delete;
   RtuTransport& operator=(const RtuTransport&) = delete;
 
-  /// After a request without a reply it waits for a timeout first.
-  Result<> connect() override;
+  Result<> connect() override { return open(interrupted_); }
   void close() override;
   void interrupt() override { interrupted_.set(); }
   Woken wait_until(Time time) override { return wait_for(wakeup_, interrupted_, fd_, time); }
@@ -42,9 +42,10 @@ class RtuTransport : public MultiUnitTransport {
   Result<modbus::Bytes> receive_pdu() override;
 
  private:
+  Result<> let_late_reply_pass();
   Result<> keep_silence();
   Result<> discard();
-  Result<> put(modbus::Bytes frame) const;
+  Result<> put(modbus::Bytes frame);
   Result<Span<const std::uint8_t>> get(Span<std::uint8_t> room);
   Duration time_of(std::size_t characters) const;
 
@@ -56,7 +57,8 @@ class RtuTransport : public MultiUnitTransport {
   std::chrono::milliseconds timeout_;
   std::optional<SerialPort> serial_;
   Descriptor socket_;
-  int fd_ = -1;  ///< of one of them
+  int fd_ = -1;             ///< of one of them
+  bool has_failed_ = false;  ///< since it was opened
   Event interrupted_;
   Wakeup hung_up_;
   Wakeup wakeup_;
@@ -64,6 +66,7 @@ class RtuTransport : public MultiUnitTransport {
   bool damaged_ = false;   ///< something has come since the request, and is no reply
   Time last_character_{};  ///< on the line, of either side
   Time answer_by_{};
+  std::uint8_t late_unit_ = 0;
   Time late_until_{};  ///< the reply that was not awaited may still come
 };
 

@@ -35,7 +35,7 @@ void UnitTransport::rank(Rank rank) {
 }
 
 void UnitTransport::release() {
-  if (shared_->users == 0 && !shared_->transport->is_bus()) {
+  if (shared_->users == 0) {
     shared_->transport->close();
     shared_->open = false;
   }
