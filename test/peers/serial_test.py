@@ -82,14 +82,14 @@ with tempfile.TemporaryDirectory() as folder:
     checks.equal("it says that nothing answers", "no reply within" in done.stderr, True)
     line.to_device = lambda data: data
 
-    probed = run("probe", f"rtu:{line.port}/{UNIT}{settings}", "--to", "99", "--rate", "1000", "--out", "-")
+    probed = run("probe", f"rtu:{line.port}/{UNIT}{settings}", "--to", "99", "--rate", "1000", "--timeout", "5", "--out", "-")
     wanted = f'serial: {{device: "{line.port}", baud: 115200, parity: none'
     checks.equal("probe: the draft has the port", wanted in probed.stdout, True)
     checks.equal("probe: the draft has the unit", f"unit: {UNIT}" in probed.stdout, True)
 
     # A line without hardware has one rate; what counts is that units are asked until one answers.
     found = run("probe", line.port, "--units", "15-18", "--baud", "9600,115200", "--parity", "none", "--to", "20",
-                "--rate", "1000")
+                "--rate", "1000", "--timeout", "1")
     checks.equal("probe by the device's path: the unit", f"unit {UNIT}" in found.stdout or f"/{UNIT}" in found.stdout, True)
 
     over_tcp = RtuServer([UNIT])

@@ -43,8 +43,11 @@ class Serial(testing.RosTest):
             self.weight[unit].becomes(value)
         motor = self.publisher(f"/unit{unit}/motor/write", Bool)
         for value in (True, False):
-            motor.publish(value)
-            wait_until(lambda wanted=value: self.server.get(unit, 1, 3) == wanted, f"the motor to be {value}")
+            def follows(wanted=value):
+                motor.publish(wanted)
+                return self.server.get(unit, 1, 3) == wanted
+
+            wait_until(follows, f"the motor to be {value}")
 
     def test_a_unit_on_a_serial_line_is_read_and_written(self):
         self.drive([17], self.on(self.line([17])))
@@ -58,7 +61,7 @@ class Serial(testing.RosTest):
 
     def test_units_on_one_line_go_on_beside_dead_ones(self):
         alive, dead = [1, 2, 4], [3, 5]
-        self.drive(alive + dead, self.on(self.line(alive)), timeout="200ms")
+        self.drive(alive + dead, self.on(self.line(alive)), timeout="1s")
         for unit in alive:
             self.reads_and_writes(unit)
         for unit in dead:

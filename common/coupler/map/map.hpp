@@ -23,12 +23,16 @@ struct Connection {
   std::string_view address;  ///< host name or IP address; empty: not in the map
   std::uint16_t port = modbus::default_port;
   std::uint8_t unit = 1;
-  std::chrono::milliseconds timeout{3000};
+  std::chrono::milliseconds timeout = usual_timeout(false);
   Framing framing = Framing::tcp;  ///< at `address`; a serial port has RTU
   Serial serial{};                 ///< instead of `address`
 
   constexpr bool is_rtu() const { return serial.present() || framing == Framing::rtu; }
   constexpr bool present() const { return serial.present() || !address.empty(); }
+  /// The way to the device is another one: a timeout that nobody has chosen goes with it.
+  constexpr void changed_from(bool was_rtu) {
+    if (timeout == usual_timeout(was_rtu)) timeout = usual_timeout(is_rtu());
+  }
 };
 
 /// How the host reads it. A gap is the distance between the end of one point and the start of the next;

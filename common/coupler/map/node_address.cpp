@@ -132,8 +132,7 @@ tl::expected<NodeAddress, NetworkError> parse_serial_port(std::string_view rest,
     rest = path;
   }
   if (rest.empty()) return wrong_line("there is no device");
-  if (node.unit < 1 || node.unit > 247)
-    return wrong_line(fmt::format("the unit id '{}' is not 1 to 247", node.unit));
+  if (!is_rtu_unit(node.unit)) return wrong_line(fmt::format("the unit id '{}' is not 1 to 247", node.unit));
   node.serial.device = rest;
   return node;
 }
@@ -156,7 +155,10 @@ tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argu
   if (!begins_with(argument, rtu_over_tcp))
     return wrong("the address of a device begins with tcp:// or rtu:");
   auto node = parse_host_and_port(argument.substr(rtu_over_tcp.size()), otherwise);
-  if (node) node->framing = Framing::rtu;
+  if (!node) return node;
+  if (!is_rtu_unit(node->unit))
+    return wrong(fmt::format("with RTU the unit id '{}' is not 1 to 247", node->unit));
+  node->framing = Framing::rtu;
   return node;
 }
 
@@ -181,7 +183,7 @@ Map found_at(const Map& map, const NodeAddress& where) {
   connection.unit = where.unit;
   connection.framing = where.framing;
   connection.serial = where.serial;
-  if (connection.is_rtu() && !map.connection.is_rtu()) connection.timeout = usual_rtu_timeout;
+  connection.changed_from(map.connection.is_rtu());
   return found;
 }
 

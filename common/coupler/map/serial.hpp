@@ -53,8 +53,13 @@ constexpr bool is_serial_rate(std::uint32_t baud) {
   return false;
 }
 
-/// How long a device may take with RTU if nobody says it; the time of the characters comes on top.
-constexpr std::chrono::milliseconds usual_rtu_timeout{500};
+/// How long a device may take if nobody says it. With RTU the time of the characters comes on top.
+constexpr std::chrono::milliseconds usual_timeout(bool is_rtu) {
+  return std::chrono::milliseconds(is_rtu ? 500 : 3000);
+}
+
+/// 0 is a broadcast, those above 247 are reserved (MSL 2.2).
+constexpr bool is_rtu_unit(unsigned unit) { return unit >= 1 && unit <= 247; }
 
 /// "N", "E" or "O", as in 8N1.
 constexpr char parity_letter(Serial::Parity parity) { return "NEO"[static_cast<int>(parity)]; }

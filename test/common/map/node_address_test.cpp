@@ -67,7 +67,7 @@ TEST(NodeAddress, A_serial_port_alone_has_the_default_settings) {
   ASSERT_TRUE(node) << node.error().what;
   EXPECT_EQ(node->serial, Serial{"/dev/ttyUSB0"});
   EXPECT_EQ(node->unit, 1);
-  EXPECT_EQ(found_at({}, *node).connection.timeout, usual_rtu_timeout);
+  EXPECT_EQ(found_at({}, *node).connection.timeout, usual_timeout(true));
 }
 
 TEST(NodeAddress, The_number_of_a_pseudo_terminal_is_no_unit) {

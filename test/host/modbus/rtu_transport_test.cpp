@@ -117,20 +117,13 @@ TEST(RtuTransport, Where_nothing_but_noise_comes_the_settings_are_named) {
 
 TEST(RtuTransport, The_late_reply_to_a_request_is_not_taken_for_that_to_the_next) {
   std::atomic<int> requests{0};
-  Octets late;
-  OnLine on(
-      [&](const Octets& request) {
-        if (++requests > 1) return answer(request);
-        late = answer(request);
-        return Octets();
-      },
-      impatient);
+  OnLine on([&](const Octets& request) { return ++requests > 1 ? answer(request) : Octets(); }, impatient);
   ASSERT_TRUE(is<Timeout>(read(on.transport, 7)));
-  auto connected = std::async(std::launch::async, [&] { return on.transport.connect(); });
-  on.line.send(late);
-  ASSERT_TRUE(connected.get());
+  ASSERT_TRUE(on.transport.connect());
   on.transport.select(1, patient);
-  EXPECT_EQ(read(on.transport, 8), 800);
+  auto next = std::async(std::launch::async, [&] { return read(on.transport, 8); });
+  on.line.send(rtu(1, {3, 2, 700 >> 8, 700 & 0xFF}));
+  EXPECT_EQ(next.get(), 800);
 }
 
 TEST(RtuTransport, A_port_that_goes_is_a_lost_connection) {
@@ -152,7 +145,25 @@ TEST(RtuTransport, A_request_ends_when_it_is_interrupted) {
   auto value = std::async(std::launch::async, [&] { return read(on.transport, 7); });
   asked.get_future().wait();
   on.transport.interrupt();
-  EXPECT_FALSE(value.get());
+  EXPECT_TRUE(is<NotConnected>(value.get()));
+}
+
+TEST(RtuTransport, A_request_ends_when_another_thread_hangs_up_and_the_next_is_made) {
+  std::atomic<int> requests{0};
+  std::promise<void> asked;
+  OnLine on(
+      [&](const Octets& request) {
+        if (++requests > 1) return answer(request);
+        asked.set_value();
+        return Octets();
+      },
+      milliseconds(1000));
+  auto value = std::async(std::launch::async, [&] { return read(on.transport, 7); });
+  asked.get_future().wait();
+  on.transport.hang_up();
+  EXPECT_TRUE(is<NotConnected>(value.get()));
+  on.transport.select(1, patient);
+  EXPECT_EQ(read(on.transport, 8), 800);
 }
 
 TEST(RtuTransport, A_unit_that_a_serial_line_cannot_have_is_refused) {

@@ -7,6 +7,8 @@ from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, M
 from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
 from pymodbus.transaction import ModbusRtuFramer
 
+from support.patience import PATIENCE
+
 
 class RtuServer:
     """`units` are the numbers of those that answer; each has 100 of everything. `device`: the end of a line; without it
@@ -20,7 +22,8 @@ class RtuServer:
         self._ready = threading.Event()
         self._thread = threading.Thread(target=self._loop.run_until_complete, args=(self._serve(),), daemon=True)
         self._thread.start()
-        self._ready.wait()
+        if not self._ready.wait(PATIENCE):
+            raise RuntimeError("the server has not started")
 
     @staticmethod
     def _memory():
@@ -55,4 +58,4 @@ class RtuServer:
 
     def end(self):
         self._loop.call_soon_threadsafe(self._stopped.set)
-        self._thread.join()
+        self._thread.join(PATIENCE)

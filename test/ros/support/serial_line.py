@@ -62,6 +62,7 @@ class SerialLine:
 
     def _run(self):
         while not self._over:
+            time.sleep(0)  # lets unplug() have the lock
             with self._lock:
                 port = self._port_end
                 ends = [self._device_end] + ([port] if port is not None else [])

@@ -38,7 +38,7 @@ void check_serial(const Reader& top, const Connection& connection, const Context
 
 /// MSL 2.2
 void check_unit(const Reader& top, const Connection& connection, const Context& context) {
-  if (!connection.is_rtu() || (connection.unit >= 1 && connection.unit <= 247)) return;
+  if (!connection.is_rtu() || is_rtu_unit(connection.unit)) return;
   context.problems.error(
       top.find("unit")->at,
       fmt::format("'unit': {} is {} on a serial line", connection.unit,
@@ -54,7 +54,7 @@ Connection read_connection(const Reader& top, const Context& context) {
   check_address(top, connection, context);
   check_serial(top, connection, context);
   check_unit(top, connection, context);
-  if (connection.is_rtu() && !top.has("timeout")) connection.timeout = usual_rtu_timeout;
+  if (!top.has("timeout")) connection.timeout = usual_timeout(connection.is_rtu());
   return connection;
 }
 

@@ -57,17 +57,19 @@ struct WrongCall {
   std::string remedy;
 };
 
-/// Units on Modbus/TCP; 248 to 254 are reserved.
-bool is_unit(std::uint64_t unit) { return unit <= 247 || unit == 255; }
+/// Units that can be asked; 248 to 254 are reserved, and 0 is a broadcast with RTU.
+bool is_unit(std::uint64_t unit, bool is_rtu) {
+  return is_rtu ? unit >= 1 && unit <= 247 : unit <= 247 || unit == 255;
+}
 
 /// "5" or "1-247".
-bool add_units(std::string_view text, std::vector<std::uint8_t>& units) {
+bool add_units(std::string_view text, bool is_rtu, std::vector<std::uint8_t>& units) {
   const auto dash = text.find('-');
   const auto first = loader::parse_unsigned(text.substr(0, dash));
   const auto last = dash == std::string_view::npos ? first : loader::parse_unsigned(text.substr(dash + 1));
-  if (!first || !last || *first > *last || !is_unit(*first) || !is_unit(*last)) return false;
+  if (!first || !last || *first > *last || !is_unit(*first, is_rtu) || !is_unit(*last, is_rtu)) return false;
   for (auto unit = *first; unit <= *last; ++unit)
-    if (is_unit(unit)) units.push_back(static_cast<std::uint8_t>(unit));
+    if (is_unit(unit, is_rtu)) units.push_back(static_cast<std::uint8_t>(unit));
   return true;
 }
 
@@ -82,12 +84,14 @@ bool names_a_unit(const NodeAddress& where, std::string_view address) {
 tl::expected<std::vector<std::uint8_t>, WrongCall> units_of(const Arguments& arguments,
                                                             const NodeAddress& where, bool has_unit) {
   std::vector<std::uint8_t> units;
+  const bool is_rtu = where.serial.present() || where.framing == Framing::rtu;
   for (const std::string& text : arguments.units)
-    if (!add_units(text, units))
-      return tl::make_unexpected(
-          WrongCall{fmt::format("'{}' is not a unit id", text), "give 0 to 247 or 255, as --units 1-10,255"});
+    if (!add_units(text, is_rtu, units))
+      return tl::make_unexpected(WrongCall{
+          fmt::format("'{}' is not a unit id", text),
+          is_rtu ? "give 1 to 247, as --units 1-10,17" : "give 0 to 247 or 255, as --units 1-10,255"});
   if (!units.empty()) return units;
-  if (has_unit && !is_unit(where.unit))
+  if (has_unit && !is_unit(where.unit, is_rtu))
     return tl::make_unexpected(
         WrongCall{fmt::format("unit {} is reserved", where.unit), "give 0 to 247 or 255"});
   if (has_unit) units.push_back(where.unit);
@@ -109,7 +113,8 @@ tl::expected<std::vector<scan::KnownValue>, WrongCall> known_values(const std::v
   return known;
 }
 
-/// The settings of a serial port that are tried: what is given, otherwise what is usual, the most usual first.
+/// The settings of a serial port that are tried: what is given, otherwise what is usual, the most usual
+/// first.
 tl::expected<std::vector<Serial>, WrongCall> lines_of(const Arguments& arguments, const Serial& line,
                                                       const std::string& address) {
   const auto gives = [&](std::string_view key) { return address.find(key) != std::string::npos; };
@@ -169,7 +174,7 @@ tl::expected<Call, WrongCall> understand(const Arguments& arguments, const std::
     if (!lines) return tl::make_unexpected(lines.error());
     call.lines = std::move(*lines);
   }
-  if (units->empty() && call.connection.is_rtu()) add_units("1-247", *units);
+  if (units->empty() && call.connection.is_rtu()) add_units("1-247", true, *units);
   if (!units->empty()) call.task.units = std::move(*units);
   call.task.stride = arguments.stride;
   call.task.rate = arguments.rate;
@@ -198,7 +203,8 @@ scan::Findings look_at_each_line(Call& call) {
     if (line.present())
       progress.where(fmt::format("at {} 8{}{}", line.baud, parity_letter(line.parity), line.stop_bits));
     findings = look(call, progress);
-    if (findings.unit || findings.broke_off || progress.wants_end()) break;
+    const bool is_refused = findings.broke_off && findings.requests == 0;  // perhaps not the next one
+    if (findings.unit || (findings.broke_off && !is_refused) || progress.wants_end()) break;
   }
   return findings;
 }
@@ -292,8 +298,9 @@ void add_probe(Program& program, Exit& exit) {
   command.add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], or a serial port as /dev/ttyUSB0[/UNIT]")
       .required()
       .type_name("");
-  command.add_option("--units", arguments->units,
-                     "Unit ids to ask, as 1-247 (default: 1, 255, 0; with RTU 1-247)")
+  command
+      .add_option("--units", arguments->units,
+                  "Unit ids to ask, as 1-247 (default: 1, 255, 0; with RTU 1-247)")
       .delimiter(',')
       .type_name("N[-N]");
   command.add_option("--from", arguments->from, "First address to look at")
@@ -324,7 +331,8 @@ void add_probe(Program& program, Exit& exit) {
                   "On a serial line: rates to try (default: 9600,19200,115200,38400,57600,4800)")
       .delimiter(',')
       .type_name("N");
-  command.add_option("--parity", arguments->parities, "On a serial line: parities to try (default: none,even)")
+  command
+      .add_option("--parity", arguments->parities, "On a serial line: parities to try (default: none,even)")
       .delimiter(',')
       .type_name("WORD");
   command

@@ -33,8 +33,9 @@ Place place_of(const Connection& connection) {
 
 /// Not the name of the port, of which there may be several.
 bool have_same_line(const Connection& a, Connection b) {
+  if (!a.serial.present() || !b.serial.present()) return a.is_rtu() == b.is_rtu();
   b.serial.device = a.serial.device;
-  return a.serial == b.serial && a.is_rtu() == b.is_rtu();
+  return a.serial == b.serial;
 }
 
 }  // namespace

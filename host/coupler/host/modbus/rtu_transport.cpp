@@ -52,16 +52,17 @@ Duration RtuTransport::time_of(std::size_t characters) const {
 }
 
 Result<> RtuTransport::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
+  is_hung_up_ = false;
+  if (!is_rtu_unit(unit))
+    return fail(NotConnected{fmt::format("unit {} cannot be asked; RTU has units 1 to 247", unit)});
   unit_ = unit;
   timeout_ = timeout;
-  if (unit >= 1 && unit <= 247) return {};
-  return fail(NotConnected{fmt::format("unit {} cannot be asked; RTU has units 1 to 247", unit)});
+  return {};
 }
 
 Result<> RtuTransport::open(const Event& interrupt) {
   close();
   if (auto selected = select(unit_, timeout_); !selected) return selected;
-  hung_up_.clear();
   if (fd_ >= 0) return {};
   if (line_.present()) {
     auto opened = SerialPort::open(line_);
@@ -82,6 +83,11 @@ Result<> RtuTransport::open(const Event& interrupt) {
   return {};
 }
 
+void RtuTransport::hang_up() {
+  is_hung_up_ = true;
+  hung_up_.call();
+}
+
 void RtuTransport::close() {
   if (serial_ && !has_failed_) return;
   serial_.reset();
@@ -96,20 +102,19 @@ Result<modbus::Bytes> RtuTransport::exchange(modbus::Bytes pdu) {
 
 Result<> RtuTransport::send_pdu(modbus::Bytes pdu) {
   if (fd_ < 0) return fail(NotConnected{"not connected"});
-  if (auto passed = let_late_reply_pass(); !passed) return passed;
-  if (auto discarded = discard(); !discarded) return discarded;
-  if (auto silent = keep_silence(); !silent) return silent;
+  if (auto free = await_line(); !free) return free;
   framer_.expect(unit_, pdu);
   damaged_ = false;
   const modbus::Bytes frame = framer_.request();
   last_character_ = now() + time_of(frame.size());
   answer_by_ = last_character_ + timeout_ + time_of(modbus::longest_reply(pdu) + modbus::rtu_overhead);
+  busy_until_ = answer_by_;
   return put(frame);
 }
 
 Result<modbus::Bytes> RtuTransport::receive_pdu() {
   for (;;) {
-    switch (wait_for(hung_up_, interrupted_, fd_, answer_by_)) {
+    switch (wait(fd_, answer_by_)) {
       case Woken::by_call: return fail(NotConnected{"interrupted"});
       case Woken::by_time:
         late_unit_ = unit_;
@@ -125,26 +130,33 @@ Result<modbus::Bytes> RtuTransport::receive_pdu() {
     if (!got) return tl::make_unexpected(got.error());
     framer_.filled(got->size());
     switch (framer_.next()) {
-      case modbus::RtuFramer::Outcome::reply: return framer_.pdu();
+      case modbus::RtuFramer::Outcome::reply: busy_until_ = {}; return framer_.pdu();
       case modbus::RtuFramer::Outcome::damaged: damaged_ = true; break;
       case modbus::RtuFramer::Outcome::nothing: break;
     }
   }
 }
 
-Result<> RtuTransport::let_late_reply_pass() {
-  if (late_unit_ != unit_) return {};
-  const Woken woken = wait_for(hung_up_, interrupted_, -1, late_until_);
-  if (woken == Woken::by_call) return fail(NotConnected{"interrupted"});
-  late_unit_ = 0;
+/// A call that comes together with bytes counts, too.
+Transport::Woken RtuTransport::wait(int fd, Time until) {
+  const Woken woken = wait_for(hung_up_, interrupted_, fd, until);
+  return is_hung_up_ || interrupted_.is_set() ? Woken::by_call : woken;
+}
+
+Result<> RtuTransport::pause(Time until) {
+  if (wait(-1, until) == Woken::by_call) return fail(NotConnected{"interrupted"});
   return {};
 }
 
-/// MSL 2.5.1.1
-Result<> RtuTransport::keep_silence() {
-  if (!line_.present()) return {};
-  const Woken woken = wait_for(hung_up_, interrupted_, -1, last_character_ + silence_between_frames(line_));
-  return woken == Woken::by_call ? Result<>(fail(NotConnected{"interrupted"})) : Result<>{};
+/// Until nobody's reply is expected on it, and it has been silent between two frames (MSL 2.5.1.1).
+Result<> RtuTransport::await_line() {
+  if (auto paused = pause(busy_until_); !paused) return paused;
+  if (late_unit_ == unit_) {
+    if (auto paused = pause(late_until_); !paused) return paused;
+    late_unit_ = 0;
+  }
+  if (auto discarded = discard(); !discarded) return discarded;
+  return line_.present() ? pause(last_character_ + silence_between_frames(line_)) : Result<>{};
 }
 
 Result<> RtuTransport::discard() {
@@ -154,11 +166,16 @@ Result<> RtuTransport::discard() {
   return {};
 }
 
+tl::unexpected<Error> RtuTransport::port_has_gone() const {
+  return fail(TransportFailure{fmt::format("the port {} has gone; is its adapter plugged in?", device_)});
+}
+
 Result<> RtuTransport::put(modbus::Bytes frame) {
   const auto sent = line_.present() ? ::write(fd_, frame.data(), frame.size())
                                     : ::send(fd_, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(frame.size())) return {};
   has_failed_ = true;
+  if (sent < 0 && errno == EIO) return port_has_gone();
   return fail(TransportFailure{sent < 0 ? std::strerror(errno) : "only a part of the request could be sent"});
 }
 
@@ -173,7 +190,7 @@ Result<Span<const std::uint8_t>> RtuTransport::get(Span<std::uint8_t> room) {
   has_failed_ = true;
   if (!line_.present())
     return fail(TransportFailure{got == 0 ? "the device closed the connection" : std::strerror(errno)});
-  return fail(TransportFailure{fmt::format("the port {} has gone; is its adapter plugged in?", device_)});
+  return port_has_gone();
 }
 
 }  // namespace coupler::host

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <string>
 
@@ -33,7 +34,7 @@ class RtuTransport : public MultiUnitTransport {
 
   Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout) override;
   Result<> open(const Event& interrupt) override;
-  void hang_up() override { hung_up_.call(); }
+  void hang_up() override;
   bool is_bus() const override { return true; }
   Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
 
@@ -42,9 +43,11 @@ class RtuTransport : public MultiUnitTransport {
   Result<modbus::Bytes> receive_pdu() override;
 
  private:
-  Result<> let_late_reply_pass();
-  Result<> keep_silence();
+  Woken wait(int fd, Time until);
+  Result<> pause(Time until);
+  Result<> await_line();
   Result<> discard();
+  tl::unexpected<Error> port_has_gone() const;
   Result<> put(modbus::Bytes frame);
   Result<Span<const std::uint8_t>> get(Span<std::uint8_t> room);
   Duration time_of(std::size_t characters) const;
@@ -57,17 +60,19 @@ class RtuTransport : public MultiUnitTransport {
   std::chrono::milliseconds timeout_;
   std::optional<SerialPort> serial_;
   Descriptor socket_;
-  int fd_ = -1;             ///< of one of them
+  int fd_ = -1;              ///< of one of them
   bool has_failed_ = false;  ///< since it was opened
   Event interrupted_;
+  std::atomic<bool> is_hung_up_{false};  ///< the request in progress is
   Wakeup hung_up_;
   Wakeup wakeup_;
   modbus::RtuFramer framer_;
   bool damaged_ = false;   ///< something has come since the request, and is no reply
   Time last_character_{};  ///< on the line, of either side
   Time answer_by_{};
-  std::uint8_t late_unit_ = 0;
-  Time late_until_{};  ///< the reply that was not awaited may still come
+  Time busy_until_{};           ///< the reply to a request that was given up may come until then
+  std::uint8_t late_unit_ = 0;  ///< did not reply in time, and may still
+  Time late_until_{};
 };
 
 }  // namespace coupler::host

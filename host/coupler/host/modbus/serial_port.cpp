@@ -7,6 +7,7 @@
 #include <sys/ioctl.h>
 #include <termios.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -72,10 +73,24 @@ tcflag_t parity_flags(Serial::Parity parity) {
   return 0;
 }
 
+constexpr std::pair<std::uint32_t, speed_t> speeds[] = {
+    {110, B110},       {300, B300},         {600, B600},         {1200, B1200},      {2400, B2400},
+    {4800, B4800},     {9600, B9600},       {19200, B19200},     {38400, B38400},    {57600, B57600},
+    {115200, B115200}, {230400, B230400},   {460800, B460800},   {500000, B500000},  {576000, B576000},
+    {921600, B921600}, {1000000, B1000000}, {1152000, B1152000}, {1500000, B1500000}};
+
+bool has_rate(const termios& is, std::uint32_t baud) {
+  const auto* const found = std::find_if(std::begin(speeds), std::end(speeds),
+                                         [baud](const auto& one) { return one.first == baud; });
+  return found != std::end(speeds) && ::cfgetispeed(&is) == found->second &&
+         ::cfgetospeed(&is) == found->second;
+}
+
 /// tcsetattr() is content when it could set a part.
 std::string refused_setting(int fd, const Serial& wanted) {
   termios is{};
   if (::tcgetattr(fd, &is) != 0) return fmt::format("its settings cannot be read: {}", std::strerror(errno));
+  if (!has_rate(is, wanted.baud)) return fmt::format("it does not take 'baud: {}'", wanted.baud);
   if ((is.c_cflag & (PARENB | PARODD)) != parity_flags(wanted.parity))
     return fmt::format("it does not take 'parity: {}'", to_string(wanted.parity));
   if (((is.c_cflag & CSTOPB) != 0) != (wanted.stop_bits == 2))
@@ -84,6 +99,8 @@ std::string refused_setting(int fd, const Serial& wanted) {
 }
 
 void close_port(_modbus* context) {
+  if (modbus_rtu_get_serial_mode(context) == MODBUS_RTU_RS485)
+    modbus_rtu_set_serial_mode(context, MODBUS_RTU_RS232);  // the driver would go on switching
   ::ioctl(modbus_get_socket(context), TIOCNXCL);
   modbus_close(context);
   modbus_free(context);
@@ -106,7 +123,8 @@ Result<SerialPort> SerialPort::open(const Serial& settings) {
                   modbus_free);
   if (!context) return refuse(std::strerror(errno));
   if (modbus_connect(context.get()) != 0)
-    return refuse(fmt::format("it cannot be set to {}: {}", written(settings), std::strerror(errno)));
+    return refuse(fmt::format("it cannot be set to {}: {}{}", written(settings), std::strerror(errno),
+                              errno == EINVAL ? "; try another 'parity' or 'baud'" : ""));
   context = Context(context.release(), close_port);
   const int fd = modbus_get_socket(context.get());
   if (const auto refused = refused_setting(fd, settings); !refused.empty()) return refuse(refused);

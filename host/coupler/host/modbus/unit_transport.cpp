@@ -9,7 +9,8 @@ namespace {
 
 tl::unexpected<Error> interrupted_error() { return fail(NotConnected{"interrupted"}); }
 tl::unexpected<Error> lost_error() {
-  return fail(TransportFailure{"the gateway has closed the connection, or cannot be reached"});
+  return fail(TransportFailure{
+      "the gateway has closed the connection, or cannot be reached; or the serial port has gone"});
 }
 
 }  // namespace

@@ -136,8 +136,9 @@ class MapFinder {
     diagnostics.say(Level::info, "read from " + where);
     // The place where the node was found counts, not the one in its map.
     Map map = (*owner)->map();
-    const auto timeout = std::exchange(map.connection, asked.connection).timeout;
-    if (!asked.connection.is_rtu()) map.connection.timeout = timeout;
+    const Connection its_own = std::exchange(map.connection, asked.connection);
+    map.connection.timeout = its_own.timeout;
+    map.connection.changed_from(its_own.is_rtu());
     return MapSource{*owner, map};
   }
 
@@ -176,6 +177,9 @@ std::string find_error(const Devices& devices) {
     if (!source.map.connection.present())
       return fmt::format("the map{} has no address; add 'address: HOST' or give --address HOST",
                          devices.size() > 1 ? fmt::format(" of {}", source.map.name) : "");
+    if (source.map.connection.is_rtu() && !is_rtu_unit(source.map.connection.unit))
+      return fmt::format("{}: unit {} cannot be asked; with RTU give 1 to 247", source.map.name,
+                         source.map.connection.unit);
     if (settings.address && settings.serial) return "both address and serial are given; give one of them";
     if (!names.insert(source.map.name).second)
       return fmt::format(

@@ -306,6 +306,7 @@ Settings with_map(Settings settings, const Map& map) {
 void apply(const Settings& settings, Map& map) {
   if (settings.name) map.name = *settings.name;
   Connection& connection = map.connection;
+  const bool was_rtu = connection.is_rtu();
   if (settings.address) {
     connection.address = *settings.address;
     connection.serial.device = {};
@@ -321,6 +322,7 @@ void apply(const Settings& settings, Map& map) {
   if (settings.parity) connection.serial.parity = *settings.parity;
   if (settings.stop_bits) connection.serial.stop_bits = *settings.stop_bits;
   if (settings.rs485) connection.serial.rs485 = *settings.rs485;
+  connection.changed_from(was_rtu);
   if (settings.timeout) connection.timeout = *settings.timeout;
   if (settings.rate) map.polling.rate = *settings.rate;
   if (settings.poll) map.poll = *settings.poll;
