@@ -85,10 +85,15 @@ function(coupler_export target name)
   coupler_install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT dev)
 endfunction()
 
-# Several files as one. CMake's own UNITY_BUILD writes absolute paths, with which no two clones could share the
-# compiler's cache. Files that are written while this is configured stay by themselves.
+# coupler_unite(NAME a.cpp …): sets NAME to files that include these, several each. CMake's own UNITY_BUILD writes absolute
+# paths, with which no two clones could share the compiler's cache. Files that are written while this is configured stay by
+# themselves.
 set(COUPLER_UNITY 4 CACHE STRING "How many files of a test program, or of a large module, are compiled as one")
 function(coupler_unite out)
+  if(NOT COUPLER_UNITY GREATER 1)
+    set(${out} ${ARGN} PARENT_SCOPE)
+    return()
+  endif()
   set(files ${ARGN})
   list(FILTER files EXCLUDE REGEX "^/")
   set(united ${ARGN})
@@ -112,12 +117,12 @@ function(coupler_unite out)
 endfunction()
 
 # coupler_module(NAME SOURCES a.cpp … LINKS lib … [EXPORT name] [HEADERS <h> …] [UNITE]): the library of one module. LINKS are
-# public. EXPORT: as coupler_export(). UNITE: several files are compiled as one. HEADERS are precompiled for it alone, in place of those that most modules share: where they cost
-# more, or where fmt is not linked. COUPLER_INCLUDE is the folder in which #include finds its headers. Who links it gets no
-# flags of ours but C++17.
+# public. EXPORT: as coupler_export(). UNITE: several files are compiled as one. HEADERS are precompiled for it alone, in place
+# of those that most modules share: where they cost more, or where fmt is not linked. COUPLER_INCLUDE is the folder in which
+# #include finds its headers. Who links it gets no flags of ours but C++17.
 function(coupler_module name)
   cmake_parse_arguments(module "UNITE" "EXPORT" "SOURCES;LINKS;HEADERS" ${ARGN})
-  if(module_UNITE AND COUPLER_UNITY GREATER 1)
+  if(module_UNITE)
     coupler_unite(${name} ${module_SOURCES})
     set(module_SOURCES ${${name}})
   endif()
@@ -143,11 +148,8 @@ endfunction()
 # that hangs from one that works on a slow machine under ThreadSanitizer.
 function(coupler_test name)
   cmake_parse_arguments(test "" "" "SOURCES;LINKS" ${ARGN})
-  if(COUPLER_UNITY GREATER 1)
-    coupler_unite(${name} ${test_SOURCES})
-    set(test_SOURCES ${${name}})
-  endif()
-  add_executable(${name} ${test_SOURCES})
+  coupler_unite(${name} ${test_SOURCES})
+  add_executable(${name} ${${name}})
   target_link_libraries(${name} PRIVATE coupler_test_flags ${test_LINKS} coupler_test_paths GTest::gmock GTest::gtest_main)
   target_precompile_headers(${name} REUSE_FROM coupler_test_headers)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/test/bin)
