@@ -18,6 +18,9 @@ if(NOT libmodbus_FOUND)
   message(STATUS "Left out: the host's Modbus client, coupler_driver and the node's libmodbus oracle test "
                  "(no libmodbus; apt install libmodbus-dev)")
 endif()
+if(libmodbus_FOUND AND NOT COUPLER_SERIAL)
+  message(STATUS "Left out: couplers on serial lines (COUPLER_SERIAL=OFF)")
+endif()
 
 # OFF, or the folder of coupler/device/gpio that speaks to it: libgpiod 2 shares no API with libgpiod 1.
 set(COUPLER_WITH_GPIOD OFF)

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device served by modbus-serial or jsmodbus: four tables of 65536 addresses, set and read through standard input,
-// a JSON text a line, each answered by one:
+// A device served by modbus-serial or jsmodbus, by RTU on a serial port or over TCP where the name says so: four tables of
+// 65536 addresses, set and read through standard input, a JSON text a line, each answered by one:
 //   ["set", "coils", 3, [1, 0]]             null
 //   ["get", "holding_registers", 0, 2]      [17, 4]
 // Says "ready" once it serves, and ends with its input.
-//   node server.js modbus-serial|jsmodbus PORT
+//   node server.js modbus-serial|jsmodbus|jsmodbus-rtu PORT
+//   node server.js modbus-serial-rtu DEVICE
 "use strict";
 const net = require("node:net");
 const readline = require("node:readline");
 
-const [kind, port] = [process.argv[2], Number(process.argv[3])];
+const [kind, place] = process.argv.slice(2);
+const port = Number(place);
 const host = "127.0.0.1";
 
 const bits = () => {
@@ -34,24 +36,28 @@ const registers = () => {
 const tables = { coils: bits(), discrete_inputs: bits(), input_registers: registers(), holding_registers: registers() };
 
 const ready = () => console.log("ready");
-if (kind === "modbus-serial") {
-  const { ServerTCP } = require("modbus-serial");
-  const server = new ServerTCP({
+if (kind.startsWith("modbus-serial")) {
+  const { ServerTCP, ServerSerial } = require("modbus-serial");
+  const functions = {
     getCoil: (address) => tables.coils.get(address) !== 0,
     getDiscreteInput: (address) => tables.discrete_inputs.get(address) !== 0,
     getInputRegister: tables.input_registers.get,
     getHoldingRegister: tables.holding_registers.get,
     setCoil: tables.coils.set,
     setRegister: tables.holding_registers.set,
-  }, { host, port });
+  };
+  const server = kind === "modbus-serial" ? new ServerTCP(functions, { host, port })
+    : new ServerSerial(functions, { path: place, baudRate: 115200 });
   server.on("initialized", ready);
-} else if (kind === "jsmodbus") {
+} else if (kind.startsWith("jsmodbus")) {
+  const { server } = require("jsmodbus");
   const listener = net.createServer();
   const buffers = {
     coils: tables.coils.buffer, discrete: tables.discrete_inputs.buffer,
     input: tables.input_registers.buffer, holding: tables.holding_registers.buffer,
   };
-  new (require("jsmodbus").server.TCP)(listener, buffers);
+  if (kind === "jsmodbus") new server.TCP(listener, buffers);
+  else listener.on("connection", (socket) => new server.RTU(socket, buffers));
   listener.listen({ host, port }, ready);
 } else {
   throw new Error(`there is no server '${kind}'`);

@@ -36,8 +36,7 @@ class EveryType(unittest.TestCase):
                     for index, point in enumerate(points):
                         point.store(peer, value_of(point, index, 0))
                     path = process.write_map(yaml.safe_dump(document))
-                    with process.Driver(f"_map:={path}", "_address:=127.0.0.1", f"_port:={peer.port}",
-                                        f"_timeout:={NO_TIMEOUT}") as driver:
+                    with process.Driver(f"_map:={path}", *peer.way, f"_timeout:={NO_TIMEOUT}") as driver:
                         driver.wait_for("connected")
                         check(peer, points)
 

@@ -77,6 +77,9 @@ class Launch(testing.RosTest):
                                 (["map:=tcp://192.168.1.17:5020/3"], "/coupler_192_168_1_17_5020_3_driver"),
                                 (["address:=raspberrypi"], "/raspberrypi_driver"),
                                 (["address:=10.0.0.1", "port:=5020", "unit:=7"], "/coupler_10_0_0_1_5020_unit7_driver"),
+                                (["map:=rtu:/dev/ttyUSB0/17?baud=9600"], "/dev_ttyUSB0_17_driver"),
+                                (["map:=rtu+tcp://10.0.0.1:4001/3"], "/coupler_10_0_0_1_4001_3_driver"),
+                                (["serial:=/dev/ttyUSB0", "unit:=7"], "/dev_ttyUSB0_unit7_driver"),
                                 (["map:=/cell/press.yaml", "node:=mine"], "/mine")):
             # What `roslaunch --nodes` does, without a process for each.
             config = roslaunch.config.load_config_default([(DEVICE, arguments)], None, assign_machines=False)

@@ -76,12 +76,14 @@ class Tested:
 
 
 class Vectors(testing.RosTest):
+    peer = Peer
+
     def check(self, path, *program):
         """`program`: a generated driver, or the driver with its map."""
         vectors = vectors_of(path)
         points = [Tested(point, i, "/" + vectors["map"]) for i, point in enumerate(vectors["points"])]
-        with Peer() as peer:
-            arguments = (*program, "_address:=127.0.0.1", f"_port:={peer.port}", f"_timeout:={NO_TIMEOUT}")
+        with self.peer() as peer:
+            arguments = (*program, *peer.way, f"_timeout:={NO_TIMEOUT}")
             with process.Process(*process.driver_arguments(arguments)) as driver:
                 driver.wait_for("connected")
                 self.check_reading(peer, points)

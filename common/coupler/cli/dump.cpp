@@ -47,13 +47,13 @@ Exit run(const Arguments& arguments) {
   print(argument.loaded.diagnostics);
   if (!argument.loaded.map) return argument.exit;
   Map map = argument.map();
-  const std::string at = names_a_node(arguments.at) ? arguments.at : "tcp://" + arguments.at;
+  const std::string at = node_argument(arguments.at);
   if (!arguments.at.empty()) {
     const auto device = parse_node_address(at, map.connection);
     if (!device) return refuse("--at: " + device.error().what, device.error().remedy);
     map = found_at(map, *device);
   }
-  if (map.connection.address.empty())
+  if (!map.connection.present())
     return refuse(arguments.map + " does not say where the device is",
                   "give --at HOST[:PORT][/UNIT], or `address:` in the map");
   DumpOptions options;

@@ -23,7 +23,7 @@ constexpr auto schema_name = "map.schema.json";
 /// What a first map is to begin with.
 struct Starter {
   std::string name;     ///< of the device
-  std::string address;  ///< of a coupler; a node has none in its map
+  std::string address;  ///< of a coupler; empty: an example. A node has none in its map
   std::string preset;   ///< the coupler's kind; empty: any
   bool node = false;    ///< a board with GPIO lines that coupler-node serves
   std::string schema;   ///< what an editor checks it with, as seen from the map's folder
@@ -57,6 +57,42 @@ constexpr std::string_view coupler_points = R"(mapping:
     speed: {address: 0, type: UINT, units: rpm}
 )";
 
+constexpr std::string_view gripper_points = R"(
+mapping:
+  holding_registers:                       # what it is to do; only written
+    action: {address: 0x03E8, type: UINT, access: write, values: {0: reset, 256: activate, 2304: move}}
+    target: {address: 0x03E9, type: UINT, access: write, max: 255}   # 0 is open, 255 closed
+    speed_and_force: {address: 0x03EA, type: UINT, access: write}    # speed * 256 + force, each up to 255
+  input_registers:                         # what it does: <name>/state is std_msgs/UInt8
+    state: {address: 0x07D0, type: USINT, offset: high}
+    fault: {address: 0x07D1, type: USINT, offset: high}
+    position: {address: 0x07D2, type: USINT, offset: high}
+)";
+
+constexpr std::string_view module_points = R"(
+mapping:
+  coils:                                   # outputs: <name>/valve and <name>/valve/write are std_msgs/Bool
+    valve: {address: 0, description: "Y1, clamp"}
+  discrete_inputs:                         # inputs
+    door: 0                                # an address alone is enough
+  holding_registers:                       # what switches an output: 0 writes only, 1 its input, too
+    valve_mode: {address: 0x1000, type: UINT, max: 3}
+)";
+
+/// A preset whose couplers are on a serial line, and points that they have.
+struct SerialKind {
+  std::string_view preset;
+  std::string_view points;
+};
+constexpr SerialKind serial_kinds[] = {{"robotiq_2f", gripper_points}, {"waveshare_io_8ch", module_points}};
+
+/// nullptr: it is none.
+const SerialKind* serial_kind(std::string_view preset) {
+  for (const SerialKind& kind : serial_kinds)
+    if (kind.preset == preset) return &kind;
+  return nullptr;
+}
+
 constexpr std::string_view orders = R"(
 # How wide values stand in registers. If a value is absurd, try `order: ABCD`, CDAB, BADC or DCBA at its point.
 # Addresses are zero-based. For the numbers of a manual (40001 ...), write: addressing: modicon
@@ -68,22 +104,29 @@ std::string explained(const std::string& line, std::string_view comment) {
 
 /// A map with an example of what people need first, each line explained. It passes `coupler check`.
 std::string starter_map(const Starter& starter) {
+  const SerialKind* serial = serial_kind(starter.preset);
+  const bool has_address = serial == nullptr || !starter.address.empty();
   std::string text = fmt::format("# yaml-language-server: $schema={}\n", starter.schema);
-  text +=
-      starter.node
-          ? "# A board with GPIO lines. `coupler-node` serves it; `coupler-node … --sim` without a board.\n"
-          : "# A Modbus/TCP coupler. `coupler_driver` makes each point a topic.\n";
+  if (starter.node)
+    text += "# A board with GPIO lines. `coupler-node` serves it; `coupler-node … --sim` without a board.\n";
+  else
+    text += fmt::format("# A {} coupler. `coupler_driver` makes each point a topic.\n",
+                        has_address ? "Modbus/TCP" : "Modbus RTU");
   text += fmt::format("name: {}\n", starter.name);
   if (starter.node) return text + std::string(board_head) + std::string(board_points);
-  text += fmt::format("address: {}\n", starter.address);
+  if (has_address)
+    text += fmt::format("address: {}\n", starter.address.empty() ? "192.168.1.17" : starter.address);
+  else
+    text += explained("serial: {device: /dev/ttyUSB0}", "best by its name in /dev/serial/by-id");
   text += explained("rate: 10", "polls a second");
   if (!starter.preset.empty())
     text += explained("preset: " + starter.preset, "what is true of all couplers of this kind");
+  if (serial != nullptr) return text + std::string(serial->points);
   return text + std::string(orders) + "\n" + std::string(coupler_points);
 }
 
 struct Arguments {
-  Starter starter{"device", "192.168.1.17", {}, false, schema_name};
+  Starter starter{"device", {}, {}, false, schema_name};
   std::string out;
   bool force = false;
 };
@@ -125,7 +168,8 @@ void add_init(Program& program, Exit& exit) {
                      .type_name("HOST");
   auto preset = command
                     .add_option("--preset", arguments->starter.preset,
-                                "The coupler's kind: wago_750, beckhoff_bk9000, moxa_e1200 or plc")
+                                "The coupler's kind: wago_750, beckhoff_bk9000, moxa_e1200 or plc; on a "
+                                "serial line robotiq_2f or waveshare_io_8ch")
                     .type_name("PRESET");
   command.add_flag("--node", arguments->starter.node, "For a board with GPIO lines, served by coupler-node")
       .excludes(address)

@@ -44,10 +44,9 @@ Exit run(const Arguments& arguments) {
   print(argument.loaded.diagnostics);
   if (!argument.loaded.map) return argument.exit;
   const Map map = argument.map();
-  plan::NetworkTiming timing;
-  timing.round_trip = std::chrono::duration_cast<std::chrono::nanoseconds>(
-      std::chrono::duration<double, std::milli>(arguments.rtt));
-  timing.pause = map.limits.request_gap;
+  const plan::NetworkTiming timing =
+      plan::timing_of(map, std::chrono::duration_cast<std::chrono::nanoseconds>(
+                               std::chrono::duration<double, std::milli>(arguments.rtt)));
   if (!arguments.svg.empty() && !write_file(arguments.svg, plan::picture(map, plan::make_read_plan(map))))
     return complain("plan", bad_call, "cannot write " + arguments.svg,
                     "give a file that you may write with --svg");
@@ -67,8 +66,10 @@ void add_plan(Program& program, Exit& exit) {
   const auto arguments = std::make_shared<Arguments>();
   command.add_option("MAP", arguments->map, map_help).required().type_name("");
   command
-      .add_option("--rtt", arguments->rtt,
-                  "Milliseconds from a request to its reply, network and device together; default 1")
+      .add_option(
+          "--rtt", arguments->rtt,
+          "Milliseconds from a request to its reply, network and device together; default 1. On a serial "
+          "line the time of the characters comes on top")
       .positive()
       .type_name("MS");
   command.add_flag("--json", arguments->json, "One JSON object on standard output, for scripts");

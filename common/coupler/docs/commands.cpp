@@ -57,13 +57,18 @@ const Point* first(const Map& map, Rule&& rule) {
 std::vector<Command> mbpoll_commands(const Map& map) {
   const Connection& at = map.connection;
   const std::string host = at.address.empty() ? "HOST" : quoted(at.address);
+  const Serial& line = at.serial;
+  const std::string where = line.present() ? fmt::format("rtu -b {} -P {} -s {} -1 -0 -a {}", line.baud,
+                                                         to_string(line.parity), line.stop_bits, at.unit)
+                                           : fmt::format("tcp -1 -0 -a {} -p {}", at.unit, at.port);
   std::vector<Command> commands;
   for (const Table table : tables) {
     const Point* point = first(map, [&](const Point& p) { return p.table == table && is_readable(p); });
     if (point == nullptr) continue;
-    commands.push_back({fmt::format("{} of the {}", point->name, words(table)),
-                        fmt::format("mbpoll -m tcp -1 -0 -a {} -p {} -t {} -r {} {}", at.unit, at.port,
-                                    mbpoll_type(*point), read_range(*point).start(), host)});
+    commands.push_back(
+        {fmt::format("{} of the {}", point->name, words(table)),
+         fmt::format("mbpoll -m {} -t {} -r {} {}", where, mbpoll_type(*point), read_range(*point).start(),
+                     line.present() ? quoted(line.device) : host)});
   }
   return commands;
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "coupler/docs/words.hpp"
+#include "coupler/map/fields.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/plan/explain.hpp"
@@ -31,11 +32,17 @@ bool is_for_node(const Map& map) {
 
 FactGroup connection(const Map& map) {
   const Connection& at = map.connection;
-  FactGroup group{
-      "Connection",
-      {{"Address", at.address.empty() ? "not in the map" : std::string(at.address)},
-       {"Port", fmt::to_string(at.port)},
-       {"Unit id", fmt::to_string(at.unit)},
+  FactGroup group{"Connection", {}};
+  if (at.serial.present()) {
+    group.facts.push_back({"Serial port", written(at.serial)});
+  } else {
+    group.facts.push_back({"Address", at.address.empty() ? "not in the map" : std::string(at.address)});
+    group.facts.push_back({"Port", fmt::to_string(at.port)});
+    if (at.is_rtu()) group.facts.push_back({"Frames", "RTU"});
+  }
+  group.facts.insert(
+      group.facts.end(),
+      {{"Unit id", fmt::to_string(at.unit)},
        {"Timeout", words(at.timeout)},
        {"Polled", fmt::format("{} Hz", map.polling.rate)},
        {"Points that are read", map.poll == Poll::all ? "all" : "those that somebody listens to"},
@@ -43,7 +50,7 @@ FactGroup connection(const Map& map) {
                                  ? "outputs are written again"
                                  : "writes without a connection are lost"},
        {"When the driver ends",
-        map.on_shutdown == OnShutdown::safe ? "outputs go to their safe values" : "outputs stay"}}};
+        map.on_shutdown == OnShutdown::safe ? "outputs go to their safe values" : "outputs stay"}});
   if (!map.changes) group.facts.push_back({"Changes that it announces", "not listened to"});
   return group;
 }

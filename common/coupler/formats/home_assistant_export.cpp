@@ -262,14 +262,24 @@ class EntityWriter {
   Entities entities_;
 };
 
+std::string place_of(const Connection& connection) {
+  const Serial& line = connection.serial;
+  if (line.present())
+    return fmt::format(
+        "    type: serial\n    method: rtu\n    port: {}\n    baudrate: {}\n    bytesize: 8\n    parity: {}\n"
+        "    stopbits: {}\n",
+        text(line.device), line.baud, parity_letter(line.parity), line.stop_bits);
+  const std::string_view host = connection.address.empty() ? "localhost" : connection.address;
+  return fmt::format("    type: {}\n    host: {}\n    port: {}\n", connection.is_rtu() ? "rtuovertcp" : "tcp",
+                     text(host), connection.port);
+}
+
 std::string hub_of(const Map& map) {
-  const std::string_view host = map.connection.address.empty() ? "localhost" : map.connection.address;
   const auto seconds = [](std::chrono::milliseconds time) {
     return std::chrono::ceil<std::chrono::seconds>(time).count();
   };
-  std::string hub =
-      fmt::format("modbus:\n  - name: {}\n    type: tcp\n    host: {}\n    port: {}\n    timeout: {}\n",
-                  text(map.name), text(host), map.connection.port, seconds(map.connection.timeout));
+  std::string hub = fmt::format("modbus:\n  - name: {}\n{}    timeout: {}\n", text(map.name),
+                                place_of(map.connection), seconds(map.connection.timeout));
   if (map.limits.connect_delay.count() > 0)
     hub += fmt::format("    delay: {}\n", seconds(map.limits.connect_delay));
   if (map.limits.request_gap.count() > 0)
@@ -281,7 +291,7 @@ std::string hub_of(const Map& map) {
 
 Export write_home_assistant(const Map& map) {
   Export out;
-  if (map.connection.address.empty())
+  if (!map.connection.present())
     out.warnings.add("the map does not have the device's address, so localhost is written",
                      "write the address after 'host:'");
   const Entities entities = EntityWriter(map, out.warnings).write();

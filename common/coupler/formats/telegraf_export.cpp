@@ -143,16 +143,29 @@ std::string request_of(const Map& map, Table table, std::string_view order, cons
   return text + "    fields = [\n" + fields + "    ]\n";
 }
 
-std::string connection_of(const Map& map) {
-  const std::string_view address = map.connection.address.empty() ? "localhost" : map.connection.address;
+std::string controller_of(const Connection& connection) {
+  const Serial& line = connection.serial;
+  if (line.present())
+    return fmt::format(
+        "  controller = {}\n  transmission_mode = \"RTU\"\n  baud_rate = {}\n  data_bits = 8\n  parity = "
+        "\"{}\"\n"
+        "  stop_bits = {}\n",
+        literal(fmt::format("file://{}", line.device)), line.baud, parity_letter(line.parity),
+        line.stop_bits);
+  const std::string_view address = connection.address.empty() ? "localhost" : connection.address;
   const bool is_ipv6 = address.find(':') != std::string_view::npos;
+  return fmt::format(
+      "  controller = {}\n{}",
+      literal(fmt::format(is_ipv6 ? "tcp://[{}]:{}" : "tcp://{}:{}", address, connection.port)),
+      connection.is_rtu() ? "  transmission_mode = \"RTUoverTCP\"\n" : "");
+}
+
+std::string connection_of(const Map& map) {
   const auto interval = std::max(1L, std::lround(1000 / map.polling.rate));
   std::string text = fmt::format(
-      "[[inputs.modbus]]\n  name = {}\n  controller = {}\n  timeout = \"{}ms\"\n  interval = \"{}ms\"\n"
+      "[[inputs.modbus]]\n  name = {}\n{}  timeout = \"{}ms\"\n  interval = \"{}ms\"\n"
       "  configuration_type = \"request\"\n",
-      literal(map.name),
-      literal(fmt::format(is_ipv6 ? "tcp://[{}]:{}" : "tcp://{}:{}", address, map.connection.port)),
-      map.connection.timeout.count(), interval);
+      literal(map.name), controller_of(map.connection), map.connection.timeout.count(), interval);
   const Limits& limits = map.limits;
   if (limits.connect_delay.count() > 0 || limits.request_gap.count() > 0)
     text += fmt::format(
@@ -163,7 +176,7 @@ std::string connection_of(const Map& map) {
 }
 
 void add_warnings(const Map& map, ConversionWarnings& warnings) {
-  if (map.connection.address.empty())
+  if (!map.connection.present())
     warnings.add("the map does not have the device's address, so localhost is written",
                  "write the address after tcp://");
   const Limits usual;

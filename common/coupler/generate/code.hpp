@@ -58,13 +58,19 @@ std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>, std::string> code
     return fmt::to_string(value);
 }
 
+template <class Struct>
+std::string aggregate(const Struct& object);
+
 /// "true, 3000ms, Poll::all": the values of its fields, in the order of fields_of().
 template <class Struct>
 std::string values_of(const Struct& object) {
   std::string out;
   for_each_field(object, [&](const auto&, const auto& value) {
     if (!out.empty()) out += ", ";
-    out += code(value);
+    if constexpr (has_fields<std::decay_t<decltype(value)>>)
+      out += aggregate(value);
+    else
+      out += code(value);
   });
   return out;
 }

@@ -168,9 +168,10 @@ std::string keys_left_out(const Map& map) {
   add(map.on_reconnect == OnReconnect::restore, "on_reconnect");
   add(map.on_shutdown == OnShutdown::safe, "on_shutdown");
   add(map.coupler_watchdog.present(), "watchdog (of the coupler)");
+  add(map.connection.serial.present(), "serial");
+  add(map.connection.framing == Framing::rtu, "framing");
   if (out.empty()) return out;
-  return "    # The map has keys that this client does not carry out, as nothing is written by itself: " +
-         out + ".\n";
+  return "    # The map has keys that this client does not carry out: " + out + ".\n";
 }
 
 constexpr auto class_form = R"(
@@ -185,9 +186,15 @@ class {class_name}(Client):
     _connect_delay = {connect_delay}
 
     def __init__(self, address: str{address}, port: int = {port}, *, unit: int = {unit}, timeout: float = {timeout},
-                 verify: Verify | str = Verify.REQUIRE) -> None:
+                 verify: Verify | str = Verify.{verify}) -> None:
         super().__init__(address, port, unit, timeout, verify)
 {points})";
+
+std::string capitals(std::string_view word) {
+  std::string text(word);
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
 
 std::string seconds(std::chrono::milliseconds duration) {
   return codec::decimal(std::chrono::duration<double>(duration).count());
@@ -226,13 +233,14 @@ std::string python_client(const Map& map, const Provenance& provenance) {
              provenance.version, printable(provenance.source), map.fingerprint)
       .append(python_body())
       .append(value_classes(map, names))
-      .append(fmt::format(
-          class_form, fmt::arg("class_name", python_class(provenance.name)), fmt::arg("map", map.name),
-          fmt::arg("left_out", keys_left_out(map)), fmt::arg("fingerprint", map.fingerprint),
-          fmt::arg("requests", requests(map)), fmt::arg("request_gap", seconds(map.limits.request_gap)),
-          fmt::arg("connect_delay", seconds(map.limits.connect_delay)), fmt::arg("address", address),
-          fmt::arg("port", map.connection.port), fmt::arg("unit", map.connection.unit),
-          fmt::arg("timeout", seconds(map.connection.timeout)), fmt::arg("points", points)));
+      .append(fmt::format(class_form, fmt::arg("class_name", python_class(provenance.name)),
+                          fmt::arg("map", map.name), fmt::arg("left_out", keys_left_out(map)),
+                          fmt::arg("fingerprint", map.fingerprint), fmt::arg("requests", requests(map)),
+                          fmt::arg("request_gap", seconds(map.limits.request_gap)),
+                          fmt::arg("connect_delay", seconds(map.limits.connect_delay)),
+                          fmt::arg("address", address), fmt::arg("verify", capitals(to_string(map.verify))),
+                          fmt::arg("port", map.connection.port), fmt::arg("unit", map.connection.unit),
+                          fmt::arg("timeout", seconds(map.connection.timeout)), fmt::arg("points", points)));
 }
 
 }  // namespace coupler::generate

@@ -25,6 +25,7 @@ using ::coupler::Access;
 using ::coupler::Bias;
 using ::coupler::Drive;
 using ::coupler::Edge;
+using ::coupler::Framing;
 using ::coupler::HostOptions;
 using ::coupler::Map;
 using ::coupler::NamedValue;
@@ -32,7 +33,9 @@ using ::coupler::OnReconnect;
 using ::coupler::OnShutdown;
 using ::coupler::Point;
 using ::coupler::Poll;
+using ::coupler::Verify;
 using ::coupler::Safe;
+using ::coupler::Serial;
 using ::coupler::SimWire;
 using ::coupler::Table;
 using ::coupler::Unreadable;
@@ -71,7 +74,7 @@ constexpr Map map{{
     {{{listen}, {allow_name}, {watchdog}, {readback}}},  // listen, allow, watchdog, readback
     {on_reconnect}, {on_shutdown}, {unreadable_name},
     {coupler_watchdog},  // timeout, recovery, feed every, arm, feed, reset, how it shows that it has expired
-    {poll}, {changes},
+    {poll}, {changes}, {verify},
 }};
 
 }}  // namespace coupler::maps::{name}
@@ -225,7 +228,7 @@ std::string table_source(const Map& map, const Provenance& provenance) {
       arg("sequences", sequences(map.coupler_watchdog)),
       arg("coupler_watchdog", coupler_watchdog(map.coupler_watchdog)),
       arg("on_reconnect", enumerator(map.on_reconnect)), arg("on_shutdown", enumerator(map.on_shutdown)),
-      arg("poll", enumerator(map.poll)), arg("changes", map.changes),
+      arg("poll", enumerator(map.poll)), arg("changes", map.changes), arg("verify", enumerator(map.verify)),
       arg("listen", literal(map.service.listen)),
       arg("allow_name", map.service.allow.empty() ? "{}" : "allow"),
       arg("watchdog", aggregate(map.service.watchdog)), arg("readback", map.service.readback),

@@ -32,6 +32,12 @@ std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>, std::string> writ
   else
     return fmt::to_string(value);
 }
+/// "/dev/ttyUSB0 19200 8E1"
+inline std::string written(const Serial& line) {
+  if (!line.present()) return "none";
+  return fmt::format("{} {} 8{}{}{}", line.device, line.baud, parity_letter(line.parity), line.stop_bits,
+                     line.rs485 ? " rs485" : "");
+}
 
 /// What a key of a point is about.
 enum class About { point, reading, writing };
@@ -56,9 +62,16 @@ constexpr Field<Struct, Value> field(std::string_view key, Value Struct::*member
 
 constexpr auto fields_of(const Connection*) {
   constexpr std::string_view change = "connection-changed";
-  return std::make_tuple(field("address", &Connection::address, change),
-                         field("port", &Connection::port, change), field("unit", &Connection::unit, change),
-                         field("timeout", &Connection::timeout, change));
+  return std::make_tuple(
+      field("address", &Connection::address, change), field("port", &Connection::port, change),
+      field("unit", &Connection::unit, change), field("timeout", &Connection::timeout, change),
+      field("framing", &Connection::framing, change), field("serial", &Connection::serial, change));
+}
+
+constexpr auto fields_of(const Serial*) {
+  return std::make_tuple(field("device", &Serial::device), field("baud", &Serial::baud),
+                         field("parity", &Serial::parity), field("stop_bits", &Serial::stop_bits),
+                         field("rs485", &Serial::rs485));
 }
 
 constexpr auto fields_of(const Polling*) {
@@ -86,7 +99,8 @@ constexpr auto fields_of(const Map*) {
   return std::make_tuple(field("on_reconnect", &Map::on_reconnect, "on-reconnect-changed"),
                          field("on_shutdown", &Map::on_shutdown, "on-shutdown-changed"),
                          field("poll", &Map::poll, "poll-changed"),
-                         field("changes", &Map::changes, "changes-changed"));
+                         field("changes", &Map::changes, "changes-changed"),
+                         field("verify", &Map::verify, "verify-changed"));
 }
 
 /// And `allow`.
@@ -154,6 +168,11 @@ constexpr auto fields_of(const SimWire*) {
   return std::make_tuple(field("from", &SimWire::from), field("to", &SimWire::to),
                          field("invert", &SimWire::invert), field("square", &SimWire::square));
 }
+
+template <class T, class = void>
+constexpr bool has_fields = false;
+template <class T>
+constexpr bool has_fields<T, std::void_t<decltype(fields_of(static_cast<const T*>(nullptr)))>> = true;
 
 /// visit(field, value) for each.
 template <class Struct, class Visit>

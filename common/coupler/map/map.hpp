@@ -8,6 +8,7 @@
 #include "coupler/base/enumeration.hpp"
 #include "coupler/base/span.hpp"
 #include "coupler/map/point.hpp"
+#include "coupler/map/serial.hpp"
 #include "coupler/map/watchdog.hpp"
 #include "coupler/modbus/limits.hpp"
 
@@ -15,14 +16,25 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 9;
+constexpr int model_version = 11;
 
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {
   std::string_view address;  ///< host name or IP address; empty: not in the map
   std::uint16_t port = modbus::default_port;
   std::uint8_t unit = 1;
-  std::chrono::milliseconds timeout{3000};
+  std::chrono::milliseconds timeout = usual_timeout(false);
+  Framing framing = Framing::tcp;  ///< at `address`; a serial port has RTU
+  Serial serial{};                 ///< instead of `address`
+
+  constexpr bool is_rtu() const { return serial.present() || framing == Framing::rtu; }
+  constexpr bool present() const { return serial.present() || !address.empty(); }
+  /// It goes to all units of a line, and none answers (MSL 2.1).
+  constexpr bool is_broadcast() const { return is_rtu() && unit == rtu_broadcast; }
+  /// The way to the device is another one: a timeout that nobody has chosen goes with it.
+  constexpr void changed_from(bool was_rtu) {
+    if (timeout == usual_timeout(was_rtu)) timeout = usual_timeout(is_rtu());
+  }
 };
 
 /// How the host reads it. A gap is the distance between the end of one point and the start of the next;
@@ -46,6 +58,11 @@ struct Limits {
   std::uint16_t connections = 1;
   bool mask_write = false;  ///< the device has FC 22
 };
+
+/// It is read, or the others of its register are before it is written.
+constexpr bool needs_answers(const Point& point, const Limits& limits) {
+  return is_readable(point) || (is_partial(point) && !limits.mask_write);
+}
 
 /// Addresses that the device refuses: never read, not even to join the points around them.
 struct Unreadable {
@@ -86,6 +103,16 @@ constexpr Enumeration<Poll, 2> enumeration(Poll) {
   return {"Poll", {{Poll::all, "all"}, {Poll::subscribed, "subscribed"}}};
 }
 
+/// What the host does if the device's map is another one.
+enum class Verify : std::uint8_t {
+  require,  ///< do not talk to the device
+  warn,     ///< report it and go on
+  off       ///< do not ask
+};
+constexpr Enumeration<Verify, 3> enumeration(Verify) {
+  return {"Verify", {{Verify::require, "require"}, {Verify::warn, "warn"}, {Verify::off, "off"}}};
+}
+
 /// One wire of the simulated chip: `from` an output `to` an input, or a square wave `to` an input.
 struct SimWire {
   std::string_view from;  ///< a coil; empty: a square wave
@@ -113,6 +140,7 @@ struct Map {
   WatchdogSequences coupler_watchdog{};
   Poll poll = Poll::all;
   bool changes = true;  ///< the driver listens to changes that a node announces; false: it polls only
+  Verify verify = Verify::require;
 };
 
 /// The point of that name, or nullptr.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/map/node_address.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <utility>
@@ -12,11 +13,23 @@
 namespace coupler {
 namespace {
 
-constexpr std::string_view scheme = "tcp://";
+constexpr std::string_view tcp = "tcp://";
+constexpr std::string_view rtu_over_tcp = "rtu+tcp://";
+constexpr std::string_view rtu = "rtu:";
+
+bool begins_with(std::string_view text, std::string_view beginning) {
+  return text.substr(0, beginning.size()) == beginning;
+}
 
 tl::unexpected<NetworkError> wrong(std::string what) {
   return tl::unexpected<NetworkError>(
       {std::move(what), "write tcp://HOST[:PORT][/UNIT], as in tcp://192.168.1.17:502/1"});
+}
+
+tl::unexpected<NetworkError> wrong_line(std::string what) {
+  return tl::unexpected<NetworkError>({std::move(what),
+                                       "write rtu:DEVICE[/UNIT][?SETTINGS], as in "
+                                       "rtu:/dev/ttyUSB0/17?baud=9600&parity=none&stop_bits=1"});
 }
 
 std::optional<unsigned> number(std::string_view text, unsigned least, unsigned most) {
@@ -44,17 +57,9 @@ bool take_brackets(std::string_view& text, std::string_view& host) {
   return true;
 }
 
-}  // namespace
-
-std::string node_argument(const std::string& argument) {
-  return names_a_node(argument) ? argument : "tcp://" + argument;
-}
-
-tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argument,
-                                                           const Connection& otherwise) {
-  if (!names_a_node(argument)) return wrong("the address of a node begins with tcp://");
+tl::expected<NodeAddress, NetworkError> parse_host_and_port(std::string_view rest,
+                                                            const Connection& otherwise) {
   NodeAddress node{{}, otherwise.port, otherwise.unit};
-  std::string_view rest = argument.substr(scheme.size());
   if (const auto unit = take_behind(rest, '/'); unit && !unit->empty()) {
     const auto value = number(*unit, 0, 255);
     if (!value) return wrong(fmt::format("the unit id '{}' is not 0 to 255", *unit));
@@ -79,17 +84,106 @@ tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argu
   return node;
 }
 
+bool set(Serial& line, std::string_view key, std::string_view value) {
+  if (key == "parity") {
+    const auto parity = parse_word<Serial::Parity>(value);
+    line.parity = parity.value_or(line.parity);
+    return parity.has_value();
+  }
+  if (key == "rs485") {
+    line.rs485 = value == "true";
+    return line.rs485 || value == "false";
+  }
+  if (key == "stop_bits") {
+    const auto bits = number(value, 1, 2);
+    line.stop_bits = static_cast<std::uint16_t>(bits.value_or(line.stop_bits));
+    return bits.has_value();
+  }
+  if (key != "baud") return false;
+  line.baud = number(value, 1, 4'000'000).value_or(0);
+  return is_serial_rate(line.baud);
+}
+
+/// Terminals without hardware: the number is a part of the name.
+bool is_pseudo_terminal(std::string_view path) {
+  constexpr std::string_view folder = "/dev/pts/";
+  return begins_with(path, folder) && path.find('/', folder.size()) == std::string_view::npos;
+}
+
+tl::expected<NodeAddress, NetworkError> parse_serial_port(std::string_view rest,
+                                                          const Connection& otherwise) {
+  NodeAddress node;
+  node.unit = otherwise.unit;
+  node.serial = otherwise.serial;
+  const std::size_t mark = std::min(rest.find('?'), rest.size());
+  std::string_view settings = rest.substr(std::min(mark + 1, rest.size()));
+  rest = rest.substr(0, mark);
+  while (!settings.empty()) {
+    const std::string_view one = settings.substr(0, settings.find('&'));
+    settings.remove_prefix(std::min(one.size() + 1, settings.size()));
+    const std::size_t equals = std::min(one.find('='), one.size());
+    if (!set(node.serial, one.substr(0, equals), one.substr(std::min(equals + 1, one.size()))))
+      return wrong_line(fmt::format("'{}' is no setting of a serial port", one));
+  }
+  std::string_view path = rest;
+  const auto unit = number(take_behind(path, '/').value_or(""), 0, 255);
+  if (unit && !is_pseudo_terminal(rest)) {
+    node.unit = static_cast<std::uint8_t>(*unit);
+    rest = path;
+  }
+  if (rest.empty()) return wrong_line("there is no device");
+  if (!is_rtu_unit(node.unit)) return wrong_line(fmt::format("the unit id '{}' is not 1 to 247", node.unit));
+  node.serial.device = rest;
+  return node;
+}
+
+}  // namespace
+
+bool names_a_node(std::string_view argument) {
+  return begins_with(argument, tcp) || begins_with(argument, rtu) || begins_with(argument, rtu_over_tcp);
+}
+
+std::string node_argument(const std::string& argument) {
+  if (names_a_node(argument)) return argument;
+  return std::string(begins_with(argument, "/") ? rtu : tcp) + argument;
+}
+
+tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argument,
+                                                           const Connection& otherwise) {
+  if (begins_with(argument, tcp)) return parse_host_and_port(argument.substr(tcp.size()), otherwise);
+  if (begins_with(argument, rtu)) return parse_serial_port(argument.substr(rtu.size()), otherwise);
+  if (!begins_with(argument, rtu_over_tcp))
+    return wrong("the address of a device begins with tcp:// or rtu:");
+  auto node = parse_host_and_port(argument.substr(rtu_over_tcp.size()), otherwise);
+  if (!node) return node;
+  if (!is_rtu_unit(node->unit))
+    return wrong(fmt::format("with RTU the unit id '{}' is not 1 to 247", node->unit));
+  node->framing = Framing::rtu;
+  return node;
+}
+
+std::string place_text(const Connection& connection) {
+  if (connection.serial.present()) return std::string(connection.serial.device);
+  return fmt::format("{} port {}", connection.address, connection.port);
+}
+
 std::string node_address_text(const Connection& connection) {
+  if (connection.serial.present())
+    return fmt::format("{}{}/{}", rtu, connection.serial.device, connection.unit);
   const bool bracketed = connection.address.find(':') != std::string_view::npos;
-  return fmt::format(bracketed ? "{}[{}]:{}/{}" : "{}{}:{}/{}", scheme, connection.address, connection.port,
-                     connection.unit);
+  return fmt::format(bracketed ? "{}[{}]:{}/{}" : "{}{}:{}/{}", connection.is_rtu() ? rtu_over_tcp : tcp,
+                     connection.address, connection.port, connection.unit);
 }
 
 Map found_at(const Map& map, const NodeAddress& where) {
   Map found = map;
-  found.connection.address = where.host;
-  found.connection.port = where.port;
-  found.connection.unit = where.unit;
+  Connection& connection = found.connection;
+  connection.address = where.host;
+  connection.port = where.port;
+  connection.unit = where.unit;
+  connection.framing = where.framing;
+  connection.serial = where.serial;
+  connection.changed_from(map.connection.is_rtu());
   return found;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node in place of a map's file: tcp://HOST[:PORT][/UNIT].
+// A device in place of a map's file: tcp://HOST[:PORT][/UNIT], rtu+tcp://HOST[:PORT][/UNIT] or
+// rtu:DEVICE[/UNIT][?baud=…&parity=…&stop_bits=…&rs485=…].
 #pragma once
 
 #include <cstdint>
@@ -13,25 +14,30 @@
 
 namespace coupler {
 
-/// Where a node is that serves its map.
+/// Where a device is.
 struct NodeAddress {
   std::string_view host;  ///< a part of the argument: a name or an address, IPv6 without its brackets
   std::uint16_t port = modbus::default_port;
   std::uint8_t unit = Connection{}.unit;
+  Framing framing = Framing::tcp;
+  Serial serial{};  ///< its device is a part of the argument
 };
 
-/// The argument means a node, well written or not.
-constexpr bool names_a_node(std::string_view argument) { return argument.substr(0, 6) == "tcp://"; }
+/// The argument means a device, well written or not.
+bool names_a_node(std::string_view argument);
 
-/// Where a command expects a node in any case, "tcp://" may be left out.
+/// Where a command expects a device in any case, "tcp://" may be left out, and "rtu:" before a path.
 std::string node_argument(const std::string& argument);
 
-/// "tcp://10.0.0.7", "tcp://cell:1502/3", "tcp://[fe80::1]:502". A port or unit that is not given is
-/// `otherwise`'s.
+/// "tcp://10.0.0.7", "tcp://cell:1502/3", "tcp://[fe80::1]:502", "rtu:/dev/ttyUSB0/17?baud=9600&parity=none".
+/// What is not given is `otherwise`'s.
 tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argument,
                                                            const Connection& otherwise = {});
 
-/// The other way round, everything given: "tcp://cell:1502/3".
+/// For people: "cell port 1502", "/dev/ttyUSB0".
+std::string place_text(const Connection& connection);
+
+/// The other way round: "tcp://cell:1502/3", "rtu:/dev/ttyUSB0/17".
 std::string node_address_text(const Connection& connection);
 
 /// `map` with the connection of where it was found, which counts, not where it says that it is. It views the

@@ -68,6 +68,23 @@ std::optional<std::size_t> reply_size(Bytes request, Bytes beginning) {
   }
 }
 
+std::size_t longest_reply(Bytes request) {
+  if (request.size() < 5) return max_pdu_size;
+  const std::size_t count = get_u16(&request[3]);
+  switch (static_cast<Function>(request[0])) {
+    case Function::read_coils:
+    case Function::read_discrete_inputs: return 2 + (count + 7) / 8;
+    case Function::read_holding_registers:
+    case Function::read_input_registers: return 2 + 2 * count;
+    case Function::write_single_coil:
+    case Function::write_single_register:
+    case Function::write_multiple_coils:
+    case Function::write_multiple_registers: return 5;
+    case Function::mask_write_register: return 7;
+    default: return max_pdu_size;
+  }
+}
+
 void RtuFramer::expect(std::uint8_t unit, Bytes pdu) {
   request_size_ = put_rtu_frame(unit, pdu, request_.data());
   begin_ = end_ = 0;
@@ -90,13 +107,12 @@ void RtuFramer::filled(std::size_t bytes) {
   end_ += bytes;
 }
 
-/// A reply with the same bytes would be one.
-bool RtuFramer::may_be_its_own_reply() const {
-  return reply_size(request_pdu(), request_pdu()) == request_pdu().size();
+void RtuFramer::silent() {
+  if (end_ == 0) has_echo_ = false;
 }
 
 void RtuFramer::skip_echo() {
-  if (had_echo_ || (may_be_its_own_reply() && has_echo_ != true)) return;
+  if (had_echo_ || (is_its_own_reply(request_pdu()) && has_echo_ != true)) return;
   if (!starts_with(Bytes(buffer_).first(end_), request())) return;
   begin_ = request_size_;
   had_echo_ = true;
@@ -130,7 +146,7 @@ RtuFramer::Outcome RtuFramer::next() {
   for (std::size_t begin = begin_; begin < end_; ++begin) {
     const Found found = look_at(begin);
     if (found == Found::reply) {
-      if (!had_echo_ && !may_be_its_own_reply()) has_echo_ = false;
+      if (!had_echo_ && !is_its_own_reply(request_pdu())) has_echo_ = false;
       return Outcome::reply;
     }
     has_begun |= found == Found::beginning;

@@ -14,7 +14,8 @@
 
 namespace coupler::modbus {
 
-constexpr std::size_t max_rtu_size = 1 + max_pdu_size + 2;  ///< MSL 2.5.1.1
+constexpr std::size_t rtu_overhead = 3;                            ///< unit and CRC
+constexpr std::size_t max_rtu_size = max_pdu_size + rtu_overhead;  ///< MSL 2.5.1.1
 
 /// MSL 6.2.2. In a frame its low byte comes first; over a whole frame, with these two bytes, it is 0.
 std::uint16_t crc16(Bytes bytes);
@@ -26,6 +27,9 @@ std::size_t put_rtu_frame(std::uint8_t unit, Bytes pdu, std::uint8_t* frame);
 /// How many bytes the PDU of a reply to `request` has, as far as the beginning of it says; 0: that is too
 /// little to know. nullopt: of such a function that is not known here.
 std::optional<std::size_t> reply_size(Bytes request, Bytes beginning);
+
+/// The size of the longest PDU that can answer `request`, if its function is known here, else of any.
+std::size_t longest_reply(Bytes request);
 
 /// Finds the reply to a request in what comes over a serial line: by unit, function code, length and CRC.
 /// Silence decides nothing, since USB adapters deliver in bursts. What is not the reply is skipped: noise,
@@ -52,10 +56,13 @@ class RtuFramer {
   Outcome next();
   Bytes pdu() const { return pdu_; }
 
-  /// Whether the line hands back what is sent, as some adapters for RS-485 do; nullopt: not known yet. Then a
-  /// request that is repeated by its reply (function codes 5, 6, 8, 22) has been answered when it comes back,
-  /// by whomever: read first.
+  /// Whether the line hands back what is sent, as some adapters for RS-485 do; nullopt: not known yet.
   std::optional<bool> has_echo() const { return has_echo_; }
+  /// The echo of this request could be taken for its reply (function codes 5, 6, 8, 22): a read shows first
+  /// whether the line has one.
+  bool needs_a_read_before(Bytes pdu) const { return !has_echo_ && is_its_own_reply(pdu); }
+  /// Nothing has come for so long that an echo would have.
+  void silent();
   /// The line is another one.
   void reset() { has_echo_.reset(); }
 
@@ -63,7 +70,7 @@ class RtuFramer {
   enum class Found { none, beginning, reply };
 
   Bytes request_pdu() const { return request().sub(1, request_size_ - 3); }
-  bool may_be_its_own_reply() const;
+  static bool is_its_own_reply(Bytes pdu) { return reply_size(pdu, pdu) == pdu.size(); }
   void skip_echo();
   bool echo_may_come() const;
   Found look_at(std::size_t begin);

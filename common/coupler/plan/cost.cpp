@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/rtu_frame.hpp"
 #include "coupler/plan/read_span.hpp"
 
 namespace coupler::plan {
@@ -62,6 +63,17 @@ Polling as_pays(const Map& map, const NetworkTiming& timing) {
 
 }  // namespace
 
+NetworkTiming timing_of(const Map& map, std::chrono::nanoseconds answer) {
+  NetworkTiming timing{answer, map.limits.request_gap};
+  if (map.connection.is_rtu()) timing.framing = modbus::rtu_overhead;
+  const Serial& line = map.connection.serial;
+  if (!line.present()) return timing;
+  timing.round_trip += time_of_characters(line, request_pdu + reply_head + 2 * timing.framing);
+  timing.pause = std::max(timing.pause, silence_between_frames(line));
+  timing.byte_time = time_of_characters(line, 1);
+  return timing;
+}
+
 std::uint32_t value_bytes(Table table, std::uint32_t count) {
   return holds_bits(table) ? (count + 7) / 8 : 2 * count;
 }
@@ -81,7 +93,7 @@ Cost cost_of(const ReadSpan& span, const NetworkTiming& timing) {
   Cost cost;
   cost.requests = 1;
   (holds_bits(span.table) ? cost.bits : cost.registers) = count;
-  cost.bytes = 2 * modbus::mbap_size + request_pdu + reply_head + values;
+  cost.bytes = 2 * timing.framing + request_pdu + reply_head + values;
   cost.time = timing.round_trip + timing.pause + values * timing.byte_time;
   return cost;
 }

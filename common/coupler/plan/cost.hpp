@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "coupler/modbus/limits.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::plan {
@@ -18,7 +19,12 @@ struct NetworkTiming {
   std::chrono::nanoseconds pause{0};
   /// For every byte of values in a reply; by default at 100 Mbit/s.
   std::chrono::nanoseconds byte_time{80};
+  std::size_t framing = modbus::mbap_size;  ///< bytes around a PDU
 };
+
+/// On the map's way to the device, by Modbus/TCP or RTU: on a serial line the characters take their time
+/// (MSL 2.5.1.1). `answer`: what the network and the device take beside that.
+NetworkTiming timing_of(const Map& map, std::chrono::nanoseconds answer);
 
 /// The bytes of values in the reply (MAP 6.1 to 6.4).
 std::uint32_t value_bytes(Table table, std::uint32_t count);
@@ -28,7 +34,8 @@ struct Cost {
   std::size_t requests = 0;
   std::size_t registers = 0;
   std::size_t bits = 0;
-  std::size_t bytes = 0;  ///< ADUs of requests and replies (TCP 3.1); what carries them not counted
+  std::size_t bytes =
+      0;  ///< ADUs of requests and replies (TCP 3.1, MSL 2.5.1); what carries them not counted
   /// round_trip + pause + byte_time × value bytes for each request, one after the other.
   std::chrono::nanoseconds time{0};
 

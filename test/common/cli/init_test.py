@@ -6,7 +6,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-KINDS = ((), ("--node",), *(("--preset", name) for name in ("wago_750", "beckhoff_bk9000", "moxa_e1200", "plc")))
+PRESETS = ("wago_750", "beckhoff_bk9000", "moxa_e1200", "plc", "robotiq_2f", "waveshare_io_8ch")
+KINDS = ((), ("--node",), *(("--preset", name) for name in PRESETS))
 
 
 class Init(unittest.TestCase):
@@ -26,7 +27,7 @@ class Init(unittest.TestCase):
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
                 checked = self.coupler("check", "press.yaml")
                 self.assertEqual((checked.returncode, checked.stderr), (0, ""))
-                self.assertIn("press.yaml: ok: press, 4 points", checked.stdout)
+                self.assertRegex(checked.stdout, "press.yaml: ok: press, [346] points")
 
     def test_names_the_schema_that_it_writes_beside_it(self):
         self.coupler("init", "press")
@@ -39,6 +40,13 @@ class Init(unittest.TestCase):
         text = (self.folder / "press.yaml").read_text(encoding="utf-8")
         for line in ("name: press", "address: plc-7.local", "preset: plc"):
             self.assertIn(line, text)
+
+    def test_a_coupler_on_a_serial_line_has_a_port_unless_an_address_is_given(self):
+        for kind, line in ((), "serial: {device: /dev/ttyUSB0}"), (("--address", "gateway"), "address: gateway"):
+            self.coupler("init", "grip", "--force", "--preset", "robotiq_2f", *kind)
+            text = (self.folder / "grip.yaml").read_text(encoding="utf-8")
+            self.assertIn(line, text)
+            self.assertNotIn("serial:" if kind else "address: 1", text)
 
     def test_replaces_a_map_only_if_told_to(self):
         (self.folder / "press.yaml").write_text("mine")

@@ -53,6 +53,71 @@ TEST(NodeAddress, A_connection_as_text_reads_back_the_same) {
   }
 }
 
+TEST(NodeAddress, A_serial_port_has_settings) {
+  const auto node =
+      parse_node_address("rtu:/dev/serial/by-id/usb-FTDI/17?baud=9600&parity=none&stop_bits=2&rs485=true");
+  ASSERT_TRUE(node) << node.error().what;
+  EXPECT_EQ(node->serial, (Serial{"/dev/serial/by-id/usb-FTDI", 9600, Serial::Parity::none, 2, true}));
+  EXPECT_EQ(node->unit, 17);
+  EXPECT_EQ(node->host, "");
+}
+
+TEST(NodeAddress, A_serial_port_alone_has_the_default_settings) {
+  const auto node = parse_node_address("rtu:/dev/ttyUSB0");
+  ASSERT_TRUE(node) << node.error().what;
+  EXPECT_EQ(node->serial, Serial{"/dev/ttyUSB0"});
+  EXPECT_EQ(node->unit, 1);
+  EXPECT_EQ(found_at({}, *node).connection.timeout, usual_timeout(true));
+}
+
+TEST(NodeAddress, The_number_of_a_pseudo_terminal_is_no_unit) {
+  EXPECT_EQ(parse_node_address("rtu:/dev/pts/5")->serial.device, "/dev/pts/5");
+  EXPECT_EQ(parse_node_address("rtu:/dev/pts/5")->unit, 1);
+  EXPECT_EQ(parse_node_address("rtu:/dev/pts/5/6")->serial.device, "/dev/pts/5");
+  EXPECT_EQ(parse_node_address("rtu:/dev/pts/5/6")->unit, 6);
+}
+
+TEST(NodeAddress, Settings_that_are_not_given_can_be_those_of_a_map) {
+  Connection map;
+  map.serial = {"/dev/ttyS0", 9600, Serial::Parity::odd, 1, false};
+  EXPECT_EQ(parse_node_address("rtu:/dev/ttyUSB0?baud=19200", map)->serial,
+            (Serial{"/dev/ttyUSB0", 19200, Serial::Parity::odd, 1, false}));
+}
+
+TEST(NodeAddress, Rtu_may_go_over_tcp) {
+  const auto node = parse_node_address("rtu+tcp://cell:4001/3");
+  ASSERT_TRUE(node) << node.error().what;
+  EXPECT_EQ(node->framing, Framing::rtu);
+  EXPECT_EQ(node->port, 4001);
+  EXPECT_EQ(node_address_text(found_at({}, *node).connection), "rtu+tcp://cell:4001/3");
+}
+
+TEST(NodeAddress, A_path_is_a_serial_port_where_a_device_is_expected) {
+  EXPECT_EQ(node_argument("/dev/ttyUSB0"), "rtu:/dev/ttyUSB0");
+  EXPECT_EQ(node_argument("cell"), "tcp://cell");
+  EXPECT_EQ(node_argument("rtu+tcp://cell"), "rtu+tcp://cell");
+}
+
+TEST(NodeAddress, What_is_wrong_of_a_serial_port_is_said_with_a_remedy) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"rtu:", "there is no device"},
+      {"rtu:/dev/ttyUSB0/0", "the unit id '0' is not 1 to 247"},
+      {"rtu:/dev/ttyUSB0/248", "the unit id '248' is not 1 to 247"},
+      {"rtu:/dev/ttyUSB0?baud=9601", "'baud=9601' is no setting"},
+      {"rtu:/dev/ttyUSB0?baud", "'baud' is no setting"},
+      {"rtu:/dev/ttyUSB0?parity=N", "'parity=N' is no setting"},
+      {"rtu:/dev/ttyUSB0?stop_bits=3", "'stop_bits=3' is no setting"},
+      {"rtu:/dev/ttyUSB0?rs485=yes", "'rs485=yes' is no setting"},
+      {"rtu:/dev/ttyUSB0?speed=9600", "'speed=9600' is no setting"},
+  };
+  for (const auto& [argument, what] : cases) {
+    const auto node = parse_node_address(argument);
+    ASSERT_FALSE(node) << argument;
+    EXPECT_THAT(node.error().what, HasSubstr(what));
+    EXPECT_THAT(node.error().remedy, HasSubstr("write rtu:DEVICE[/UNIT]"));
+  }
+}
+
 TEST(NodeAddress, What_is_wrong_is_said_with_a_remedy) {
   const std::pair<const char*, const char*> cases[] = {
       {"tcp://", "there is no host"},       {"tcp://:502", "there is no host"},

@@ -31,6 +31,24 @@ TEST(Cost, A_request_takes_the_round_trip_the_pause_and_the_time_of_its_values) 
   EXPECT_EQ(cost_of(span(Table::holding_registers, 100), timing).time, milliseconds(5) + nanoseconds(16000));
 }
 
+TEST(Cost, On_a_serial_line_the_characters_take_their_time) {
+  fakes::MapBuilder builder;
+  builder.head().connection.serial = {"/dev/ttyUSB0", 9600, Serial::Parity::none, 1, false};
+  const NetworkTiming timing = timing_of(builder.build()->map(), milliseconds(5));
+  // MSL 2.5.1: 8 characters ask, 5 + 20 answer, 10 bits each, and 3.5 of silence.
+  const double characters = 8 + 25 + 3.5;
+  EXPECT_NEAR(static_cast<double>(cost_of(span(Table::holding_registers, 10), timing).time.count()) / 1e6,
+              5 + characters * 10 / 9.6, 0.001);
+  EXPECT_EQ(cost_of(span(Table::holding_registers, 10), timing).bytes, 8U + 25U);
+}
+
+TEST(Cost, A_pause_that_the_device_needs_is_as_long_as_the_silence_at_least) {
+  fakes::MapBuilder builder;
+  builder.head().connection.serial.device = "/dev/ttyUSB0";
+  builder.head().limits.request_gap = milliseconds(20);
+  EXPECT_EQ(timing_of(builder.build()->map(), milliseconds(1)).pause, milliseconds(20));
+}
+
 TEST(Cost, Requests_of_a_cycle_follow_one_another) {
   const GroupPlan group{10, {span(Table::coils, 8), span(Table::coils, 16)}};
   const Cost cost = cost_of(group, {});

@@ -25,6 +25,8 @@ VALIDATOR = jsonschema.Draft7Validator(SCHEMA)
 
 # What the schema does not see, by the reason. Maps of test/maps/bad.
 UNSEEN = {name + ".yaml" for name in (
+    # between keys
+    "serial_and_address unit_of_a_serial_line broadcast_that_is_read "
     # between points, or between a point and a limit
     "overlap overlap_of_parts overlap_of_access overlap_of_inputs overlap_of_a_wired_input point_name_is_taken "
     "line_in_two_points point_exceeds_the_limits string_is_too_long_to_write preset_area "
@@ -34,6 +36,7 @@ UNSEEN = {name + ".yaml" for name in (
     "allow_is_half allow_is_the_other_half "
     # between the watchdog and the preset
     "coupler_watchdog_fed_by coupler_watchdog_heartbeat coupler_watchdog_heartbeat_place coupler_watchdog_of_a_plc "
+    "coupler_watchdog_of_none "
     "coupler_watchdog_place_is_taken coupler_watchdog_recovery coupler_watchdog_steps coupler_watchdog_too_long "
     "heartbeat_of_a_node "
     # in a name that is right, but for ROS 1 only

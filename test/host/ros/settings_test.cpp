@@ -27,6 +27,55 @@ TEST(Settings, A_map_and_several_maps_are_one_thing_to_say) {
   EXPECT_FALSE(overlay(arguments, parameters).map);
 }
 
+TEST(Settings, A_serial_port_takes_the_place_of_an_address) {
+  Map map;
+  map.connection.address = "cell";
+  Settings settings;
+  ASSERT_TRUE(set(settings, "serial", "/dev/ttyUSB0"));
+  ASSERT_TRUE(set(settings, "baud", "9600"));
+  ASSERT_TRUE(set(settings, "parity", "none"));
+  ASSERT_TRUE(set(settings, "stop_bits", "2"));
+  ASSERT_TRUE(set(settings, "rs485", "true"));
+  apply(settings, map);
+  EXPECT_EQ(map.connection.address, "");
+  EXPECT_EQ(map.connection.serial, (Serial{"/dev/ttyUSB0", 9600, Serial::Parity::none, 2, true}));
+  for (const auto* const key : {"serial", "baud", "parity", "stop_bits", "rs485"}) {
+    Settings again;
+    ASSERT_TRUE(set(again, key, *text_of(settings, key))) << key;
+  }
+}
+
+TEST(Settings, An_address_takes_the_place_of_a_serial_port) {
+  Map map;
+  map.connection.serial.device = "/dev/ttyUSB0";
+  Settings settings;
+  settings.address = "cell";
+  apply(settings, map);
+  EXPECT_EQ(map.connection.address, "cell");
+  EXPECT_FALSE(map.connection.is_rtu());
+}
+
+TEST(Settings, The_stronger_side_says_the_whole_way_to_the_device) {
+  Settings parameters;
+  parameters.address = "cell";
+  Settings arguments;
+  arguments.serial = "/dev/ttyUSB0";
+  EXPECT_FALSE(overlay(parameters, arguments).address);
+  EXPECT_FALSE(overlay(arguments, parameters).serial);
+}
+
+TEST(Settings, Settings_that_a_serial_port_cannot_have_are_refused) {
+  const std::pair<const char*, const char*> cases[] = {{"baud", "9601"},     {"parity", "N"},
+                                                       {"stop_bits", "3"},   {"rs485", "maybe"},
+                                                       {"framing", "ascii"}, {"serial", ""}};
+  for (const auto& [key, text] : cases) {
+    Settings settings;
+    const auto done = set(settings, key, text);
+    ASSERT_FALSE(done) << key;
+    EXPECT_EQ(done.error().rfind(key, 0), 0U) << done.error();
+  }
+}
+
 TEST(Settings, What_is_not_set_stays_as_the_map_has_it) {
   Map map;
   map.name = "device";

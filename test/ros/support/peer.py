@@ -27,6 +27,11 @@ class Peer:
         self._loop = None
         self._thread = None
 
+    @property
+    def way(self):
+        """The driver's arguments that lead there."""
+        return "_address:=127.0.0.1", f"_port:={self.port}"
+
     def set(self, table, address, values):
         self.store.setValues(READ[table], address, list(values))
 

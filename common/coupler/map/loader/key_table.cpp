@@ -100,6 +100,12 @@ constexpr Key keys[] = {
     project("addressing", S::map, K::choice, "modicon", "what the addresses count")
         .otherwise("zero_based")
         .one_of<Addressing>(),
+    project("framing", S::map, K::choice, "rtu", "what frames at the address look like")
+        .otherwise("tcp")
+        .one_of<Framing>(),
+    project("serial", S::map, K::section, "{device: /dev/ttyUSB0}",
+            "the serial port of the coupler, instead of an address")
+        .holds(S::serial),
     project("preset", S::map, K::preset, "wago_750", "a kind of coupler, and what is true of all of them"),
     project("limits", S::map, K::section, "{read_registers: 64}", "what the device takes in one request")
         .holds(S::limits),
@@ -240,6 +246,9 @@ constexpr Key keys[] = {
     project("changes", S::map, K::boolean, "off",
             "whether the driver listens to changes that a node announces")
         .otherwise("true"),
+    project("verify", S::map, K::choice, "warn", "what the host does if the device has another map")
+        .otherwise("require")
+        .one_of<Verify>(),
     project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
             "addresses that the device refuses")
         .lists(S::area),
@@ -298,6 +307,15 @@ constexpr Key keys[] = {
         .otherwise("automatic")
         .one_of<Watchdog::Recovery>(),
     project("heartbeat", S::watchdog, K::address, "100", "the register that a PLC's program watches"),
+    // `serial:`
+    project("device", S::serial, K::text, "/dev/ttyUSB0", "the port's device file").needed(),
+    project("baud", S::serial, K::integer, "9600", "bits a second").otherwise("19200").within(50, 4000000),
+    project("parity", S::serial, K::choice, "none", "the parity bit")
+        .otherwise("even")
+        .one_of<Serial::Parity>(),
+    project("stop_bits", S::serial, K::integer, "2", "stop bits").otherwise("1").within(1, 2),
+    project("rs485", S::serial, K::boolean, "true", "the port's driver switches the direction of RS-485")
+        .otherwise("false"),
 };
 
 }  // namespace

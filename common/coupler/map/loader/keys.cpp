@@ -25,6 +25,7 @@ std::string_view describe(Section section) {
     case Section::deadman: return "'deadman'";
     case Section::defaults: return "'defaults'";
     case Section::area: return "an area";
+    case Section::serial: return "'serial'";
     case Section::none: break;
   }
   return "nothing";

@@ -34,7 +34,8 @@ enum class Section : std::uint32_t {
   deadman = 1U << 15U,
   defaults = 1U << 16U,
   area = 1U << 17U,  ///< one element of `unreadable:` or `reserve:`
-  last = area
+  serial = 1U << 18U,
+  last = serial
 };
 constexpr Section operator|(Section a, Section b) {
   return static_cast<Section>(static_cast<unsigned>(a) | static_cast<unsigned>(b));

@@ -162,6 +162,7 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   const std::vector<SimWire> sim = read_sim(top, points, context);
   check_edges(points, sim, context);
   check_unreadable(unreadable, points, context);
+  check_broadcast(points, head, context);
   check_reserved(reserved, points, context);
   if (problems.has_errors()) return std::nullopt;
   head.unreadable = map.keep(sorted_unreadable(unreadable));

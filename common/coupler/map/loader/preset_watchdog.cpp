@@ -198,6 +198,8 @@ std::optional<std::uint16_t> read_heartbeat(const Entry& heartbeat, Addressing a
 
 tl::expected<PresetWatchdog, Position> parse_preset_watchdog(const Entry& entry) {
   PresetWatchdog watchdog;
+  watchdog.none = entry.text == "none";
+  if (entry.kind != Entry::Kind::map && !watchdog.none) return tl::make_unexpected(entry.at);
   for (const Entry& part : entry.children)
     if (!parse_part(part, watchdog)) return tl::make_unexpected(part.key_at);
   return watchdog;
@@ -219,8 +221,14 @@ void read_coupler_watchdog(const Reader& top, const std::optional<Preset>& prese
   const Entry* entry = top.find("watchdog");
   if (entry == nullptr) return;
   const Entry* heartbeat = child(*entry, "heartbeat");
-  const bool needed = preset && needs_heartbeat(preset->watchdog);
   if (!preset && top.has("preset")) return;  // already a problem
+  if (preset && preset->watchdog.none) {
+    context.problems.error(
+        entry->key_at, fmt::format("a {} has no watchdog", preset->name),
+        "remove 'watchdog'; use 'deadman' for outputs that must become safe when no commands come");
+    return;
+  }
+  const bool needed = preset && needs_heartbeat(preset->watchdog);
   if (heartbeat != nullptr && !needed) refuse_heartbeat(*heartbeat, preset, context);
   if (!preset) return;
   const Watchdog wanted = std::exchange(head.service.watchdog, {});

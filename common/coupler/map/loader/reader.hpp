@@ -65,6 +65,8 @@ class Reader {
       number(key, out);
     else if constexpr (std::is_same_v<T, std::string_view>)
       text(key, out);
+    else if constexpr (has_fields<T>)
+      section(key, out);
     else
       duration(key, out);
   }
@@ -93,6 +95,12 @@ class Reader {
     for_each_field(out, [this](const auto& listed, auto& value) {
       if (field(listed.key) != nullptr) read(listed.key, value);
     });
+  }
+
+  /// A map with the keys of fields_of(Struct).
+  template <class Struct>
+  void section(std::string_view key, Struct& out) const {
+    if (const auto below = inside(key, "a map")) below->fields(out);
   }
 
   template <class E>

@@ -178,6 +178,18 @@ void check_unreadable(const Areas& areas, const DraftPoints& points, const Conte
   }
 }
 
+void check_broadcast(const DraftPoints& points, const Map& head, const Context& context) {
+  if (!head.connection.is_broadcast()) return;
+  for (const DraftPoint& draft : points)
+    if (needs_answers(draft.point, head.limits))
+      context.problems.error(
+          draft.name_at,
+          fmt::format("{} needs to be read, but 'unit: 0' is a broadcast, which nobody answers",
+                      shown(draft.point.name)),
+          is_readable(draft.point) ? "give it 'access: write', or the map the coupler's own unit, 1 to 247"
+                                   : "give it a register of its own, or 'limits: {mask_write: true}'");
+}
+
 void check_reserved(const Areas& areas, const DraftPoints& points, const Context& context) {
   for (const Area& area : areas) {
     for (const DraftPoint& draft : points) {

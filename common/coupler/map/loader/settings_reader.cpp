@@ -101,20 +101,6 @@ std::optional<Area> read_area(const Entry& entry, std::string_view key, Addressi
 
 }  // namespace
 
-Connection read_connection(const Reader& top, const Context& context) {
-  Connection connection;
-  top.fields(connection);
-  if (!connection.address.empty()) {
-    if (const auto host = parse_host(connection.address))
-      connection.address = *host;
-    else
-      context.problems.error(top.find("address")->at,
-                             fmt::format("'address': '{}' {}", connection.address, host.error().what),
-                             host.error().remedy);
-  }
-  return connection;
-}
-
 Polling read_polling(const Reader& top) {
   Polling polling;
   top.fields(polling);

@@ -18,7 +18,7 @@
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/schedule.hpp"
 #include "coupler/host/core/wall_time.hpp"
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/multi_unit_transport.hpp"
 #include "coupler/map/diagnostic.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
@@ -60,9 +60,9 @@ void show_changes(const Map& map, const Snapshot* before, const Snapshot& now) {
 }
 
 Exit once(const Map& map, const DumpOptions& options) {
-  host::ModbusTransport transport(map.connection);
+  const auto transport = host::make_transport(map.connection);
   host::SteadyClock clock;
-  DeviceReader reader(map, options.chosen, transport, clock, load_served_map);
+  DeviceReader reader(map, options.chosen, *transport, clock, load_served_map);
   const Snapshot now = reader.look();
   const bool nothing = std::none_of(now.readings.begin(), now.readings.end(), [](const Reading& reading) {
     return reading.state == Reading::State::good;
@@ -81,13 +81,13 @@ Exit once(const Map& map, const DumpOptions& options) {
 }
 
 Exit again_and_again(const Map& map, const DumpOptions& options) {
-  host::ModbusTransport transport(map.connection);
+  const auto transport = host::make_transport(map.connection);
   host::SteadyClock clock;
   std::atomic<bool> stopped{false};
   const Interruption interruption([&] {
     stopped = true;
-    transport.interrupt();
-    transport.wake();
+    transport->interrupt();
+    transport->wake();
     clock.stop();
   });
   host::Backoff backoff;
@@ -98,7 +98,7 @@ Exit again_and_again(const Map& map, const DumpOptions& options) {
   Snapshot online;  // the last that was
   host::WallTime wall;
   DeviceReader reader(
-      map, options.chosen, transport, clock, load_served_map,
+      map, options.chosen, *transport, clock, load_served_map,
       [&](const modbus::Change& bit, host::Stamp stamp) {
         if (!before.online() || !take_change(map, bit, before)) return;
         wall.measure();

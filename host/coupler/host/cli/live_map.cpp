@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/core/node_map.hpp"
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/multi_unit_transport.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -20,8 +20,8 @@ tl::unexpected<NoLiveMap> none(Exit exit, std::string what, std::string remedy) 
 }  // namespace
 
 tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where) {
-  host::ModbusTransport transport(where);
-  const auto served = host::fetch_served_map(transport);
+  const auto transport = host::make_transport(where);
+  const auto served = host::fetch_served_map(*transport);
   if (!served && host::exception_in(served.error()) != nullptr)
     return none(failed, "the node does not give its map: " + host::to_string(served.error()), give_a_file);
   if (!served)

@@ -7,7 +7,7 @@
 
 namespace coupler::cli {
 
-host::Result<scan::IdentificationPage> read_identification(host::ModbusTransport& transport,
+host::Result<scan::IdentificationPage> read_identification(host::MultiUnitTransport& transport,
                                                            modbus::ReadDeviceIdentification wanted) {
   const auto pdu = modbus::build_device_identification(wanted);
   const auto reply = transport.exchange(pdu);

@@ -1,35 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include <memory>
+
+#include "coupler/host/modbus/multi_unit_transport.hpp"
 #include "coupler/host/scan/ports.hpp"
 
 namespace coupler::cli {
 
 /// FC 43/14.
-host::Result<scan::IdentificationPage> read_identification(host::ModbusTransport& transport,
+host::Result<scan::IdentificationPage> read_identification(host::MultiUnitTransport& transport,
                                                            modbus::ReadDeviceIdentification wanted);
 
-/// A scan's client over Modbus/TCP.
+/// A scan's client.
 class ModbusClient : public scan::Client {
  public:
-  explicit ModbusClient(const Connection& where) : transport_(where), timeout_(where.timeout) {}
+  explicit ModbusClient(const Connection& where)
+      : transport_(host::make_transport(where)), timeout_(where.timeout) {}
 
-  host::Result<> connect() override { return transport_.connect(); }
-  void close() override { transport_.close(); }
-  void select(std::uint8_t unit) override { transport_.select(unit, timeout_); }
+  host::Result<> connect() override { return transport_->connect(); }
+  void close() override { transport_->close(); }
+  void select(std::uint8_t unit) override { transport_->select(unit, timeout_); }
   host::Result<> read(Table table, modbus::Range range, std::uint16_t* values) override {
-    return transport_.read(table, range, values);
+    return transport_->read(table, range, values);
   }
   host::Result<scan::IdentificationPage> identify(modbus::ReadDeviceIdentification wanted) override {
-    return read_identification(transport_, wanted);
+    return read_identification(*transport_, wanted);
   }
 
   /// From any thread: the request in progress and all later ones fail.
-  void interrupt() { transport_.interrupt(); }
+  void interrupt() { transport_->interrupt(); }
 
  private:
-  host::ModbusTransport transport_;
+  std::unique_ptr<host::MultiUnitTransport> transport_;
   std::chrono::milliseconds timeout_;
 };
 

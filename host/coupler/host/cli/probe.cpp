@@ -36,7 +36,9 @@ struct Arguments {
   std::uint32_t to = Task{}.window.last();
   std::uint32_t stride = Task{}.stride;
   double rate = Task{}.rate;
-  double timeout = 1;  ///< s
+  double timeout = 0;  ///< s; 0: not given
+  std::vector<std::string> bauds;
+  std::vector<std::string> parities;
   std::vector<std::string> known;
   std::string out;
   bool force = false;
@@ -44,6 +46,7 @@ struct Arguments {
 
 struct Call {
   Connection connection;
+  std::vector<Serial> lines;  ///< to try until a unit answers; one without a device: it is reached by TCP
   Task task;
   std::vector<scan::KnownValue> known;
 };
@@ -54,30 +57,41 @@ struct WrongCall {
   std::string remedy;
 };
 
-/// Units on Modbus/TCP; 248 to 254 are reserved.
-bool is_unit(std::uint64_t unit) { return unit <= 247 || unit == 255; }
+/// Units that can be asked; 248 to 254 are reserved, and 0 is a broadcast with RTU.
+bool is_unit(std::uint64_t unit, bool is_rtu) {
+  return is_rtu ? unit >= 1 && unit <= 247 : unit <= 247 || unit == 255;
+}
 
 /// "5" or "1-247".
-bool add_units(std::string_view text, std::vector<std::uint8_t>& units) {
+bool add_units(std::string_view text, bool is_rtu, std::vector<std::uint8_t>& units) {
   const auto dash = text.find('-');
   const auto first = loader::parse_unsigned(text.substr(0, dash));
   const auto last = dash == std::string_view::npos ? first : loader::parse_unsigned(text.substr(dash + 1));
-  if (!first || !last || *first > *last || !is_unit(*first) || !is_unit(*last)) return false;
+  if (!first || !last || *first > *last || !is_unit(*first, is_rtu) || !is_unit(*last, is_rtu)) return false;
   for (auto unit = *first; unit <= *last; ++unit)
-    if (is_unit(unit)) units.push_back(static_cast<std::uint8_t>(unit));
+    if (is_unit(unit, is_rtu)) units.push_back(static_cast<std::uint8_t>(unit));
   return true;
+}
+
+bool names_a_unit(const NodeAddress& where, std::string_view address) {
+  const auto* const end = where.serial.present() ? where.serial.device.end() : where.host.end();
+  const std::string_view rest = address.substr(static_cast<std::size_t>(end - address.begin()));
+  const auto slash = rest.find('/');
+  return slash != std::string_view::npos && slash + 1 < rest.size();
 }
 
 /// Empty: those that are asked by default.
 tl::expected<std::vector<std::uint8_t>, WrongCall> units_of(const Arguments& arguments,
                                                             const NodeAddress& where, bool has_unit) {
   std::vector<std::uint8_t> units;
+  const bool is_rtu = where.serial.present() || where.framing == Framing::rtu;
   for (const std::string& text : arguments.units)
-    if (!add_units(text, units))
-      return tl::make_unexpected(
-          WrongCall{fmt::format("'{}' is not a unit id", text), "give 0 to 247 or 255, as --units 1-10,255"});
+    if (!add_units(text, is_rtu, units))
+      return tl::make_unexpected(WrongCall{
+          fmt::format("'{}' is not a unit id", text),
+          is_rtu ? "give 1 to 247, as --units 1-10,17" : "give 0 to 247 or 255, as --units 1-10,255"});
   if (!units.empty()) return units;
-  if (has_unit && !is_unit(where.unit))
+  if (has_unit && !is_unit(where.unit, is_rtu))
     return tl::make_unexpected(
         WrongCall{fmt::format("unit {} is reserved", where.unit), "give 0 to 247 or 255"});
   if (has_unit) units.push_back(where.unit);
@@ -99,6 +113,46 @@ tl::expected<std::vector<scan::KnownValue>, WrongCall> known_values(const std::v
   return known;
 }
 
+/// The settings of a serial port that are tried: what is given, otherwise what is usual, the most usual
+/// first.
+tl::expected<std::vector<Serial>, WrongCall> lines_of(const Arguments& arguments, const Serial& line,
+                                                      const std::string& address) {
+  const auto gives = [&](std::string_view key) { return address.find(key) != std::string::npos; };
+  std::vector<std::uint32_t> bauds;
+  for (const std::string& text : arguments.bauds) {
+    const auto baud = loader::parse_unsigned(text);
+    if (!baud || *baud > 4'000'000 || !is_serial_rate(static_cast<std::uint32_t>(*baud)))
+      return tl::make_unexpected(WrongCall{fmt::format("'{}' is no rate of serial ports", text),
+                                           "give one as 9600, 19200 or 115200"});
+    bauds.push_back(static_cast<std::uint32_t>(*baud));
+  }
+  std::vector<Serial::Parity> parities;
+  for (const std::string& text : arguments.parities) {
+    const auto parity = parse_word<Serial::Parity>(text);
+    if (!parity)
+      return tl::make_unexpected(WrongCall{fmt::format("'{}' is no parity", text), "give even, odd or none"});
+    parities.push_back(*parity);
+  }
+  if (bauds.empty() && gives("baud=")) bauds = {line.baud};
+  if (bauds.empty()) bauds = {9600, 19200, 115200, 38400, 57600, 4800};
+  if (parities.empty() && gives("parity=")) parities = {line.parity};
+  if (parities.empty()) parities = {Serial::Parity::none, Serial::Parity::even};
+  std::vector<Serial> lines;
+  for (const std::uint32_t baud : bauds)
+    for (const Serial::Parity parity : parities) {
+      lines.push_back(line);
+      lines.back().baud = baud;
+      lines.back().parity = parity;
+    }
+  return lines;
+}
+
+/// A unit on a serial line answers within some milliseconds, and there are many to be asked.
+std::chrono::milliseconds timeout_of(const Arguments& arguments, bool is_serial) {
+  const double seconds = arguments.timeout > 0 ? arguments.timeout : is_serial ? 0.1 : 1;
+  return std::chrono::milliseconds(static_cast<long>(seconds * 1000));
+}
+
 /// What the command line means. The connection is a view of `address`.
 tl::expected<Call, WrongCall> understand(const Arguments& arguments, const std::string& address) {
   const auto where = parse_node_address(address);
@@ -106,14 +160,21 @@ tl::expected<Call, WrongCall> understand(const Arguments& arguments, const std::
   if (arguments.from > arguments.to)
     return tl::make_unexpected(WrongCall{
         fmt::format("--from {} is greater than --to {}", arguments.from, arguments.to), "swap them"});
-  const auto slash = address.find('/', std::string_view("tcp://").size());
-  auto units = units_of(arguments, *where, slash != std::string::npos && slash + 1 < address.size());
+  auto units = units_of(arguments, *where, names_a_unit(*where, address));
   if (!units) return tl::make_unexpected(units.error());
   auto known = known_values(arguments.known);
   if (!known) return tl::make_unexpected(known.error());
   Call call;
-  call.connection = {where->host, where->port, where->unit,
-                     std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000))};
+  call.connection = found_at({}, *where).connection;
+  const Serial& line = call.connection.serial;
+  call.connection.timeout = timeout_of(arguments, line.present());
+  call.lines = {line};
+  if (line.present()) {
+    auto lines = lines_of(arguments, line, address);
+    if (!lines) return tl::make_unexpected(lines.error());
+    call.lines = std::move(*lines);
+  }
+  if (units->empty() && call.connection.is_rtu()) add_units("1-247", true, *units);
   if (!units->empty()) call.task.units = std::move(*units);
   call.task.stride = arguments.stride;
   call.task.rate = arguments.rate;
@@ -122,16 +183,30 @@ tl::expected<Call, WrongCall> understand(const Arguments& arguments, const std::
   return call;
 }
 
-scan::Findings look(const Call& call) {
+scan::Findings look(const Call& call, ProgressBar& progress) {
   ModbusClient client(call.connection);
   host::SteadyClock clock;
-  ProgressBar progress;
   const Interruption interruption([&] {
     progress.end();
     clock.stop();
     client.interrupt();
   });
   return scan::scan(call.task, client, clock, progress);
+}
+
+/// With the settings of the line at which a unit has answered.
+scan::Findings look_at_each_line(Call& call) {
+  ProgressBar progress;
+  scan::Findings findings;
+  for (const Serial& line : call.lines) {
+    call.connection.serial = line;
+    if (line.present())
+      progress.where(fmt::format("at {} 8{}{}", line.baud, parity_letter(line.parity), line.stop_bits));
+    findings = look(call, progress);
+    const bool is_refused = findings.broke_off && findings.requests == 0;  // perhaps not the next one
+    if (findings.unit || (findings.broke_off && !is_refused) || progress.wants_end()) break;
+  }
+  return findings;
 }
 
 /// Before anything is asked: a draft that cannot be written would cost a scan.
@@ -173,11 +248,15 @@ Exit run(const Arguments& arguments) {
   if (const auto can = can_write(arguments); !can)
     return complain("probe", bad_call, can.error().what, can.error().remedy);
 
-  const scan::Findings findings = look(*call);
+  const scan::Findings findings = look_at_each_line(*call);
   if (findings.broke_off)
     complain("probe", failed, host::to_string(*findings.broke_off),
              "check that the device is on, that the port is right, and that no other client holds its last "
              "connection");
+  if (!findings.unit && findings.is_complete && call->connection.serial.present())
+    return complain(
+        "probe", failed, fmt::format("none of {} units answers on this line", call->task.units.size()),
+        "check A and B, the power, and the module's rate and parity: --baud and --parity say what is tried");
   if (!findings.unit && findings.is_complete)
     return complain(
         "probe", failed,
@@ -216,10 +295,12 @@ void add_probe(Program& program, Exit& exit) {
       "probe",
       "Find out what a device without a map answers to, and draft its map. It reads and never writes.");
   const auto arguments = std::make_shared<Arguments>();
-  command.add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], with tcp:// in front or not")
+  command.add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], or a serial port as /dev/ttyUSB0[/UNIT]")
       .required()
       .type_name("");
-  command.add_option("--units", arguments->units, "Unit ids to ask, as 1-247 (default: 1, 255, 0)")
+  command
+      .add_option("--units", arguments->units,
+                  "Unit ids to ask, as 1-247 (default: 1, 255, 0; with RTU 1-247)")
       .delimiter(',')
       .type_name("N[-N]");
   command.add_option("--from", arguments->from, "First address to look at")
@@ -240,10 +321,20 @@ void add_probe(Program& program, Exit& exit) {
       .in_range(0.1, 1000.0)
       .show_default()
       .type_name("N");
-  command.add_option("--timeout", arguments->timeout, "Longest wait for an answer, in seconds")
+  command
+      .add_option("--timeout", arguments->timeout,
+                  "Longest wait for an answer, in seconds; default 1, on a serial line 0.1")
       .in_range(0.01, 60.0)
-      .show_default()
       .type_name("S");
+  command
+      .add_option("--baud", arguments->bauds,
+                  "On a serial line: rates to try (default: 9600,19200,115200,38400,57600,4800)")
+      .delimiter(',')
+      .type_name("N");
+  command
+      .add_option("--parity", arguments->parities, "On a serial line: parities to try (default: none,even)")
+      .delimiter(',')
+      .type_name("WORD");
   command
       .add_option("--known", arguments->known,
                   "A value that the device displays, to search for: 230.4, voltage=230.4, voltage=230.4±2")
@@ -256,7 +347,7 @@ void add_probe(Program& program, Exit& exit) {
   command.add_flag("--force", arguments->force, "Replace an existing file");
   command.footer(
       "Example:\n  coupler probe 192.168.1.17 --known voltage=230.4 --known frequency=50.02 --out "
-      "meter.yaml\n"
+      "meter.yaml\n  coupler probe /dev/ttyUSB0 --baud 9600\n"
       "Ctrl-C ends it and shows what was found so far.");
   command.callback([arguments, &exit] { exit = run(*arguments); });
 }

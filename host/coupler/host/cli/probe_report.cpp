@@ -22,7 +22,9 @@ constexpr std::size_t most_candidates = 6;
 /// "10.0.0.7:502/255", to be given to a command.
 std::string place(Connection connection, std::uint8_t unit) {
   connection.unit = unit;
-  return printable(node_address_text(connection)).substr(std::string_view("tcp://").size());
+  const std::string address = printable(node_address_text(connection));
+  constexpr std::string_view tcp = "tcp://";
+  return address.rfind(tcp, 0) == 0 ? address.substr(tcp.size()) : address;
 }
 
 std::string units_text(const Findings& findings, const Connection& connection) {

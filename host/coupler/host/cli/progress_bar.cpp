@@ -23,7 +23,7 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::begins(std::string_view step) {
-  step_ = step;
+  step_ = where_.empty() ? std::string(step) : fmt::format("{} {}", step, where_);
   if (is_terminal_)
     moved(0, 1, 0);
   else

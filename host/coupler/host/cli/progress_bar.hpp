@@ -21,12 +21,16 @@ class ProgressBar : public scan::ScanProgress {
   void moved(std::uint32_t done, std::uint32_t total, std::uint64_t requests) override;
   bool wants_end() const override { return ended_; }
 
+  /// Said with each step from now on, as "at 9600 8N1".
+  void where(std::string_view text) { where_ = text; }
+
   /// From any thread.
   void end() { ended_ = true; }
 
  private:
   bool is_terminal_;
   std::string step_;
+  std::string where_;
   std::chrono::steady_clock::time_point drawn_{};
   std::atomic<bool> ended_{false};
 };

@@ -23,11 +23,11 @@ Exit run(const Arguments& arguments) {
   const std::string address = node_argument(arguments.host);
   const auto where = parse_node_address(address);
   if (!where) return complain("status", bad_call, where.error().what, where.error().remedy);
-  const Connection connection{where->host, where->port, where->unit,
-                              std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000))};
-  host::ModbusTransport transport(connection);
-  const NodeStatus status = read_status(transport, [&](modbus::ReadDeviceIdentification wanted) {
-    return read_identification(transport, wanted);
+  Connection connection = found_at({}, *where).connection;
+  connection.timeout = std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000));
+  const auto transport = host::make_transport(connection);
+  const NodeStatus status = read_status(*transport, [&](modbus::ReadDeviceIdentification wanted) {
+    return read_identification(*transport, wanted);
   });
   std::fputs(
       (arguments.json ? status_json(status, connection) + "\n" : status_text(status, connection)).c_str(),

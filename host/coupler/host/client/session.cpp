@@ -15,7 +15,10 @@ namespace {
 using host::WriteResult;
 
 Map moved(Map map, const Options& options) {
-  if (!options.address.empty()) map.connection.address = options.address;
+  if (!options.address.empty()) {
+    map.connection.address = options.address;
+    map.connection.serial = {};
+  }
   if (options.port) map.connection.port = *options.port;
   return map;
 }
@@ -85,7 +88,7 @@ Session::~Session() { disconnect(); }
 void Session::connect() {
   const std::unique_lock lock(engine_mutex_);
   host::Sink& news = *this;
-  if (!engine_) engine_ = std::make_unique<Engine>(map_, options_.verify, news);
+  if (!engine_) engine_ = std::make_unique<Engine>(map_, options_.verify.value_or(map_.verify), news);
 }
 
 void Session::disconnect() {

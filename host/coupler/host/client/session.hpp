@@ -21,14 +21,14 @@
 
 namespace coupler::client {
 
+using coupler::Verify;
 using host::Level;
-using host::Verify;
 using Quality = host::PointQuality::State;
 
 struct Options {
   std::string address;                ///< empty: the map's
   std::optional<std::uint16_t> port;  ///< default: the map's
-  Verify verify = Verify::require;    ///< what to do if the device has another map
+  std::optional<Verify> verify;       ///< what to do if the device has another map; default: the map's
   /// Gets lines for a log: why the device cannot be reached, how two maps differ. Called in the connection's
   /// thread, or in one that sets a value; it must neither wait nor use the client.
   std::function<void(Level, const std::string&)> on_report{};

@@ -25,7 +25,7 @@ std::string loss_text(const Map& map, const Error& error, bool was_online) {
 
 Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transport, Clock& clock, Sink& sink)
     : map_(map),
-      verify_(verify),
+      verify_(map.connection.is_broadcast() ? Verify::off : verify),
       load_(std::move(load)),
       clock_(clock),
       sink_(sink),

@@ -105,6 +105,7 @@ class Device {
   Result<> serve_watchdog();
   Time due() const;
   Time keep_alive_due() const {
+    if (map_.connection.is_broadcast()) return Time::max();
     return listener_.is_active() ? Time::max() : transport_.last_answer() + map_.connection.timeout;
   }
   void answered();

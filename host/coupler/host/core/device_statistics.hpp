@@ -38,6 +38,7 @@ struct DeviceSnapshot {
   std::uint64_t timeouts = 0;
   std::uint64_t failures = 0;                   ///< requests that ended the connection in another way
   std::array<std::uint64_t, 256> exceptions{};  ///< by code
+  std::uint64_t discarded = 0;                  ///< Transport::discarded()
   std::uint64_t rejected_ranges = 0;
   std::uint64_t overruns = 0;
   std::uint64_t changes = 0;                                  ///< that a node has told
@@ -55,7 +56,8 @@ struct DeviceSnapshot {
 /// Counts what a device does; read from any thread. Allocates nothing but error texts.
 class DeviceStatistics {
  public:
-  void answered(Duration after, const Result<>& result);
+  /// `discarded`: Transport::discarded() after it.
+  void answered(Duration after, const Result<>& result, std::uint64_t discarded);
   void wrote(WriteResult::Outcome outcome);
   void cycle_ended(Duration after, std::uint64_t overruns);
   void rejected();

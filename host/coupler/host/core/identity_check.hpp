@@ -4,21 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "coupler/base/enumeration.hpp"
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/map/diff.hpp"
 
 namespace coupler::host {
-
-/// What to do when the two sides do not agree.
-enum class Verify {
-  require,  ///< do not talk to the device
-  warn,     ///< report it and go on
-  off       ///< do not ask
-};
-constexpr Enumeration<Verify, 3> enumeration(Verify) {
-  return {"Verify", {{Verify::require, "require"}, {Verify::warn, "warn"}, {Verify::off, "off"}}};
-}
 
 /// How the device's map compares with the driver's.
 struct Identity {

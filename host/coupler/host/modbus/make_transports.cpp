@@ -2,40 +2,72 @@
 #include "coupler/host/modbus/make_transports.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <map>
-#include <string_view>
+#include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "coupler/host/modbus/unit_transport.hpp"
+#include "coupler/map/fields.hpp"
 
 namespace coupler::host {
 namespace {
 
+/// Where several maps can meet: a gateway, or a serial port by its real path.
 struct Gateway {
   std::size_t units = 0;
   std::size_t connections = std::numeric_limits<std::size_t>::max();  ///< that it allows
   std::shared_ptr<SharedConnection> shared;
 };
 
-using Place = std::pair<std::string_view, std::uint16_t>;
+using Place = std::pair<std::string, std::uint16_t>;
 
-Place place_of(const Map& map) { return {map.connection.address, map.connection.port}; }
+Place place_of(const Connection& connection) {
+  if (!connection.serial.present()) return {std::string(connection.address), connection.port};
+  std::error_code ignored;
+  return {std::filesystem::weakly_canonical(connection.serial.device, ignored), 0};
+}
+
+/// Not the name of the port, of which there may be several.
+bool have_same_line(const Connection& a, Connection b) {
+  if (!a.serial.present() || !b.serial.present()) return a.is_rtu() == b.is_rtu();
+  b.serial.device = a.serial.device;
+  return a.serial == b.serial;
+}
 
 }  // namespace
+
+std::string line_conflict(const std::vector<Map>& maps) {
+  std::map<Place, const Map*> first;
+  for (const Map& map : maps) {
+    const Map& other = *first.emplace(place_of(map.connection), &map).first->second;
+    if (have_same_line(other.connection, map.connection)) continue;
+    const auto settings = [](const Map& of) {
+      return of.connection.serial.present() ? written(of.connection.serial)
+                                            : fmt::format("framing {}", to_string(of.connection.framing));
+    };
+    return fmt::format(
+        "{} and {} are on one line, but one has {} and the other {}; give both the same settings", other.name,
+        map.name, settings(other), settings(map));
+  }
+  return {};
+}
 
 std::vector<std::unique_ptr<Transport>> make_transports(const std::vector<Map>& maps) {
   std::map<Place, Gateway> gateways;
   for (const Map& map : maps) {
-    Gateway& gateway = gateways[place_of(map)];
+    Gateway& gateway = gateways[place_of(map.connection)];
     ++gateway.units;
     gateway.connections = std::min<std::size_t>(gateway.connections, map.limits.connections);
   }
   std::vector<std::unique_ptr<Transport>> transports;
   for (const Map& map : maps) {
-    Gateway& gateway = gateways[place_of(map)];
-    if (gateway.units <= std::max<std::size_t>(gateway.connections, 1)) {
-      transports.push_back(std::make_unique<ModbusTransport>(map.connection));
+    Gateway& gateway = gateways[place_of(map.connection)];
+    if (!map.connection.is_rtu() && gateway.units <= std::max<std::size_t>(gateway.connections, 1)) {
+      transports.push_back(make_transport(map.connection));
       continue;
     }
     if (!gateway.shared) gateway.shared = std::make_shared<SharedConnection>(map.connection);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "coupler/host/core/transport.hpp"
@@ -10,7 +11,11 @@
 namespace coupler::host {
 
 /// The transports of `maps`, in their order. Several maps with the same address and port are units behind one
-/// gateway: they share a connection, unless the `limits: connections` of all of them allow one each.
+/// gateway: they share a connection, unless the `limits: connections` of all of them allow one each. Those on
+/// one serial port, or with RTU over TCP to the same place, always share one.
 std::vector<std::unique_ptr<Transport>> make_transports(const std::vector<Map>& maps);
+
+/// Which of `maps` are on one line but have different settings of it, and what to do; empty: none.
+std::string line_conflict(const std::vector<Map>& maps);
 
 }  // namespace coupler::host

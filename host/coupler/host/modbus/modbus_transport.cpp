@@ -12,8 +12,6 @@
 
 #include "coupler/host/modbus/open_socket.hpp"
 #include "coupler/host/modbus/raw_exchange.hpp"
-#include "coupler/map/functions.hpp"
-#include "coupler/modbus/file_record.hpp"
 
 namespace coupler::host {
 namespace {
@@ -35,12 +33,6 @@ Result<> check_adu(Span<const std::uint8_t> adu, const modbus::Frame& request) {
   header.transaction = modbus::get_u16(&adu[0]);
   header.unit = adu[6];
   return check_header(header, request);
-}
-
-Result<> result(const tl::expected<void, modbus::ReplyError>& taken) {
-  if (taken) return {};
-  if (taken.error().exception) return fail(ExceptionReply{*taken.error().exception});
-  return fail(BadFrame{"not the reply to this request"});
 }
 
 }  // namespace
@@ -114,62 +106,31 @@ Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
   return modbus::Bytes(adu.data() + modbus::mbap_size, adu.size() - modbus::mbap_size);
 }
 
-Result<> ModbusTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
-  const modbus::ReadRequest request(read_function(table), range);
-  const auto reply = ask(request);
-  if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::take_bits(request, *reply, bits));
-}
-
-Result<> ModbusTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
-  const modbus::ReadRequest request(read_function(table), range);
-  const auto reply = ask(request);
-  if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::take_registers(request, *reply, registers));
-}
-
 modbus::Frame ModbusTransport::next_header() {
   ++sent_.transaction;
   sent_.unit = unit_;
   return sent_;
 }
 
-Result<> ModbusTransport::read_file_record(std::uint16_t file, std::uint16_t record,
-                                           Span<std::uint16_t> registers) {
-  std::array<std::uint8_t, modbus::file_request_size> pdu{};
-  modbus::build_file_request({file, record, static_cast<std::uint16_t>(registers.size())}, pdu);
-  const auto reply = exchange(pdu);
-  if (!reply) return tl::make_unexpected(reply.error());
-  const auto parsed = modbus::parse_file_reply(*reply, registers);
-  if (parsed) return {};
-  if (parsed.error().exception) return fail(ExceptionReply{*parsed.error().exception});
-  return fail(BadFrame{"not the file record that was requested"});
-}
-
+/// libmodbus does not know all functions.
 Result<modbus::Bytes> ModbusTransport::exchange(modbus::Bytes pdu) {
-  if (socket_ < 0) return fail(NotConnected{"not connected"});
-  const Deadline deadline(timeout_);
-  if (auto sent = send_request(socket_, next_header(), pdu); !sent) return tl::make_unexpected(sent.error());
-  if (auto before = receive_wait_before(deadline); !before) return tl::make_unexpected(before.error());
-  modbus::Framer framer;
-  const auto reply = receive_reply(socket_, sent_, timeout_, deadline, framer);
-  if (!reply) return tl::make_unexpected(reply.error());
-  std::copy(reply->begin(), reply->end(), reply_.begin());
-  return modbus::Bytes(reply_.data(), reply->size());
+  if (auto sent = send_pdu(pdu); !sent) return tl::make_unexpected(sent.error());
+  return receive_pdu();
 }
 
-Result<> ModbusTransport::send(const modbus::WriteRequest& request) {
+Result<> ModbusTransport::send_pdu(modbus::Bytes pdu) {
   if (socket_ < 0) return fail(NotConnected{"not connected"});
   answer_by_ = Deadline(timeout_);
-  return send_request(socket_, next_header(), request.pdu());
+  return send_request(socket_, next_header(), pdu);
 }
 
-Result<> ModbusTransport::receive(const modbus::WriteRequest& request) {
-  if (auto before = receive_wait_before(answer_by_); !before) return before;
+Result<modbus::Bytes> ModbusTransport::receive_pdu() {
+  if (auto before = receive_wait_before(answer_by_); !before) return tl::make_unexpected(before.error());
   modbus::Framer framer;
   const auto reply = receive_reply(socket_, sent_, timeout_, answer_by_, framer);
   if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::check_reply(request, *reply));
+  std::copy(reply->begin(), reply->end(), reply_.begin());
+  return modbus::Bytes(reply_.data(), reply->size());
 }
 
 Result<modbus::ScheduleReply> ModbusTransport::schedule(const modbus::ScheduleRequest& request) {

@@ -8,21 +8,18 @@
 #include <string>
 #include <utility>
 
-#include "coupler/host/core/transport.hpp"
-#include "coupler/host/modbus/wait.hpp"
-#include "coupler/map/map.hpp"
-#include "coupler/modbus/client.hpp"
+#include "coupler/host/modbus/multi_unit_transport.hpp"
 #include "coupler/modbus/frame.hpp"
 
 struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for its context
 
 namespace coupler::host {
 
-/// One unit of a Modbus/TCP device. libmodbus holds the connection and receives the replies to reads.
+/// A Modbus/TCP device, or a gateway. libmodbus holds the connection and receives the replies to reads.
 /// Everything else is our own: libmodbus does not compare unit ids, does not report exception codes above 0B,
 /// cannot send a write in one thread and receive the answer in another, and its connect can neither be
 /// interrupted nor resolve names in the background.
-class ModbusTransport : public Transport {
+class ModbusTransport : public MultiUnitTransport {
  public:
   explicit ModbusTransport(const Connection& connection);
   ~ModbusTransport() override;
@@ -32,11 +29,6 @@ class ModbusTransport : public Transport {
   Result<> connect() override;
   void close() override;
   void interrupt() override;
-  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
-  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
-  Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
-  Result<> send(const modbus::WriteRequest& request) override;
-  Result<> receive(const modbus::WriteRequest& request) override;
   Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request) override;
   bool can_wait() const override { return true; }
   Result<> send_wait(const modbus::ChangesRequest& request) override;
@@ -45,22 +37,17 @@ class ModbusTransport : public Transport {
   Woken wait_until(Time time) override;
   void wake() override { wakeup_.call(); }
 
-  /// Sends any PDU, also of a function that libmodbus does not know. Returns the PDU of the reply, which may
-  /// be an exception, valid until the next request.
-  Result<modbus::Bytes> exchange(modbus::Bytes pdu);
+  Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout) override;
+  Result<> open(const Event& interrupt) override;
+  void hang_up() override;
+  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
 
-  // For a connection that several units share.
-
-  /// The unit of the next requests, and how long their answers may take.
-  Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout);
-  /// connect() that ends when `interrupt` is set.
-  Result<> open(const Event& interrupt);
-  /// From any thread: ends the request in progress; connect() is possible again.
-  void hang_up();
+ protected:
+  Result<modbus::Bytes> ask(const modbus::ReadRequest& request) override;
+  Result<> send_pdu(modbus::Bytes pdu) override;
+  Result<modbus::Bytes> receive_pdu() override;
 
  private:
-  /// The PDU of the reply, valid until the next request.
-  Result<modbus::Bytes> ask(const modbus::ReadRequest& request);
   modbus::Frame next_header();
   /// The answer to a wait comes before that to the request which has been sent now.
   Result<> receive_wait_before(const Deadline& deadline);

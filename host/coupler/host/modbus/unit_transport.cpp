@@ -9,7 +9,8 @@ namespace {
 
 tl::unexpected<Error> interrupted_error() { return fail(NotConnected{"interrupted"}); }
 tl::unexpected<Error> lost_error() {
-  return fail(TransportFailure{"the gateway has closed the connection, or cannot be reached"});
+  return fail(TransportFailure{
+      "the gateway has closed the connection, or cannot be reached; or the serial port has gone"});
 }
 
 }  // namespace
@@ -36,16 +37,16 @@ void UnitTransport::rank(Rank rank) {
 
 void UnitTransport::release() {
   if (shared_->users == 0) {
-    shared_->transport.close();
+    shared_->transport->close();
     shared_->open = false;
   }
   shared_->turns.release();
 }
 
 Result<> UnitTransport::open() {
-  shared_->transport.close();
+  shared_->transport->close();
   const Time begun = std::chrono::steady_clock::now();
-  Result<> opened = shared_->transport.open(interrupted_);
+  Result<> opened = shared_->transport->open(interrupted_);
   shared_->open = opened.has_value();
   shared_->opened = std::chrono::steady_clock::now();
   // Each of the others would wait as long for nothing.
@@ -55,8 +56,9 @@ Result<> UnitTransport::open() {
 
 Result<> UnitTransport::connect() {
   close();
+  wait_until_past(late_until_);
   if (auto taken = take(Rank::read); !taken) return taken;
-  Result<> result = shared_->transport.select(unit_, timeout_);
+  Result<> result = shared_->transport->select(unit_, timeout_);
   if (result && !shared_->open) result = open();
   if (result) {
     connected_ = true;
@@ -68,10 +70,8 @@ Result<> UnitTransport::connect() {
 }
 
 void UnitTransport::close() {
-  if (std::exchange(in_flight_,
-                    false)) {  // its answer may still come, and would be taken for that to another request
-    shared_->transport.close();
-    shared_->open = false;
+  if (std::exchange(in_flight_, false)) {
+    unanswered();
     release();
   }
   if (!std::exchange(connected_, false) || --shared_->users > 0) return;
@@ -88,31 +88,50 @@ void UnitTransport::wake() {
 
 void UnitTransport::interrupt() {
   interrupted_.set();
-  shared_->turns.interrupt(this, [this] { shared_->transport.hang_up(); });
+  shared_->turns.interrupt(this, [this] { shared_->transport->hang_up(); });
 }
 
 Time UnitTransport::ready() const { return std::max(shared_->opened + delay_, shared_->answered + gap_); }
+
+/// Or until it is interrupted.
+void UnitTransport::wait_until_past(Time time) {
+  if (time <= std::chrono::steady_clock::now()) return;
+  Wakeup nobody;
+  wait_for(nobody, interrupted_, -1, time);
+}
 
 /// Makes the connection ready for a request, in its turn.
 Result<> UnitTransport::prepare() {
   if (!connected_) return fail(NotConnected{"not connected"});
   if (is_lost()) return lost_error();
-  if (auto selected = shared_->transport.select(unit_, timeout_); !selected) return selected;
+  if (auto selected = shared_->transport->select(unit_, timeout_); !selected) return selected;
   if (!shared_->open)
     if (auto opened = open(); !opened) return opened;
-  Wakeup nobody;
-  wait_for(nobody, interrupted_, -1, ready());
+  wait_until_past(ready());
   if (interrupted_.is_set()) return interrupted_error();
   return {};
+}
+
+/// The answer may still come, and would be taken for that to another request.
+void UnitTransport::unanswered() {
+  if (shared_->transport->is_bus()) {
+    late_until_ = std::chrono::steady_clock::now() + timeout_;
+    return;
+  }
+  shared_->transport->close();
+  shared_->open = false;
 }
 
 /// The request of this turn has ended.
 Result<> UnitTransport::done(Result<> result) {
   shared_->answered = std::chrono::steady_clock::now();
-  if (!result && exception_in(result.error()) == nullptr) {
-    shared_->transport.close();
+  const Error* error = result || exception_in(result.error()) != nullptr ? nullptr : &result.error();
+  const bool is_lost = error != nullptr && std::holds_alternative<TransportFailure>(*error);
+  if (error != nullptr && !is_lost) unanswered();
+  if (is_lost) {
+    shared_->transport->close();
     shared_->open = false;
-    if (std::holds_alternative<TransportFailure>(result.error()) && !interrupted_.is_set()) ++shared_->ended;
+    if (!interrupted_.is_set()) ++shared_->ended;
   }
   release();
   return result;
@@ -125,20 +144,20 @@ Result<> UnitTransport::in_turn(Request&& request) {
     release();
     return prepared;
   }
-  return done(request(shared_->transport));
+  return done(request(*shared_->transport));
 }
 
 Result<> UnitTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
-  return in_turn([&](ModbusTransport& transport) { return transport.read_bits(table, range, bits); });
+  return in_turn([&](MultiUnitTransport& transport) { return transport.read_bits(table, range, bits); });
 }
 Result<> UnitTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
   return in_turn(
-      [&](ModbusTransport& transport) { return transport.read_registers(table, range, registers); });
+      [&](MultiUnitTransport& transport) { return transport.read_registers(table, range, registers); });
 }
 Result<> UnitTransport::read_file_record(std::uint16_t file, std::uint16_t record,
                                          Span<std::uint16_t> registers) {
   return in_turn(
-      [&](ModbusTransport& transport) { return transport.read_file_record(file, record, registers); });
+      [&](MultiUnitTransport& transport) { return transport.read_file_record(file, record, registers); });
 }
 
 Transport::Turn UnitTransport::await_turn(Time until, bool write_waits) {
@@ -172,7 +191,7 @@ Result<> UnitTransport::send(const modbus::WriteRequest& request) {
     release();
     return prepared;
   }
-  if (auto sent = shared_->transport.send(request); !sent) return done(sent);
+  if (auto sent = shared_->transport->send(request); !sent) return done(sent);
   in_flight_ = true;
   if (reserved) wake();  // no thread polls a shared socket: the owner must call receive()
   return {};
@@ -180,7 +199,7 @@ Result<> UnitTransport::send(const modbus::WriteRequest& request) {
 
 Result<> UnitTransport::receive(const modbus::WriteRequest& request) {
   in_flight_ = false;
-  return done(shared_->transport.receive(request));
+  return done(shared_->transport->receive(request));
 }
 
 }  // namespace coupler::host

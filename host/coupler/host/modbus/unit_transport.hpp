@@ -4,19 +4,19 @@
 #include <atomic>
 #include <memory>
 
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/multi_unit_transport.hpp"
 #include "coupler/host/modbus/turns.hpp"
 #include "coupler/host/modbus/wait.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {
 
-/// One connection to a gateway. What is not atomic is for the unit that has the turn.
+/// One connection to a gateway, or to a serial line. What is not atomic is for the unit that has the turn.
 struct SharedConnection {
-  explicit SharedConnection(const Connection& gateway) : transport(gateway) {}
+  explicit SharedConnection(const Connection& gateway) : transport(make_transport(gateway)) {}
 
   Turns turns;
-  ModbusTransport transport;
+  std::unique_ptr<MultiUnitTransport> transport;
   bool open = false;
   std::atomic<int> users{0};            ///< units that are connected
   std::atomic<std::uint64_t> ended{0};  ///< how often the gateway has ended it, or could not be reached
@@ -27,9 +27,10 @@ struct SharedConnection {
 /// One of several units behind a gateway that share a connection, request by request: writes first, also
 /// those of a unit whose own read waits for its turn.
 ///
-/// If a unit stays silent the connection is closed, since its answer may still come; the others open it again
-/// and notice nothing. If the gateway ends the connection, it is lost for all units: the devices behind it
-/// may have changed.
+/// If a unit stays silent its answer may still come. On a bus it is not asked for a timeout, while the others
+/// are; otherwise the connection is closed, and the others open it again and notice nothing. If the gateway
+/// ends the connection, or the serial port goes, it is lost for all units: the devices behind it may have
+/// changed.
 class UnitTransport : public Transport {
  public:
   UnitTransport(std::shared_ptr<SharedConnection> shared, const Connection& unit, const Limits& limits);
@@ -49,6 +50,7 @@ class UnitTransport : public Transport {
   bool reserve() override;
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;
+  std::uint64_t discarded() const override { return shared_->transport->discarded(); }
   Woken wait_until(Time time) override { return wait_for(wakeup_, interrupted_, -1, time); }
   void wake() override;
 
@@ -59,9 +61,11 @@ class UnitTransport : public Transport {
   template <class Request>
   Result<> in_turn(Request&& request);
   Result<> prepare();
+  void wait_until_past(Time time);
   Result<> open();
   Time ready() const;
   Result<> done(Result<> result);
+  void unanswered();
 
   std::shared_ptr<SharedConnection> shared_;
   std::uint8_t unit_;
@@ -73,6 +77,7 @@ class UnitTransport : public Transport {
   std::atomic<bool> woken_{false};  ///< since await_turn() returned because of it
   Rank rank_ = Rank::read;
   bool connected_ = false;
+  Time late_until_{};        ///< its answer to a request that has ended may still come
   std::uint64_t ended_ = 0;  ///< SharedConnection::ended when it connected
   bool has_turn_ = false;    ///< for the request that follows
   bool reserved_ = false;    ///< by reserve()

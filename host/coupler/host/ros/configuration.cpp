@@ -14,7 +14,8 @@
 
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/host/core/schedule.hpp"
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/make_transports.hpp"
+#include "coupler/host/modbus/multi_unit_transport.hpp"
 #include "coupler/host/ros/diagnostics.hpp"
 #include "coupler/host/ros/program.hpp"
 #include "coupler/map/diagnostic.hpp"
@@ -56,7 +57,7 @@ class MapFinder {
     if (settings.map && names_a_node(*settings.map)) return from_node_address(*settings.map, settings);
     if (settings.map)
       return from_file(*settings.map, settings.name ? std::string_view(*settings.name) : std::string_view());
-    if (settings.address) return from_node(settings, *settings.address);
+    if (settings.address || settings.serial) return from_node({}, settings);
     return fail(
         wrong_call,
         "no map; give one by --map MAP, or --address HOST of a node that serves its map (--help shows "
@@ -117,16 +118,15 @@ class MapFinder {
     return tl::make_unexpected(0);
   }
 
-  /// The map will view `address`.
-  Source from_node(const Settings& settings, std::string_view address) {
-    Map asked;
+  /// The settings override `node`; the map will view both.
+  Source from_node(const NodeAddress& node, const Settings& settings) {
+    Map asked = found_at({}, node);
     apply(settings, asked);
-    asked.connection.address = address;
-    const std::string where = fmt::format("{} port {}", asked.connection.address, asked.connection.port);
-    ModbusTransport transport(asked.connection);
+    const std::string where = place_text(asked.connection);
+    const auto transport = make_transport(asked.connection);
     MapDiagnostics diagnostics(asked.connection, node_);
     diagnostics.say(Level::warning, "waiting for the map of " + where);
-    const auto served = wait_for_map(transport, where, diagnostics);
+    const auto served = wait_for_map(*transport, where, diagnostics);
     if (!served) return tl::make_unexpected(served.error());
     if (!*served)
       return fail(wrong_input, where + " serves no map: it is a foreign coupler; give its map by --map MAP");
@@ -134,23 +134,19 @@ class MapFinder {
     if (!owner)
       return fail(wrong_input, fmt::format("the map of {} cannot be used: {}", where, owner.error()));
     diagnostics.say(Level::info, "read from " + where);
-    // The address where the node was found counts, not the one in its map.
+    // The place where the node was found counts, not the one in its map.
     Map map = (*owner)->map();
-    map.connection.address = address;
-    map.connection.port = asked.connection.port;
-    map.connection.unit = asked.connection.unit;
+    const Connection its_own = std::exchange(map.connection, asked.connection);
+    map.connection.timeout = its_own.timeout;
+    map.connection.changed_from(its_own.is_rtu());
     return MapSource{*owner, map};
   }
 
-  /// tcp://HOST:PORT/UNIT in place of a file. The settings address, port and unit override it.
   Source from_node_address(const std::string& argument, const Settings& settings) {
     const auto node = parse_node_address(argument);
     if (!node)
       return fail(wrong_call, fmt::format("{}: {}; {}", argument, node.error().what, node.error().remedy));
-    Settings named;
-    named.port = node->port;
-    named.unit = node->unit;
-    return from_node(overlay(named, settings), settings.address ? *settings.address : node->host);
+    return from_node(*node, settings);
   }
 
   const Dialect& dialect_;
@@ -163,28 +159,45 @@ std::string find_conflict(const Map* built_in, const Settings& settings, const D
   if (built_in != nullptr)
     return "this driver has its map built in and takes no other; use coupler_driver for other maps";
   if (settings.map) return "both map and maps are given; give one of them";
-  if (settings.name || settings.address || settings.port || settings.unit)
+  if (settings.name || settings.address || settings.port || settings.unit || settings.serial)
     return fmt::format(
-        "name, address, port and unit are for one device; with several maps write them into the maps, or "
-        "give "
-        "them for each device {}",
+        "name, address, port, unit and serial are for one device; with several maps write them into the "
+        "maps, "
+        "or give them for each device {}",
         dialect.device_setting);
+  return {};
+}
+
+std::string unit_error(const Map& map) {
+  const Connection& connection = map.connection;
+  if (!connection.is_rtu() || is_rtu_unit(connection.unit)) return {};
+  if (!connection.is_broadcast())
+    return fmt::format("{}: unit {} cannot be asked; with RTU give 1 to 247", map.name, connection.unit);
+  for (const Point& point : map.points)
+    if (needs_answers(point, map.limits))
+      return fmt::format(
+          "{}: unit 0 is a broadcast, which nobody answers, but {} needs to be read; give 1 to 247", map.name,
+          point.name);
   return {};
 }
 
 /// What is wrong with the devices, or an empty text.
 std::string find_error(const Devices& devices) {
   std::set<std::string_view> names;
+  std::vector<Map> maps;
   for (const auto& [settings, source] : devices) {
-    if (source.map.connection.address.empty())
+    maps.push_back(source.map);
+    if (!source.map.connection.present())
       return fmt::format("the map{} has no address; add 'address: HOST' or give --address HOST",
                          devices.size() > 1 ? fmt::format(" of {}", source.map.name) : "");
+    if (const auto wrong = unit_error(source.map); !wrong.empty()) return wrong;
+    if (settings.address && settings.serial) return "both address and serial are given; give one of them";
     if (!names.insert(source.map.name).second)
       return fmt::format(
           "two devices have the name {}; give one of them another, as in --maps left=a.yaml,right=a.yaml",
           source.map.name);
   }
-  return {};
+  return line_conflict(maps);
 }
 
 }  // namespace
@@ -212,7 +225,7 @@ tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const S
 
 bool is_map_of_a_node(const Map* built_in, const Settings& settings) {
   if (built_in != nullptr || !settings.maps.empty()) return false;
-  return settings.map ? names_a_node(*settings.map) : settings.address.has_value();
+  return settings.map ? names_a_node(*settings.map) : settings.address || settings.serial;
 }
 
 std::vector<std::string_view> names_of(const std::vector<MapSource>& sources) {
@@ -243,8 +256,9 @@ std::string node_name(std::string_view map_name) {
 }
 
 std::string node_name_by_address(const Settings& settings) {
-  std::string stem = settings.address.value_or("");
-  if (stem.empty() && settings.map) stem = settings.map->substr(settings.map->find("//") + 2);
+  std::string stem = settings.address.value_or(settings.serial.value_or(""));
+  if (stem.empty() && settings.map) stem = settings.map->substr(settings.map->find(':') + 1);
+  stem.erase(std::min(stem.find('?'), stem.size()));  // the settings of a serial port
   if (settings.port) stem += fmt::format("_{}", *settings.port);
   if (settings.unit) stem += fmt::format("_unit{}", *settings.unit);
   const auto is_sign = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };

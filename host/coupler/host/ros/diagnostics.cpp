@@ -31,12 +31,17 @@ class Values {
   std::vector<std::pair<std::string, std::string>>& values_;
 };
 
+std::string hardware_id(const Connection& device) {
+  if (device.serial.present()) return fmt::format("{} unit {}", device.serial.device, device.unit);
+  return fmt::format("{}:{} unit {}", device.address, device.port, device.unit);
+}
+
 DiagnosticEntry entry_of(Health health) { return {health.level, std::move(health.text), {}, {}}; }
 
 }  // namespace
 
 MapDiagnostics::MapDiagnostics(const Connection& device, Node* node) : node_(node) {
-  entry_->hardware_id = fmt::format("{}:{} unit {}", device.address, device.port, device.unit);
+  entry_->hardware_id = hardware_id(device);
   if (node_ != nullptr) node_->add_diagnostics("map", [entry = entry_] { return *entry; });
 }
 
@@ -53,9 +58,7 @@ void MapDiagnostics::publish_if_due() {
 }
 
 Diagnostics::Diagnostics(const Map& map, Node& node)
-    : map_(map),
-      hardware_id_(fmt::format("{} {}:{} unit {}", map.name, map.connection.address, map.connection.port,
-                               map.connection.unit)) {
+    : map_(map), hardware_id_(fmt::format("{} {}", map.name, hardware_id(map.connection))) {
   const auto add = [&](const char* what, DiagnosticEntry (Diagnostics::*make)()) {
     node.add_diagnostics(fmt::format("{} {}", map.name, what), [this, make] {
       DiagnosticEntry entry = (this->*make)();
@@ -89,6 +92,7 @@ DiagnosticEntry Diagnostics::connection() {
   values.add("requests", now_.requests);
   values.add("timeouts", now_.timeouts);
   values.add("other failures", now_.failures);
+  if (map_.connection.is_rtu()) values.add("discarded bytes", now_.discarded);
   return result;
 }
 

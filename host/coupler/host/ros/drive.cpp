@@ -69,7 +69,7 @@ class DeviceDriver : public Sink {
  public:
   /// The map's views must outlive it. Callbacks of the node refer to it: the node must be shut down before it
   /// is destroyed, and publish no more diagnostics.
-  DeviceDriver(Node& node, const Map& map, std::unique_ptr<Transport> transport, Verify verify)
+  DeviceDriver(Node& node, const Map& map, std::unique_ptr<Transport> transport)
       : node_(node),
         map_(map),
         subscribers_(map.points.size()),
@@ -81,7 +81,7 @@ class DeviceDriver : public Sink {
         diagnostics_(map, node),
         services_(map, subscribers_),
         transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport), node)),
-        thread_(map, verify, load_served_map, *transport_, *this, map.poll),
+        thread_(map, map.verify, load_served_map, *transport_, *this, map.poll),
         writes_{
             [this](const Write& write) { thread_.write(write); },
             [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {
@@ -222,8 +222,7 @@ Drivers start_all(const Devices& devices, Node& node) {
   Drivers drivers;
   for (const auto& [settings, source] : devices) {
     if (Shutdown::requested) break;
-    drivers.push_back(std::make_unique<DeviceDriver>(node, source.map, std::move(*transport++),
-                                                     settings.verify.value_or(Verify::require)));
+    drivers.push_back(std::make_unique<DeviceDriver>(node, source.map, std::move(*transport++)));
   }
   return drivers;
 }

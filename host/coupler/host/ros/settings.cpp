@@ -63,6 +63,33 @@ Outcome set_poll(Settings& settings, const std::string& text) {
   return settings.poll ? Outcome{} : wrong("poll", text, "all or subscribed");
 }
 
+Outcome set_framing(Settings& settings, const std::string& text) {
+  settings.framing = parse_word<Framing>(text);
+  return settings.framing ? Outcome{} : wrong("framing", text, "tcp or rtu");
+}
+
+Outcome set_serial(Settings& settings, const std::string& text) {
+  if (text.empty()) return wrong("serial", text, "a device file, as /dev/ttyUSB0");
+  settings.serial = text;
+  return {};
+}
+
+Outcome set_baud(Settings& settings, const SettingKey& key, const std::string& text) {
+  if (auto done = set_number(settings.baud, key, text); !done) return done;
+  if (is_serial_rate(*settings.baud)) return {};
+  return wrong("baud", text, fmt::format("one of {}", fmt::join(serial_rates, ", ")));
+}
+
+Outcome set_parity(Settings& settings, const std::string& text) {
+  settings.parity = parse_word<Serial::Parity>(text);
+  return settings.parity ? Outcome{} : wrong("parity", text, "even, odd or none");
+}
+
+Outcome set_rs485(Settings& settings, const std::string& text) {
+  settings.rs485 = text == "true";
+  return *settings.rs485 || text == "false" ? Outcome{} : wrong("rs485", text, "true or false");
+}
+
 Outcome set_map(Settings& settings, const std::string& text) {
   if (text.empty()) return wrong("map", text, "a path or tcp://HOST; leave the setting out if there is none");
   settings.map = text;
@@ -116,9 +143,9 @@ void prefer(std::optional<T>& field, const std::optional<T>& strong) {
 
 }  // namespace
 
-const std::array<SettingKey, 10> setting_keys{{
+const std::array<SettingKey, 16> setting_keys{{
     {"map", "mapping", Kind::text, 0, 0, "",
-     "the device's map: a YAML or JSON file, or tcp://HOST[:PORT][/UNIT] of a node"},
+     "the device's map: a YAML or JSON file, or the address of a node, as tcp://HOST[:PORT][/UNIT]"},
     {"maps", "", Kind::list, 0, 0, "",
      "several devices in one process: their maps, as in --maps a.yaml,b.yaml; with names of their own, as in "
      "--maps left=io.yaml,right=io.yaml"},
@@ -127,10 +154,18 @@ const std::array<SettingKey, 10> setting_keys{{
      "host name or IP address; alone, without a map: a node that serves its own"},
     {"port", "", Kind::integer, 1, 65535, "", "TCP port; 502 if the map has none"},
     {"unit", "", Kind::integer, 0, 255, "", "unit id"},
+    {"framing", "", Kind::text, 0, 0, "", "tcp, or rtu for RTU over TCP"},
+    {"serial", "", Kind::text, 0, 0, "", "serial port, as /dev/ttyUSB0, instead of an address"},
+    {"baud", "", Kind::integer, 110, 4000000, "", "bits a second on the serial port"},
+    {"parity", "", Kind::text, 0, 0, "", "even, odd or none"},
+    {"stop_bits", "", Kind::integer, 1, 2, "", "stop bits on the serial port"},
+    {"rs485", "", Kind::text, 0, 0, "", "true: the port's driver switches the direction of RS-485"},
     {"rate", "", Kind::real, 0.001, 10000, " Hz", "polling rate in Hz"},
     {"timeout", "", Kind::real, 0.001, 3600, " s", "longest wait for a reply, in seconds"},
     {"verify", "", Kind::text, 0, 0, "",
-     "if the node's map differs: require (default: do not talk to it), warn (go on) or off (do not ask)"},
+     "if the node's map differs: require (do not talk to it), warn (go on) or off (do not ask); instead of "
+     "the "
+     "map's"},
     {"poll", "", Kind::text, 0, 0, "",
      "which points are read: all (default), or subscribed: those that have subscribers; instead of the "
      "map's"},
@@ -149,6 +184,12 @@ Outcome set(Settings& settings, std::string_view name, const std::string& text) 
   if (key == "address") return set_address(settings, text);
   if (key == "port") return set_number(settings.port, setting, text);
   if (key == "unit") return set_number(settings.unit, setting, text);
+  if (key == "framing") return set_framing(settings, text);
+  if (key == "serial") return set_serial(settings, text);
+  if (key == "baud") return set_baud(settings, setting, text);
+  if (key == "parity") return set_parity(settings, text);
+  if (key == "stop_bits") return set_number(settings.stop_bits, setting, text);
+  if (key == "rs485") return set_rs485(settings, text);
   if (key == "rate") return set_number(settings.rate, setting, text);
   if (key == "timeout") return set_timeout(settings, setting, text);
   if (key == "verify") return set_verify(settings, text);
@@ -168,6 +209,12 @@ std::optional<std::string> text_of(const Settings& settings, std::string_view ke
   if (key == "address") return settings.address;
   if (key == "port") return number(settings.port);
   if (key == "unit") return number(settings.unit);
+  if (key == "framing") return word(settings.framing);
+  if (key == "serial") return settings.serial;
+  if (key == "baud") return number(settings.baud);
+  if (key == "parity") return word(settings.parity);
+  if (key == "stop_bits") return number(settings.stop_bits);
+  if (key == "rs485" && settings.rs485) return *settings.rs485 ? "true" : "false";
   if (key == "rate") return number(settings.rate);
   if (key == "timeout" && settings.timeout)
     return fmt::to_string(std::chrono::duration<double>(*settings.timeout).count());
@@ -220,10 +267,18 @@ Settings overlay(Settings weak, const Settings& strong) {
     weak.map = strong.map;
     weak.maps = strong.maps;
   }
+  if (strong.serial) weak.address.reset();
+  if (strong.address) weak.serial.reset();
   prefer(weak.name, strong.name);
   prefer(weak.address, strong.address);
   prefer(weak.port, strong.port);
   prefer(weak.unit, strong.unit);
+  prefer(weak.framing, strong.framing);
+  prefer(weak.serial, strong.serial);
+  prefer(weak.baud, strong.baud);
+  prefer(weak.parity, strong.parity);
+  prefer(weak.stop_bits, strong.stop_bits);
+  prefer(weak.rs485, strong.rs485);
   prefer(weak.rate, strong.rate);
   prefer(weak.timeout, strong.timeout);
   prefer(weak.verify, strong.verify);
@@ -233,24 +288,47 @@ Settings overlay(Settings weak, const Settings& strong) {
 
 Settings with_map(Settings settings, const Map& map) {
   settings.name = std::string(map.name);
-  settings.address = std::string(map.connection.address);
-  settings.port = map.connection.port;
-  settings.unit = map.connection.unit;
-  settings.timeout = map.connection.timeout;
+  const auto& [address, port, unit, timeout, framing, serial] = map.connection;
+  settings.address = std::string(address);
+  settings.port = port;
+  settings.unit = unit;
+  settings.framing = framing;
+  settings.serial = std::string(serial.device);
+  settings.baud = serial.baud;
+  settings.parity = serial.parity;
+  settings.stop_bits = serial.stop_bits;
+  settings.rs485 = serial.rs485;
+  settings.timeout = timeout;
   settings.rate = map.polling.rate;
-  settings.verify = settings.verify.value_or(Verify::require);
+  settings.verify = map.verify;
   settings.poll = map.poll;
   return settings;
 }
 
 void apply(const Settings& settings, Map& map) {
   if (settings.name) map.name = *settings.name;
-  if (settings.address) map.connection.address = *settings.address;
-  if (settings.port) map.connection.port = *settings.port;
-  if (settings.unit) map.connection.unit = *settings.unit;
-  if (settings.timeout) map.connection.timeout = *settings.timeout;
+  Connection& connection = map.connection;
+  const bool was_rtu = connection.is_rtu();
+  if (settings.address) {
+    connection.address = *settings.address;
+    connection.serial.device = {};
+  }
+  if (settings.port) connection.port = *settings.port;
+  if (settings.unit) connection.unit = *settings.unit;
+  if (settings.framing) connection.framing = *settings.framing;
+  if (settings.serial) {
+    connection.serial.device = *settings.serial;
+    connection.address = {};
+  }
+  if (settings.baud) connection.serial.baud = *settings.baud;
+  if (settings.parity) connection.serial.parity = *settings.parity;
+  if (settings.stop_bits) connection.serial.stop_bits = *settings.stop_bits;
+  if (settings.rs485) connection.serial.rs485 = *settings.rs485;
+  connection.changed_from(was_rtu);
+  if (settings.timeout) connection.timeout = *settings.timeout;
   if (settings.rate) map.polling.rate = *settings.rate;
   if (settings.poll) map.poll = *settings.poll;
+  if (settings.verify) map.verify = *settings.verify;
 }
 
 }  // namespace coupler::host

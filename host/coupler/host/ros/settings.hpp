@@ -15,12 +15,18 @@ namespace coupler::host {
 
 /// The settings of a device, or of all devices, outside the map. Precedence: map < ROS parameter < argument.
 struct Settings {
-  std::optional<std::string> map;  ///< path, or tcp://HOST[:PORT][/UNIT]
+  std::optional<std::string> map;  ///< path, or the address of a node (coupler/map/node_address.hpp)
   std::vector<std::string> maps;   ///< PATH or NAME=PATH, for several devices; empty: not given
   std::optional<std::string> name;
   std::optional<std::string> address;
   std::optional<std::uint16_t> port;
   std::optional<std::uint8_t> unit;
+  std::optional<Framing> framing;
+  std::optional<std::string> serial;  ///< the port's device file; never beside an address
+  std::optional<std::uint32_t> baud;
+  std::optional<Serial::Parity> parity;
+  std::optional<std::uint16_t> stop_bits;
+  std::optional<bool> rs485;
   std::optional<double> rate;                        ///< Hz, above 0
   std::optional<std::chrono::milliseconds> timeout;  ///< above 0; given in seconds
   std::optional<Verify> verify;
@@ -39,7 +45,7 @@ struct SettingKey {
   std::string_view unit;  ///< follows a number; or empty
   std::string_view help;
 };
-extern const std::array<SettingKey, 10> setting_keys;
+extern const std::array<SettingKey, 16> setting_keys;
 /// Of all of them, with the aliases.
 std::vector<std::string_view> setting_names();
 bool is_setting(std::string_view name);
@@ -63,7 +69,8 @@ tl::expected<Settings, std::string> settings_among(
 /// What was set, as set() takes it; nullopt: not set.
 std::optional<std::string> text_of(const Settings& settings, std::string_view key);
 
-/// What is set in `strong`, and the rest of `weak`. `map` and `maps` count as one setting.
+/// What is set in `strong`, and the rest of `weak`. `map` and `maps` count as one setting, and so do an
+/// address and a serial port.
 Settings overlay(Settings weak, const Settings& strong);
 
 /// As if all values of the map had been set.

@@ -76,7 +76,7 @@ bool is_meant_for_a_driver(const GivenParameters::Section& section) {
 
 /// What is wrong where YAML has read a text as something else, or an empty text.
 std::string wrong_kind(const SettingKey& key, const GivenParameter& one) {
-  const bool is_text = key.kind == SettingKey::Kind::text && key.key != "verify";
+  const bool is_text = key.kind == SettingKey::Kind::text && key.key != "verify" && key.key != "rs485";
   if (!is_text || (one.kind != Kind::boolean && one.kind != Kind::real)) return {};
   return fmt::format(
       "YAML reads the value as {} ({}); if it is a text put it into quotes, as in {}: 'VALUE', or "

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/scan/identification.hpp"
+#include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::scan {
@@ -67,8 +68,8 @@ class Writer {
 
  private:
   void head(const Connection& connection) {
-    text_ += fmt::format("# A draft by `coupler probe` of {} port {}, unit {}.\n",
-                         printable(connection.address), connection.port, connection.unit);
+    text_ += fmt::format("# A draft by `coupler probe` of {}, unit {}.\n", printable(place_text(connection)),
+                         connection.unit);
     for (const auto& [id, value] : findings_.identification)
       text_ += fmt::format("# {}: {}\n", object_name(id), printable(value));
     for (const TableFindings& table : findings_.tables)
@@ -83,8 +84,16 @@ class Writer {
   }
 
   void device(const Connection& connection) {
-    text_ += fmt::format("name: device\naddress: \"{}\"\nport: {}\nunit: {}\n", connection.address,
-                         connection.port, connection.unit);
+    text_ += "name: device\n";
+    const Serial& line = connection.serial;
+    if (line.present())
+      text_ +=
+          fmt::format("serial: {{device: \"{}\", baud: {}, parity: {}, stop_bits: {}{}}}\n", line.device,
+                      line.baud, to_string(line.parity), line.stop_bits, line.rs485 ? ", rs485: true" : "");
+    else
+      text_ += fmt::format("address: \"{}\"\nport: {}\n{}", connection.address, connection.port,
+                           connection.is_rtu() ? "framing: rtu\n" : "");
+    text_ += fmt::format("unit: {}\n", connection.unit);
     limits();
     if (order_)
       text_ += fmt::format("byteorder_reverse: {}\nwordorder_reverse: {}   # order {}: the known values\n",

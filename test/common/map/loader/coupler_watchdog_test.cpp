@@ -102,7 +102,14 @@ TEST(PresetWatchdog, Each_preset_says_something_of_it) {
   EXPECT_EQ(problem_of("areas: []\n"), "other: nothing is said of a 'watchdog'");
 }
 
+TEST(PresetWatchdog, A_coupler_may_have_none) {
+  const auto preset = loader::parse_preset({"other", "watchdog: none\n"});
+  ASSERT_TRUE(preset) << preset.error();
+  EXPECT_TRUE(preset->watchdog.none);
+}
+
 TEST(PresetWatchdog, What_makes_no_sense_is_refused_with_its_line) {
+  EXPECT_EQ(problem_of("areas: []\nwatchdog: off\n"), "other: line 2 is not an element of 'watchdog'");
   for (const char* part :
        {"arm: [{holding_register: 1}]", "arm: [{value: 1}]", "arm: [{holding_register: 65536, value: 1}]",
         "arm: [{coil: 1, value: timeout}]", "arm: [{coil: 1, value: timeout, unit: 0}]",

@@ -18,6 +18,7 @@ constexpr Place places[] = {
     {Section::map, "name: a\n@\nmapping: {coils: {b: {address: 0, line: X}}}\n"},
     {Section::limits, "name: a\nlimits: {@}\nmapping: {coils: {b: 0}}\n"},
     {Section::watchdog, "name: a\nwatchdog: {timeout: 1s, @}\nmapping: {coils: {b: 0}}\n"},
+    {Section::serial, "name: a\nserial: {device: /dev/ttyUSB0, @}\nmapping: {coils: {b: 0}}\n"},
     {Section::defaults,
      "name: a\ndefaults: {@}\nmapping: {holding_registers: {b: {address: 0, type: INT}}}\n"},
     {Section::wire,

@@ -43,9 +43,9 @@ constexpr std::size_t fields = std::tuple_size_v<decltype(fields_of(static_cast<
 template <class Struct>
 constexpr bool lists_all = fields<Struct> == members<Struct>;
 
-static_assert(lists_all<Connection> && lists_all<Polling> && lists_all<Limits> && lists_all<Watchdog> &&
-                  lists_all<SimWire> && lists_all<Line> && lists_all<EdgeOf> && lists_all<codec::Scale> &&
-                  lists_all<Iio> && lists_all<Pwm> && lists_all<Bounds>,
+static_assert(lists_all<Connection> && lists_all<Serial> && lists_all<Polling> && lists_all<Limits> &&
+                  lists_all<Watchdog> && lists_all<SimWire> && lists_all<Line> && lists_all<EdgeOf> &&
+                  lists_all<codec::Scale> && lists_all<Iio> && lists_all<Pwm> && lists_all<Bounds>,
               "A member without its key in coupler/map/fields.hpp");
 static_assert(fields<HostOptions> + 1 == members<HostOptions>, "The one more is deadman");
 static_assert(fields<Service> + 2 == members<Service>, "The two more are allow and watchdog");
@@ -56,6 +56,7 @@ TEST(Fields, The_key_table_has_each_of_their_keys) {
   EXPECT_THAT(unknown_keys<Connection>(Section::map), IsEmpty());
   EXPECT_THAT(unknown_keys<Polling>(Section::map), IsEmpty());
   EXPECT_THAT(unknown_keys<Service>(Section::map), IsEmpty());
+  EXPECT_THAT(unknown_keys<Serial>(Section::serial), IsEmpty());
   EXPECT_THAT(unknown_keys<Limits>(Section::limits), IsEmpty());
   EXPECT_THAT(unknown_keys<Watchdog>(Section::watchdog), IsEmpty());
   EXPECT_THAT(unknown_keys<SimWire>(Section::wire), IsEmpty());

@@ -9,6 +9,7 @@ namespace coupler {
 namespace {
 
 using test::load_clean;
+using test::load_with;
 using test::map_of;
 
 TEST(Preset, Each_one_can_be_used) {
@@ -32,6 +33,25 @@ TEST(Preset, Its_limits_hold_where_the_map_has_none_of_its_own) {
       load_clean(map_of("coils", "valve: 0", "preset: wago_750\nlimits: {write_registers: 7}"));
   EXPECT_EQ(map->map().limits.write_registers, 7);
   EXPECT_EQ(map->map().limits.write_bits, 800);
+}
+
+TEST(Preset, Its_serial_settings_are_for_a_map_with_a_port) {
+  const MapPtr line = load_with("preset: robotiq_2f\nserial: {device: /dev/ttyUSB0}");
+  EXPECT_EQ(line->map().connection.serial, (Serial{"/dev/ttyUSB0", 115200, Serial::Parity::none, 1, false}));
+  EXPECT_EQ(line->map().connection.unit, 9);
+  const MapPtr own = load_with("preset: robotiq_2f\nserial: {device: /dev/ttyUSB0, baud: 9600}\nunit: 17");
+  EXPECT_EQ(own->map().connection.serial, (Serial{"/dev/ttyUSB0", 9600, Serial::Parity::none, 1, false}));
+  EXPECT_EQ(own->map().connection.unit, 17);
+  const MapPtr gateway = load_with("preset: robotiq_2f\naddress: gateway");
+  EXPECT_EQ(gateway->map().connection.serial, Serial{});
+  EXPECT_FALSE(gateway->map().connection.is_rtu());
+  EXPECT_EQ(gateway->map().connection.unit, 9);
+}
+
+TEST(Preset, Its_write_function_holds_for_each_output) {
+  const std::string points = "target: {address: 0x03E9, type: UINT, access: write}";
+  const MapPtr map = load_clean(map_of("holding_registers", points, "preset: robotiq_2f"));
+  EXPECT_EQ(map->map().points[0].host.write_function, HostOptions::WriteFunction::multiple);
 }
 
 TEST(Preset, The_maps_own_order_wins) {

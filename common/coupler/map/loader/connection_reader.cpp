@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the coupler is: at an address, or on a serial line.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "coupler/map/loader/map_reader.hpp"
+#include "coupler/map/network.hpp"
+
+namespace coupler::loader {
+namespace {
+
+void check_address(const Reader& top, Connection& connection, const Context& context) {
+  if (connection.address.empty()) return;
+  if (const auto host = parse_host(connection.address))
+    connection.address = *host;
+  else
+    context.problems.error(top.find("address")->at,
+                           fmt::format("'address': '{}' {}", connection.address, host.error().what),
+                           host.error().remedy);
+}
+
+void check_serial(const Reader& top, const Connection& connection, const Context& context) {
+  const Entry* entry = top.find("serial");
+  if (entry == nullptr || entry->kind != Entry::Kind::map) return;
+  if (child(*entry, "device") == nullptr)
+    context.problems.error(entry->key_at, "'serial' has no 'device'",
+                           "add the port's device file, as in 'device: /dev/ttyUSB0'");
+  if (!is_serial_rate(connection.serial.baud))
+    context.problems.error(child(*entry, "baud")->at,
+                           fmt::format("'baud': {} is no rate of serial ports", connection.serial.baud),
+                           fmt::format("write one of {}", fmt::join(serial_rates, ", ")));
+  for (const std::string_view other : {"address", "port", "framing"})
+    if (top.has(other))
+      context.problems.error(
+          top.find(other)->key_at, fmt::format("the map has both '{}' and 'serial'", other),
+          fmt::format("remove '{}' if the coupler is on a serial line, else 'serial'", other));
+}
+
+/// MSL 2.2
+void check_unit(const Reader& top, const Connection& connection, const Context& context) {
+  if (!connection.is_rtu() || connection.is_broadcast() || is_rtu_unit(connection.unit)) return;
+  context.problems.error(top.find("unit")->at,
+                         fmt::format("'unit': {} is reserved on a serial line", connection.unit),
+                         "write the coupler's own, 1 to 247");
+}
+
+}  // namespace
+
+Connection read_connection(const Reader& top, const Context& context) {
+  Connection connection;
+  top.fields(connection);
+  check_address(top, connection, context);
+  check_serial(top, connection, context);
+  check_unit(top, connection, context);
+  if (!top.has("timeout")) connection.timeout = usual_timeout(connection.is_rtu());
+  return connection;
+}
+
+}  // namespace coupler::loader

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/modbus/rtu_transport.hpp"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/host/modbus/open_socket.hpp"
+#include "coupler/map/functions.hpp"
+
+namespace coupler::host {
+namespace {
+
+/// After a broadcast, for the units to do what it says: 100 to 200 ms (MSL 2.4.1).
+constexpr std::chrono::milliseconds turnaround{100};
+
+/// A line on which something babbles is asked all the same.
+constexpr int most_discarded_pieces = 64;
+
+Time now() { return std::chrono::steady_clock::now(); }
+
+bool is_readable(int fd) {
+  pollfd wanted{fd, POLLIN, 0};
+  return ::poll(&wanted, 1, 0) > 0;
+}
+
+/// A gateway that has gone without a word is noticed although nobody closes the connection for a timeout.
+void notice_loss(int socket, std::chrono::milliseconds timeout) {
+  const auto longest = static_cast<unsigned>(std::max(timeout, std::chrono::milliseconds(3000)).count());
+  ::setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &longest, sizeof longest);
+}
+
+}  // namespace
+
+RtuTransport::RtuTransport(const Connection& connection)
+    : host_(connection.address),
+      port_(connection.port),
+      device_(connection.serial.device),
+      line_(connection.serial),
+      unit_(connection.unit),
+      timeout_(connection.timeout) {
+  line_.device = device_;
+}
+
+Duration RtuTransport::time_of(std::size_t characters) const {
+  return line_.present() ? time_of_characters(line_, characters) : Duration::zero();
+}
+
+Result<> RtuTransport::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
+  is_hung_up_ = false;
+  if (unit != rtu_broadcast && !is_rtu_unit(unit))
+    return fail(NotConnected{fmt::format("unit {} cannot be asked; RTU has units 1 to 247", unit)});
+  unit_ = unit;
+  timeout_ = timeout;
+  return {};
+}
+
+Result<> RtuTransport::open(const Event& interrupt) {
+  close();
+  if (auto selected = select(unit_, timeout_); !selected) return selected;
+  if (fd_ >= 0) return {};
+  if (line_.present()) {
+    auto opened = SerialPort::open(line_);
+    if (!opened) return tl::make_unexpected(opened.error());
+    serial_ = std::move(*opened);
+    fd_ = serial_->fd();
+  } else {
+    auto opened = open_socket(host_, port_, timeout_, interrupt);
+    if (!opened) return tl::make_unexpected(opened.error());
+    socket_ = std::move(*opened);
+    fd_ = socket_.get();
+    notice_loss(fd_, timeout_);
+  }
+  if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
+  has_failed_ = false;
+  framer_.reset();
+  last_character_ = now();
+  return {};
+}
+
+void RtuTransport::hang_up() {
+  is_hung_up_ = true;
+  hung_up_.call();
+}
+
+void RtuTransport::close() {
+  if (serial_ && !has_failed_) return;
+  serial_.reset();
+  socket_ = Descriptor();
+  fd_ = -1;
+}
+
+Result<modbus::Bytes> RtuTransport::exchange(modbus::Bytes pdu) {
+  if (unit_ == rtu_broadcast)
+    return fail(NotConnected{"unit 0 is a broadcast, which nobody answers; read from units 1 to 247"});
+  if (auto sent = send_pdu(pdu); !sent) return tl::make_unexpected(sent.error());
+  return receive_pdu();
+}
+
+Result<> RtuTransport::receive(const modbus::WriteRequest& request) {
+  return unit_ == rtu_broadcast ? Result<>{} : MultiUnitTransport::receive(request);
+}
+
+/// Whether the line has an echo: a read tells, also one that is refused or not answered.
+Result<> RtuTransport::look_for_echo(std::uint16_t address, Table table) {
+  const modbus::ReadRequest request(read_function(table), modbus::Range::of(address, 1));
+  if (auto sent = send_frame(request.pdu()); !sent) return sent;
+  const auto reply = receive_pdu();
+  if (reply || std::holds_alternative<Timeout>(reply.error()) ||
+      std::holds_alternative<BadFrame>(reply.error()))
+    return {};
+  return tl::make_unexpected(reply.error());
+}
+
+Result<> RtuTransport::send_pdu(modbus::Bytes pdu) {
+  if (unit_ != rtu_broadcast && framer_.needs_a_read_before(pdu)) {
+    const bool is_coil = pdu[0] == static_cast<std::uint8_t>(modbus::Function::write_single_coil);
+    const Table table = is_coil ? Table::coils : Table::holding_registers;
+    if (auto looked = look_for_echo(modbus::get_u16(&pdu[1]), table); !looked) return looked;
+  }
+  return send_frame(pdu);
+}
+
+Result<> RtuTransport::send_frame(modbus::Bytes pdu) {
+  if (fd_ < 0) return fail(NotConnected{"not connected"});
+  if (auto free = await_line(); !free) return free;
+  framer_.expect(unit_, pdu);
+  damaged_ = false;
+  const modbus::Bytes frame = framer_.request();
+  last_character_ = now() + time_of(frame.size());
+  answer_by_ = last_character_ + timeout_ + time_of(modbus::longest_reply(pdu) + modbus::rtu_overhead);
+  busy_until_ = unit_ == rtu_broadcast ? last_character_ + turnaround : answer_by_;
+  return put(frame);
+}
+
+Result<modbus::Bytes> RtuTransport::receive_pdu() {
+  for (;;) {
+    switch (wait(fd_, answer_by_)) {
+      case Woken::by_call: return fail(NotConnected{"interrupted"});
+      case Woken::by_time:
+        framer_.silent();
+        late_unit_ = unit_;
+        late_until_ = now() + timeout_;
+        if (!damaged_) return fail(Timeout{timeout_});
+        return fail(
+            BadFrame{fmt::format("what has come is no reply of unit {}; check baud rate and parity, and "
+                                 "that no two units have the same number",
+                                 unit_)});
+      case Woken::by_bytes: break;
+    }
+    const auto got = get(framer_.room());
+    if (!got) return tl::make_unexpected(got.error());
+    framer_.filled(got->size());
+    switch (framer_.next()) {
+      case modbus::RtuFramer::Outcome::reply: busy_until_ = {}; return framer_.pdu();
+      case modbus::RtuFramer::Outcome::damaged: damaged_ = true; break;
+      case modbus::RtuFramer::Outcome::nothing: break;
+    }
+  }
+}
+
+/// A call that comes together with bytes counts, too.
+Transport::Woken RtuTransport::wait(int fd, Time until) {
+  const Woken woken = wait_for(hung_up_, interrupted_, fd, until);
+  return is_hung_up_ || interrupted_.is_set() ? Woken::by_call : woken;
+}
+
+Result<> RtuTransport::pause(Time until) {
+  if (wait(-1, until) == Woken::by_call) return fail(NotConnected{"interrupted"});
+  return {};
+}
+
+/// Until nobody's reply is expected on it, and it has been silent between two frames (MSL 2.5.1.1).
+Result<> RtuTransport::await_line() {
+  if (auto paused = pause(busy_until_); !paused) return paused;
+  if (late_unit_ == unit_) {
+    if (auto paused = pause(late_until_); !paused) return paused;
+    late_unit_ = 0;
+  }
+  for (int piece = 0; piece < most_discarded_pieces; ++piece) {
+    if (auto discarded = discard(); !discarded) return discarded;
+    if (!line_.present()) break;
+    if (auto paused = pause(last_character_ + silence_between_frames(line_)); !paused) return paused;
+    if (!is_readable(fd_)) break;  // otherwise it was not silent: the reply has come twice, for instance
+  }
+  return {};
+}
+
+Result<> RtuTransport::discard() {
+  std::array<std::uint8_t, modbus::max_rtu_size> late{};
+  for (int piece = 0; piece < most_discarded_pieces && is_readable(fd_); ++piece) {
+    const auto got = get(late);
+    if (!got) return tl::make_unexpected(got.error());
+    discarded_ += got->size();
+  }
+  return {};
+}
+
+tl::unexpected<Error> RtuTransport::port_has_gone() const {
+  return fail(TransportFailure{fmt::format("the port {} has gone; is its adapter plugged in?", device_)});
+}
+
+Result<> RtuTransport::put(modbus::Bytes frame) {
+  const auto sent = line_.present() ? ::write(fd_, frame.data(), frame.size())
+                                    : ::send(fd_, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (sent == static_cast<ssize_t>(frame.size())) return {};
+  has_failed_ = true;
+  if (sent < 0 && errno == EIO) return port_has_gone();
+  return fail(TransportFailure{sent < 0 ? std::strerror(errno) : "only a part of the request could be sent"});
+}
+
+/// There is something to read, or the end.
+Result<Span<const std::uint8_t>> RtuTransport::get(Span<std::uint8_t> room) {
+  const auto got = ::read(fd_, room.data(), room.size());
+  if (got > 0) {
+    last_character_ = now();
+    return Span<const std::uint8_t>(room.data(), static_cast<std::size_t>(got));
+  }
+  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return Span<const std::uint8_t>();
+  has_failed_ = true;
+  if (!line_.present())
+    return fail(TransportFailure{got == 0 ? "the device closed the connection" : std::strerror(errno)});
+  return port_has_gone();
+}
+
+}  // namespace coupler::host

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/modbus/serial_port.hpp"
+
+#include <fcntl.h>
+#include <modbus/modbus-rtu.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "coupler/host/modbus/port_holder.hpp"
+#include "coupler/map/fields.hpp"
+
+namespace coupler::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The ports of adapters, by the names that stay when they are plugged in elsewhere, or else as they are.
+std::vector<std::string> ports_of_adapters() {
+  std::vector<std::string> found;
+  std::error_code none;
+  for (fs::directory_iterator port("/dev/serial/by-id", none), end; !none && port != end;
+       port.increment(none))
+    found.push_back(port->path());
+  if (!found.empty()) return found;
+  for (fs::directory_iterator port("/dev", none), end; !none && port != end; port.increment(none)) {
+    const std::string name = port->path().filename();
+    if (name.rfind("ttyUSB", 0) == 0 || name.rfind("ttyACM", 0) == 0) found.push_back(port->path());
+  }
+  return found;
+}
+
+std::string busy_text(const std::string& device) {
+  const std::string holder = holder_of(device);
+  return holder.empty()
+             ? "another process uses it, or another map of this one that calls it by another name; "
+               "give maps of one line the same 'device'"
+             : holder + " uses it";
+}
+
+std::string open_text(const std::string& device, int error) {
+  switch (error) {
+    case ENOENT:
+    case ENODEV:
+    case ENXIO: {
+      const auto ports = ports_of_adapters();
+      return ports.empty() ? "there is no such port, nor one of another adapter; plug the adapter in"
+                           : fmt::format("there is no such port; there are: {}", fmt::join(ports, ", "));
+    }
+    case EACCES:
+      return "no permission; put the user into the group dialout (sudo usermod -aG dialout $USER), then log "
+             "in again";
+    case EBUSY: return busy_text(device);
+    default: return std::strerror(error);
+  }
+}
+
+tcflag_t parity_flags(Serial::Parity parity) {
+  switch (parity) {
+    case Serial::Parity::none: return 0;
+    case Serial::Parity::even: return PARENB;
+    case Serial::Parity::odd: return PARENB | PARODD;
+  }
+  return 0;
+}
+
+constexpr std::pair<std::uint32_t, speed_t> speeds[] = {
+    {110, B110},       {300, B300},         {600, B600},         {1200, B1200},      {2400, B2400},
+    {4800, B4800},     {9600, B9600},       {19200, B19200},     {38400, B38400},    {57600, B57600},
+    {115200, B115200}, {230400, B230400},   {460800, B460800},   {500000, B500000},  {576000, B576000},
+    {921600, B921600}, {1000000, B1000000}, {1152000, B1152000}, {1500000, B1500000}};
+
+bool has_rate(const termios& is, std::uint32_t baud) {
+  const auto* const found = std::find_if(std::begin(speeds), std::end(speeds),
+                                         [baud](const auto& one) { return one.first == baud; });
+  return found != std::end(speeds) && ::cfgetispeed(&is) == found->second &&
+         ::cfgetospeed(&is) == found->second;
+}
+
+/// tcsetattr() is content when it could set a part.
+std::string refused_setting(int fd, const Serial& wanted) {
+  termios is{};
+  if (::tcgetattr(fd, &is) != 0) return fmt::format("its settings cannot be read: {}", std::strerror(errno));
+  if (!has_rate(is, wanted.baud)) return fmt::format("it does not take 'baud: {}'", wanted.baud);
+  if ((is.c_cflag & (PARENB | PARODD)) != parity_flags(wanted.parity))
+    return fmt::format("it does not take 'parity: {}'", to_string(wanted.parity));
+  if (((is.c_cflag & CSTOPB) != 0) != (wanted.stop_bits == 2))
+    return fmt::format("it does not take 'stop_bits: {}'", wanted.stop_bits);
+  return {};
+}
+
+void close_port(_modbus* context) {
+  if (modbus_rtu_get_serial_mode(context) == MODBUS_RTU_RS485)
+    modbus_rtu_set_serial_mode(context, MODBUS_RTU_RS232);  // the driver would go on switching
+  ::ioctl(modbus_get_socket(context), TIOCNXCL);
+  modbus_close(context);
+  modbus_free(context);
+}
+
+}  // namespace
+
+Result<SerialPort> SerialPort::open(const Serial& settings) {
+  const std::string device(settings.device);
+  const auto refuse = [&](std::string_view why) {
+    return fail(NotConnected{fmt::format("{}: {}", device, why)});
+  };
+  Descriptor lock(::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (lock.get() < 0) return refuse(open_text(device, errno));
+  if (::isatty(lock.get()) == 0) return refuse("it is no serial port");
+  if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) return refuse(busy_text(device));
+
+  Context context(modbus_new_rtu(device.c_str(), static_cast<int>(settings.baud),
+                                 parity_letter(settings.parity), 8, settings.stop_bits),
+                  modbus_free);
+  if (!context) return refuse(std::strerror(errno));
+  if (modbus_connect(context.get()) != 0)
+    return refuse(fmt::format("it cannot be set to {}: {}{}", written(settings), std::strerror(errno),
+                              errno == EINVAL ? "; try another 'parity' or 'baud'" : ""));
+  context = Context(context.release(), close_port);
+  const int fd = modbus_get_socket(context.get());
+  if (const auto refused = refused_setting(fd, settings); !refused.empty()) return refuse(refused);
+  if (settings.rs485 && modbus_rtu_set_serial_mode(context.get(), MODBUS_RTU_RS485) != 0)
+    return refuse(
+        fmt::format("its driver cannot switch the direction of RS-485 ({}); leave 'rs485' out if the "
+                    "adapter does it by itself",
+                    std::strerror(errno)));
+  ::ioctl(fd, TIOCEXCL);  // against programs that do not look at the lock
+  return SerialPort(std::move(lock), std::move(context));
+}
+
+int SerialPort::fd() const { return modbus_get_socket(context_.get()); }
+
+}  // namespace coupler::host

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// Several units on one serial line.
+#include <gmock/gmock.h>
+
+#include <unistd.h>
+
+#include <atomic>
+#include <string>
+
+#include "coupler/host/modbus/make_transports.hpp"
+#include "test/host/modbus/serial_line.hpp"
+
+namespace coupler::host {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// Each answers with its number.
+class SerialUnits : public ::testing::Test {
+ protected:
+  void make(const std::vector<std::uint8_t>& units, milliseconds timeout = milliseconds(20000)) {
+    std::vector<Map> maps;
+    for (const std::uint8_t unit : units) maps.push_back(map_of(unit, timeout));
+    transports = make_transports(maps);
+  }
+  Map map_of(std::uint8_t unit, milliseconds timeout = milliseconds(20000)) const {
+    Map map;
+    map.name = unit == 1 ? "left" : "right";
+    map.connection = line.connection(unit, timeout);
+    return map;
+  }
+  Result<std::uint16_t> read(Transport& transport) const {
+    std::uint16_t word = 0;
+    auto done = transport.read_registers(Table::holding_registers, modbus::Range::of(0, 1), &word);
+    return done ? Result<std::uint16_t>(word) : tl::make_unexpected(done.error());
+  }
+
+  std::atomic<int> silent{0};
+  test::SerialLine line{[this](const test::Octets& request) {
+    if (request[0] == silent) return test::Octets();
+    return test::rtu(request[0], {3, 2, 0, request[0]});
+  }};
+  std::vector<std::unique_ptr<Transport>> transports;
+};
+
+TEST_F(SerialUnits, Share_the_one_port_in_turn) {
+  make({1, 2, 3});
+  for (int round = 0; round < 2; ++round)
+    for (std::size_t i = 0; i < transports.size(); ++i) {
+      ASSERT_TRUE(transports[i]->connect());
+      EXPECT_EQ(read(*transports[i]), i + 1);
+    }
+}
+
+TEST_F(SerialUnits, Go_on_without_a_new_connection_when_one_is_silent) {
+  make({1, 2}, milliseconds(100));
+  for (auto& transport : transports) ASSERT_TRUE(transport->connect());
+  silent = 2;
+  const auto answer = read(*transports[1]);
+  ASSERT_FALSE(answer);
+  EXPECT_TRUE(std::holds_alternative<Timeout>(answer.error()));
+  EXPECT_EQ(read(*transports[0]), 1);
+  silent = 0;
+  ASSERT_TRUE(transports[1]->connect());
+  EXPECT_EQ(read(*transports[1]), 2);
+}
+
+TEST_F(SerialUnits, Are_all_lost_when_the_port_goes) {
+  make({1, 2});
+  for (auto& transport : transports) {
+    ASSERT_TRUE(transport->connect());
+    ASSERT_TRUE(read(*transport));
+  }
+  line.unplug();
+  for (auto& transport : transports) {
+    const auto answer = read(*transport);
+    ASSERT_FALSE(answer);
+    EXPECT_TRUE(std::holds_alternative<TransportFailure>(answer.error()));
+  }
+}
+
+TEST_F(SerialUnits, Of_one_port_by_two_names_share_it) {
+  const std::string other_name = ::testing::TempDir() + "coupler_port_" + std::to_string(::getpid());
+  ASSERT_EQ(::symlink(line.device().c_str(), other_name.c_str()), 0);
+  std::vector<Map> maps{map_of(1), map_of(2)};
+  maps[1].connection.serial.device = other_name;
+  transports = make_transports(maps);
+  ASSERT_TRUE(transports[0]->connect());
+  EXPECT_TRUE(transports[1]->connect());
+  EXPECT_EQ(read(*transports[1]), 2);
+  EXPECT_THAT(line_conflict(maps), IsEmpty());
+  maps[1].connection.serial.baud = 9600;
+  EXPECT_THAT(line_conflict(maps), HasSubstr("left and right are on one line"));
+  ::unlink(other_name.c_str());
+}
+
+TEST_F(SerialUnits, Of_one_gateway_need_one_framing) {
+  std::vector<Map> maps(2);
+  for (Map& map : maps) map.connection.address = "cell";
+  maps[0].name = "left";
+  maps[1].name = "right";
+  maps[1].connection.framing = Framing::rtu;
+  EXPECT_THAT(line_conflict(maps), HasSubstr("framing"));
+  maps[0].connection.framing = Framing::rtu;
+  EXPECT_THAT(line_conflict(maps), IsEmpty());
+}
+
+}  // namespace
+}  // namespace coupler::host

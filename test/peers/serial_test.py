@@ -1,0 +1,157 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""`coupler dump`, `probe` and `status` read units of pymodbus and libmodbus on a serial line, and over TCP with the same
+frames.
+
+    serial_test.py COUPLER
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import peer
+
+try:
+    import serial  # noqa: F401 (pymodbus needs it)
+    import serial_asyncio  # noqa: F401
+    import pymodbus  # noqa: F401
+except ImportError as error:
+    peer.skip(f"python3-pymodbus or python3-serial is missing ({error}); run scripts/install-packages test")
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "ros"))
+from support.libmodbus_server import LibmodbusServer  # noqa: E402
+from support.rtu_server import RtuServer  # noqa: E402
+from support.serial_line import SerialLine  # noqa: E402
+
+coupler = sys.argv[1]
+checks = peer.Checks()
+UNIT = 17
+IDENTITY, IDENTITY_SIZE = 0xFF00, 85
+SETTINGS = "?baud=115200&parity=none"
+MAP = """
+name: belt
+serial: {{device: {port}, baud: 115200, parity: none}}
+unit: {unit}
+timeout: 5
+mapping:
+  coils: {{motor: 3}}
+  discrete_inputs: {{barrier: 4}}
+  input_registers: {{weight: {{address: 5, type: INT}}}}
+  holding_registers: {{speed: {{address: 6, type: REAL}}, many: {{address: 10, type: UINT, count: 60}}}}
+"""
+VALUES = {"motor": True, "barrier": True, "weight": -5, "speed": 2.5, "many": list(range(1000, 1060))}
+
+
+def fill(server):
+    server.set(UNIT, 1, 3, [1])
+    server.set(UNIT, 2, 4, [1])
+    server.set(UNIT, 4, 5, [0xFFFB])
+    server.set(UNIT, 3, 6, [0x0000, 0x4020])
+    server.set(UNIT, 3, 10, VALUES["many"])
+
+
+def run(*arguments):
+    return subprocess.run([coupler, *map(str, arguments)], capture_output=True, text=True, encoding="utf-8",
+                          timeout=peer.PATIENCE, check=False)
+
+
+def dumped(*arguments):
+    done = run("dump", *arguments, "--json")
+    if not done.stdout:
+        return done.stderr
+    return {point["point"]: point["value"] for point in json.loads(done.stdout)["points"]}
+
+
+def libmodbus_is_read(path):
+    line = SerialLine()
+    try:
+        server = LibmodbusServer(UNIT, line.device)
+    except OSError as error:
+        print(f"not tried here: libmodbus as a server ({error})")
+        return
+    fill(server)
+    at = f"rtu:{line.port}/{UNIT}{SETTINGS}"
+    checks.equal("libmodbus: dump", dumped(path, "--at", at), VALUES)
+    found = run("probe", line.port, "--units", "16-17", "--baud", "115200", "--parity", "none", "--to", "120",
+                "--rate", "1000", "--timeout", "1")
+    checks.equal("libmodbus: probe finds the unit", f"units that answer: {UNIT}\n" in found.stdout, True)
+    checks.equal("libmodbus: and where its tables end", found.stdout.count("readable: 0 … 99\n"), 4)
+    said = run("status", at)
+    checks.equal("libmodbus: status", (said.returncode, "is a foreign coupler" in said.stderr), (1, True))
+    server.end()
+    line.end()
+
+
+def a_node_says_what_it_is():
+    """What the registers of a node say, at a unit of a serial line: as a gateway in front of the node has it."""
+    line = SerialLine()
+    server = RtuServer([UNIT], line.device, size=65536)
+    command = [pathlib.Path(coupler).with_name("coupler-node"), pathlib.Path(__file__).with_name("watchdog.yaml"), "--sim"]
+    with peer.running_node(list(map(str, command))) as port:
+        client = peer.pymodbus_client(port)
+        server.set(UNIT, 4, IDENTITY, client.read_input_registers(IDENTITY, IDENTITY_SIZE, 1).registers)
+        client.close()
+        there = json.loads(run("status", f"127.0.0.1:{port}", "--json").stdout)
+    done = run("status", f"rtu:{line.port}/{UNIT}{SETTINGS}", "--json")
+    checks.equal("status of a node: exit status", (done.returncode, done.stderr), (0, ""))
+    here = json.loads(done.stdout)
+    checks.equal("status of a node: the device", here["device"].startswith(f"rtu:{line.port}/{UNIT}"), True)
+    for key in ("node", "trouble", "fingerprint", "hostname", "serial", "functions", "map"):
+        checks.equal(f"status of a node: {key}", here[key], there[key])
+    server.end()
+    line.end()
+
+
+line = SerialLine()
+server = RtuServer([UNIT], line.device)
+fill(server)
+with tempfile.TemporaryDirectory() as folder:
+    path = pathlib.Path(folder, "belt.yaml")
+    path.write_text(MAP.format(port=line.port, unit=UNIT))
+    checks.equal("the unit of the map", dumped(path), VALUES)
+    checks.equal("the same by --at", dumped(path, "--at", f"rtu:{line.port}/{UNIT}{SETTINGS}"), VALUES)
+
+    said = run("status", f"rtu:{line.port}/{UNIT}{SETTINGS}")
+    checks.equal("status of a foreign unit", (said.returncode, "is a foreign coupler" in said.stderr), (1, True))
+    libmodbus_is_read(path)
+    a_node_says_what_it_is()
+
+    line.to_port = lambda data: b"\xff\x00\x03" + data
+    checks.equal("noise before each piece of a reply", dumped(path), VALUES)
+    line.to_port = lambda data: data
+    line.echoes = True
+    checks.equal("a line that hands back what is sent", dumped(path), VALUES)
+    line.echoes = False
+
+    line.to_device = lambda data: data[:-1] + bytes([data[-1] ^ 1])
+    impatient = pathlib.Path(folder, "impatient.yaml")
+    impatient.write_text(path.read_text().replace("timeout: 5", "timeout: 1"))
+    done = run("dump", impatient)
+    checks.equal("a request that arrives damaged: the exit status", done.returncode, 3)
+    checks.equal("it says that nothing answers", "no reply within" in done.stderr, True)
+    line.to_device = lambda data: data
+
+    probed = run("probe", f"rtu:{line.port}/{UNIT}{SETTINGS}", "--to", "99", "--rate", "1000", "--timeout", "5", "--out", "-")
+    wanted = f'serial: {{device: "{line.port}", baud: 115200, parity: none'
+    checks.equal("probe: the draft has the port", wanted in probed.stdout, True)
+    checks.equal("probe: the draft has the unit", f"unit: {UNIT}" in probed.stdout, True)
+
+    # A line without hardware has one rate; what counts is that units are asked until one answers.
+    found = run("probe", line.port, "--units", "15-18", "--baud", "9600,115200", "--parity", "none", "--to", "20",
+                "--rate", "1000", "--timeout", "1")
+    checks.equal("probe by the device's path: the unit", f"units that answer: {UNIT}\n" in found.stdout, True)
+
+    over_tcp = RtuServer([UNIT])
+    fill(over_tcp)
+    checks.equal("RTU over TCP", dumped(path, "--at", f"rtu+tcp://127.0.0.1:{over_tcp.port}/{UNIT}"), VALUES)
+    over_tcp.end()
+
+    refused = run("dump", str(path), "--at", f"rtu:{line.port}/{UNIT}?baud=9601")
+    checks.equal("a rate that no port has: the exit status", refused.returncode, 2)
+    path.write_text(MAP.format(port="/dev/ttyUSB_none", unit=UNIT))
+    checks.equal("a port that is not there", "there is no such port" in run("dump", str(path)).stderr, True)
+server.end()
+line.end()
+checks.done("dump, probe and status, RTU over a serial line and over TCP")
