@@ -76,7 +76,7 @@ def libmodbus_is_read(path):
     checks.equal("libmodbus: dump", dumped(path, "--at", at), VALUES)
     found = run("probe", line.port, "--units", "16-17", "--baud", "115200", "--parity", "none", "--to", "120",
                 "--rate", "1000", "--timeout", "1")
-    checks.equal("libmodbus: probe finds the unit", f"units that answer: {UNIT}\n" in found.stdout, True)
+    checks.equal("libmodbus: probe finds the unit", f"units that answer at 115200 8N1: {UNIT}\n" in found.stdout, True)
     checks.equal("libmodbus: and where its tables end", found.stdout.count("readable: 0 … 99\n"), 4)
     said = run("status", at)
     checks.equal("libmodbus: status", (said.returncode, "is a foreign coupler" in said.stderr), (1, True))
@@ -141,7 +141,7 @@ with tempfile.TemporaryDirectory() as folder:
     # A line without hardware has one rate; what counts is that units are asked until one answers.
     found = run("probe", line.port, "--units", "15-18", "--baud", "9600,115200", "--parity", "none", "--to", "20",
                 "--rate", "1000", "--timeout", "1")
-    checks.equal("probe by the device's path: the unit", f"units that answer: {UNIT}\n" in found.stdout, True)
+    checks.equal("probe by the device's path: the unit", f"units that answer at 9600 8N1: {UNIT}\n" in found.stdout, True)
 
     over_tcp = RtuServer([UNIT])
     fill(over_tcp)

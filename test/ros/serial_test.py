@@ -86,6 +86,20 @@ class Serial(testing.RosTest):
             self.reads_and_writes(unit)
         self.assertNotIn(True, self.online[3].values)
 
+    def test_a_broadcast_is_written_to_all_units_and_needs_no_answer(self):
+        units = [1, 2]
+        line = self.line(units)
+        self.driver("_map:=" + process.write_map(
+            f"name: all\n{self.on(line)}\nunit: 0\nmapping:\n  coils: {{motor: {{address: 3, access: write}}}}\n"))
+        self.topic("/all/online", Bool).becomes(True)
+        motor = self.publisher("/all/motor/write", Bool)
+        for value in (True, False):
+            def follow(wanted=value):
+                motor.publish(wanted)
+                return all(self.server.get(unit, 1, 3) == wanted for unit in units)
+
+            wait_until(follow, f"both motors to be {value}")
+
     def test_an_adapter_that_is_plugged_in_again_is_found_by_its_name(self):
         line = self.line([17])
         self.drive([17], self.on(line))

@@ -22,9 +22,11 @@ enum Exit : int {
   failed = 3,     ///< the network or the device failed
 };
 
-/// Says "coupler COMMAND: error: WHAT; REMEDY" on standard error; returns `exit`.
+/// Says "coupler COMMAND: error: WHAT; REMEDY" on standard error; returns `exit`. An empty remedy: `what` has
+/// it.
 inline Exit complain(std::string_view command, Exit exit, std::string_view what, std::string_view remedy) {
-  fmt::print(stderr, "coupler {}: error: {}; {}\n", command, printable_lines(what), printable_lines(remedy));
+  fmt::print(stderr, "coupler {}: error: {}{}{}\n", command, printable_lines(what),
+             remedy.empty() ? "" : "; ", printable_lines(remedy));
   return exit;
 }
 

@@ -54,8 +54,9 @@ Exit run(const Arguments& arguments) {
     map = found_at(map, *device);
   }
   if (!map.connection.present())
-    return refuse(arguments.map + " does not say where the device is",
-                  "give --at HOST[:PORT][/UNIT], or `address:` in the map");
+    return refuse(
+        arguments.map + " does not say where the device is",
+        "give --at HOST[:PORT][/UNIT] or --at /dev/ttyUSB0[/UNIT], or `address:` or `serial:` in the map");
   DumpOptions options;
   auto chosen = choose(map, arguments.points);
   if (!chosen)
@@ -78,8 +79,9 @@ void add_dump(Program& program, Exit& exit) {
   command.add_option("MAP", arguments->map, map_help).required().type_name("");
   command
       .add_option("--at", arguments->at,
-                  "Where the device is, if not at the map's address; parts that are not given are the map's")
-      .type_name("HOST[:PORT][/UNIT]");
+                  "Where the device is, if not where the map says: HOST[:PORT][/UNIT], or a serial port as "
+                  "/dev/ttyUSB0[/UNIT]; parts that are not given are the map's")
+      .type_name("PLACE");
   command
       .add_option("--points", arguments->points, "Only points whose names match, as in 'pump_*'; repeatable")
       .delimiter(',')

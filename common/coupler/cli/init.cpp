@@ -75,7 +75,7 @@ mapping:
     valve: {address: 0, description: "Y1, clamp"}
   discrete_inputs:                         # inputs
     door: 0                                # an address alone is enough
-  holding_registers:                       # what switches an output: 0 writes only, 1 its input, too
+  holding_registers:                       # what switches an output: 0 writes, 1 its input
     valve_mode: {address: 0x1000, type: UINT, max: 3}
 )";
 

@@ -10,8 +10,7 @@ static_assert(coupler::version == COUPLER_VERSION, "coupler/base/version.hpp and
 
 int main(int argc, char** argv) {
   coupler::open_standard_files();
-  coupler::cli::Program program{"OpenCoupler: makes both sides of a Modbus/TCP coupler from one map.",
-                                "coupler"};
+  coupler::cli::Program program{"OpenCoupler: makes both sides of a Modbus coupler from one map.", "coupler"};
   program.version("coupler " COUPLER_VERSION);
   program.footer("Example:\n  coupler check device.yaml\n`coupler COMMAND --help` explains one command.");
   program.explain([](const std::string& command, const std::string& what) {

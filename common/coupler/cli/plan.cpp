@@ -15,6 +15,8 @@
 namespace coupler::cli {
 namespace {
 
+constexpr double most_load_of_a_line = 0.8;
+
 struct Arguments {
   std::string map;
   double rtt = 1;  ///< ms
@@ -31,6 +33,11 @@ bool write_file(const std::string& path, const std::string& content) {
 
 void warn_if_too_much(const std::string& file, const Map& map, const plan::NetworkTiming& timing) {
   const double load = plan::load(plan::make_read_plan(map), timing);
+  if (load <= 1 && load > most_load_of_a_line && map.connection.serial.present())
+    fmt::print(stderr,
+               "{}: warning: the reads need {} of the line's time, which leaves little for writes and for "
+               "replies that are slow; lower `rate`, or raise `baud` on both sides\n",
+               file, percent(load));
   if (load > 1)
     fmt::print(stderr,
                "{}: warning: the reads need {} of the time, so poll cycles will be skipped; lower `rate`, "

@@ -32,11 +32,14 @@ std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>, std::string> writ
   else
     return fmt::to_string(value);
 }
+/// "19200 8E1"
+inline std::string rate_and_parity(const Serial& line) {
+  return fmt::format("{} 8{}{}", line.baud, parity_letter(line.parity), line.stop_bits);
+}
 /// "/dev/ttyUSB0 19200 8E1"
 inline std::string written(const Serial& line) {
   if (!line.present()) return "none";
-  return fmt::format("{} {} 8{}{}{}", line.device, line.baud, parity_letter(line.parity), line.stop_bits,
-                     line.rs485 ? " rs485" : "");
+  return fmt::format("{} {}{}", line.device, rate_and_parity(line), line.rs485 ? " rs485" : "");
 }
 
 /// What a key of a point is about.

@@ -27,9 +27,10 @@ tl::unexpected<NetworkError> wrong(std::string what) {
 }
 
 tl::unexpected<NetworkError> wrong_line(std::string what) {
-  return tl::unexpected<NetworkError>({std::move(what),
-                                       "write rtu:DEVICE[/UNIT][?SETTINGS], as in "
-                                       "rtu:/dev/ttyUSB0/17?baud=9600&parity=none&stop_bits=1"});
+  return tl::unexpected<NetworkError>(
+      {std::move(what),
+       "write rtu:DEVICE[/UNIT][?SETTINGS], as in "
+       "'rtu:/dev/ttyUSB0/17?baud=9600&parity=none&stop_bits=1' (in quotes)"});
 }
 
 std::optional<unsigned> number(std::string_view text, unsigned least, unsigned most) {
@@ -123,16 +124,19 @@ tl::expected<NodeAddress, NetworkError> parse_serial_port(std::string_view rest,
     settings.remove_prefix(std::min(one.size() + 1, settings.size()));
     const std::size_t equals = std::min(one.find('='), one.size());
     if (!set(node.serial, one.substr(0, equals), one.substr(std::min(equals + 1, one.size()))))
-      return wrong_line(fmt::format("'{}' is no setting of a serial port", one));
+      return wrong_line(fmt::format("'{}' is no setting of a serial port, or no value of it", one));
   }
   std::string_view path = rest;
-  const auto unit = number(take_behind(path, '/').value_or(""), 0, 255);
+  const auto unit = number(take_behind(path, '/').value_or(""), 0, 65535);
   if (unit && !is_pseudo_terminal(rest)) {
+    if (*unit > 255) return wrong_line(fmt::format("the unit id '{}' is not 1 to 247", *unit));
     node.unit = static_cast<std::uint8_t>(*unit);
     rest = path;
   }
   if (rest.empty()) return wrong_line("there is no device");
-  if (!is_rtu_unit(node.unit)) return wrong_line(fmt::format("the unit id '{}' is not 1 to 247", node.unit));
+  const bool is_broadcast = node.unit == rtu_broadcast && otherwise.unit == rtu_broadcast;
+  if (!is_rtu_unit(node.unit) && !is_broadcast)
+    return wrong_line(fmt::format("the unit id '{}' is not 1 to 247", node.unit));
   node.serial.device = rest;
   return node;
 }
@@ -155,9 +159,11 @@ tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argu
   if (!begins_with(argument, rtu_over_tcp))
     return wrong("the address of a device begins with tcp:// or rtu:");
   auto node = parse_host_and_port(argument.substr(rtu_over_tcp.size()), otherwise);
-  if (!node) return node;
+  constexpr auto remedy = "write rtu+tcp://HOST[:PORT][/UNIT], as in rtu+tcp://192.168.1.17:4001/1";
+  if (!node) return tl::unexpected<NetworkError>({node.error().what, remedy});
   if (!is_rtu_unit(node->unit))
-    return wrong(fmt::format("with RTU the unit id '{}' is not 1 to 247", node->unit));
+    return tl::unexpected<NetworkError>(
+        {fmt::format("with RTU the unit id '{}' is not 1 to 247", node->unit), remedy});
   node->framing = Framing::rtu;
   return node;
 }

@@ -68,8 +68,8 @@ std::optional<std::size_t> reply_size(Bytes request, Bytes beginning) {
   }
 }
 
-std::size_t longest_reply(Bytes request) {
-  if (request.size() < 5) return max_pdu_size;
+std::optional<std::size_t> answer_size(Bytes request) {
+  if (request.size() < 5) return std::nullopt;
   const std::size_t count = get_u16(&request[3]);
   switch (static_cast<Function>(request[0])) {
     case Function::read_coils:
@@ -81,13 +81,13 @@ std::size_t longest_reply(Bytes request) {
     case Function::write_multiple_coils:
     case Function::write_multiple_registers: return 5;
     case Function::mask_write_register: return 7;
-    default: return max_pdu_size;
+    default: return std::nullopt;
   }
 }
 
 void RtuFramer::expect(std::uint8_t unit, Bytes pdu) {
   request_size_ = put_rtu_frame(unit, pdu, request_.data());
-  begin_ = end_ = 0;
+  begin_ = end_ = come_ = 0;
   had_echo_ = false;
   pdu_ = {};
 }
@@ -105,6 +105,33 @@ Span<std::uint8_t> RtuFramer::room() {
 void RtuFramer::filled(std::size_t bytes) {
   assert(bytes <= buffer_.size() - end_);
   end_ += bytes;
+  come_ += bytes;
+}
+
+std::size_t RtuFramer::skipped() const {
+  const std::size_t echo = had_echo_ ? request_size_ : 0;
+  return come_ - echo - (pdu_.empty() ? 0 : pdu_.size() + rtu_overhead);
+}
+
+bool RtuFramer::holds_another_frame() const {
+  const Bytes rest = Bytes(buffer_).sub(begin_, end_ - begin_);
+  return rest.size() > rtu_overhead && crc16(rest) == 0;
+}
+
+/// Not an exception: has the length that was asked for. A confirmation repeats the address, but a register
+/// may be stored otherwise than it was written (MAP 6.6).
+bool RtuFramer::can_answer(Bytes pdu) const {
+  const auto size = answer_size(request_pdu());
+  if (!size) return true;
+  if (pdu.size() != *size) return false;
+  switch (static_cast<Function>(pdu[0])) {
+    case Function::write_single_coil:
+    case Function::write_single_register: return starts_with(request_pdu(), pdu.first(3));
+    case Function::write_multiple_coils:
+    case Function::write_multiple_registers:
+    case Function::mask_write_register: return starts_with(request_pdu(), pdu);
+    default: return true;
+  }
 }
 
 void RtuFramer::silent() {
@@ -134,7 +161,9 @@ RtuFramer::Found RtuFramer::look_at(std::size_t begin) {
   if (whole > max_rtu_size) return Found::none;
   if (size == std::size_t{0} || bytes.size() < whole) return Found::beginning;
   if (crc16(bytes.first(whole)) != 0) return size ? Found::none : Found::beginning;
-  pdu_ = bytes.sub(1, whole - 1 - crc_size);
+  const Bytes pdu = bytes.sub(1, whole - 1 - crc_size);
+  if ((pdu[0] & exception_bit) == 0 && !can_answer(pdu)) return Found::none;
+  pdu_ = pdu;
   return Found::reply;
 }
 

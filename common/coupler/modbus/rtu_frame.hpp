@@ -28,10 +28,15 @@ std::size_t put_rtu_frame(std::uint8_t unit, Bytes pdu, std::uint8_t* frame);
 /// little to know. nullopt: of such a function that is not known here.
 std::optional<std::size_t> reply_size(Bytes request, Bytes beginning);
 
-/// The size of the longest PDU that can answer `request`, if its function is known here, else of any.
-std::size_t longest_reply(Bytes request);
+/// The size of the PDU that answers `request` and is no exception. nullopt: its function says nothing of
+/// that.
+std::optional<std::size_t> answer_size(Bytes request);
 
-/// Finds the reply to a request in what comes over a serial line: by unit, function code, length and CRC.
+/// The size of the longest PDU that can answer `request`.
+inline std::size_t longest_reply(Bytes request) { return answer_size(request).value_or(max_pdu_size); }
+
+/// Finds the reply to a request in what comes over a serial line: by unit, function code, length and CRC; a
+/// confirmation by what it repeats.
 /// Silence decides nothing, since USB adapters deliver in bursts. What is not the reply is skipped: noise,
 /// the late reply of another unit, the echo of the request.
 ///
@@ -56,6 +61,11 @@ class RtuFramer {
   Outcome next();
   Bytes pdu() const { return pdu_; }
 
+  /// How many bytes have come since the request that are neither its echo nor its reply.
+  std::size_t skipped() const;
+  /// All that has come is one whole frame, of another unit for instance.
+  bool holds_another_frame() const;
+
   /// Whether the line hands back what is sent, as some adapters for RS-485 do; nullopt: not known yet.
   std::optional<bool> has_echo() const { return has_echo_; }
   /// The echo of this request could be taken for its reply (function codes 5, 6, 8, 22): a read shows first
@@ -73,6 +83,7 @@ class RtuFramer {
   static bool is_its_own_reply(Bytes pdu) { return reply_size(pdu, pdu) == pdu.size(); }
   void skip_echo();
   bool echo_may_come() const;
+  bool can_answer(Bytes pdu) const;
   Found look_at(std::size_t begin);
 
   std::array<std::uint8_t, max_rtu_size> request_{};
@@ -80,6 +91,7 @@ class RtuFramer {
   std::array<std::uint8_t, 3 * max_rtu_size> buffer_{};  ///< an echo, a reply that is late, the reply
   std::size_t begin_ = 0;                                ///< of what is not the echo
   std::size_t end_ = 0;
+  std::size_t come_ = 0;   ///< bytes since the request
   bool had_echo_ = false;  ///< of this request
   std::optional<bool> has_echo_;
   Bytes pdu_;

@@ -117,6 +117,7 @@ TEST(RtuFramer, What_is_not_the_reply_is_skipped) {
       {"noise that looks like the beginning", {unit, 3, 200}},
       {"the reply of another unit", frame(values, 4)},
       {"the reply to another function", frame({4, 2, 0, 1})},
+      {"a reply of another length", frame({3, 2, 0, 1})},
       {"a damaged reply", {unit, 3, 6, 1, 2, 3, 4, 5, 6, 7, 8}},
   };
   for (const auto& [what, bytes] : before) {
@@ -126,6 +127,33 @@ TEST(RtuFramer, What_is_not_the_reply_is_skipped) {
     ASSERT_EQ(feed(framer, frame(values)), Outcome::reply) << what;
     EXPECT_THAT(copy(framer.pdu()), ElementsAreArray(values)) << what;
   }
+}
+
+TEST(RtuFramer, The_confirmation_of_another_place_is_skipped) {
+  const std::pair<Buffer, Buffer> writes[] = {{write_one, {6, 0, 2, 0, 3}},
+                                              {{5, 0, 1, 0xFF, 0}, {5, 0, 2, 0xFF, 0}},
+                                              {{16, 0, 0, 0, 1, 2, 0, 7}, {16, 0, 0, 0, 2}},
+                                              {{22, 0, 4, 0, 0xF2, 0, 0x25}, {22, 0, 5, 0, 0xF2, 0, 0x25}}};
+  for (const auto& [write, other] : writes) {
+    RtuFramer framer;
+    framer.expect(unit, write);
+    EXPECT_NE(feed(framer, frame(other)), Outcome::reply) << int{write[0]};
+  }
+}
+
+TEST(RtuFramer, What_is_skipped_is_counted) {
+  RtuFramer framer;
+  framer.expect(unit, read);
+  feed(framer, frame(values, 4));
+  EXPECT_EQ(framer.skipped(), 11U);
+  EXPECT_TRUE(framer.holds_another_frame());
+  feed(framer, Buffer{0xFF} + frame(values));
+  EXPECT_EQ(framer.skipped(), 12U);
+  framer.expect(unit, read);
+  EXPECT_EQ(framer.skipped(), 0U);
+  EXPECT_FALSE(framer.holds_another_frame());
+  feed(framer, frame(read) + frame(values));
+  EXPECT_EQ(framer.skipped(), 0U) << "an echo";
 }
 
 TEST(RtuFramer, Damage_is_told_apart_from_a_beginning) {

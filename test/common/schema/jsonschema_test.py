@@ -26,7 +26,7 @@ VALIDATOR = jsonschema.Draft7Validator(SCHEMA)
 # What the schema does not see, by the reason. Maps of test/maps/bad.
 UNSEEN = {name + ".yaml" for name in (
     # between keys
-    "serial_and_address unit_of_a_serial_line broadcast_that_is_read "
+    "serial_and_address unit_of_a_serial_line broadcast_that_is_read broadcast_with_a_watchdog "
     # between points, or between a point and a limit
     "overlap overlap_of_parts overlap_of_access overlap_of_inputs overlap_of_a_wired_input point_name_is_taken "
     "line_in_two_points point_exceeds_the_limits string_is_too_long_to_write preset_area "

@@ -44,6 +44,25 @@ TEST_F(DeviceTest, Without_an_identity_check_it_is_online_after_the_first_reply)
   EXPECT_EQ(device.count("read input_registers 65280+13"), 0U);
 }
 
+TEST_F(DeviceTest, A_broadcast_is_online_without_a_reply_and_nothing_is_read) {
+  MapBuilder builder;
+  builder.command("valve", 1).unit(0).head().connection.framing = Framing::rtu;
+  start(builder);
+  run_for(std::chrono::seconds(10));
+  EXPECT_THAT(sink->online, ElementsAre(true));
+  push("valve", 1);
+  run_for(milliseconds(1));
+  EXPECT_THAT(device.requests, ElementsAre("connect", "write coil 1"));
+}
+
+TEST_F(DeviceTest, What_a_serial_line_is_only_written_to_is_not_read_to_keep_a_connection) {
+  MapBuilder builder;
+  builder.command("valve", 1).head().connection.serial.device = "/dev/ttyUSB0";
+  start(builder, Verify::off);
+  run_for(std::chrono::seconds(10));
+  EXPECT_THAT(device.requests, ElementsAre("connect"));
+}
+
 TEST_F(DeviceTest, A_device_that_answers_nothing_but_the_question_for_its_identity_does_not_flicker) {
   device.is_mute = true;
   start(MapBuilder().holding("a", 5));

@@ -146,15 +146,28 @@ TEST(RtuTransport, The_late_reply_to_a_request_is_not_taken_for_that_to_the_next
   EXPECT_EQ(next.get(), 800);
 }
 
+TEST(RtuTransport, A_hang_up_that_was_meant_for_the_unit_before_ends_nothing) {
+  OnLine on(answer);
+  on.transport.hang_up();
+  ASSERT_TRUE(on.transport.select(1, patient));
+  EXPECT_EQ(read(on.transport, 7), 700);
+}
+
+TEST(RtuTransport, The_late_reply_of_another_unit_is_no_noise_and_is_counted) {
+  OnLine on([](const Octets&) { return rtu(17, {3, 2, 0, 1}); }, impatient);
+  EXPECT_TRUE(is<Timeout>(read(on.transport, 7)));
+  EXPECT_EQ(on.transport.discarded(), 7U);
+}
+
 TEST(RtuTransport, What_comes_after_its_time_is_counted) {
   std::atomic<int> requests{0};
   OnLine on([&](const Octets& request) { return ++requests > 1 ? answer(request) : Octets(); }, impatient);
   ASSERT_TRUE(is<Timeout>(read(on.transport, 7)));
-  EXPECT_EQ(on.transport.discarded(), 0);
+  EXPECT_EQ(on.transport.discarded(), 0U);
   on.line.send(rtu(1, {3, 2, 0, 0}));
   on.transport.select(1, patient);
   EXPECT_EQ(read(on.transport, 8), 800);
-  EXPECT_EQ(on.transport.discarded(), 7);
+  EXPECT_EQ(on.transport.discarded(), 7U);
 }
 
 TEST(RtuTransport, A_broadcast_is_sent_and_nothing_awaited) {

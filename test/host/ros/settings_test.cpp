@@ -55,6 +55,20 @@ TEST(Settings, An_address_takes_the_place_of_a_serial_port) {
   EXPECT_FALSE(map.connection.is_rtu());
 }
 
+TEST(Settings, An_address_means_modbus_tcp_unless_a_framing_is_given) {
+  Map map;
+  map.connection.address = "gateway";
+  map.connection.framing = Framing::rtu;
+  Settings settings;
+  settings.address = "cell";
+  Map moved = map;
+  apply(settings, moved);
+  EXPECT_FALSE(moved.connection.is_rtu());
+  settings.framing = Framing::rtu;
+  apply(settings, map);
+  EXPECT_TRUE(map.connection.is_rtu());
+}
+
 TEST(Settings, The_stronger_side_says_the_whole_way_to_the_device) {
   Settings parameters;
   parameters.address = "cell";

@@ -49,7 +49,7 @@ class RtuServer:
     async def _serve(self):
         self._stopped = asyncio.Event()
         context = ModbusServerContext(slaves=self.units, single=False)
-        options = {"framer": ModbusRtuFramer, "ignore_missing_slaves": True}
+        options = {"framer": ModbusRtuFramer, "ignore_missing_slaves": True, "broadcast_enable": True}
         if self._device:
             server = ModbusSerialServer(context, port=self._device, baudrate=115200, **options)
             await server.start()

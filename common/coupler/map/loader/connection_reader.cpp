@@ -46,8 +46,9 @@ void check_unit(const Reader& top, const Connection& connection, const Context& 
 
 }  // namespace
 
-Connection read_connection(const Reader& top, const Context& context) {
+Connection read_connection(const Reader& top, const Entry* usual_line, const Context& context) {
   Connection connection;
+  if (usual_line != nullptr) Reader(*usual_line, Section::serial, context).fields(connection.serial);
   top.fields(connection);
   check_address(top, connection, context);
   check_serial(top, connection, context);

@@ -32,14 +32,16 @@ std::string_view read_name(const Reader& top, const Entry& root, std::string_vie
 }
 
 /// Everything but the points and what depends on them.
-Map read_head(const Reader& top, const Entry& root, std::string_view name, const Context& context) {
+Map read_head(const Reader& top, const Entry& root, std::string_view name, const Entry* usual_line,
+              const Context& context) {
   Map head;
   head.name = read_name(top, root, name, context);
-  head.connection = read_connection(top, context);
+  head.connection = read_connection(top, usual_line, context);
   head.polling = read_polling(top);
   head.limits = read_limits(top);
   head.service = read_service(top, context);
   top.fields(head);
+  if (context.served) head.verify = Verify::require;  // what a node says of itself does not count
   return head;
 }
 
@@ -147,7 +149,8 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   const auto preset = read_preset(file, context);
   const Entry root = preset ? completed(file, *preset) : file;
   const Reader top(root, Section::map, context);
-  Map head = read_head(top, root, source.name, context);
+  const Entry* usual_line = preset ? child(preset->map, "serial") : nullptr;
+  Map head = read_head(top, root, source.name, usual_line, context);
   const PointDefaults defaults = read_point_defaults(top);
   const Areas unreadable = read_areas(top, "unreadable", defaults.addressing, context);
   const Areas reserved = read_areas(top, "reserve", defaults.addressing, context);
@@ -162,7 +165,7 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   const std::vector<SimWire> sim = read_sim(top, points, context);
   check_edges(points, sim, context);
   check_unreadable(unreadable, points, context);
-  check_broadcast(points, head, context);
+  check_broadcast(top, points, head, context);
   check_reserved(reserved, points, context);
   if (problems.has_errors()) return std::nullopt;
   head.unreadable = map.keep(sorted_unreadable(unreadable));

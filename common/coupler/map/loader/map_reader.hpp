@@ -24,7 +24,8 @@ Areas read_areas(const Reader& top, std::string_view key, Addressing addressing,
 std::vector<Unreadable> sorted_unreadable(const Areas& areas);
 
 /// What the top of the file says about the coupler, not about its points.
-Connection read_connection(const Reader& top, const Context& context);
+/// `usual_line`: `serial:` of the map's preset, without a device, or nullptr.
+Connection read_connection(const Reader& top, const Entry* usual_line, const Context& context);
 Polling read_polling(const Reader& top);
 Limits read_limits(const Reader& top);
 

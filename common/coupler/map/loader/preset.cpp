@@ -99,13 +99,12 @@ Entry completed(Entry root, const Preset& preset) {
   for (const Entry& key : preset.map.children) {
     const auto own = std::find_if(root.children.begin(), root.children.end(),
                                   [&](const Entry& e) { return e.key == key.key; });
-    if (own == root.children.end()) {
-      // How the port is set is for a map that has one: another one has an address, of a gateway for instance.
-      if (key.key != "serial") root.children.push_back(key);
-    } else if (own->kind == Entry::Kind::map) {
+    if (key.key == "serial") continue;  // says how a port is set, not that there is one: read_connection()
+    if (own == root.children.end())
+      root.children.push_back(key);
+    else if (own->kind == Entry::Kind::map)
       for (const Entry& inner : key.children)
         if (child(*own, inner.key) == nullptr) own->children.push_back(inner);
-    }
   }
   return root;
 }

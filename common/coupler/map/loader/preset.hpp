@@ -71,8 +71,8 @@ tl::expected<Preset, std::string> parse_preset(const PresetFile& file);
 /// `preset:` of the map; nothing if it has none, or no known one.
 std::optional<Preset> read_preset(const Entry& root, const Context& context);
 
-/// The map with the preset's keys where it has none of its own, in `limits`, `defaults` and `serial` key by
-/// key.
+/// The map with the preset's keys where it has none of its own, in `limits` and `defaults` key by key.
+/// Without `serial`.
 Entry completed(Entry root, const Preset& preset);
 
 /// Where outputs read back, and a warning for each point where the coupler has nothing.

@@ -178,8 +178,12 @@ void check_unreadable(const Areas& areas, const DraftPoints& points, const Conte
   }
 }
 
-void check_broadcast(const DraftPoints& points, const Map& head, const Context& context) {
+void check_broadcast(const Reader& top, const DraftPoints& points, const Map& head, const Context& context) {
   if (!head.connection.is_broadcast()) return;
+  if (head.coupler_watchdog.present())
+    context.problems.error(top.find("watchdog")->key_at,
+                           "the coupler's 'watchdog' needs answers, but 'unit: 0' is a broadcast",
+                           "remove 'watchdog', or give the map the coupler's own unit, 1 to 247");
   for (const DraftPoint& draft : points)
     if (needs_answers(draft.point, head.limits))
       context.problems.error(

@@ -26,7 +26,7 @@ void check_overlaps(const DraftPoints& points, const Context& context);
 void check_unreadable(const Areas& areas, const DraftPoints& points, const Context& context);
 
 /// To a broadcast points are written, and nothing is read.
-void check_broadcast(const DraftPoints& points, const Map& head, const Context& context);
+void check_broadcast(const Reader& top, const DraftPoints& points, const Map& head, const Context& context);
 
 /// No point stands in a reserved area.
 void check_reserved(const Areas& areas, const DraftPoints& points, const Context& context);

@@ -117,6 +117,7 @@ Snapshot DeviceReader::look() {
   const Result<> read = done ? read_all() : done;
   if (!read) {
     now_.error_text = to_string(read.error());
+    now_.is_silent = std::holds_alternative<host::Timeout>(read.error());
     for (Reading& reading : now_.readings)
       if (reading.state == State::failed && reading.why.empty()) reading.why = now_.error_text;
     lose_connection();
@@ -141,7 +142,8 @@ void DeviceReader::lose_connection() {
 Result<> DeviceReader::connect() {
   known_ = blank_;
   if (auto opened = transport_.connect(); !opened) return opened;
-  if (auto identified = identify(); !identified) return identified;
+  if (map_.verify != Verify::off && !map_.connection.is_broadcast())
+    if (auto identified = identify(); !identified) return identified;
   const bool is_node = known_.identity.value_or(Identity::Verdict::foreign) != Identity::Verdict::foreign;
   if (auto started = changes_.start(is_node); !started) return started;
   plan();

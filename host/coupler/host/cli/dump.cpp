@@ -15,6 +15,7 @@
 #include "coupler/host/cli/device_reader.hpp"
 #include "coupler/host/cli/dump_output.hpp"
 #include "coupler/host/cli/interruption.hpp"
+#include "coupler/host/cli/modbus_client.hpp"
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/schedule.hpp"
 #include "coupler/host/core/wall_time.hpp"
@@ -73,10 +74,9 @@ Exit once(const Map& map, const DumpOptions& options) {
     for (const std::string& line : table_lines(map, now, Colour::no)) put(line);
   }
   if (!now.online())
-    fmt::print(
-        stderr,
-        "coupler dump: error: {}: {}; check that a device serves there, or give another place with --at\n",
-        printable(node_address_text(map.connection)), printable_lines(now.error_text));
+    complain("dump", failed, node_address_text(map.connection) + ": " + now.error_text,
+             reach_remedy(map.connection, now.is_silent,
+                          "check that a device serves there, or give another place with --at"));
   return now.online() && now.failed() == 0 ? ok : failed;
 }
 

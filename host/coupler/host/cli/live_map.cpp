@@ -5,8 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "coupler/host/cli/modbus_client.hpp"
 #include "coupler/host/core/node_map.hpp"
-#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/map/node_address.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -26,7 +27,9 @@ tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where) {
     return none(failed, "the node does not give its map: " + host::to_string(served.error()), give_a_file);
   if (!served)
     return none(failed, "no answer from a node: " + host::to_string(served.error()),
-                fmt::format("check that a node serves port {} there, as unit {}", where.port, where.unit));
+                reach_remedy(where, std::holds_alternative<host::Timeout>(served.error()),
+                             fmt::format("check that a node serves at {}, as unit {}", place_text(where),
+                                         where.unit)));
   if (!*served) return none(bad_input, "a foreign coupler, which serves no map", give_a_file);
   auto map = host::load_node_map((*served)->text, (*served)->head, load_served_map);
   if (!map) return none(bad_input, "the node's map cannot be used: " + map.error(), give_a_file);

@@ -3,9 +3,15 @@
 
 #include <array>
 
+#include "coupler/host/core/identity_check.hpp"
 #include "coupler/modbus/device_identification.hpp"
 
 namespace coupler::cli {
+
+std::string reach_remedy(const Connection& where, bool is_silent, std::string_view over_tcp) {
+  if (where.is_rtu() && is_silent) return host::line_remedy(where);
+  return where.serial.present() ? std::string() : std::string(over_tcp);
+}
 
 host::Result<scan::IdentificationPage> read_identification(host::MultiUnitTransport& transport,
                                                            modbus::ReadDeviceIdentification wanted) {

@@ -12,6 +12,10 @@ namespace coupler::cli {
 host::Result<scan::IdentificationPage> read_identification(host::MultiUnitTransport& transport,
                                                            modbus::ReadDeviceIdentification wanted);
 
+/// What to do where a device cannot be reached: `over_tcp`, or what concerns an RTU line. Empty: the error of
+/// a serial port that cannot be used says it.
+std::string reach_remedy(const Connection& where, bool is_silent, std::string_view over_tcp);
+
 /// A scan's client.
 class ModbusClient : public scan::Client {
  public:

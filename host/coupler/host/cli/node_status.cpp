@@ -19,12 +19,17 @@ using host::Result;
 
 bool is_answer(const Error& error) { return exception_in(error) != nullptr && !is_unit_away(error); }
 
+void take_error(NodeStatus& status, const Error& error) {
+  status.error_text = to_string(error);
+  status.is_silent = std::holds_alternative<host::Timeout>(error);
+}
+
 /// Whether the device has answered; an error ends the questions.
 Result<bool> read_area(host::Transport& transport, NodeStatus& status) {
   const auto report = host::read_report(transport);
   if (!report) {
     if (is_unit_away(report.error())) return tl::make_unexpected(report.error());
-    status.error_text = to_string(report.error());
+    take_error(status, report.error());
     transport.close();  // a late answer must not be taken for another
     if (auto connected = transport.connect(); !connected) return tl::make_unexpected(connected.error());
     return false;
@@ -144,8 +149,7 @@ ordered_json identification_json(const NodeStatus& status) {
 
 NodeStatus read_status(host::Transport& transport, const Identify& identify) {
   NodeStatus status;
-  if (const auto done = read_all(transport, identify, status); !done)
-    status.error_text = to_string(done.error());
+  if (const auto done = read_all(transport, identify, status); !done) take_error(status, done.error());
   transport.close();
   status.at = std::chrono::system_clock::now();
   return status;

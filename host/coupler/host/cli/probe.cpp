@@ -20,6 +20,7 @@
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/scan/known_value.hpp"
 #include "coupler/host/scan/scan.hpp"
+#include "coupler/map/fields.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/node_address.hpp"
 
@@ -169,6 +170,9 @@ tl::expected<Call, WrongCall> understand(const Arguments& arguments, const std::
   const Serial& line = call.connection.serial;
   call.connection.timeout = timeout_of(arguments, line.present());
   call.lines = {line};
+  if (!line.present() && !(arguments.bauds.empty() && arguments.parities.empty()))
+    return tl::make_unexpected(WrongCall{"--baud and --parity are for a serial port",
+                                         "give its path, as /dev/ttyUSB0, or leave them out"});
   if (line.present()) {
     auto lines = lines_of(arguments, line, address);
     if (!lines) return tl::make_unexpected(lines.error());
@@ -198,12 +202,18 @@ scan::Findings look(const Call& call, ProgressBar& progress) {
 scan::Findings look_at_each_line(Call& call) {
   ProgressBar progress;
   scan::Findings findings;
-  for (const Serial& line : call.lines) {
+  bool is_asked = false;
+  for (std::size_t i = 0; i < call.lines.size(); ++i) {
+    const Serial& line = call.lines[i];
     call.connection.serial = line;
     if (line.present())
-      progress.where(fmt::format("at {} 8{}{}", line.baud, parity_letter(line.parity), line.stop_bits));
-    findings = look(call, progress);
-    const bool is_refused = findings.broke_off && findings.requests == 0;  // perhaps not the next one
+      progress.where(
+          fmt::format("at {}{}", rate_and_parity(line),
+                      call.lines.size() > 1 ? fmt::format(" ({} of {})", i + 1, call.lines.size()) : ""));
+    scan::Findings found = look(call, progress);
+    const bool is_refused = found.broke_off && found.requests == 0;  // perhaps not the next one
+    if (!is_refused || !is_asked) findings = std::move(found);
+    is_asked |= !is_refused;
     if (findings.unit || (findings.broke_off && !is_refused) || progress.wants_end()) break;
   }
   return findings;
@@ -251,12 +261,18 @@ Exit run(const Arguments& arguments) {
   const scan::Findings findings = look_at_each_line(*call);
   if (findings.broke_off)
     complain("probe", failed, host::to_string(*findings.broke_off),
-             "check that the device is on, that the port is right, and that no other client holds its last "
-             "connection");
-  if (!findings.unit && findings.is_complete && call->connection.serial.present())
-    return complain(
-        "probe", failed, fmt::format("none of {} units answers on this line", call->task.units.size()),
-        "check A and B, the power, and the module's rate and parity: --baud and --parity say what is tried");
+             reach_remedy(
+                 call->connection, std::holds_alternative<host::Timeout>(*findings.broke_off),
+                 "check that the device is on, that the port is right, and that no other client holds its "
+                 "last connection"));
+  if (!findings.unit && findings.is_complete && call->connection.is_rtu())
+    return complain("probe", failed,
+                    fmt::format("none of {} units answers on this line", call->task.units.size()),
+                    call->connection.serial.present() ? "check A and B, the power, and the module's rate and "
+                                                        "parity: --baud and --parity say what is tried"
+                                                      : "check A and B, the power, and the gateway's rate "
+                                                        "and parity; if it translates, give its address "
+                                                        "without rtu+");
   if (!findings.unit && findings.is_complete)
     return complain(
         "probe", failed,

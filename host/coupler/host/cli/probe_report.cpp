@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/scan/identification.hpp"
+#include "coupler/map/fields.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
 
@@ -19,19 +20,31 @@ using Seen = TableFindings::Seen;
 constexpr std::size_t most_ranges = 24;
 constexpr std::size_t most_candidates = 6;
 
-/// "10.0.0.7:502/255", to be given to a command.
+/// "10.0.0.7:502/255", to be given to a command, with what is known of a serial line.
 std::string place(Connection connection, std::uint8_t unit) {
   connection.unit = unit;
   const std::string address = printable(node_address_text(connection));
+  const Serial& line = connection.serial;
+  if (line.present())
+    return printable(
+        fmt::format("{}/{} --baud {} --parity {}", line.device, unit, line.baud, to_string(line.parity)));
   constexpr std::string_view tcp = "tcp://";
   return address.rfind(tcp, 0) == 0 ? address.substr(tcp.size()) : address;
+}
+
+/// "tcp://10.0.0.7:502/255", as a map.
+std::string node_at(Connection connection, std::uint8_t unit) {
+  connection.unit = unit;
+  return printable(node_address_text(connection));
 }
 
 std::string units_text(const Findings& findings, const Connection& connection) {
   std::string answer;
   for (const std::uint8_t unit : findings.units)
     answer += fmt::format("{}{}", answer.empty() ? "" : ", ", unit);
-  std::string text = fmt::format("units that answer: {}\n", answer);
+  const Serial& line = connection.serial;
+  std::string text = fmt::format("units that answer{}: {}\n",
+                                 line.present() ? " at " + rate_and_parity(line) : std::string(), answer);
   if (findings.units.size() > 1)
     text += fmt::format("the rest is about unit {}; for another one: coupler probe {}\n", *findings.unit,
                         place(connection, findings.units[1]));
@@ -44,8 +57,8 @@ std::string identification_text(const Findings& findings, const Connection& conn
     text += fmt::format("  {:<20} {}\n", scan::object_name(id), printable(value));
   text = text.empty() ? "identification: none (FC 43/14)\n" : "identification:\n" + text;
   if (findings.node)
-    text += fmt::format("an OpenCoupler node: it serves its map, see `coupler dump tcp://{}`\n",
-                        place(connection, *findings.unit));
+    text += fmt::format("an OpenCoupler node: it serves its map, see `coupler dump {}`\n",
+                        node_at(connection, *findings.unit));
   return text;
 }
 

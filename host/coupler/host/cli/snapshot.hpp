@@ -31,6 +31,7 @@ struct Reading {
 struct Snapshot {
   std::chrono::system_clock::time_point at;
   std::string error_text{};                           ///< why the device does not answer; empty: it does
+  bool is_silent = false;                             ///< it is a timeout
   std::optional<host::Identity::Verdict> identity{};  ///< nullopt: not answered
   std::vector<std::string> notes{};                   ///< about this connection, one or more lines each
   std::vector<Reading> readings{};                    ///< of the chosen points, in the map's order

@@ -35,8 +35,9 @@ Exit run(const Arguments& arguments) {
   std::fflush(stdout);
   const std::string device = node_address_text(connection);
   if (!status.error_text.empty())
-    return complain("status", failed, device + ": " + status.error_text,
-                    "check that a node serves there, with this unit id");
+    return complain(
+        "status", failed, device + ": " + status.error_text,
+        reach_remedy(connection, status.is_silent, "check that a node serves there, with this unit id"));
   if (!status.report)
     return complain("status", bad_input, device + " is a foreign coupler: it has no identity area",
                     "`coupler dump` shows its values if you have its map, `coupler probe` looks into it");
@@ -50,7 +51,9 @@ void add_status(Program& program, Exit& exit) {
       "status",
       "Show what a node says about itself: machine, map, watchdog, statistics. Never writes to it.");
   const auto arguments = std::make_shared<Arguments>();
-  command.add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], with tcp:// in front or not")
+  command
+      .add_option("HOST", arguments->host,
+                  "HOST[:PORT][/UNIT], with tcp:// in front or not, or a serial port as /dev/ttyUSB0[/UNIT]")
       .required()
       .type_name("");
   command.add_option("--timeout", arguments->timeout, "Longest wait for an answer, in seconds")

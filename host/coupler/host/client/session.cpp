@@ -8,18 +8,32 @@
 
 #include "coupler/host/modbus/make_transports.hpp"
 #include "coupler/map/loader/load.hpp"
+#include "coupler/map/node_address.hpp"
 
 namespace coupler::client {
 namespace {
 
 using host::WriteResult;
 
+/// A connection to nowhere if the options cannot be understood; that is reported.
 Map moved(Map map, const Options& options) {
-  if (!options.address.empty()) {
-    map.connection.address = options.address;
-    map.connection.serial = {};
+  Connection& connection = map.connection;
+  if (names_a_node(options.address)) {
+    const auto where = parse_node_address(options.address, connection);
+    if (where)
+      map = found_at(map, *where);
+    else
+      connection = {};
+    if (!where && options.on_report)
+      options.on_report(Level::error, fmt::format("{}; {}", where.error().what, where.error().remedy));
+  } else if (!options.address.empty()) {
+    const bool was_rtu = connection.is_rtu();
+    connection.address = options.address;
+    connection.framing = Framing::tcp;
+    connection.serial = {};
+    connection.changed_from(was_rtu);
   }
-  if (options.port) map.connection.port = *options.port;
+  if (options.port) connection.port = *options.port;
   return map;
 }
 

@@ -26,7 +26,9 @@ using host::Level;
 using Quality = host::PointQuality::State;
 
 struct Options {
-  std::string address;                ///< empty: the map's
+  /// A host, or as the tools take it: tcp://HOST:PORT/UNIT, rtu+tcp://HOST:PORT/UNIT,
+  /// rtu:DEVICE/UNIT?baud=…&parity=… Empty: the map's.
+  std::string address;
   std::optional<std::uint16_t> port;  ///< default: the map's
   std::optional<Verify> verify;       ///< what to do if the device has another map; default: the map's
   /// Gets lines for a log: why the device cannot be reached, how two maps differ. Called in the connection's

@@ -37,6 +37,13 @@ Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transpo
       scheduler_(map_, transport_, clock, writer_, poller_.changes(), sink),
       listener_(map.connection.timeout, transport_, clock, statistics_, scheduler_.changes(), sink) {}
 
+/// On a serial line there is nothing to be kept, and what is only written may not even refuse to be read.
+bool Device::needs_keep_alive() const {
+  const auto& points = map_.points;
+  return !map_.connection.is_rtu() || verify_ != Verify::off ||
+         std::any_of(points.begin(), points.end(), [](const Point& point) { return is_readable(point); });
+}
+
 Time Device::step() {
   if (!is_verified()) {
     writer_.disconnected(NotConnected{"not connected"});
@@ -163,7 +170,7 @@ Time Device::connect() {
   scheduler_.connected(listener_.is_active() && node_.functions.schedules_outputs);
   poller_.start(listener_.is_active());
   replies_at_connect_ = transport_.replies();
-  if (verify_ != Verify::off && identity_suffices_) came_online();
+  if (map_.connection.is_broadcast() || (verify_ != Verify::off && identity_suffices_)) came_online();
   return due();
 }
 

@@ -105,15 +105,17 @@ class Device {
   Result<> serve_watchdog();
   Time due() const;
   Time keep_alive_due() const {
-    if (map_.connection.is_broadcast()) return Time::max();
-    return listener_.is_active() ? Time::max() : transport_.last_answer() + map_.connection.timeout;
+    return listener_.is_active() || !keeps_alive_ ? Time::max()
+                                                  : transport_.last_answer() + map_.connection.timeout;
   }
+  bool needs_keep_alive() const;
   void answered();
   void came_online();
   void lost(const Error& error);
 
   Map map_;
   Verify verify_;
+  bool keeps_alive_ = needs_keep_alive();
   MapLoader load_;
   Clock& clock_;
   Sink& sink_;

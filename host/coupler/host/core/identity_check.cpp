@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/fields.hpp"
 #include "coupler/map/fingerprint.hpp"
 
 namespace coupler::host {
@@ -32,7 +33,22 @@ std::string difference_text(const Map& known, const Identity& identity) {
   return text;
 }
 
+std::string line_remedy(const Connection& line) {
+  if (!line.serial.present()) return "check power, A and B, 'unit', and the gateway's rate and parity";
+  return fmt::format(
+      "check power, A and B, 'unit', 'baud' and 'parity' (it was asked at {}); `coupler probe {}/{}` tries "
+      "the usual "
+      "ones",
+      rate_and_parity(line.serial), line.serial.device, line.unit);
+}
+
 std::string silence_text(const Map& known, const Error& error) {
+  if (known.connection.is_rtu() && !is_unit_away(error))
+    return fmt::format(
+        "unit {} does not answer the request for its identity: {}; {}. If it is a module that ignores "
+        "addresses it "
+        "does not have, give its map 'verify: off', or start with --verify off (a client: Options::verify)",
+        known.connection.unit, to_string(error), line_remedy(known.connection));
   return fmt::format(
       "{}, but unit {} does not answer the request for its identity: {}; check that the device runs, and "
       "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, give "

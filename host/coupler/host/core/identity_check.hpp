@@ -30,6 +30,9 @@ std::string difference_text(const Map& known, const Identity& identity);
 /// What `superset` means.
 constexpr auto superset_text = "the device has more points than this map; those of this map are unchanged";
 
+/// What to do about a unit of an RTU line that stays silent.
+std::string line_remedy(const Connection& line);
+
 /// Why a device that has never answered the request for its identity may not do so (a timeout, or a gateway
 /// that cannot reach it), and what to do.
 std::string silence_text(const Map& known, const Error& error);

@@ -24,6 +24,8 @@ class MultiUnitTransport : public Transport {
   /// Other units can be asked while the answer of one is late: only its own requests could take that for
   /// theirs.
   virtual bool is_bus() const { return false; }
+  /// A request to the unit that was selected last would be sent without delay.
+  virtual bool can_send() const { return true; }
 
   /// Sends any PDU. Returns that of the reply, which may be an exception, valid until the next request.
   virtual Result<modbus::Bytes> exchange(modbus::Bytes pdu) = 0;

@@ -56,6 +56,7 @@ Duration RtuTransport::time_of(std::size_t characters) const {
 }
 
 Result<> RtuTransport::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
+  hung_up_.clear();  // a call that was meant for the unit before
   is_hung_up_ = false;
   if (unit != rtu_broadcast && !is_rtu_unit(unit))
     return fail(NotConnected{fmt::format("unit {} cannot be asked; RTU has units 1 to 247", unit)});
@@ -85,6 +86,11 @@ Result<> RtuTransport::open(const Event& interrupt) {
   framer_.reset();
   last_character_ = now();
   return {};
+}
+
+bool RtuTransport::can_send() const {
+  const Time free = late_unit_ == unit_ ? std::max(busy_until_, late_until_) : busy_until_;
+  return framer_.has_echo() && now() >= free;
 }
 
 void RtuTransport::hang_up() {
@@ -148,9 +154,10 @@ Result<modbus::Bytes> RtuTransport::receive_pdu() {
       case Woken::by_call: return fail(NotConnected{"interrupted"});
       case Woken::by_time:
         framer_.silent();
+        discarded_ += framer_.skipped();
         late_unit_ = unit_;
         late_until_ = now() + timeout_;
-        if (!damaged_) return fail(Timeout{timeout_});
+        if (!damaged_ || framer_.holds_another_frame()) return fail(Timeout{timeout_});
         return fail(
             BadFrame{fmt::format("what has come is no reply of unit {}; check baud rate and parity, and "
                                  "that no two units have the same number",
@@ -161,17 +168,23 @@ Result<modbus::Bytes> RtuTransport::receive_pdu() {
     if (!got) return tl::make_unexpected(got.error());
     framer_.filled(got->size());
     switch (framer_.next()) {
-      case modbus::RtuFramer::Outcome::reply: busy_until_ = {}; return framer_.pdu();
+      case modbus::RtuFramer::Outcome::reply:
+        discarded_ += framer_.skipped();
+        busy_until_ = {};
+        return framer_.pdu();
       case modbus::RtuFramer::Outcome::damaged: damaged_ = true; break;
       case modbus::RtuFramer::Outcome::nothing: break;
     }
   }
 }
 
-/// A call that comes together with bytes counts, too.
+/// A call that comes together with bytes counts, too. A signal ends no wait.
 Transport::Woken RtuTransport::wait(int fd, Time until) {
-  const Woken woken = wait_for(hung_up_, interrupted_, fd, until);
-  return is_hung_up_ || interrupted_.is_set() ? Woken::by_call : woken;
+  for (;;) {
+    const Woken woken = wait_for(hung_up_, interrupted_, fd, until);
+    if (is_hung_up_ || interrupted_.is_set()) return Woken::by_call;
+    if (woken == Woken::by_bytes || now() >= until) return woken;
+  }
 }
 
 Result<> RtuTransport::pause(Time until) {
@@ -214,7 +227,8 @@ Result<> RtuTransport::put(modbus::Bytes frame) {
                                     : ::send(fd_, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(frame.size())) return {};
   has_failed_ = true;
-  if (sent < 0 && errno == EIO) return port_has_gone();
+  if (sent < 0 && line_.present() && (errno == EIO || errno == ENODEV || errno == ENXIO))
+    return port_has_gone();
   return fail(TransportFailure{sent < 0 ? std::strerror(errno) : "only a part of the request could be sent"});
 }
 

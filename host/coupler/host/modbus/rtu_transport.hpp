@@ -38,6 +38,7 @@ class RtuTransport : public MultiUnitTransport {
   Result<> open(const Event& interrupt) override;
   void hang_up() override;
   bool is_bus() const override { return true; }
+  bool can_send() const override;
   Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
   Result<> receive(const modbus::WriteRequest& request) override;
   std::uint64_t discarded() const override { return discarded_; }

@@ -47,7 +47,8 @@ std::string busy_text(const std::string& device) {
   return holder.empty()
              ? "another process uses it, or another map of this one that calls it by another name; "
                "give maps of one line the same 'device'"
-             : holder + " uses it";
+             : holder +
+                   " uses it; end it, or give several maps of one line to one driver: --maps a.yaml,b.yaml";
 }
 
 std::string open_text(const std::string& device, int error) {
@@ -95,7 +96,7 @@ std::string refused_setting(int fd, const Serial& wanted) {
   if (::tcgetattr(fd, &is) != 0) return fmt::format("its settings cannot be read: {}", std::strerror(errno));
   if (!has_rate(is, wanted.baud)) return fmt::format("it does not take 'baud: {}'", wanted.baud);
   if ((is.c_cflag & (PARENB | PARODD)) != parity_flags(wanted.parity))
-    return fmt::format("it does not take 'parity: {}'", to_string(wanted.parity));
+    return fmt::format("it does not take 'parity: {}'; try another one", to_string(wanted.parity));
   if (((is.c_cflag & CSTOPB) != 0) != (wanted.stop_bits == 2))
     return fmt::format("it does not take 'stop_bits: {}'", wanted.stop_bits);
   return {};
@@ -118,7 +119,8 @@ Result<SerialPort> SerialPort::open(const Serial& settings) {
   };
   Descriptor lock(::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (lock.get() < 0) return refuse(open_text(device, errno));
-  if (::isatty(lock.get()) == 0) return refuse("it is no serial port");
+  if (::isatty(lock.get()) == 0)
+    return refuse("it is no serial port; `ls /dev/serial/by-id` shows those of adapters");
   if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) return refuse(busy_text(device));
 
   Context context(modbus_new_rtu(device.c_str(), static_cast<int>(settings.baud),
@@ -126,7 +128,7 @@ Result<SerialPort> SerialPort::open(const Serial& settings) {
                   modbus_free);
   if (!context) return refuse(std::strerror(errno));
   if (modbus_connect(context.get()) != 0)
-    return refuse(fmt::format("it cannot be set to {}: {}{}", written(settings), std::strerror(errno),
+    return refuse(fmt::format("it cannot be set to {}: {}{}", rate_and_parity(settings), std::strerror(errno),
                               errno == EINVAL ? "; try another 'parity' or 'baud'" : ""));
   context = Context(context.release(), close_port);
   const int fd = modbus_get_socket(context.get());

@@ -178,7 +178,8 @@ void UnitTransport::await_turn_to_write() {
 
 bool UnitTransport::reserve() {
   if (!shared_->turns.try_take(this)) return false;
-  has_turn_ = connected_ && !is_lost() && shared_->open && std::chrono::steady_clock::now() >= ready();
+  has_turn_ = connected_ && !is_lost() && shared_->open && std::chrono::steady_clock::now() >= ready() &&
+              shared_->transport->select(unit_, timeout_) && shared_->transport->can_send();
   if (!has_turn_) release();
   reserved_ = has_turn_;
   return has_turn_;

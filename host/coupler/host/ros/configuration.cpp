@@ -30,6 +30,13 @@ constexpr auto shutdown_check_interval = std::chrono::milliseconds(50);
 using Source = tl::expected<MapSource, int>;
 using LogFunction = std::function<void(Level, const std::string&)>;
 
+/// What is wrong with the place of a device that is read, or an empty text.
+std::string place_error(const Settings& settings, const Connection& connection) {
+  if (settings.address && settings.serial) return "both address and serial are given; give one of them";
+  if (!connection.is_rtu() || is_rtu_unit(connection.unit)) return {};
+  return fmt::format("unit {} cannot be asked; with RTU give 1 to 247", connection.unit);
+}
+
 /// Finds one map at a time. The settings must outlive what it finds.
 class MapFinder {
  public:
@@ -122,6 +129,8 @@ class MapFinder {
   Source from_node(const NodeAddress& node, const Settings& settings) {
     Map asked = found_at({}, node);
     apply(settings, asked);
+    if (const auto wrong = place_error(settings, asked.connection); !wrong.empty())
+      return fail(wrong_call, wrong);
     const std::string where = place_text(asked.connection);
     const auto transport = make_transport(asked.connection);
     MapDiagnostics diagnostics(asked.connection, node_);
@@ -168,16 +177,13 @@ std::string find_conflict(const Map* built_in, const Settings& settings, const D
   return {};
 }
 
-std::string unit_error(const Map& map) {
-  const Connection& connection = map.connection;
-  if (!connection.is_rtu() || is_rtu_unit(connection.unit)) return {};
-  if (!connection.is_broadcast())
-    return fmt::format("{}: unit {} cannot be asked; with RTU give 1 to 247", map.name, connection.unit);
+std::string broadcast_error(const Map& map) {
+  if (map.coupler_watchdog.present())
+    return "unit 0 is a broadcast, which nobody answers, but 'watchdog' needs answers; give 1 to 247";
   for (const Point& point : map.points)
     if (needs_answers(point, map.limits))
       return fmt::format(
-          "{}: unit 0 is a broadcast, which nobody answers, but {} needs to be read; give 1 to 247", map.name,
-          point.name);
+          "unit 0 is a broadcast, which nobody answers, but {} needs to be read; give 1 to 247", point.name);
   return {};
 }
 
@@ -188,10 +194,14 @@ std::string find_error(const Devices& devices) {
   for (const auto& [settings, source] : devices) {
     maps.push_back(source.map);
     if (!source.map.connection.present())
-      return fmt::format("the map{} has no address; add 'address: HOST' or give --address HOST",
-                         devices.size() > 1 ? fmt::format(" of {}", source.map.name) : "");
-    if (const auto wrong = unit_error(source.map); !wrong.empty()) return wrong;
-    if (settings.address && settings.serial) return "both address and serial are given; give one of them";
+      return fmt::format(
+          "the map{} has no address; add 'address: HOST' or give --address HOST; for one on a "
+          "serial line 'serial: {{device: /dev/ttyUSB0}}' or --serial /dev/ttyUSB0",
+          devices.size() > 1 ? fmt::format(" of {}", source.map.name) : "");
+    const bool is_broadcast = source.map.connection.is_broadcast();
+    const std::string wrong =
+        is_broadcast ? broadcast_error(source.map) : place_error(settings, source.map.connection);
+    if (!wrong.empty()) return fmt::format("{}: {}", source.map.name, wrong);
     if (!names.insert(source.map.name).second)
       return fmt::format(
           "two devices have the name {}; give one of them another, as in --maps left=a.yaml,right=a.yaml",

@@ -13,7 +13,8 @@ namespace coupler::host {
 namespace {
 
 constexpr const char* description =
-    "Drives a Modbus/TCP coupler: every point of its map becomes a ROS topic <name>/<point>, every writable "
+    "Drives a Modbus coupler, over TCP or on a serial line: every point of its map becomes a ROS topic "
+    "<name>/<point>, every writable "
     "one also\n"
     "listens to <name>/<point>/write.";
 

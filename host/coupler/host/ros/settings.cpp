@@ -13,6 +13,7 @@
 #include "coupler/map/loader/names.hpp"
 #include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/network.hpp"
+#include "coupler/map/node_address.hpp"
 
 namespace coupler::host {
 namespace {
@@ -69,7 +70,9 @@ Outcome set_framing(Settings& settings, const std::string& text) {
 }
 
 Outcome set_serial(Settings& settings, const std::string& text) {
-  if (text.empty()) return wrong("serial", text, "a device file, as /dev/ttyUSB0");
+  if (text.empty() || names_a_node(text))
+    return wrong("serial", text,
+                 "a device file, as /dev/ttyUSB0; its unit and baud rate are settings of their own");
   settings.serial = text;
   return {};
 }
@@ -311,6 +314,7 @@ void apply(const Settings& settings, Map& map) {
   const bool was_rtu = connection.is_rtu();
   if (settings.address) {
     connection.address = *settings.address;
+    connection.framing = Framing::tcp;
     connection.serial.device = {};
   }
   if (settings.port) connection.port = *settings.port;

@@ -70,7 +70,7 @@ std::string_view setting_of(std::string_view name, const std::vector<std::string
 
 bool is_meant_for_a_driver(const GivenParameters::Section& section) {
   return std::any_of(section.parameters.begin(), section.parameters.end(), [](const GivenParameter& one) {
-    return one.name == "map" || one.name == "maps" || one.name == "address";
+    return one.name == "map" || one.name == "maps" || one.name == "address" || one.name == "serial";
   });
 }
 

@@ -68,6 +68,12 @@ TEST(Load, What_a_node_serves_may_have_keys_that_are_near_to_ours_or_stand_elsew
   EXPECT_EQ(served.diagnostics.size(), 3U);
 }
 
+TEST(Load, What_a_node_says_of_being_asked_for_its_identity_does_not_count) {
+  const std::string text = "name: press\nverify: off\nmapping: {coils: {valve: 0}}\n";
+  EXPECT_EQ(load_map(text, "m").map->map().verify, Verify::off);
+  EXPECT_EQ(load_served_map(text, "m").map->map().verify, Verify::require);
+}
+
 TEST(Load, A_bare_timeout_of_more_than_a_minute_is_refused_in_files_only) {
   const std::string text = "name: press\ntimeout: 61\nmapping: {coils: {valve: 0}}\n";
   EXPECT_EQ(load_map(text, "m").map, nullptr);

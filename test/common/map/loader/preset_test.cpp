@@ -35,7 +35,7 @@ TEST(Preset, Its_limits_hold_where_the_map_has_none_of_its_own) {
   EXPECT_EQ(map->map().limits.write_bits, 800);
 }
 
-TEST(Preset, Its_serial_settings_are_for_a_map_with_a_port) {
+TEST(Preset, Its_serial_settings_are_for_a_port_that_the_map_or_a_setting_names) {
   const MapPtr line = load_with("preset: robotiq_2f\nserial: {device: /dev/ttyUSB0}");
   EXPECT_EQ(line->map().connection.serial, (Serial{"/dev/ttyUSB0", 115200, Serial::Parity::none, 1, false}));
   EXPECT_EQ(line->map().connection.unit, 9);
@@ -43,7 +43,7 @@ TEST(Preset, Its_serial_settings_are_for_a_map_with_a_port) {
   EXPECT_EQ(own->map().connection.serial, (Serial{"/dev/ttyUSB0", 9600, Serial::Parity::none, 1, false}));
   EXPECT_EQ(own->map().connection.unit, 17);
   const MapPtr gateway = load_with("preset: robotiq_2f\naddress: gateway");
-  EXPECT_EQ(gateway->map().connection.serial, Serial{});
+  EXPECT_EQ(gateway->map().connection.serial, (Serial{"", 115200, Serial::Parity::none, 1, false}));
   EXPECT_FALSE(gateway->map().connection.is_rtu());
   EXPECT_EQ(gateway->map().connection.unit, 9);
 }
