@@ -44,7 +44,7 @@ ModbusTransport::ModbusTransport(const Connection& connection)
       context_(modbus_new_tcp_pi(host_.c_str(), fmt::to_string(port_).c_str()), modbus_free) {
   modbus_set_byte_timeout(context_.get(), 0, 0);  // none: the response timeout holds for the whole reply
   modbus_set_error_recovery(context_.get(), MODBUS_ERROR_RECOVERY_NONE);
-  select(connection.unit, connection.timeout);
+  ModbusTransport::select(connection.unit, connection.timeout);
 }
 
 ModbusTransport::~ModbusTransport() { ModbusTransport::close(); }
