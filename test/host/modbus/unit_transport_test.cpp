@@ -6,6 +6,7 @@
 #include <chrono>
 #include <future>
 
+#include "coupler/host/modbus/modbus_transport.hpp"
 #include "test/host/modbus/units_behind_gateway.hpp"
 
 namespace coupler::host {
