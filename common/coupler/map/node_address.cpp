@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/starts_with.hpp"
 #include "coupler/map/network.hpp"
 
 namespace coupler {
@@ -16,10 +17,6 @@ namespace {
 constexpr std::string_view tcp = "tcp://";
 constexpr std::string_view rtu_over_tcp = "rtu+tcp://";
 constexpr std::string_view rtu = "rtu:";
-
-bool begins_with(std::string_view text, std::string_view beginning) {
-  return text.substr(0, beginning.size()) == beginning;
-}
 
 tl::unexpected<NetworkError> wrong(std::string what) {
   return tl::unexpected<NetworkError>(
@@ -108,7 +105,7 @@ bool set(Serial& line, std::string_view key, std::string_view value) {
 /// Terminals without hardware: the number is a part of the name.
 bool is_pseudo_terminal(std::string_view path) {
   constexpr std::string_view folder = "/dev/pts/";
-  return begins_with(path, folder) && path.find('/', folder.size()) == std::string_view::npos;
+  return starts_with(path, folder) && path.find('/', folder.size()) == std::string_view::npos;
 }
 
 tl::expected<NodeAddress, NetworkError> parse_serial_port(std::string_view rest,
@@ -144,19 +141,19 @@ tl::expected<NodeAddress, NetworkError> parse_serial_port(std::string_view rest,
 }  // namespace
 
 bool names_a_node(std::string_view argument) {
-  return begins_with(argument, tcp) || begins_with(argument, rtu) || begins_with(argument, rtu_over_tcp);
+  return starts_with(argument, tcp) || starts_with(argument, rtu) || starts_with(argument, rtu_over_tcp);
 }
 
 std::string node_argument(const std::string& argument) {
   if (names_a_node(argument)) return argument;
-  return std::string(begins_with(argument, "/") ? rtu : tcp) + argument;
+  return std::string(starts_with(argument, "/") ? rtu : tcp) + argument;
 }
 
 tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argument,
                                                            const Connection& otherwise) {
-  if (begins_with(argument, tcp)) return parse_host_and_port(argument.substr(tcp.size()), otherwise);
-  if (begins_with(argument, rtu)) return parse_serial_port(argument.substr(rtu.size()), otherwise);
-  if (!begins_with(argument, rtu_over_tcp))
+  if (starts_with(argument, tcp)) return parse_host_and_port(argument.substr(tcp.size()), otherwise);
+  if (starts_with(argument, rtu)) return parse_serial_port(argument.substr(rtu.size()), otherwise);
+  if (!starts_with(argument, rtu_over_tcp))
     return wrong("the address of a device begins with tcp:// or rtu:");
   auto node = parse_host_and_port(argument.substr(rtu_over_tcp.size()), otherwise);
   constexpr auto remedy = "write rtu+tcp://HOST[:PORT][/UNIT], as in rtu+tcp://192.168.1.17:4001/1";

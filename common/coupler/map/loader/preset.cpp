@@ -97,9 +97,9 @@ std::optional<Preset> read_preset(const Entry& root, const Context& context) {
 
 Entry completed(Entry root, const Preset& preset) {
   for (const Entry& key : preset.map.children) {
+    if (key.key == "serial") continue;  // says how a port is set, not that there is one: read_connection()
     const auto own = std::find_if(root.children.begin(), root.children.end(),
                                   [&](const Entry& e) { return e.key == key.key; });
-    if (key.key == "serial") continue;  // says how a port is set, not that there is one: read_connection()
     if (own == root.children.end())
       root.children.push_back(key);
     else if (own->kind == Entry::Kind::map)

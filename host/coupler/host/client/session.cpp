@@ -27,11 +27,7 @@ Map moved(Map map, const Options& options) {
     if (!where && options.on_report)
       options.on_report(Level::error, fmt::format("{}; {}", where.error().what, where.error().remedy));
   } else if (!options.address.empty()) {
-    const bool was_rtu = connection.is_rtu();
-    connection.address = options.address;
-    connection.framing = Framing::tcp;
-    connection.serial = {};
-    connection.changed_from(was_rtu);
+    map = found_at(map, {options.address, connection.port, connection.unit});
   }
   if (options.port) connection.port = *options.port;
   return map;

@@ -74,7 +74,11 @@ class Device {
   /// Whether somebody wants the values of a point (index into Map::points); as ToldBits'.
   void want(std::uint32_t point, bool wanted) { poller_.want(point, wanted); }
 
-  DeviceSnapshot statistics() const { return statistics_.snapshot(); }
+  DeviceSnapshot statistics() const {
+    DeviceSnapshot snapshot = statistics_.snapshot();
+    snapshot.discarded = transport_.discarded();
+    return snapshot;
+  }
   std::vector<PointQuality> qualities() const { return qualities_.snapshot(clock_.now()); }
   PointQuality quality(std::uint32_t point) const { return qualities_.of(point, clock_.now()); }
   /// Changes whenever qualities() or the connection in statistics() changes, unless only by the passing of

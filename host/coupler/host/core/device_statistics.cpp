@@ -3,10 +3,9 @@
 
 namespace coupler::host {
 
-void DeviceStatistics::answered(Duration after, const Result<>& result, std::uint64_t discarded) {
+void DeviceStatistics::answered(Duration after, const Result<>& result) {
   const std::lock_guard lock(mutex_);
   ++now_.requests;
-  now_.discarded = discarded;
   const ExceptionReply* exception = result ? nullptr : exception_in(result.error());
   if (exception != nullptr) ++now_.exceptions[static_cast<std::size_t>(exception->code)];
   if (result || exception != nullptr)

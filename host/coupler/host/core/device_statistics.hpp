@@ -56,8 +56,7 @@ struct DeviceSnapshot {
 /// Counts what a device does; read from any thread. Allocates nothing but error texts.
 class DeviceStatistics {
  public:
-  /// `discarded`: Transport::discarded() after it.
-  void answered(Duration after, const Result<>& result, std::uint64_t discarded);
+  void answered(Duration after, const Result<>& result);
   void wrote(WriteResult::Outcome outcome);
   void cycle_ended(Duration after, std::uint64_t overruns);
   void rejected();

@@ -20,7 +20,7 @@ Result<> PacedTransport::answered(Result<> result) {
   ready_ = gap_ > Duration::zero() ? answered_ + gap_ : Time::min();
   if (const ExceptionReply* exception = result ? nullptr : exception_in(result.error()))
     seen_.set(static_cast<std::size_t>(exception->code));
-  statistics_.answered(answered_ - begun_, result, transport_.discarded());
+  statistics_.answered(answered_ - begun_, result);
   if (result || exception_in(result.error()) != nullptr) ++replies_;
   give_wait_answer();
   return result;

@@ -55,6 +55,7 @@ class PacedTransport : public Transport {
   /// Gets the answers; take_wait_answer() has none.
   void listen(WaitListener& listener) { listener_ = &listener; }
   Woken wait_until(Time time) override { return transport_.wait_until(time); }
+  std::uint64_t discarded() const override { return transport_.discarded(); }
   void wake() override { transport_.wake(); }
 
   /// Makes a request only to see that the device answers: the first point that can be read, or else coil 0.

@@ -102,7 +102,8 @@ class Transport {
   /// The answer that receive_wait() or another request has received: once.
   virtual std::optional<WaitAnswer> take_wait_answer() { return std::nullopt; }
 
-  /// Bytes that came after their time, or were no reply: of all units that share the connection.
+  /// Bytes that came after their time, or were no reply: of all units that share the connection. From
+  /// any thread.
   virtual std::uint64_t discarded() const { return 0; }
 
   enum class Woken { by_time, by_call, by_bytes };

@@ -112,12 +112,6 @@ modbus::Frame ModbusTransport::next_header() {
   return sent_;
 }
 
-/// libmodbus does not know all functions.
-Result<modbus::Bytes> ModbusTransport::exchange(modbus::Bytes pdu) {
-  if (auto sent = send_pdu(pdu); !sent) return tl::make_unexpected(sent.error());
-  return receive_pdu();
-}
-
 Result<> ModbusTransport::send_pdu(modbus::Bytes pdu) {
   if (socket_ < 0) return fail(NotConnected{"not connected"});
   answer_by_ = Deadline(timeout_);

@@ -40,7 +40,6 @@ class ModbusTransport : public MultiUnitTransport {
   Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout) override;
   Result<> open(const Event& interrupt) override;
   void hang_up() override;
-  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
 
  protected:
   Result<modbus::Bytes> ask(const modbus::ReadRequest& request) override;

@@ -21,6 +21,11 @@ constexpr auto another_reply = "not the reply to this request";
 
 }  // namespace
 
+Result<modbus::Bytes> MultiUnitTransport::exchange(modbus::Bytes pdu) {
+  if (auto sent = send_pdu(pdu); !sent) return tl::make_unexpected(sent.error());
+  return receive_pdu();
+}
+
 Result<> MultiUnitTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
   const modbus::ReadRequest request(read_function(table), range);
   const auto reply = ask(request);

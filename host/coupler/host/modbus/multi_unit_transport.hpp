@@ -28,7 +28,7 @@ class MultiUnitTransport : public Transport {
   virtual bool can_send() const { return true; }
 
   /// Sends any PDU. Returns that of the reply, which may be an exception, valid until the next request.
-  virtual Result<modbus::Bytes> exchange(modbus::Bytes pdu) = 0;
+  virtual Result<modbus::Bytes> exchange(modbus::Bytes pdu);
 
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;

@@ -108,8 +108,7 @@ void RtuTransport::close() {
 Result<modbus::Bytes> RtuTransport::exchange(modbus::Bytes pdu) {
   if (unit_ == rtu_broadcast)
     return fail(NotConnected{"unit 0 is a broadcast, which nobody answers; read from units 1 to 247"});
-  if (auto sent = send_pdu(pdu); !sent) return tl::make_unexpected(sent.error());
-  return receive_pdu();
+  return MultiUnitTransport::exchange(pdu);
 }
 
 Result<> RtuTransport::receive(const modbus::WriteRequest& request) {
