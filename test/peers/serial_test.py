@@ -143,6 +143,11 @@ with tempfile.TemporaryDirectory() as folder:
                 "--rate", "1000", "--timeout", "1")
     checks.equal("probe by the device's path: the unit", f"units that answer at 9600 8N1: {UNIT}\n" in found.stdout, True)
 
+    twice = run("probe", f"rtu:{line.port}/{UNIT}", "--units", "15-18")
+    checks.equal("units in two places", (twice.returncode, "leave one of them out" in twice.stderr), (2, True))
+    nowhere = run("probe", "ttyUSB0")
+    checks.equal("a port without its folder", (nowhere.returncode, "rtu:/dev/ttyUSB0" in nowhere.stderr), (2, True))
+
     over_tcp = RtuServer([UNIT])
     fill(over_tcp)
     checks.equal("RTU over TCP", dumped(path, "--at", f"rtu+tcp://127.0.0.1:{over_tcp.port}/{UNIT}"), VALUES)

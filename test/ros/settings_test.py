@@ -91,6 +91,13 @@ class Settings(testing.RosTest):
         self.assert_ends(2, "address: '10.0.0.7:502' has a port; write 'port: 502' beside it", "_address:=10.0.0.7:502")
         self.assert_ends(2, "verify: 'maybe' is not require, warn or off", "_verify:=maybe")
 
+    def test_a_setting_that_does_nothing_where_the_device_is_is_told(self):
+        self.assert_ends(1, "baud has no meaning at 127.0.0.1 port", f"_map:={self.map()}", "_baud:=9600")
+        self.assert_ends(1, "port has no meaning on the serial port /dev/ttyS9", f"_map:={self.map()}",
+                         "_serial:=/dev/ttyS9", "_port:=1502")
+        # What ROS has kept of those calls does not count beside a place that is given now.
+        self.assert_drives(f"_map:={self.map()}", "_address:=127.0.0.1", f"_port:={self.peer.port}")
+
     def test_a_wrong_map_ends_with_1_and_says_where(self):
         path = process.write_map("name: broken\nmapping:\n  coils: {a: 70000}\n")
         self.assert_ends(1, f"{path}:3:", f"_map:={path}", "_address:=localhost")

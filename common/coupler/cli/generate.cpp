@@ -22,6 +22,7 @@
 #include "coupler/generate/code.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/generate/python.hpp"
+#include "coupler/map/diagnostic.hpp"
 #include "coupler/test_vectors/json.hpp"
 
 namespace coupler::cli {
@@ -111,6 +112,10 @@ Exit write_python(const Arguments& arguments, const generate::Provenance& proven
   if (!generate::is_name(provenance.name))
     return complain("generate", bad_call, fmt::format("'{}' is not a valid name in Python", provenance.name),
                     "give another one with --name: letters, digits and underscores, beginning with a letter");
+  if (map.connection.is_rtu())
+    print({Diagnostic{Diagnostic::Severity::warning, arguments.map, 0, 0,
+                      "the client in Python speaks Modbus/TCP, and the map's coupler speaks RTU",
+                      "give it the address and port of a gateway that translates"}});
   return write(arguments, {{provenance.name + "_client.py", generate::python_client(map, provenance)}});
 }
 

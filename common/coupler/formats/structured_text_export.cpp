@@ -12,6 +12,7 @@
 #include "coupler/formats/exporters.hpp"
 #include "coupler/formats/structured_text.hpp"
 #include "coupler/map/allowed_values.hpp"
+#include "coupler/map/fields.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/typed_value.hpp"
@@ -209,14 +210,27 @@ class Writer {
     constants_ += fmt::format("  {} : {} := {};\n", global(prefix_ + "_" + name, point), type, value);
   }
 
-  void add_constants(const Side& inputs, const Side& outputs) {
-    constants_ = "VAR_GLOBAL CONSTANT\n";
+  void add_way_to_the_coupler() {
     const Connection& connection = map_.connection;
+    if (connection.serial.present()) {
+      warnings_.add(
+          "the coupler is on a serial line, so there is no constant for its host and port",
+          fmt::format("use the PLC's client for Modbus RTU, at {}", rate_and_parity(connection.serial)));
+      return;
+    }
+    if (connection.is_rtu())
+      warnings_.add("the coupler speaks RTU over TCP",
+                    "use a client of the PLC that does, or a gateway that translates");
     if (!connection.address.empty())  // a host name, which has nothing to escape
       constant("host", fmt::format("STRING[{}]", connection.address.size()),
                fmt::format("'{}'", connection.address));
     constant("port", "UINT", fmt::to_string(connection.port));
-    constant("unit", "BYTE", fmt::to_string(connection.unit));
+  }
+
+  void add_constants(const Side& inputs, const Side& outputs) {
+    constants_ = "VAR_GLOBAL CONSTANT\n";
+    add_way_to_the_coupler();
+    constant("unit", "BYTE", fmt::to_string(map_.connection.unit));
     constants_ +=
         "  " +
         st::comment("as a node of OpenCoupler has it: " +

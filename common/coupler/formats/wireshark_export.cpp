@@ -73,6 +73,12 @@ Export write_wireshark(const Map& map) {
   for (const Point& point : map.points) out.text += row_of(point);
   out.text += "  },\n}\n\n";
   out.text += wireshark_body();
+  if (map.connection.is_rtu())
+    out.warnings.add(
+        "the dissector is for captures of Modbus/TCP, and the coupler speaks RTU",
+        fmt::format(
+            "capture at a gateway that translates, and give its port: -o {0}.port:N -o mbtcp.tcp.port:N",
+            proto));
   warn_of_node_and_driver_keys(map, out.warnings);
   return out;
 }

@@ -18,16 +18,18 @@ constexpr std::string_view tcp = "tcp://";
 constexpr std::string_view rtu_over_tcp = "rtu+tcp://";
 constexpr std::string_view rtu = "rtu:";
 
-tl::unexpected<NetworkError> wrong(std::string what) {
-  return tl::unexpected<NetworkError>(
-      {std::move(what), "write tcp://HOST[:PORT][/UNIT], as in tcp://192.168.1.17:502/1"});
+constexpr auto form_of_tcp = "write tcp://HOST[:PORT][/UNIT], as in tcp://192.168.1.17:502/1";
+constexpr auto form_of_rtu_over_tcp =
+    "write rtu+tcp://HOST[:PORT][/UNIT], as in rtu+tcp://192.168.1.17:4001/1";
+
+tl::unexpected<NetworkError> wrong(std::string what, std::string remedy) {
+  return tl::unexpected<NetworkError>({std::move(what), std::move(remedy)});
 }
 
 tl::unexpected<NetworkError> wrong_line(std::string what) {
-  return tl::unexpected<NetworkError>(
-      {std::move(what),
-       "write rtu:DEVICE[/UNIT][?SETTINGS], as in "
-       "'rtu:/dev/ttyUSB0/17?baud=9600&parity=none&stop_bits=1' (in quotes)"});
+  return wrong(std::move(what),
+               "write rtu:DEVICE[/UNIT][?SETTINGS], as in "
+               "'rtu:/dev/ttyUSB0/17?baud=9600&parity=none&stop_bits=1' (in quotes)");
 }
 
 std::optional<unsigned> number(std::string_view text, unsigned least, unsigned most) {
@@ -35,6 +37,11 @@ std::optional<unsigned> number(std::string_view text, unsigned least, unsigned m
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < least || value > most) return {};
   return value;
+}
+
+/// "ttyUSB0", "ttyACM1", "ttyS0": a port of Linux; a host is called tty… in small letters.
+bool is_port_name(std::string_view host) {
+  return starts_with(host, "tty") && host.size() > 3 && host[3] >= 'A' && host[3] <= 'Z';
 }
 
 /// Takes what stands behind the last `mark` off the text, if there is one.
@@ -55,30 +62,33 @@ bool take_brackets(std::string_view& text, std::string_view& host) {
   return true;
 }
 
+/// `form` is the remedy.
 tl::expected<NodeAddress, NetworkError> parse_host_and_port(std::string_view rest,
-                                                            const Connection& otherwise) {
+                                                            const Connection& otherwise, const char* form) {
   NodeAddress node{{}, otherwise.port, otherwise.unit};
   if (const auto unit = take_behind(rest, '/'); unit && !unit->empty()) {
     const auto value = number(*unit, 0, 255);
-    if (!value) return wrong(fmt::format("the unit id '{}' is not 0 to 255", *unit));
+    if (!value) return wrong(fmt::format("the unit id '{}' is not 0 to 255", *unit), form);
     node.unit = static_cast<std::uint8_t>(*value);
   }
   const bool bracketed = take_brackets(rest, node.host);
   if (const auto port = take_behind(rest, ':')) {
     const auto value = number(*port, 1, 65535);
-    if (!value) return wrong(fmt::format("the port '{}' is not 1 to 65535", *port));
+    if (!value) return wrong(fmt::format("the port '{}' is not 1 to 65535", *port), form);
     node.port = static_cast<std::uint16_t>(*value);
   }
   if (!bracketed) node.host = rest;
-  if (bracketed && !rest.empty()) return wrong("after ']' only a port may follow");
+  if (bracketed && !rest.empty()) return wrong("after ']' only a port may follow", form);
   if (!bracketed && node.host.find(':') != std::string_view::npos)
-    return wrong("an IPv6 address must be in brackets: tcp://[fe80::1]:502");
-  if (node.host.empty()) return wrong("there is no host");
+    return wrong("an IPv6 address must be in brackets: tcp://[fe80::1]:502", form);
+  if (node.host.empty()) return wrong("there is no host", form);
+  if (is_port_name(node.host))
+    return wrong(fmt::format("'{}' is the name of a serial port, not of a host", node.host),
+                 fmt::format("give its path: rtu:/dev/{}", node.host));
   const std::string_view written =
       bracketed ? std::string_view(node.host.data() - 1, node.host.size() + 2) : node.host;
   if (const auto host = parse_host(written); !host)
-    return tl::unexpected<NetworkError>(
-        {fmt::format("the host '{}' {}", written, host.error().what), host.error().remedy});
+    return wrong(fmt::format("the host '{}' {}", written, host.error().what), host.error().remedy);
   return node;
 }
 
@@ -151,16 +161,15 @@ std::string node_argument(const std::string& argument) {
 
 tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argument,
                                                            const Connection& otherwise) {
-  if (starts_with(argument, tcp)) return parse_host_and_port(argument.substr(tcp.size()), otherwise);
+  if (starts_with(argument, tcp))
+    return parse_host_and_port(argument.substr(tcp.size()), otherwise, form_of_tcp);
   if (starts_with(argument, rtu)) return parse_serial_port(argument.substr(rtu.size()), otherwise);
   if (!starts_with(argument, rtu_over_tcp))
-    return wrong("the address of a device begins with tcp:// or rtu:");
-  auto node = parse_host_and_port(argument.substr(rtu_over_tcp.size()), otherwise);
-  constexpr auto remedy = "write rtu+tcp://HOST[:PORT][/UNIT], as in rtu+tcp://192.168.1.17:4001/1";
-  if (!node) return tl::unexpected<NetworkError>({node.error().what, remedy});
+    return wrong("the address of a device begins with tcp:// or rtu:", form_of_tcp);
+  auto node = parse_host_and_port(argument.substr(rtu_over_tcp.size()), otherwise, form_of_rtu_over_tcp);
+  if (!node) return node;
   if (!is_rtu_unit(node->unit))
-    return tl::unexpected<NetworkError>(
-        {fmt::format("with RTU the unit id '{}' is not 1 to 247", node->unit), remedy});
+    return wrong(fmt::format("with RTU the unit id '{}' is not 1 to 247", node->unit), form_of_rtu_over_tcp);
   node->framing = Framing::rtu;
   return node;
 }

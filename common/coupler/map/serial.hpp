@@ -60,7 +60,7 @@ constexpr std::chrono::milliseconds usual_timeout(bool is_rtu) {
 
 /// Those above 247 are reserved (MSL 2.2).
 constexpr std::uint8_t rtu_broadcast = 0;
-constexpr bool is_rtu_unit(unsigned unit) { return unit >= 1 && unit <= 247; }
+constexpr bool is_rtu_unit(std::uint64_t unit) { return unit >= 1 && unit <= 247; }
 
 /// "N", "E" or "O", as in 8N1.
 constexpr char parity_letter(Serial::Parity parity) { return "NEO"[static_cast<int>(parity)]; }

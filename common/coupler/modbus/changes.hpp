@@ -20,7 +20,7 @@ enum class Reason : std::uint8_t {
   overwritten = 2,  ///< another write to the same point came first
   watchdog = 3,     ///< the watchdog expired
   safe_state = 4,   ///< the outputs went to their safe state for another reason
-  reload = 5,       ///< the node reads a new map, or ends
+  reload = 5,       ///< the node reads a new map, loses or finds a chip, or ends
   connection = 6,   ///< the connection that scheduled it has ended
   hardware = 7,     ///< the line or channel could not be driven
   locked = 8,       ///< the watchdog keeps outputs in their safe state until it is reset

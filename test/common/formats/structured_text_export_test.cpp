@@ -56,6 +56,18 @@ TEST(StructuredTextExport, Requests_are_constants_that_a_PLC_can_use) {
     EXPECT_THAT(text, HasSubstr(line));
 }
 
+TEST(StructuredTextExport, A_serial_line_has_no_host_and_no_port) {
+  const auto out = structured_text(
+      "coils: {a: 0}", "name: m, unit: 3, serial: {device: /dev/ttyS0, baud: 9600, parity: none}");
+  EXPECT_THAT(out.text,
+              AllOf(HasSubstr("m_unit : BYTE := 3;"), Not(HasSubstr("m_host")), Not(HasSubstr("m_port"))));
+  EXPECT_THAT(lines_of(out.warnings.diagnostics("m")),
+              HasSubstr("use the PLC's client for Modbus RTU, at 9600 8N1"));
+  EXPECT_THAT(lines_of(structured_text("coils: {a: 0}", "name: m, framing: rtu, address: gateway, port: 4001")
+                           .warnings.diagnostics("m")),
+              HasSubstr("the coupler speaks RTU over TCP"));
+}
+
 TEST(StructuredTextExport, What_does_more_than_to_be_set_is_written_by_itself) {
   const std::string text =
       structured_text(

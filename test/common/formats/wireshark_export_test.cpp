@@ -44,5 +44,12 @@ TEST(WiresharkExport, What_only_the_node_knows_is_told) {
               HasSubstr("belong to the node and are left out: a;"));
 }
 
+TEST(WiresharkExport, A_coupler_that_speaks_RTU_is_told) {
+  EXPECT_THAT(lines_of(dissector_of("{name: m, serial: {device: /dev/ttyS0}, mapping: {coils: {a: 0}}}")
+                           .warnings.diagnostics("m")),
+              HasSubstr("the coupler speaks RTU; capture at a gateway that translates, and give its port: "
+                        "-o coupler_m.port:N"));
+}
+
 }  // namespace
 }  // namespace coupler::test

@@ -134,6 +134,16 @@ TEST(NodeAddress, What_is_wrong_is_said_with_a_remedy) {
   }
 }
 
+TEST(NodeAddress, A_serial_port_without_its_folder_is_no_host) {
+  for (const char* argument : {"tcp://ttyUSB0", "tcp://ttyACM1/17", "rtu+tcp://ttyS0"}) {
+    const auto node = parse_node_address(argument);
+    ASSERT_FALSE(node) << argument;
+    EXPECT_THAT(node.error().what, HasSubstr("is the name of a serial port"));
+    EXPECT_THAT(node.error().remedy, HasSubstr("rtu:/dev/tty"));
+  }
+  EXPECT_TRUE(parse_node_address("tcp://tty-gateway"));
+}
+
 TEST(NodeAddress, Its_host_is_one_that_a_map_may_have) {
   const std::pair<const char*, const char*> cases[] = {
       {"tcp://192.168.1.300", "the host '192.168.1.300' is not an IP address"},

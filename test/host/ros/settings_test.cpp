@@ -78,6 +78,25 @@ TEST(Settings, The_stronger_side_says_the_whole_way_to_the_device) {
   EXPECT_FALSE(overlay(arguments, parameters).serial);
 }
 
+TEST(Settings, What_belongs_to_a_place_goes_with_it) {
+  Settings at_an_address;
+  at_an_address.address = "cell";
+  at_an_address.port = 1502;
+  at_an_address.framing = Framing::rtu;
+  Settings on_a_line;
+  on_a_line.serial = "/dev/ttyUSB0";
+  on_a_line.baud = 9600;
+  on_a_line.parity = Serial::Parity::none;
+  on_a_line.stop_bits = 2;
+  on_a_line.rs485 = true;
+  const Settings line = overlay(at_an_address, on_a_line);
+  EXPECT_FALSE(line.port || line.framing);
+  EXPECT_EQ(line.baud, 9600U);
+  const Settings address = overlay(on_a_line, at_an_address);
+  EXPECT_FALSE(address.baud || address.parity || address.stop_bits || address.rs485);
+  EXPECT_EQ(address.port, 1502);
+}
+
 TEST(Settings, Settings_that_a_serial_port_cannot_have_are_refused) {
   const std::pair<const char*, const char*> cases[] = {{"baud", "9601"},     {"parity", "N"},
                                                        {"stop_bits", "3"},   {"rs485", "maybe"},

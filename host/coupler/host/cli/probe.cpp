@@ -15,179 +15,21 @@
 #include "coupler/generate/output.hpp"
 #include "coupler/host/cli/interruption.hpp"
 #include "coupler/host/cli/modbus_client.hpp"
+#include "coupler/host/cli/probe_call.hpp"
 #include "coupler/host/cli/probe_report.hpp"
 #include "coupler/host/cli/progress_bar.hpp"
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/scan/known_value.hpp"
 #include "coupler/host/scan/scan.hpp"
 #include "coupler/map/fields.hpp"
-#include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/node_address.hpp"
 
 namespace coupler::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using scan::Task;
 
-struct Arguments {
-  std::string host;
-  std::vector<std::string> units;
-  std::uint32_t from = Task{}.window.start();
-  std::uint32_t to = Task{}.window.last();
-  std::uint32_t stride = Task{}.stride;
-  double rate = Task{}.rate;
-  double timeout = 0;  ///< s; 0: not given
-  std::vector<std::string> bauds;
-  std::vector<std::string> parities;
-  std::vector<std::string> known;
-  std::string out;
-  bool force = false;
-};
-
-struct Call {
-  Connection connection;
-  std::vector<Serial> lines;  ///< to try until a unit answers; one without a device: it is reached by TCP
-  Task task;
-  std::vector<scan::KnownValue> known;
-};
-
-/// Why a call cannot be understood, and what to do.
-struct WrongCall {
-  std::string what;
-  std::string remedy;
-};
-
-/// Units that can be asked; 248 to 254 are reserved, and 0 is a broadcast with RTU.
-bool is_unit(std::uint64_t unit, bool is_rtu) {
-  return is_rtu ? unit >= 1 && unit <= 247 : unit <= 247 || unit == 255;
-}
-
-/// "5" or "1-247".
-bool add_units(std::string_view text, bool is_rtu, std::vector<std::uint8_t>& units) {
-  const auto dash = text.find('-');
-  const auto first = loader::parse_unsigned(text.substr(0, dash));
-  const auto last = dash == std::string_view::npos ? first : loader::parse_unsigned(text.substr(dash + 1));
-  if (!first || !last || *first > *last || !is_unit(*first, is_rtu) || !is_unit(*last, is_rtu)) return false;
-  for (auto unit = *first; unit <= *last; ++unit)
-    if (is_unit(unit, is_rtu)) units.push_back(static_cast<std::uint8_t>(unit));
-  return true;
-}
-
-bool names_a_unit(const NodeAddress& where, std::string_view address) {
-  const auto* const end = where.serial.present() ? where.serial.device.end() : where.host.end();
-  const std::string_view rest = address.substr(static_cast<std::size_t>(end - address.begin()));
-  const auto slash = rest.find('/');
-  return slash != std::string_view::npos && slash + 1 < rest.size();
-}
-
-/// Empty: those that are asked by default.
-tl::expected<std::vector<std::uint8_t>, WrongCall> units_of(const Arguments& arguments,
-                                                            const NodeAddress& where, bool has_unit) {
-  std::vector<std::uint8_t> units;
-  const bool is_rtu = where.serial.present() || where.framing == Framing::rtu;
-  for (const std::string& text : arguments.units)
-    if (!add_units(text, is_rtu, units))
-      return tl::make_unexpected(WrongCall{
-          fmt::format("'{}' is not a unit id", text),
-          is_rtu ? "give 1 to 247, as --units 1-10,17" : "give 0 to 247 or 255, as --units 1-10,255"});
-  if (!units.empty()) return units;
-  if (has_unit && !is_unit(where.unit, is_rtu))
-    return tl::make_unexpected(
-        WrongCall{fmt::format("unit {} is reserved", where.unit), "give 0 to 247 or 255"});
-  if (has_unit) units.push_back(where.unit);
-  return units;
-}
-
-tl::expected<std::vector<scan::KnownValue>, WrongCall> known_values(const std::vector<std::string>& texts) {
-  std::vector<scan::KnownValue> known;
-  for (const std::string& text : texts) {
-    auto value = scan::parse_known_value(text);
-    if (!value)
-      return tl::make_unexpected(WrongCall{"--known: " + value.error(), "see `coupler probe --help`"});
-    for (const scan::KnownValue& other : known)
-      if (!other.name.empty() && other.name == value->name)
-        return tl::make_unexpected(WrongCall{fmt::format("two values are named '{}'", other.name),
-                                             "give each --known its own name"});
-    known.push_back(std::move(*value));
-  }
-  return known;
-}
-
-/// The settings of a serial port that are tried: what is given, otherwise what is usual, the most usual
-/// first.
-tl::expected<std::vector<Serial>, WrongCall> lines_of(const Arguments& arguments, const Serial& line,
-                                                      const std::string& address) {
-  const auto gives = [&](std::string_view key) { return address.find(key) != std::string::npos; };
-  std::vector<std::uint32_t> bauds;
-  for (const std::string& text : arguments.bauds) {
-    const auto baud = loader::parse_unsigned(text);
-    if (!baud || *baud > 4'000'000 || !is_serial_rate(static_cast<std::uint32_t>(*baud)))
-      return tl::make_unexpected(WrongCall{fmt::format("'{}' is no rate of serial ports", text),
-                                           "give one as 9600, 19200 or 115200"});
-    bauds.push_back(static_cast<std::uint32_t>(*baud));
-  }
-  std::vector<Serial::Parity> parities;
-  for (const std::string& text : arguments.parities) {
-    const auto parity = parse_word<Serial::Parity>(text);
-    if (!parity)
-      return tl::make_unexpected(WrongCall{fmt::format("'{}' is no parity", text), "give even, odd or none"});
-    parities.push_back(*parity);
-  }
-  if (bauds.empty() && gives("baud=")) bauds = {line.baud};
-  if (bauds.empty()) bauds = {9600, 19200, 115200, 38400, 57600, 4800};
-  if (parities.empty() && gives("parity=")) parities = {line.parity};
-  if (parities.empty()) parities = {Serial::Parity::none, Serial::Parity::even};
-  std::vector<Serial> lines;
-  for (const std::uint32_t baud : bauds)
-    for (const Serial::Parity parity : parities) {
-      lines.push_back(line);
-      lines.back().baud = baud;
-      lines.back().parity = parity;
-    }
-  return lines;
-}
-
-/// A unit on a serial line answers within some milliseconds, and there are many to be asked.
-std::chrono::milliseconds timeout_of(const Arguments& arguments, bool is_serial) {
-  const double seconds = arguments.timeout > 0 ? arguments.timeout : is_serial ? 0.1 : 1;
-  return std::chrono::milliseconds(static_cast<long>(seconds * 1000));
-}
-
-/// What the command line means. The connection is a view of `address`.
-tl::expected<Call, WrongCall> understand(const Arguments& arguments, const std::string& address) {
-  const auto where = parse_node_address(address);
-  if (!where) return tl::make_unexpected(WrongCall{where.error().what, where.error().remedy});
-  if (arguments.from > arguments.to)
-    return tl::make_unexpected(WrongCall{
-        fmt::format("--from {} is greater than --to {}", arguments.from, arguments.to), "swap them"});
-  auto units = units_of(arguments, *where, names_a_unit(*where, address));
-  if (!units) return tl::make_unexpected(units.error());
-  auto known = known_values(arguments.known);
-  if (!known) return tl::make_unexpected(known.error());
-  Call call;
-  call.connection = found_at({}, *where).connection;
-  const Serial& line = call.connection.serial;
-  call.connection.timeout = timeout_of(arguments, line.present());
-  call.lines = {line};
-  if (!line.present() && !(arguments.bauds.empty() && arguments.parities.empty()))
-    return tl::make_unexpected(WrongCall{"--baud and --parity are for a serial port",
-                                         "give its path, as /dev/ttyUSB0, or leave them out"});
-  if (line.present()) {
-    auto lines = lines_of(arguments, line, address);
-    if (!lines) return tl::make_unexpected(lines.error());
-    call.lines = std::move(*lines);
-  }
-  if (units->empty() && call.connection.is_rtu()) add_units("1-247", true, *units);
-  if (!units->empty()) call.task.units = std::move(*units);
-  call.task.stride = arguments.stride;
-  call.task.rate = arguments.rate;
-  call.task.window = modbus::Range::of(arguments.from, arguments.to - arguments.from + 1);
-  call.known = std::move(*known);
-  return call;
-}
-
-scan::Findings look(const Call& call, ProgressBar& progress) {
+scan::Findings look(const ProbeCall& call, ProgressBar& progress) {
   ModbusClient client(call.connection);
   host::SteadyClock clock;
   const Interruption interruption([&] {
@@ -199,7 +41,7 @@ scan::Findings look(const Call& call, ProgressBar& progress) {
 }
 
 /// With the settings of the line at which a unit has answered.
-scan::Findings look_at_each_line(Call& call) {
+scan::Findings look_at_each_line(ProbeCall& call) {
   ProgressBar progress;
   scan::Findings findings;
   bool is_asked = false;
@@ -220,7 +62,7 @@ scan::Findings look_at_each_line(Call& call) {
 }
 
 /// Before anything is asked: a draft that cannot be written would cost a scan.
-tl::expected<void, WrongCall> can_write(const Arguments& arguments) {
+tl::expected<void, WrongCall> can_write(const ProbeArguments& arguments) {
   if (names_no_file(arguments.out)) return {};
   const fs::path path(arguments.out);
   std::error_code ignored;
@@ -251,7 +93,7 @@ Exit write(const std::string& path, const std::string& text) {
   return ok;
 }
 
-Exit run(const Arguments& arguments) {
+Exit run(const ProbeArguments& arguments) {
   const std::string address = node_argument(arguments.host);
   auto call = understand(arguments, address);
   if (!call) return complain("probe", bad_call, call.error().what, call.error().remedy);
@@ -310,7 +152,7 @@ void add_probe(Program& program, Exit& exit) {
   auto command = program.add_command(
       "probe",
       "Find out what a device without a map answers to, and draft its map. It reads and never writes.");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ProbeArguments>();
   command.add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], or a serial port as /dev/ttyUSB0[/UNIT]")
       .required()
       .type_name("");

@@ -17,6 +17,7 @@
 #include "coupler/host/modbus/make_transports.hpp"
 #include "coupler/host/modbus/multi_unit_transport.hpp"
 #include "coupler/host/ros/diagnostics.hpp"
+#include "coupler/host/ros/place_check.hpp"
 #include "coupler/host/ros/program.hpp"
 #include "coupler/map/diagnostic.hpp"
 #include "coupler/map/loader/load.hpp"
@@ -29,13 +30,6 @@ constexpr auto shutdown_check_interval = std::chrono::milliseconds(50);
 
 using Source = tl::expected<MapSource, int>;
 using LogFunction = std::function<void(Level, const std::string&)>;
-
-/// What is wrong with the place of a device that is read, or an empty text.
-std::string place_error(const Settings& settings, const Connection& connection) {
-  if (settings.address && settings.serial) return "both address and serial are given; give one of them";
-  if (!connection.is_rtu() || is_rtu_unit(connection.unit)) return {};
-  return fmt::format("unit {} cannot be asked; with RTU give 1 to 247", connection.unit);
-}
 
 /// Finds one map at a time. The settings must outlive what it finds.
 class MapFinder {
@@ -131,6 +125,8 @@ class MapFinder {
     apply(settings, asked);
     if (const auto wrong = place_error(settings, asked.connection); !wrong.empty())
       return fail(wrong_call, wrong);
+    if (const auto useless = useless_setting(settings, found_at({}, node)); !useless.empty())
+      return fail(wrong_call, useless);
     const std::string where = place_text(asked.connection);
     const auto transport = make_transport(asked.connection);
     MapDiagnostics diagnostics(asked.connection, node_);
@@ -174,16 +170,6 @@ std::string find_conflict(const Map* built_in, const Settings& settings, const D
         "maps, "
         "or give them for each device {}",
         dialect.device_setting);
-  return {};
-}
-
-std::string broadcast_error(const Map& map) {
-  if (map.coupler_watchdog.present())
-    return "unit 0 is a broadcast, which nobody answers, but 'watchdog' needs answers; give 1 to 247";
-  for (const Point& point : map.points)
-    if (needs_answers(point, map.limits))
-      return fmt::format(
-          "unit 0 is a broadcast, which nobody answers, but {} needs to be read; give 1 to 247", point.name);
   return {};
 }
 
@@ -252,6 +238,8 @@ tl::expected<Devices, std::string> configure(
   for (MapSource& source : sources) {
     auto settings = settings_of(source.map.name);
     if (!settings) return tl::make_unexpected(settings.error());
+    if (const auto useless = useless_setting(*settings, source.map); !useless.empty())
+      return tl::make_unexpected(fmt::format("{}: {}", source.map.name, useless));
     DeviceConfig& device = devices.emplace_back(DeviceConfig{std::move(*settings), std::move(source)});
     apply(device.settings, device.source.map);
   }

@@ -270,8 +270,18 @@ Settings overlay(Settings weak, const Settings& strong) {
     weak.map = strong.map;
     weak.maps = strong.maps;
   }
-  if (strong.serial) weak.address.reset();
-  if (strong.address) weak.serial.reset();
+  if (strong.serial) {
+    weak.address.reset();
+    weak.port.reset();
+    weak.framing.reset();
+  }
+  if (strong.address) {
+    weak.serial.reset();
+    weak.baud.reset();
+    weak.parity.reset();
+    weak.stop_bits.reset();
+    weak.rs485.reset();
+  }
   prefer(weak.name, strong.name);
   prefer(weak.address, strong.address);
   prefer(weak.port, strong.port);

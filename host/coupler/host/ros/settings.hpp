@@ -70,7 +70,7 @@ tl::expected<Settings, std::string> settings_among(
 std::optional<std::string> text_of(const Settings& settings, std::string_view key);
 
 /// What is set in `strong`, and the rest of `weak`. `map` and `maps` count as one setting, and so do an
-/// address and a serial port.
+/// address and a serial port, each with what belongs to it.
 Settings overlay(Settings weak, const Settings& strong);
 
 /// As if all values of the map had been set.
