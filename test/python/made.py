@@ -51,8 +51,8 @@ class Made(unittest.TestCase):
         module = importlib.util.module_from_spec(spec)
         sys.modules[path.stem] = module  # as an import does; dataclasses look there
         spec.loader.exec_module(module)
-        kind, = re.findall(r"^class (\w+)\(Client\)", path.read_text(encoding="utf-8"), re.M)
-        return module, getattr(module, kind)
+        kinds = re.findall(r"^class (\w+)\(\w*Client\)", path.read_text(encoding="utf-8"), re.M)
+        return module, getattr(module, kinds[-1])
 
     def vectors(self, text, name="cell"):
         self.generate(text, "--vectors", name=name)

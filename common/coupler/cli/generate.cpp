@@ -22,7 +22,6 @@
 #include "coupler/generate/code.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/generate/python.hpp"
-#include "coupler/map/diagnostic.hpp"
 #include "coupler/test_vectors/json.hpp"
 
 namespace coupler::cli {
@@ -112,10 +111,10 @@ Exit write_python(const Arguments& arguments, const generate::Provenance& proven
   if (!generate::is_name(provenance.name))
     return complain("generate", bad_call, fmt::format("'{}' is not a valid name in Python", provenance.name),
                     "give another one with --name: letters, digits and underscores, beginning with a letter");
-  if (map.connection.is_rtu())
-    print({Diagnostic{Diagnostic::Severity::warning, arguments.map, 0, 0,
-                      "the client in Python speaks Modbus/TCP, and the map's coupler speaks RTU",
-                      "give it the address and port of a gateway that translates"}});
+  if (map.connection.is_broadcast())
+    return complain("generate", bad_input,
+                    "the client in Python waits for answers, and unit 0 is a broadcast",
+                    "write from C++, or give the map the unit of one coupler");
   return write(arguments, {{provenance.name + "_client.py", generate::python_client(map, provenance)}});
 }
 

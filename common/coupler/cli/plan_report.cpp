@@ -25,8 +25,13 @@ std::string counted(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-std::string milliseconds_text(std::chrono::nanoseconds time) {
-  return fmt::format("{:.4g} ms", milliseconds(time));
+/// Never as 1e+04.
+std::string digits(double value, int at_most) {
+  return value < 999 ? fmt::format("{:.{}g}", value, at_most) : fmt::format("{:.0f}", value);
+}
+
+std::string milliseconds_text(std::chrono::duration<double, std::milli> time) {
+  return digits(time.count(), 4) + " ms";
 }
 
 /// What is read: "12 registers and 3 bits".
@@ -38,10 +43,11 @@ std::string amount(const plan::Cost& cost) {
 
 std::string group_text(const plan::GroupPlan& group, const Map& map, const plan::NetworkTiming& timing) {
   const plan::Cost cost = cost_of(group, timing);
-  const auto period = std::chrono::duration<double, std::milli>(1000 / group.rate).count();
-  auto text = fmt::format("{:g} Hz: {}, {}, {} bytes; {} of {:.4g} ms ({})\n", group.rate,
-                          counted(cost.requests, "request"), amount(cost), cost.bytes,
-                          milliseconds_text(cost.time), period, percent(plan::load(cost, group.rate)));
+  const std::chrono::duration<double, std::milli> period(1000 / group.rate);
+  auto text =
+      fmt::format("{:g} Hz: {}, {}, {} bytes; {} of {} ({})\n", group.rate, counted(cost.requests, "request"),
+                  amount(cost), cost.bytes, milliseconds_text(cost.time), milliseconds_text(period),
+                  percent(plan::load(cost, group.rate)));
   if (group.spans.empty()) return text;
   const auto row = [&text](auto&&... cells) {
     text += fmt::format("  {:<17}  {:>14}  {:>15}  {:>6}  {}\n", cells...);
@@ -163,7 +169,7 @@ ordered_json strategy_json(const plan::Strategy& strategy) {
 }  // namespace
 
 std::string percent(double load) {
-  return load > 0 && load < 0.001 ? "< 0.1 %" : fmt::format("{:.3g} %", 100 * load);
+  return load > 0 && load < 0.001 ? "< 0.1 %" : digits(100 * load, 3) + " %";
 }
 
 std::string plan_text(const std::string& file, const Map& map, const plan::NetworkTiming& timing) {

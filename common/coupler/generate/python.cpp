@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/generate/python.hpp"
 
+#include <algorithm>
 #include <array>
+#include <chrono>
+#include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
@@ -36,6 +39,14 @@ constexpr std::string_view taken_by_int[] = {
     "not",        "numerator",  "or",       "pass",      "raise",      "real",
     "return",     "to_bytes",   "try",      "value",     "while",      "with",
     "yield"};
+
+std::vector<std::string_view> taken_by(const Connection& connection) {
+  std::vector<std::string_view> names(std::begin(taken_by_client), std::end(taken_by_client));
+  if (connection.serial.present())
+    for (const std::string_view name : {"baud", "device", "parity", "rs485", "stop_bits"})
+      names.push_back(name);
+  return names;
+}
 
 /// A str of Python, in one line of printable characters.
 std::string python_literal(std::string_view text) {
@@ -168,27 +179,49 @@ std::string keys_left_out(const Map& map) {
   add(map.on_reconnect == OnReconnect::restore, "on_reconnect");
   add(map.on_shutdown == OnShutdown::safe, "on_shutdown");
   add(map.coupler_watchdog.present(), "watchdog (of the coupler)");
-  add(map.connection.serial.present(), "serial");
-  add(map.connection.framing == Framing::rtu, "framing");
   if (out.empty()) return out;
   return "    # The map has keys that this client does not carry out: " + out + ".\n";
 }
 
 constexpr auto class_form = R"(
 
-class {class_name}(Client):
+class {class_name}({base}):
     """The coupler of the map {map}."""
 
-{left_out}    fingerprint = 0x{fingerprint:016x}
+{left_out}{rs485}    fingerprint = 0x{fingerprint:016x}
     _plan = (
 {requests}    )
     _request_gap = {request_gap}
     _connect_delay = {connect_delay}
 
-    def __init__(self, address: str{address}, port: int = {port}, *, unit: int = {unit}, timeout: float = {timeout},
+    def __init__(self, {place}, unit: int = {unit}, timeout: float = {timeout},
                  verify: Verify | str = Verify.{verify}) -> None:
-        super().__init__(address, port, unit, timeout, verify)
+        super().__init__({place_names}, unit, timeout, verify)
 {points})";
+
+/// What the constructor takes to find the coupler.
+std::string place_arguments(const Connection& connection) {
+  const auto given = [](std::string_view place) {
+    return place.empty() ? std::string() : " = " + python_literal(place);
+  };
+  const Serial& line = connection.serial;
+  if (!line.present())
+    return fmt::format("address: str{}, port: int = {}, *", given(connection.address), connection.port);
+  return fmt::format("device: str{}, *, baud: int = {}, parity: str = \"{}\", stop_bits: int = {}",
+                     given(line.device), line.baud, to_string(line.parity), line.stop_bits);
+}
+
+std::string_view base_class(const Connection& connection) {
+  if (connection.serial.present()) return "SerialClient";
+  return connection.is_rtu() ? "RtuClient" : "Client";
+}
+
+/// Silence between frames counts, too; not every release of pymodbus keeps it.
+std::chrono::duration<double> pause_after_reply(const Map& map) {
+  const std::chrono::duration<double> gap = map.limits.request_gap;
+  const Serial& line = map.connection.serial;
+  return line.present() ? std::max<std::chrono::duration<double>>(gap, silence_between_frames(line)) : gap;
+}
 
 std::string capitals(std::string_view word) {
   std::string text(word);
@@ -196,9 +229,7 @@ std::string capitals(std::string_view word) {
   return text;
 }
 
-std::string seconds(std::chrono::milliseconds duration) {
-  return codec::decimal(std::chrono::duration<double>(duration).count());
-}
+std::string seconds(std::chrono::duration<double> duration) { return codec::decimal(duration.count()); }
 
 }  // namespace
 
@@ -213,7 +244,7 @@ std::string python_class(std::string_view name) {
 }
 
 std::string python_client(const Map& map, const Provenance& provenance) {
-  const auto names = identifiers(names_of(map), taken_by_client, is_name);
+  const auto names = identifiers(names_of(map), taken_by(map.connection), is_name);
   std::string points;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Point& point = map.points[i];
@@ -222,8 +253,7 @@ std::string python_client(const Map& map, const Provenance& provenance) {
                           printable(documentation(point)), names[i], kind, python_type(point), kind,
                           spec(map.limits, point, names[i]));
   }
-  const std::string address =
-      map.connection.address.empty() ? std::string() : " = " + python_literal(map.connection.address);
+  const Connection& connection = map.connection;
   return fmt::format(
              // In the first two lines, Python takes "coding=…" of a comment for the encoding: the first one
              // that it finds. With some encodings a description would be code.
@@ -232,15 +262,20 @@ std::string python_client(const Map& map, const Provenance& provenance) {
              "# {} as a client in Python, fingerprint {:016x}.\n",
              provenance.version, printable(provenance.source), map.fingerprint)
       .append(python_body())
+      .append(connection.is_rtu() ? python_rtu_body() : "")
       .append(value_classes(map, names))
-      .append(fmt::format(class_form, fmt::arg("class_name", python_class(provenance.name)),
-                          fmt::arg("map", map.name), fmt::arg("left_out", keys_left_out(map)),
-                          fmt::arg("fingerprint", map.fingerprint), fmt::arg("requests", requests(map)),
-                          fmt::arg("request_gap", seconds(map.limits.request_gap)),
-                          fmt::arg("connect_delay", seconds(map.limits.connect_delay)),
-                          fmt::arg("address", address), fmt::arg("verify", capitals(to_string(map.verify))),
-                          fmt::arg("port", map.connection.port), fmt::arg("unit", map.connection.unit),
-                          fmt::arg("timeout", seconds(map.connection.timeout)), fmt::arg("points", points)));
+      .append(fmt::format(
+          class_form, fmt::arg("class_name", python_class(provenance.name)), fmt::arg("map", map.name),
+          fmt::arg("left_out", keys_left_out(map)), fmt::arg("fingerprint", map.fingerprint),
+          fmt::arg("requests", requests(map)), fmt::arg("base", base_class(connection)),
+          fmt::arg("rs485", connection.serial.rs485 ? "    rs485 = True\n" : ""),
+          fmt::arg("request_gap", seconds(pause_after_reply(map))),
+          fmt::arg("connect_delay", seconds(map.limits.connect_delay)),
+          fmt::arg("place", place_arguments(connection)),
+          fmt::arg("place_names",
+                   connection.serial.present() ? "device, baud, parity, stop_bits" : "address, port"),
+          fmt::arg("verify", capitals(to_string(map.verify))), fmt::arg("unit", connection.unit),
+          fmt::arg("timeout", seconds(connection.timeout)), fmt::arg("points", points)));
 }
 
 }  // namespace coupler::generate

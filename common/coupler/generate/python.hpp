@@ -16,7 +16,8 @@ std::string python_client(const Map& map, const Provenance& provenance);
 /// "HallPressClient" of "hall_press".
 std::string python_class(std::string_view name);
 
-/// The part of the file that no map changes.
+/// The part of the file that no map changes, and what comes behind it where the coupler speaks RTU.
 std::string_view python_body();
+std::string_view python_rtu_body();
 
 }  // namespace coupler::generate

@@ -59,11 +59,11 @@ class Generate(Cli):
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "cell_client.py: written\n", ""))
         self.assertIn("\nclass CellClient(Client):\n", (self.folder / "cell_client.py").read_text(encoding="utf-8"))
 
-    def test_says_that_a_client_in_python_has_no_serial_line(self):
-        on_a_line = GOOD + "serial: {device: /dev/ttyS0}\n"
-        done = self.coupler("generate", self.file("cell.yaml", on_a_line), "--python")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("warning: the client in Python speaks Modbus/TCP, and the map's coupler speaks RTU", done.stderr)
+    def test_refuses_a_client_in_python_for_a_broadcast(self):
+        broadcast = "name: all\nunit: 0\nserial: {device: /dev/ttyS0}\nmapping: {coils: {stop: {address: 0, access: write}}}\n"
+        done = self.coupler("generate", self.file("all.yaml", broadcast), "--python")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("unit 0 is a broadcast", done.stderr)
 
     def test_names_a_client_in_python_after_the_map(self):
         self.coupler("generate", self.file("cell.yaml", GOOD.replace("cell", "hall/cell")), "--python")

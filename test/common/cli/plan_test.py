@@ -44,6 +44,7 @@ class Plan(Cli):
         done = self.plan("--rtt", "5")
         self.assertEqual(done.returncode, 0)
         self.assertIn("cell.yaml: warning: the reads need 200 % of the time", done.stderr)
+        self.assertIn("cell.yaml: warning: the reads need 2000 % of the time", self.plan("--rtt", "50").stderr)
 
     def test_in_json_has_every_request(self):
         plan = self.json()

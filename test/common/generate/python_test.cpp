@@ -45,6 +45,27 @@ TEST(Python, The_connection_is_the_maps) {
                     HasSubstr("_request_gap = 0.002\n    _connect_delay = 0.003\n")));
 }
 
+TEST(Python, On_a_serial_line_the_port_and_its_settings_are_the_maps) {
+  const auto owned = testing::sample();
+  Map map = owned->map();
+  map.connection.serial = {"/dev/ttyUSB0", 9600, Serial::Parity::none, 2, true};
+  const std::string text = python_client(map, python_provenance);
+  EXPECT_THAT(text, AllOf(HasSubstr("class CellClient(SerialClient):"),
+                          HasSubstr("device: str = \"/dev/ttyUSB0\", *, baud: int = 9600, parity: str = "
+                                    "\"none\", stop_bits: int = 2, unit: int = 7"),
+                          HasSubstr("    rs485 = True\n"), HasSubstr("_request_gap = 0.00401")))
+      << "3.5 characters of 11 bits at 9600 baud";
+}
+
+TEST(Python, RTU_over_TCP_has_an_address) {
+  const auto owned = testing::sample();
+  Map map = owned->map();
+  map.connection.framing = Framing::rtu;
+  EXPECT_THAT(python_client(map, python_provenance),
+              AllOf(HasSubstr("class CellClient(RtuClient):"), HasSubstr("address: str = \"cell.local\"")));
+  EXPECT_THAT(python_file(), Not(HasSubstr("RtuClient"))) << "nobody else needs it";
+}
+
 TEST(Python, A_point_has_its_kind_its_type_and_a_comment) {
   EXPECT_THAT(python_file(),
               AllOf(HasSubstr("        #: Lamp above the door: BOOL; coils 3.\n"

@@ -88,3 +88,4 @@ class RtuServer:
     def end(self):
         self._loop.call_soon_threadsafe(self._stopped.set)
         self._thread.join(PATIENCE)
+        self._loop.close()

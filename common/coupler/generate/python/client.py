@@ -169,26 +169,38 @@ class Client:
             return
         if not self._wanted:
             raise NotConnected("not connected; call connect() first, or use the client in a `with` statement")
-        where = f"{self.address} port {self.port}"
         try:
-            # No repeated requests: pymodbus would connect for them by itself, and nobody would compare the maps.
-            modbus = _ModbusTcpClient(self.address, port=self.port, timeout=self.timeout, retries=0)
+            modbus = self._new_modbus()
             if hasattr(modbus, "params"):
                 modbus.params.timeout = self.timeout  # 3.0 cuts it to whole seconds
             is_open = modbus.connect()
         except (OSError, ValueError) as error:
-            raise NotConnected(f"cannot connect to {where}: {error}; check the address") from error
+            raise NotConnected(f"cannot connect to {self._place()}: {error}; check {self._advice()}") from error
         if not is_open:
-            raise NotConnected(f"cannot connect to {where}; check that the device runs, and its address and port (the log of "
-                               "pymodbus has the reason)")
+            raise NotConnected(f"cannot connect to {self._place()}; check {self._advice()} (the log of pymodbus has the "
+                               "reason)")
         self._modbus = modbus
-        self._next_request = time.monotonic() + self._connect_delay
+        self._next_request = max(self._next_request, time.monotonic() + self._connect_delay)
         self._one_by_one.clear()
         try:
             self._compare_maps()
         except BaseException:
             self._drop()
             raise
+
+    def _new_modbus(self) -> Any:
+        """No repeated requests: pymodbus would connect for them by itself, and nobody would compare the maps."""
+        return _ModbusTcpClient(self.address, port=self.port, timeout=self.timeout, retries=0)
+
+    def _place(self) -> str:
+        return f"{self.address} port {self.port}"
+
+    def _advice(self) -> str:
+        return "that the device runs, and its address and port"
+
+    def _node_address(self) -> str:
+        host = f"[{self.address}]" if ":" in self.address else self.address
+        return f"tcp://{host}:{self.port}/{self.unit}"
 
     def _compare_maps(self) -> None:
         if self.verify is Verify.OFF:
@@ -207,9 +219,8 @@ class Client:
         found = int.from_bytes(struct.pack(">4H", *area[3:7]), "big")
         if found == self.fingerprint:
             return
-        host = f"[{self.address}]" if ":" in self.address else self.address
         why = (f"the map differs from the device's: fingerprint {self.fingerprint:016x} here, {found:016x} in the device; "
-               f"`coupler diff MAP tcp://{host}:{self.port}/{self.unit}` shows the differences")
+               f"`coupler diff MAP {self._node_address()}` shows the differences")
         if self.verify is Verify.REQUIRE:
             raise OtherMap(f"{why}. Nothing is read or written. Generate this file again from the map that the device has, or "
                            "accept it with verify=Verify.WARN")
@@ -252,9 +263,7 @@ class Client:
 
     def _answers(self, reply: Any, function: int, request: dict[str, Any]) -> bool:
         """The reply is that to this request. pymodbus does not see to it: 3.0 compares no ids, and no release the rest."""
-        transaction = getattr(self._modbus, "transaction", None)
-        asked = getattr(transaction, "tid", getattr(transaction, "next_tid", None))  # later releases have the second
-        if asked is not None and reply.transaction_id != asked:
+        if not self._has_id_of_request(reply):
             return False
         if reply.function_code & 0x7F != function:
             return False
@@ -273,6 +282,11 @@ class Client:
         # 5 and 6; later releases have no `value`.
         values = [reply.value] if hasattr(reply, "value") else reply.bits if function == 5 else reply.registers
         return list(values) == [request["value"]]
+
+    def _has_id_of_request(self, reply: Any) -> bool:
+        transaction = getattr(self._modbus, "transaction", None)
+        asked = getattr(transaction, "tid", getattr(transaction, "next_tid", None))  # later releases have the second
+        return asked is None or reply.transaction_id == asked
 
     def _lost(self, began: float, why: Any) -> Lost:
         if time.monotonic() - began >= 0.99 * self.timeout:
