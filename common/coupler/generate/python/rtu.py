@@ -23,10 +23,15 @@ class RtuClient(Client):
                 return getattr(reply, name) == self.unit
         return True
 
-    def _drop(self) -> None:
-        """What was asked last may still be answered, and nothing tells whom the answer is for."""
-        super()._drop()
-        self._next_request = max(self._next_request, time.monotonic() + self.timeout)
+    def _ask(self, method: str, function: int, **request: Any) -> Any:
+        try:
+            return super()._ask(method, function, **request)
+        except ExceptionReply:
+            raise
+        except BaseException:
+            # The answer may still come, and nothing tells which request it is for.
+            self._next_request = time.monotonic() + self.timeout
+            raise
 
 
 class SerialClient(RtuClient):
