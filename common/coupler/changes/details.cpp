@@ -86,6 +86,23 @@ std::string sim_text(const Map& map) {
   return text;
 }
 
+std::string security_text(const Map& map) {
+  std::string text;
+  for (const Role& role : map.security.roles) {
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", role.name);
+    for (const auto& [verb, right] : {std::pair("reads", Right::read), std::pair("writes", Right::write)}) {
+      std::string points;
+      for (std::size_t i = 0; i < map.points.size(); ++i)
+        if (role.may(right, i)) points += fmt::format(" {}", map.points[i].name);
+      text += fmt::format(" {}{}", verb, points.empty() ? " nothing" : points);
+    }
+  }
+  if (map.security.present())
+    text += fmt::format(", everybody is {}",
+                        map.security.plain ? map.security.roles[*map.security.plain].name : "nobody");
+  return text;
+}
+
 }  // namespace
 
 std::vector<Detail> details_of(const Point& point) {
@@ -115,6 +132,7 @@ std::vector<Detail> details_of(const Map& map) {
       {"allow-changed", compatible, fmt::format("{}", fmt::join(allow.begin(), allow.end(), ", "))},
       {"coupler-watchdog-changed", compatible, watchdog_text(map.coupler_watchdog)},
       {"sim-changed", compatible, sim_text(map)},
+      {"security-changed", compatible, security_text(map)},
   };
 }
 

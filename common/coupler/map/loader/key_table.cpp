@@ -117,6 +117,9 @@ constexpr Key keys[] = {
     project("allow", S::map, K::list, "[192.168.0.0/24, 10.0.0.7]", "who may connect to the node"),
     project("watchdog", S::map, K::section, "{timeout: 500ms}", "safe state when the client is silent")
         .holds(S::watchdog),
+    project("security", S::map, K::section, "{roles: {viewer: {read: all}}, plain: viewer}",
+            "who may read and write which points of the node")
+        .holds(S::security),
     project("readback", S::map, K::boolean, "true", "compare a line's level after driving it")
         .otherwise("false"),
     // The tables.
@@ -307,6 +310,13 @@ constexpr Key keys[] = {
         .otherwise("automatic")
         .one_of<Watchdog::Recovery>(),
     project("heartbeat", S::watchdog, K::address, "100", "the register that a PLC's program watches"),
+    // `security:`
+    project("roles", S::security, K::roles, "{viewer: {read: all}}", "what clients of each role may do")
+        .holds(S::role)
+        .needed(),
+    project("plain", S::security, K::text, "viewer", "the role of every client").otherwise("none"),
+    project("read", S::role, K::patterns, "[door, \"valve_*\"]", "which points it may read").otherwise("none"),
+    project("write", S::role, K::patterns, "[lamp, \"valve_*\"]", "which points it may write").otherwise("none"),
     // `serial:`
     project("device", S::serial, K::text, "/dev/ttyUSB0", "the port's device file").needed(),
     project("baud", S::serial, K::integer, "9600", "bits a second").otherwise("19200").within(50, 4000000),

@@ -167,6 +167,7 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   check_unreadable(unreadable, points, context);
   check_broadcast(top, points, head, context);
   check_reserved(reserved, points, context);
+  head.security = read_security(top, points, context);
   if (problems.has_errors()) return std::nullopt;
   head.unreadable = map.keep(sorted_unreadable(unreadable));
   return finish(head, points, sim, source.text, defaults.addressing, map);

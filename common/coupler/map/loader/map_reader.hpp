@@ -32,6 +32,9 @@ Limits read_limits(const Reader& top);
 /// What the top of the file says about a node that serves the map.
 Service read_service(const Reader& top, const Context& context);
 
+/// `security:`. The rights are in the order of the finished map.
+Security read_security(const Reader& top, const DraftPoints& points, const Context& context);
+
 /// `sim:`, the wires of the simulated chip: each from a coil, or with a square wave, to a discrete input of
 /// its own.
 std::vector<SimWire> read_sim(const Reader& top, const DraftPoints& points, const Context& context);

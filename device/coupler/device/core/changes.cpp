@@ -67,6 +67,7 @@ void Changes::set_level(std::uint16_t input, bool level, TimePoint at) {
 }
 
 void Changes::tell(Table table, std::uint32_t address, std::uint16_t level, TimePoint at) {
+  if (rights_ != nullptr && !rights_->may(Right::read, table, Range::of(address, 1))) return;
   ring_.add({code_of(table), level != 0 ? Change::Kind::on : Change::Kind::off,
              static_cast<std::uint16_t>(address), node_time(at)});
 }

@@ -8,6 +8,7 @@
 #include "coupler/device/core/client_session.hpp"
 #include "coupler/device/core/image.hpp"
 #include "coupler/device/core/output_schedule.hpp"
+#include "coupler/device/core/rights.hpp"
 #include "coupler/device/core/time.hpp"
 
 namespace coupler::device {
@@ -26,6 +27,8 @@ class Changes final : public ScheduleSink {
   /// From now on changes are told: those from what the image holds now.
   void begin(std::uint32_t epoch);
   bool are_told() const { return ring_.epoch() != 0; }
+  /// Nothing is told of bits that may not be read. The rights outlive it, or what it does.
+  void tell_only(const Rights& rights) { rights_ = &rights; }
   const ChangeRing& ring() const { return ring_; }
 
   /// When what happens from now on happens, unless it comes with a time of its own.
@@ -55,6 +58,7 @@ class Changes final : public ScheduleSink {
   void tell(Table table, std::uint32_t address, std::uint16_t level, TimePoint at);
 
   const Image* image_ = nullptr;
+  const Rights* rights_ = nullptr;
   ChangeRing ring_;
   Span<std::uint16_t> told_;  ///< in the order of the image's cells
   TimePoint now_{};

@@ -16,6 +16,15 @@ namespace {
 using modbus::Exception;
 using modbus::Function;
 
+tl::unexpected<Exception> no_right() { return tl::unexpected(Exception::illegal_function); }
+
+/// What the node says of all that it does, and so of its clients.
+bool shows_statistics(Table table, modbus::Range range) {
+  constexpr auto statistics = modbus::Range::of(identity::reserved.start() + identity::at_statistics,
+                                                identity::at_further - identity::at_statistics);
+  return table == Table::input_registers && statistics.overlaps(range);
+}
+
 Table table_of(Function read) {
   switch (read) {
     case Function::read_coils: return Table::coils;
@@ -29,6 +38,7 @@ Table table_of(Function read) {
 
 Handler::Handler(const Map& map, Hardware hardware, const NodeState& state, const Clock* clock)
     : map_(map),
+      rights_(map),
       image_(state.image),
       hardware_(hardware),
       statistics_(state.statistics),
@@ -41,6 +51,7 @@ Handler::Handler(const Map& map, Hardware hardware, const NodeState& state, cons
           std::any_of(map.points.begin(), map.points.end(),
                       [](const Point& point) { return is_writable(point) && limits_values(point); })),
       has_pulses_(std::any_of(map.points.begin(), map.points.end(), is_pulsed)) {
+  changes_.tell_only(rights_);
   set_machine({});
   show_outputs();
   if (has_pulses_) begin_pulses_that_are_missing();
@@ -133,6 +144,8 @@ Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
   const Table table = table_of(read.function);
   const auto cells = image_.find_readable(table, read.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!rights_.may(Right::read, table, read.range)) return no_right();
+  if (shows_statistics(table, read.range) && !rights_.reads_all()) return no_right();
   if (!read_hardware(table, read.range, cells, call.now)) return hardware_failed();
   if (table == Table::input_registers && identity::reserved.overlaps(read.range)) {
     write_statistics(statistics_, call.now, image_);
@@ -202,6 +215,7 @@ void Handler::begin_pulses_that_are_missing() {
 Handler::Answer Handler::carry_out(const modbus::WriteBits& write, const Call& call) {
   const auto cells = image_.find_writable(Table::coils, write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!rights_.may(Right::write, Table::coils, write.range)) return no_right();
   put_next(write);
   if (const auto stored = store(Table::coils, write.range, cells, call.now); !stored)
     return tl::unexpected(stored.error());
@@ -251,6 +265,7 @@ void Handler::put_next(const modbus::WriteRegisters& write) {
 }
 
 Handler::Answer Handler::reset_watchdog(const modbus::WriteRegisters& write, const Call& call) {
+  if (!rights_.may_reset_watchdog()) return no_right();
   if (modbus::get_u16(write.values.data()) != identity::watchdog_reset_code)
     return tl::unexpected(Exception::illegal_data_value);
   watchdog_.reset();
@@ -262,6 +277,7 @@ Handler::Answer Handler::carry_out(const modbus::WriteRegisters& write, const Ca
     return reset_watchdog(write, call);
   const auto cells = writable_registers(write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!rights_.may(Right::write, Table::holding_registers, write.range)) return no_right();
   put_next(write);
   if (const auto stored = store(Table::holding_registers, write.range, cells, call.now); !stored)
     return tl::unexpected(stored.error());
@@ -271,6 +287,8 @@ Handler::Answer Handler::carry_out(const modbus::WriteRegisters& write, const Ca
 Handler::Answer Handler::carry_out(const modbus::MaskWrite& write, const Call& call) {
   const auto cells = writable_registers(write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  const auto changed = static_cast<std::uint16_t>(~write.and_mask);
+  if (!rights_.may_write_bits(write.range.start(), changed)) return no_right();
   next_[0] = static_cast<std::uint16_t>((cells[0] & write.and_mask) | (write.or_mask & ~write.and_mask));
   if (const auto stored = store(Table::holding_registers, write.range, cells, call.now); !stored)
     return tl::unexpected(stored.error());
@@ -281,6 +299,9 @@ Handler::Answer Handler::carry_out(const modbus::ReadWriteRegisters& both, const
   const auto read = image_.find_readable(Table::holding_registers, both.read);
   const auto written = writable_registers(both.write.range);
   if (read.empty() || written.empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!rights_.may(Right::read, Table::holding_registers, both.read) ||
+      !rights_.may(Right::write, Table::holding_registers, both.write.range))
+    return no_right();
   put_next(both.write);
   if (const auto stored = store(Table::holding_registers, both.write.range, written, call.now); !stored)
     return tl::unexpected(stored.error());
@@ -294,6 +315,7 @@ Handler::Answer Handler::carry_out(const modbus::FileGroups& groups, const Call&
     if (!read_map_file(map_.text, group, reply.add(group.registers)))
       return tl::unexpected(Exception::illegal_data_address);
   }
+  if (!rights_.reads_all()) return no_right();
   return reply.size();
 }
 

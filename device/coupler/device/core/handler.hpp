@@ -13,6 +13,7 @@
 #include "coupler/device/core/hardware.hpp"
 #include "coupler/device/core/image.hpp"
 #include "coupler/device/core/output_schedule.hpp"
+#include "coupler/device/core/rights.hpp"
 #include "coupler/device/core/statistics.hpp"
 #include "coupler/device/core/watchdog.hpp"
 #include "coupler/map/identity.hpp"
@@ -49,7 +50,7 @@ class Handler {
 
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
   /// returns its size; `session` sent it. 0: the session waits for changes now, which it did not before.
-  /// Exceptions: those of parse_request(); 02 an address that is not
+  /// Exceptions: those of parse_request(); 01 a point that the client has no right to; 02 an address that is not
   /// mapped, not readable or not writable; 03 a value that does not reset the watchdog, that the
   /// map does not allow, or that an output cannot take; 04 hardware that cannot be read or driven, or an
   /// output that the watchdog keeps in its safe state; 06 no place left to schedule such an output.
@@ -143,6 +144,7 @@ class Handler {
   TimePoint later(TimePoint now) const;
 
   const Map& map_;
+  Rights rights_;
   identity::Machine machine_{};
   Image& image_;
   Hardware hardware_;

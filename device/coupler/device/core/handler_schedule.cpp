@@ -30,6 +30,7 @@ Span<std::uint16_t> Handler::writable(Table table, modbus::Range range) const {
 /// What a write of it would be answered now.
 tl::expected<void, Exception> Handler::check(const modbus::ScheduleOutput& wanted, Table table) {
   if (writable(table, wanted.range).empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!rights_.may(Right::write, table, wanted.range)) return tl::unexpected(Exception::illegal_function);
   const auto next = Span<std::uint16_t>(next_).first(wanted.range.count());
   if (table == Table::coils)
     put_next(modbus::WriteBits{wanted.range, wanted.values});
