@@ -2,7 +2,9 @@
 #include "coupler/cli/report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -47,6 +49,19 @@ std::string listed(const std::vector<std::string>& names) {
   return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
 }
 
+/// "all", "–", or the points.
+std::string granted(const Map& map, const Role& role, Right right) {
+  std::string names;
+  bool is_all = true;
+  for (std::size_t i = 0; i < map.points.size(); ++i) {
+    const Point& point = map.points[i];
+    if (role.may(right, i)) names += fmt::format("{}{}", names.empty() ? "" : ", ", point.name);
+    is_all = is_all && (role.may(right, i) || !(right == Right::read ? is_readable(point) : is_writable(point)));
+  }
+  if (names.empty()) return "–";
+  return is_all ? "all" : names;
+}
+
 ordered_json to_json(const Diagnostic& diagnostic) {
   ordered_json notes = ordered_json::array();
   for (const Diagnostic::Note& note : diagnostic.notes)
@@ -66,6 +81,22 @@ std::string summary(const std::string& file, const Map& map) {
   return fmt::format("{}: ok: {}, {}{}, fingerprint {}", printable(file), map.name,
                      counted(static_cast<std::ptrdiff_t>(map.points.size()), "point"), by_table(map),
                      fingerprint_text(map.fingerprint));
+}
+
+std::string rights_text(const Map& map) {
+  if (!map.security.present()) return {};
+  std::vector<std::array<std::string, 3>> rows{{"role", "may read", "may write"}};
+  for (const Role& role : map.security.roles)
+    rows.push_back({printable(role.name), granted(map, role, Right::read), granted(map, role, Right::write)});
+  std::array<std::size_t, 2> widths{};
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  std::string text;
+  for (const auto& [role, read, write] : rows)
+    text += fmt::format("  {:<{}}  {:<{}}  {}\n", role, widths[0], read, widths[1], write);
+  const auto plain = map.security.plain;
+  return text + fmt::format("  every client has the rights of {}\n",
+                            plain ? printable(map.security.roles[*plain].name) : "nobody");
 }
 
 std::string lock_report(const NewLock& lock) {

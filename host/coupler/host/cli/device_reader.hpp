@@ -62,6 +62,7 @@ class DeviceReader {
 
   // For the time of a connection.
   bool connected_ = false;
+  bool is_node_ = false;         ///< of this project, which knows every function: exception 01 is about rights
   Snapshot known_;               ///< blank_, with what follows from the identity
   std::vector<ReadSpan> spans_;  ///< the requests of a look
 
