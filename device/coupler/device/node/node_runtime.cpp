@@ -98,8 +98,25 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
 }
 
 void NodeRuntime::beat() {
-  if (!std::exchange(has_announced_, true)) log_.write(status_line());
+  if (!std::exchange(has_announced_, true)) {
+    log_.write(status_line());
+    warn_of_open_outputs();
+  }
   manager_.beat();
+}
+
+/// Who limits what can be written, and leaves some of it to everybody, is to know it.
+void NodeRuntime::warn_of_open_outputs() {
+  const Security& security = context_->map->security;
+  if (!security.plain) return;
+  const Role& role = security.roles[*security.plain];
+  const auto may = [&](const Point& point) {
+    return role.may(Right::write, static_cast<std::size_t>(&point - context_->map->points.begin()));
+  };
+  const auto count = std::count_if(context_->map->points.begin(), context_->map->points.end(), may);
+  if (count > 0)
+    log_.warn(fmt::format("every client is {}, and may write {} point{}; `coupler check` shows which", role.name,
+                          count, count == 1 ? "" : "s"));
 }
 
 /// If this process died later, nobody would drive the outputs. What started the node starts it again.
@@ -196,6 +213,7 @@ void NodeRuntime::change(std::vector<OpenConnection>& clients) {
   const std::string text =
       fmt::format("read the map again: {}{}", status_line(), same ? "" : "; clients have to connect again");
   log_.write(text);
+  warn_of_open_outputs();
   requests_.reply(true, text);
   manager_.ready(status_line());
 }

@@ -43,6 +43,7 @@ class NodeRuntime final : public Workload {
 
  private:
   std::string status_line() const;
+  void warn_of_open_outputs();
   void begin_reading(TimePoint now);
   bool take_map();
   void refuse(const ServeError& error);
