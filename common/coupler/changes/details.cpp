@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "coupler/map/rights_text.hpp"
+
 namespace coupler::changes {
 namespace {
 
@@ -88,19 +90,12 @@ std::string sim_text(const Map& map) {
 
 std::string security_text(const Map& map) {
   std::string text;
-  for (const Role& role : map.security.roles) {
-    text += fmt::format("{}{}", text.empty() ? "" : ", ", role.name);
-    for (const auto& [verb, right] : {std::pair("reads", Right::read), std::pair("writes", Right::write)}) {
-      std::string points;
-      for (std::size_t i = 0; i < map.points.size(); ++i)
-        if (role.may(right, i)) points += fmt::format(" {}", map.points[i].name);
-      text += fmt::format(" {}{}", verb, points.empty() ? " nothing" : points);
-    }
-  }
-  if (map.security.present())
-    text += fmt::format(", everybody is {}",
-                        map.security.plain ? map.security.roles[*map.security.plain].name : "nobody");
-  return text;
+  for (const Role& role : map.security.roles)
+    text += fmt::format("{}{} reads {}, writes {}", text.empty() ? "" : "; ", role.name,
+                        rights_text(map, role, Right::read), rights_text(map, role, Right::write));
+  if (!map.security.present()) return text;
+  const auto plain = map.security.plain;
+  return text + fmt::format("; every client is {}", plain ? map.security.roles[*plain].name : "nobody");
 }
 
 }  // namespace

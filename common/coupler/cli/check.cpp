@@ -30,7 +30,7 @@ Exit check(const Arguments& arguments) {
       print(loaded.diagnostics);
       std::fputs(lock_report(loaded.lock).c_str(), stdout);
       if (loaded.map) std::puts(summary(file, loaded.map->map()).c_str());
-      if (loaded.map) std::fputs(rights_text(loaded.map->map()).c_str(), stdout);
+      if (loaded.map) std::fputs(rights_table(loaded.map->map()).c_str(), stdout);
     }
   }
   return exit;

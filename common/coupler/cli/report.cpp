@@ -11,6 +11,7 @@
 
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/printable.hpp"
+#include "coupler/map/rights_text.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -49,19 +50,6 @@ std::string listed(const std::vector<std::string>& names) {
   return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
 }
 
-/// "all", "–", or the points.
-std::string granted(const Map& map, const Role& role, Right right) {
-  std::string names;
-  bool is_all = true;
-  for (std::size_t i = 0; i < map.points.size(); ++i) {
-    const Point& point = map.points[i];
-    if (role.may(right, i)) names += fmt::format("{}{}", names.empty() ? "" : ", ", point.name);
-    is_all = is_all && (role.may(right, i) || !(right == Right::read ? is_readable(point) : is_writable(point)));
-  }
-  if (names.empty()) return "–";
-  return is_all ? "all" : names;
-}
-
 ordered_json to_json(const Diagnostic& diagnostic) {
   ordered_json notes = ordered_json::array();
   for (const Diagnostic::Note& note : diagnostic.notes)
@@ -83,11 +71,12 @@ std::string summary(const std::string& file, const Map& map) {
                      fingerprint_text(map.fingerprint));
 }
 
-std::string rights_text(const Map& map) {
+std::string rights_table(const Map& map) {
   if (!map.security.present()) return {};
   std::vector<std::array<std::string, 3>> rows{{"role", "may read", "may write"}};
   for (const Role& role : map.security.roles)
-    rows.push_back({printable(role.name), granted(map, role, Right::read), granted(map, role, Right::write)});
+    rows.push_back(
+        {printable(role.name), rights_text(map, role, Right::read), rights_text(map, role, Right::write)});
   std::array<std::size_t, 2> widths{};
   for (const auto& row : rows)
     for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], row[i].size());

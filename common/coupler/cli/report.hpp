@@ -13,7 +13,7 @@ namespace coupler::cli {
 std::string summary(const std::string& file, const Map& map);
 
 /// Which role may read and write which points, as a table; empty without `security`.
-std::string rights_text(const Map& map);
+std::string rights_table(const Map& map);
 
 /// What was written of a lock, as lines; empty if nothing was.
 std::string lock_report(const NewLock& lock);

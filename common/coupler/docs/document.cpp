@@ -9,6 +9,7 @@
 #include "coupler/map/fields.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/identity.hpp"
+#include "coupler/map/rights_text.hpp"
 #include "coupler/plan/explain.hpp"
 #include "coupler/plan/picture.hpp"
 
@@ -26,7 +27,7 @@ bool is_for_node(const Map& map) {
     return point.line.present() || is_analogue(point) || point.counter.present() || point.latched.present();
   };
   return !map.sim.empty() || map.service.watchdog.present() || map.service.readback ||
-         !map.service.listen.empty() || !map.service.allow.empty() ||
+         !map.service.listen.empty() || !map.service.allow.empty() || map.security.present() ||
          std::any_of(map.points.begin(), map.points.end(), wired);
 }
 
@@ -86,11 +87,20 @@ FactGroup service(const Map& map) {
   std::string allow;
   for (const std::string_view each : service.allow)
     allow += fmt::format("{}{}", allow.empty() ? "" : ", ", each);
-  return {"Node",
-          {{"Listens on", service.listen.empty() ? "every interface" : std::string(service.listen)},
-           {"Who may connect", allow.empty() ? "everyone" : allow},
-           {"Watchdog", watchdog_words(service.watchdog)},
-           {"Read back outputs", service.readback ? "yes" : "no"}}};
+  FactGroup group{"Node",
+                  {{"Listens on", service.listen.empty() ? "every interface" : std::string(service.listen)},
+                   {"Who may connect", allow.empty() ? "everyone" : allow},
+                   {"Watchdog", watchdog_words(service.watchdog)},
+                   {"Read back outputs", service.readback ? "yes" : "no"}}};
+  for (const Role& role : map.security.roles)
+    group.facts.push_back({fmt::format("Role {}", role.name),
+                           fmt::format("reads {}; writes {}", rights_text(map, role, Right::read),
+                                       rights_text(map, role, Right::write))});
+  if (map.security.present())
+    group.facts.push_back({"Every client is", map.security.plain
+                                                  ? std::string(map.security.roles[*map.security.plain].name)
+                                                  : "nobody, and may do nothing"});
+  return group;
 }
 
 FactGroup identity(const Map& map) {

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "coupler/map/map.hpp"
+
+namespace coupler {
+
+/// The points that a role of the map may read or write: "all" that can be, "none", or their names.
+std::string rights_text(const Map& map, const Role& role, Right right);
+
+}  // namespace coupler
