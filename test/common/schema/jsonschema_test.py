@@ -30,6 +30,8 @@ UNSEEN = {name + ".yaml" for name in (
     # between points, or between a point and a limit
     "overlap overlap_of_parts overlap_of_access overlap_of_inputs overlap_of_a_wired_input point_name_is_taken "
     "line_in_two_points point_exceeds_the_limits string_is_too_long_to_write preset_area "
+    # between roles and what they name
+    "security_plain_is_no_role security_of_no_point "
     # in the digits of an address: JSON has numbers
     "modicon_past_65536 modicon_numbers_read_from_zero "
     # between entries of a list

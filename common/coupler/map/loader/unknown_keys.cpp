@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include "coupler/codec/type_name.hpp"
-#include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/loader/reader.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/loader/synonyms.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler::loader {
 namespace {

@@ -34,6 +34,8 @@ class TcpServer : public EventHandler {
 
   /// Continues with clients that another server released, if they may connect and there is room.
   void take_over(std::vector<OpenConnection> clients, TimePoint now);
+  /// A client that another process has let in, as if it had connected here.
+  void admit(OpenConnection client, TimePoint now);
   /// Releases all clients without closing their connections, after an answer to those that wait.
   std::vector<OpenConnection> release();
   /// Answers those that wait, since the node ends.
@@ -48,6 +50,7 @@ class TcpServer : public EventHandler {
   void tick(TimePoint now);
 
  private:
+  void open(OpenConnection client, TimePoint now);
   void sweep(TimePoint now);
   Connection& place_for(const IpAddress& newcomer);
   Connection& who_makes_room_for(const IpAddress& newcomer);

@@ -175,6 +175,8 @@ std::string status_text(const NodeStatus& status, const Connection& where) {
   text += row("watchdog", watchdog_text(report));
   text += row("timeout of the watchdog", timeout_text(status));
   text += row("function codes of its own", functions_text(status.further.functions));
+  if (!report.has_statistics)
+    return text + row("statistics", "not for clients that may not read every point");
   text += row("uptime", uptime_text(report.uptime));
   for (std::size_t i = 0; i < identity::counters.size(); ++i)
     text += row(identity::counters[i].text, fmt::to_string(report.counts[i]));
@@ -210,8 +212,10 @@ std::string status_json(const NodeStatus& status, const Connection& where) {
     if (const auto timeout = status.further.watchdog_timeout; timeout != 0)
       json["watchdog"]["timeout_ms"] = timeout;
     json["functions"] = functions_json(status.further.functions);
-    json["uptime_s"] = report.uptime;
-    json["statistics"] = statistics_json(report);
+    if (report.has_statistics) {
+      json["uptime_s"] = report.uptime;
+      json["statistics"] = statistics_json(report);
+    }
   }
   // A text of the device need not be UTF-8.
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);

@@ -203,6 +203,7 @@ void add_probe(Program& program, Exit& exit) {
                   "Write a draft of the map; - is standard output, and the report is on standard error then")
       .type_name("FILE");
   command.add_flag("--force", arguments->force, "Replace an existing file");
+  add_tls_options(command, arguments->tls);
   command.footer(
       "Example:\n  coupler probe 192.168.1.17 --known voltage=230.4 --known frequency=50.02 --out "
       "meter.yaml\n  coupler probe /dev/ttyUSB0 --baud 9600\n"

@@ -20,14 +20,22 @@ Map moved(Map map, const Options& options) {
   Connection& connection = map.connection;
   if (names_a_node(options.address)) {
     const auto where = parse_node_address(options.address, connection);
-    if (where)
+    std::string wrong;
+    if (!where)
+      wrong = fmt::format("{}; {}", where.error().what, where.error().remedy);
+    else if (where->tls && !connection.tls.present())
+      wrong = fmt::format(
+          "{}: the map has no certificates for TLS; add them, as in 'tls: {{certificate: cell1.pem, "
+          "key: cell1.key, ca: authority.pem}}'",
+          options.address);
+    if (wrong.empty())
       map = found_at(map, *where);
     else
       connection = {};
-    if (!where && options.on_report)
-      options.on_report(Level::error, fmt::format("{}; {}", where.error().what, where.error().remedy));
+    if (!wrong.empty() && options.on_report) options.on_report(Level::error, wrong);
   } else if (!options.address.empty()) {
-    map = found_at(map, {options.address, connection.port, connection.unit});
+    map = found_at(
+        map, {options.address, connection.port, connection.unit, Framing::tcp, {}, connection.tls.present()});
   }
   if (options.port) connection.port = *options.port;
   return map;

@@ -156,6 +156,7 @@ Time Device::connect() {
   transport_.rank(Rank::read);
   wrote_last_ = false;
   node_ = {};
+  is_node_ = false;
   Result<> result = state_ == State::open ? Result<>{} : transport_.connect();
   state_ = result ? State::open : State::none;
   if (result && verify_ != Verify::off) result = prove_equal();
@@ -168,7 +169,7 @@ Time Device::connect() {
   state_ = State::verified;
   listen();
   scheduler_.connected(listener_.is_active() && node_.functions.schedules_outputs);
-  poller_.start(listener_.is_active());
+  poller_.start(is_node_ || map_.connection.tls.present(), listener_.is_active());
   replies_at_connect_ = transport_.replies();
   if (map_.connection.is_broadcast() || (verify_ != Verify::off && identity_suffices_)) came_online();
   return due();
@@ -204,7 +205,8 @@ Result<> Device::prove_equal() {
   }
   explains_silence_ = false;
   Result<identity::Further> further;
-  if (identity->verdict != Identity::Verdict::foreign) further = read_further(transport_);
+  is_node_ = identity->verdict != Identity::Verdict::foreign;
+  if (is_node_) further = read_further(transport_);
   if (!further) return tl::make_unexpected(further.error());
   node_ = *further;
   peer_ = to_string(node_.machine);

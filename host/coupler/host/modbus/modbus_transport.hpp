@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/modbus/tls_link.hpp"
 #include "coupler/modbus/frame.hpp"
 
 struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for its context
@@ -59,9 +60,14 @@ class ModbusTransport : public MultiUnitTransport {
     Deadline answer_by;
   };
 
+  /// Says why a connection with TLS has ended.
+  tl::unexpected<Error> failed(Error error) const;
+
   std::string host_;
   std::uint16_t port_;
   std::uint8_t unit_;
+  std::optional<TlsTexts> tls_;    ///< nullopt: plain Modbus/TCP
+  std::unique_ptr<TlsLink> link_;  ///< of a connection with TLS
   std::chrono::milliseconds timeout_{0};
   std::unique_ptr<_modbus, void (*)(_modbus*)> context_;
   Event interrupted_;

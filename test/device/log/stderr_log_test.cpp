@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "coupler/device/node/stderr_log.hpp"
+#include "coupler/device/log/stderr_log.hpp"
 
 namespace coupler::device {
 namespace {
