@@ -20,6 +20,7 @@ except ImportError as error:
     sys.exit(77)
 sys.path.insert(0, str(made.SOURCE / "test/ros"))
 os.environ.setdefault("COUPLER_BUILD_DIR", str(pathlib.Path(os.environ["COUPLER"]).resolve().parents[1]))
+from support.patience import wait_until  # noqa: E402
 from support.rtu_server import RtuServer  # noqa: E402
 from support.serial_line import SerialLine  # noqa: E402
 
@@ -100,13 +101,10 @@ class OnALine(Rtu):
         """However slow this machine is: the pause before the next request ends when the answer is there."""
         def pause(seconds):
             if seconds < SHORT / 2:
-                return time.sleep(seconds)
-            self.line.release()
-            end = time.monotonic() + made.PATIENCE
-            while not belt._modbus.socket.in_waiting:
-                self.assertLess(time.monotonic(), end, "the late answer has not come")
-                time.sleep(0.01)
-            return None
+                time.sleep(seconds)
+            else:
+                self.line.release()
+                wait_until(lambda: belt._modbus.socket.in_waiting, "the late answer", made.PATIENCE)
         clock = types.SimpleNamespace(monotonic=time.monotonic, sleep=pause)
         patch = mock.patch.object(self.module, "time", clock)
         patch.start()
