@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "test/fakes/map_builder.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include "coupler/map/fingerprint.hpp"
 
 namespace coupler::fakes {
 
@@ -94,6 +97,13 @@ Span<const std::uint16_t> MapBuilder::keep(std::vector<std::uint16_t> registers)
   return owned_->keep(registers);
 }
 
+MapBuilder& MapBuilder::everybody_may(std::vector<std::string> read, std::vector<std::string> write) {
+  is_limited_ = true;
+  readable_ = std::move(read);
+  writable_ = std::move(write);
+  return *this;
+}
+
 MapPtr MapBuilder::build() const {
   struct Built {
     OwnedMap map;
@@ -101,7 +111,23 @@ MapPtr MapBuilder::build() const {
   };
   const auto built = std::make_shared<Built>();
   built->texts = owned_;
-  built->map.finish(head_, points_, wires_);
+  Map head = head_;
+  if (is_limited_) {
+    std::vector<Point> points = points_;
+    std::sort(points.begin(), points.end(), canonical_less);
+    std::vector<std::uint8_t> rights;
+    const auto names = [](const std::vector<std::string>& list, std::string_view name) {
+      return std::find(list.begin(), list.end(), name) != list.end();
+    };
+    for (const Point& point : points)
+      rights.push_back(static_cast<std::uint8_t>((names(readable_, point.name) ? 1 : 0) |
+                                                 (names(writable_, point.name) ? 2 : 0)));
+    const bool reads_all =
+        std::all_of(rights.begin(), rights.end(), [](auto right) { return (right & 1) != 0; });
+    head.security = {built->map.keep(std::vector<Role>{{"everybody", built->map.keep(rights), reads_all}}),
+                     std::uint16_t{0}};
+  }
+  built->map.finish(head, points_, wires_);
   return {built, &built->map};
 }
 

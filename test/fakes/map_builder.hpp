@@ -54,6 +54,8 @@ class MapBuilder {
   MapBuilder& text(std::string text);
   MapBuilder& unit(std::uint8_t unit);
   MapBuilder& watchdog(Watchdog watchdog);
+  /// `security` with one role, everybody's, who may read and write the points of these names.
+  MapBuilder& everybody_may(std::vector<std::string> read, std::vector<std::string> write);
   /// What no function here sets.
   Map& head() { return head_; }
   /// Registers that a point's `initial` can view.
@@ -69,6 +71,9 @@ class MapBuilder {
   Map head_;
   std::vector<Point> points_;
   std::vector<SimWire> wires_;
+  bool is_limited_ = false;
+  std::vector<std::string> readable_;
+  std::vector<std::string> writable_;
 };
 
 }  // namespace coupler::fakes

@@ -10,6 +10,7 @@
 #include "hard_map.hpp"
 #include "manners_map.hpp"
 #include "moxa_map.hpp"
+#include "secure_map.hpp"
 #include "test/device/core/fake_lines.hpp"
 #include "test/generate/same_map.hpp"
 #include "test/support/paths.hpp"
@@ -46,6 +47,14 @@ TEST(Generated, What_the_host_does_with_points_survives) {
   const MapPtr loaded = load(test::in_tree("test/generate/manners.yaml"));
   ASSERT_TRUE(loaded);
   testing::expect_same(maps::manners::map, loaded->map());
+}
+
+TEST(Generated, Roles_and_the_files_of_certificates_survive) {
+  const MapPtr loaded = load(test::in_tree("test/generate/secure.yaml"));
+  ASSERT_TRUE(loaded);
+  ASSERT_TRUE(loaded->map().security.files.present());
+  ASSERT_TRUE(loaded->map().connection.tls.present());
+  testing::expect_same(maps::secure::map, loaded->map());
 }
 
 TEST(Generated, Addresses_come_from_the_lock) {

@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 11, "Compare the new fields of the model here, too");
+static_assert(model_version == 12, "Compare the new fields of the model here, too");
 
 /// What fields_of() lists.
 template <class Struct>
@@ -96,6 +96,24 @@ inline void expect_same(const WatchdogSequences& a, const WatchdogSequences& b) 
   if (a.alarm) expect_same(*a.alarm, *b.alarm);
 }
 
+inline void expect_same(const Security& a, const Security& b) {
+  EXPECT_EQ(a.plain, b.plain);
+  EXPECT_EQ(a.no_role, b.no_role);
+  EXPECT_EQ(a.files.certificate, b.files.certificate);
+  EXPECT_EQ(a.files.key, b.files.key);
+  EXPECT_EQ(a.files.ca, b.files.ca);
+  EXPECT_EQ(a.files.revoked, b.files.revoked);
+  EXPECT_EQ(a.port, b.port);
+  ASSERT_EQ(a.roles.size(), b.roles.size());
+  for (std::size_t i = 0; i < a.roles.size(); ++i) {
+    const Role& one = a.roles[i];
+    const Role& other = b.roles[i];
+    EXPECT_EQ(one.name, other.name);
+    EXPECT_TRUE(std::equal(one.rights.begin(), one.rights.end(), other.rights.begin(), other.rights.end()));
+    EXPECT_EQ(one.reads_all, other.reads_all);
+  }
+}
+
 /// Every field of the model, deep.
 inline void expect_same(const Map& a, const Map& b) {
   EXPECT_EQ(a.name, b.name);
@@ -120,6 +138,7 @@ inline void expect_same(const Map& a, const Map& b) {
     EXPECT_EQ(a.unreadable[i].range, b.unreadable[i].range);
   }
   expect_same(a.coupler_watchdog, b.coupler_watchdog);
+  expect_same(a.security, b.security);
 }
 
 }  // namespace coupler::testing

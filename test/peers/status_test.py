@@ -32,7 +32,7 @@ STATISTICS = {  # docs/identity.md: where each stands
     "exceptions_01": 27, "exceptions_02": 29, "exceptions_03": 31, "exceptions_04": 33, "connections_refused": 35,
     "connections_evicted": 37, "foreign_units": 39, "connections_bad_frames": 41, "connections_timed_out": 43}
 KEYS = ["device", "time", "trouble", "node", "name", "version", "fingerprint", "map", "hostname", "serial", "watchdog",
-        "functions", "uptime_s", "statistics", "identification"]
+        "functions", "uptime_s", "statistics", "certificates", "identification"]
 
 
 def status(coupler, *arguments):

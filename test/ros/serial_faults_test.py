@@ -8,6 +8,7 @@ from coupler_driver.srv import Write
 from std_msgs.msg import Bool, Int16, UInt16
 
 from support import process, testing
+from support.latest import LatestDiagnostics, values
 from support.patience import NO_TIMEOUT
 from support.rtu_server import RtuServer
 from support.serial_line import SerialLine
@@ -179,11 +180,14 @@ class SerialFaults(testing.RosTest):
         faults = [(Fault(happen, SEED + i), self.line(f"{happen.__name__}_{baud}", baud=baud, punctual=baud == 1200),
                    "to_port" if (happen, baud) in replies else "to_device")
                   for i, (happen, baud) in enumerate(replies + requests)]
+        diagnostics = LatestDiagnostics("flip_115200")
+        self.addCleanup(diagnostics.close)
         self.drive()
         self.all_go_on("before")
         for fault, line, way in faults:
             setattr(line, way, fault)
         self.live_until(lambda: all(fault.happened >= 3 for fault, _, _ in faults), "faults of each kind")
+        diagnostics.wait_for(lambda known: "connection" in known and int(values(known["connection"])["discarded bytes"]) > 0)
         for _, line, way in faults:
             setattr(line, way, lambda frame: frame)
         self.all_go_on("when the faults have ended")

@@ -21,7 +21,8 @@ mapping:
   holding_registers: {{level: {{address: 4, type: INT}}}}
 """
 SETTINGS = {"map": TEXT, "maps": TEXTS, "name": TEXT, "address": TEXT, "port": WHOLE, "unit": WHOLE,
-            "framing": TEXT, "serial": TEXT, "baud": WHOLE, "parity": TEXT, "stop_bits": WHOLE, "rs485": TEXT, "rate": REAL,
+            "framing": TEXT, "serial": TEXT, "baud": WHOLE, "parity": TEXT, "stop_bits": WHOLE, "rs485": TEXT,
+            "certificate": TEXT, "key": TEXT, "ca": TEXT, "tls_name": TEXT, "pin": TEXT, "rate": REAL,
             "timeout": REAL, "verify": TEXT, "poll": TEXT, "use_sim_time": BOOL}
 OF_A_DEVICE = [name for name in SETTINGS if name not in ("map", "maps", "use_sim_time")]
 

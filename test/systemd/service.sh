@@ -118,6 +118,65 @@ systemctl daemon-reload
 check "without it, it starts again" quietly systemctl restart "$unit"
 check "and serves" wait_until serves
 
+echo "# with TLS"
+# certify NAME EXTENSION…: NAME.pem and NAME.key
+certify() {
+  local name=$1
+  shift
+  openssl req -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -keyout "$name.key" -out "$name.csr" -subj "/CN=$name"
+  openssl x509 -req -in "$name.csr" -CA ca.pem -CAkey ca.key -CAcreateserial -days 700 -out "$name.pem" \
+    -extfile <(printf '%s\n' basicConstraints=CA:FALSE "$@")
+}
+make_certificates() {
+  openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -keyout ca.key -out ca.pem -days 3650 \
+    -subj /CN=plant -addext keyUsage=critical,keyCertSign,cRLSign
+  certify node extendedKeyUsage=serverAuth subjectAltName=IP:127.0.0.1
+  certify cell1 extendedKeyUsage=clientAuth 1.3.6.1.4.1.50316.802.1=ASN1:UTF8String:operator
+}
+# Reads coil 0 by TLS: all of the reply but the coil.
+reply_by_tls() {
+  coproc timeout 60 openssl s_client -quiet -verify_quiet -verify_return_error -connect 127.0.0.1:802 \
+    -cert cell1.pem -key cell1.key -CAfile ca.pem
+  local replies s_client=$COPROC_PID
+  exec {replies}<&"${COPROC[0]}" # a pipeline's processes do not have those of a coprocess
+  printf '\0\1\0\0\0\6\1\1\0\0\0\1' >&"${COPROC[1]}"
+  head -c 9 <&"$replies" | od -An -tx1 | tr -d ' '
+  exec {replies}<&-
+  kill "$s_client"
+}
+serves_tls() { [ "$(cd /etc/coupler && reply_by_tls 2>/dev/null)" = 000100000004010101 ]; }
+# with_key PATH: the map, with TLS.
+with_key() {
+  sed "s#^mapping:#security: {certificate: node.pem, key: $1, ca: ca.pem, plain: operator, roles: {operator: {read: all, write: all}}}\n&#" \
+    node.yaml >/etc/coupler/node.yaml
+}
+check "OpenSSL makes certificates" quietly eval 'cd /etc/coupler && make_certificates'
+with_key node.key
+refuse "a reload with a key of root's fails" systemctl reload "$unit"
+check "the journal says which file, and why" wait_until in_journal "'security': the key .*node\.key cannot be read: Permission denied"
+check "clients without TLS are served as before" serves
+chgrp coupler /etc/coupler/node.key
+chmod 640 /etc/coupler/node.key
+check "with one that the service's group may read it succeeds" systemctl reload "$unit"
+check "a client with a certificate is answered on port 802" wait_until serves_tls
+tls=$(pgrep -P "$(supervisor)" -x coupler-tls)
+expect "the process that does TLS is the user coupler" coupler "$(stat -c %U "/proc/$tls")"
+expect "it has a filter of system calls and can gain nothing" "2 1" "$(of_process "$tls" Seccomp) $(of_process "$tls" NoNewPrivs)"
+check "clients without TLS are served, too" serves
+chown root:root /etc/coupler/node.key
+chmod 600 /etc/coupler/node.key
+with_key "/run/credentials/$unit/node.key"
+mkdir "$drop_in"
+sed -n 's/^#LoadCredential=/[Service]\n&/p' "/usr/lib/systemd/system/$unit" | sed 's/^#//' >"$drop_in/key.conf"
+systemctl daemon-reload
+check "with LoadCredential a key of root's will do" quietly systemctl restart "$unit"
+check "a client with a certificate is answered" wait_until serves_tls
+rm -r "$drop_in"
+cp node.yaml /etc/coupler/node.yaml
+systemctl daemon-reload
+check "without, it starts again" quietly systemctl restart "$unit"
+check "and serves" wait_until serves
+
 echo "# the worker process dies"
 before=$(supervisor)
 kill -KILL "$(worker)"

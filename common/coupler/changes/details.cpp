@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "coupler/map/rights_text.hpp"
+
 namespace coupler::changes {
 namespace {
 
@@ -86,6 +88,23 @@ std::string sim_text(const Map& map) {
   return text;
 }
 
+std::string security_text(const Map& map) {
+  std::string text;
+  for (const Role& role : map.security.roles)
+    text += fmt::format("{}{} reads {}, writes {}", text.empty() ? "" : "; ", role.name,
+                        rights_text(map, role, Right::read), rights_text(map, role, Right::write));
+  if (!map.security.present()) return text;
+  const auto name_of = [&](std::optional<std::uint16_t> role) {
+    return role ? map.security.roles[*role].name : "nobody";
+  };
+  text += fmt::format("; {}: {}", plain_clients(map.security), name_of(map.security.plain));
+  const CredentialFiles& files = map.security.files;
+  if (!files.present()) return text;
+  return text + fmt::format("; without a role: {}; TLS at port {} with {}, {}, {}{}{}",
+                            name_of(map.security.no_role), map.security.port, files.certificate, files.key,
+                            files.ca, files.revoked.empty() ? "" : ", ", files.revoked);
+}
+
 }  // namespace
 
 std::vector<Detail> details_of(const Point& point) {
@@ -115,6 +134,7 @@ std::vector<Detail> details_of(const Map& map) {
       {"allow-changed", compatible, fmt::format("{}", fmt::join(allow.begin(), allow.end(), ", "))},
       {"coupler-watchdog-changed", compatible, watchdog_text(map.coupler_watchdog)},
       {"sim-changed", compatible, sim_text(map)},
+      {"security-changed", compatible, security_text(map)},
   };
 }
 

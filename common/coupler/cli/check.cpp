@@ -13,6 +13,7 @@ namespace coupler::cli {
 namespace {
 
 struct Arguments {
+  TlsTexts tls;
   std::vector<std::string> maps;
   bool json = false;
   bool locked = false;
@@ -21,7 +22,8 @@ struct Arguments {
 Exit check(const Arguments& arguments) {
   Exit exit = ok;
   for (const std::string& file : arguments.maps) {
-    const MapArgument argument = get_map(file, arguments.locked ? LockUse::exact : LockUse::renew);
+    const MapArgument argument =
+        get_map(file, arguments.tls, arguments.locked ? LockUse::exact : LockUse::renew);
     const LoadResult& loaded = argument.loaded;
     exit = std::max(exit, argument.exit);
     if (arguments.json) {
@@ -30,6 +32,7 @@ Exit check(const Arguments& arguments) {
       print(loaded.diagnostics);
       std::fputs(lock_report(loaded.lock).c_str(), stdout);
       if (loaded.map) std::puts(summary(file, loaded.map->map()).c_str());
+      if (loaded.map) std::fputs(rights_table(loaded.map->map()).c_str(), stdout);
     }
   }
   return exit;
@@ -50,6 +53,7 @@ void add_check(Program& program, Exit& exit) {
                    "One JSON object per map on standard output, for editors and scripts");
   command.add_flag("--locked", arguments->locked,
                    "Write nothing; a lock that is missing or not up to date is an error. For CI");
+  add_tls_options(command, arguments->tls);
   command.footer(
       "Example:\n  coupler check device.yaml\nPoints without an address get one, which is kept in "
       "device.yaml.lock beside the map.\nExit status 0: every map is valid; 1: at least one is not.");

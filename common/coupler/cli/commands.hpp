@@ -30,6 +30,7 @@ inline Exit complain(std::string_view command, Exit exit, std::string_view what,
   return exit;
 }
 
+void add_certificates(Program& program, Exit& exit);
 void add_check(Program& program, Exit& exit);
 void add_diff(Program& program, Exit& exit);
 void add_dump(Program& program, Exit& exit);
@@ -37,6 +38,7 @@ void add_export(Program& program, Exit& exit);
 void add_generate(Program& program, Exit& exit);
 void add_import(Program& program, Exit& exit);
 void add_init(Program& program, Exit& exit);
+void add_pin(Program& program, Exit& exit);
 void add_plan(Program& program, Exit& exit);
 void add_probe(Program& program, Exit& exit);
 void add_schema(Program& program, Exit& exit);

@@ -119,6 +119,7 @@ std::string diff_markdown(const Versions& versions, const std::vector<Change>& c
 
 struct Arguments {
   Versions versions;
+  TlsTexts tls;
   std::string format = "text";
   std::string fail_on = "meaning";
 };
@@ -131,9 +132,9 @@ Severity severity_of(const std::string& name) {
 }
 
 Exit run(const Arguments& arguments) {
-  const MapArgument older = get_version(arguments.versions.older);
+  const MapArgument older = get_version(arguments.versions.older, arguments.tls);
   print(older.loaded.diagnostics);
-  const MapArgument newer = get_version(arguments.versions.newer);
+  const MapArgument newer = get_version(arguments.versions.newer, arguments.tls);
   print(newer.loaded.diagnostics);
   if (!older.loaded.map) return older.exit;
   if (!newer.loaded.map) return newer.exit;
@@ -166,6 +167,7 @@ void add_diff(Program& program, Exit& exit) {
           "Exit with 1 for this class or a worse one: breaking, meaning (default), compatible, documentation")
       .one_of({"breaking", "meaning", "compatible", "documentation"})
       .type_name("CLASS");
+  add_tls_options(command, arguments->tls);
   command.footer(
       "Example:\n  coupler diff main:config/cell.yaml config/cell.yaml\n  coupler diff cell.yaml "
       "tcp://raspberrypi\n"

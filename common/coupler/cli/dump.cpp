@@ -15,6 +15,7 @@ namespace coupler::cli {
 namespace {
 
 struct Arguments {
+  TlsTexts tls;
   std::string map;
   std::string at;
   std::vector<std::string> points;
@@ -43,15 +44,25 @@ tl::expected<std::vector<bool>, std::string> choose(const Map& map,
 }
 
 Exit run(const Arguments& arguments) {
-  const MapArgument argument = get_map(arguments.map);
+  const MapArgument argument = get_map(arguments.map, arguments.tls);
   print(argument.loaded.diagnostics);
   if (!argument.loaded.map) return argument.exit;
   Map map = argument.map();
-  const std::string at = node_argument(arguments.at);
+  if (any_given(arguments.tls)) {
+    if (!map.connection.tls.present() && !map.connection.serial.present() &&
+        map.connection.port == modbus::default_port)
+      map.connection.port = default_tls_port;
+    overlay(map.connection.tls, arguments.tls.view());
+    if (const auto problem = tls_problem(map.connection.tls))
+      return refuse("TLS needs certificates", *problem);
+  }
+  const std::string at = node_argument(arguments.at, map.connection);
   if (!arguments.at.empty()) {
     const auto device = parse_node_address(at, map.connection);
     if (!device) return refuse("--at: " + device.error().what, device.error().remedy);
     map = found_at(map, *device);
+    if (device->tls && !map.connection.tls.present())
+      return refuse("tls:// needs certificates", *tls_problem(map.connection.tls));
   }
   if (!map.connection.present())
     return refuse(
@@ -96,6 +107,7 @@ void add_dump(Program& program, Exit& exit) {
                    .type_name("SECONDS");
   command.add_flag("--json", arguments->json,
                    "One JSON object on standard output, for scripts; with --watch one per line");
+  add_tls_options(command, arguments->tls);
   command.footer(
       "Example:\n  coupler dump tcp://raspberrypi\n  coupler dump device.yaml --at 10.0.0.7 --points "
       "'pump_*' --watch 0.5\n"

@@ -15,6 +15,7 @@ namespace {
 
 struct Arguments {
   std::string map;
+  TlsTexts tls;
   std::string to;
   std::string out;
   bool node_statistics = false;
@@ -44,7 +45,7 @@ Exit run(const Arguments& arguments) {
     return complain("export", bad_call,
                     fmt::format("--node-statistics has no meaning for '{}'", exporter->name),
                     "leave it out, or write --to telegraf");
-  const MapArgument argument = get_map(arguments.map);
+  const MapArgument argument = get_map(arguments.map, arguments.tls);
   print(argument.loaded.diagnostics);
   if (!argument.loaded.map) return argument.exit;
   const formats::Export exported = arguments.node_statistics ? exporter->write_with_statistics(argument.map())
@@ -69,6 +70,7 @@ void add_export(Program& program, Exit& exit) {
   command.add_flag("--node-statistics", arguments->node_statistics,
                    "With --to telegraf, for a map that coupler-node serves: its statistics, too");
   command.add_flag("--list", arguments->list, "Print the formats");
+  add_tls_options(command, arguments->tls);
   command.footer(
       "Example:\n  coupler export device.yaml --to csv --out device.csv\n"
       "Warnings on standard error say what the format cannot express.");

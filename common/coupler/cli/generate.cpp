@@ -31,6 +31,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::string map;
+  TlsTexts tls;
   std::string out;
   std::string name;
   std::string source_url;
@@ -115,6 +116,9 @@ Exit write_python(const Arguments& arguments, const generate::Provenance& proven
     return complain("generate", bad_input,
                     "the client in Python waits for answers, and unit 0 is a broadcast",
                     "write from C++, or give the map the unit of one coupler");
+  if (map.connection.tls.present())
+    return complain("generate", bad_input, "the client in Python has no TLS, and the map has",
+                    "write from C++, or give it a map of the port without TLS");
   return write(arguments, {{provenance.name + "_client.py", generate::python_client(map, provenance)}});
 }
 
@@ -126,7 +130,8 @@ Exit run(const Arguments& arguments) {
   if (!to_folder && !arguments.python && !arguments.vectors)
     return complain("generate", bad_call, "standard output cannot hold several files",
                     "name a folder with --out, or make a single file with --python or --vectors");
-  const MapArgument argument = get_map(arguments.map, arguments.locked ? LockUse::exact : LockUse::renew);
+  const MapArgument argument =
+      get_map(arguments.map, arguments.tls, arguments.locked ? LockUse::exact : LockUse::renew);
   const LoadResult& loaded = argument.loaded;
   print(loaded.diagnostics);
   std::fputs(lock_report(loaded.lock).c_str(), to_folder ? stdout : stderr);
@@ -190,6 +195,7 @@ void add_generate(Program& program, Exit& exit) {
                    "Do not write the map's lock; one that is missing or not up to date is an error");
   command.add_flag("--force", arguments->force, "Also replace files that coupler has not made");
   command.add_flag("--quiet", arguments->quiet, "Do not list the files");
+  add_tls_options(command, arguments->tls);
   command.footer(
       "Example:\n  coupler generate device.yaml --out generated\n"
       "makes device_map.hpp and .cpp, device_client.hpp and .cpp, device_hooks.hpp, device_core.hpp, "

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   });
 
   auto exit = coupler::cli::ok;
+  coupler::cli::add_certificates(program, exit);
   coupler::cli::add_check(program, exit);
   coupler::cli::add_diff(program, exit);
   coupler::cli::add_dump(program, exit);
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
   coupler::cli::add_generate(program, exit);
   coupler::cli::add_import(program, exit);
   coupler::cli::add_init(program, exit);
+  coupler::cli::add_pin(program, exit);
   coupler::cli::add_plan(program, exit);
   coupler::cli::add_probe(program, exit);
   coupler::cli::add_schema(program, exit);

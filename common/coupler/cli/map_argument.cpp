@@ -29,12 +29,22 @@ MapArgument no_map(Exit exit, const std::string& argument, std::string what, std
   return none;
 }
 
-MapArgument from_node(const std::string& argument) {
+MapArgument from_node(const std::string& argument, const TlsTexts& tls) {
   const auto node = parse_node_address(argument);
   if (!node) return no_map(bad_call, argument, node.error().what, node.error().remedy);
-  auto map = fetch_live_map(found_at({}, *node).connection);
+  if (!node->tls && any_given(tls))
+    return no_map(bad_call, argument, "certificates are for a place with TLS",
+                  "write tls:// in place of tcp://");
+  MapArgument found{{}, ok, *node};
+  if (node->tls) overlay(found.tls, tls.view());
+  if (const auto problem = node->tls ? tls_problem(found.tls) : std::nullopt)
+    return no_map(bad_call, argument, "tls:// needs certificates", *problem);
+  Connection connection = found_at({}, *node).connection;
+  connection.tls = found.tls;
+  auto map = fetch_live_map(connection);
   if (!map) return no_map(map.error().exit, argument, map.error().what, map.error().remedy);
-  return {{std::move(*map), {}}, ok, *node};
+  found.loaded.map = std::move(*map);
+  return found;
 }
 
 LoadResult load_and_renew_lock(const std::string& path) {
@@ -50,7 +60,7 @@ LoadResult load_and_renew_lock(const std::string& path) {
 
 MapArgument from_file(LoadResult loaded) {
   const Exit exit = loaded.map ? ok : bad_input;
-  return {std::move(loaded), exit, std::nullopt};
+  return {std::move(loaded), exit};
 }
 
 constexpr int could_not_run = 127;  ///< what posix_spawn()'s child, like a shell, ends with
@@ -137,13 +147,20 @@ LoadResult load_revision(const std::string& argument) {
 
 }  // namespace
 
-MapArgument get_map(const std::string& argument, LockUse use) {
-  if (names_a_node(argument)) return from_node(argument);
+Map MapArgument::map() const {
+  if (!node) return loaded.map->map();
+  Map map = found_at(loaded.map->map(), *node);
+  map.connection.tls = tls;
+  return map;
+}
+
+MapArgument get_map(const std::string& argument, const TlsTexts& tls, LockUse use) {
+  if (names_a_node(argument)) return from_node(argument, tls);
   return from_file(use == LockUse::renew ? load_and_renew_lock(argument) : load_map_file(argument, use));
 }
 
-MapArgument get_version(const std::string& argument) {
-  if (names_a_node(argument) || !names_a_revision(argument)) return get_map(argument);
+MapArgument get_version(const std::string& argument, const TlsTexts& tls) {
+  if (names_a_node(argument) || !names_a_revision(argument)) return get_map(argument, tls);
   return from_file(load_revision(argument));
 }
 

@@ -19,6 +19,7 @@ constexpr double most_load_of_a_line = 0.8;
 
 struct Arguments {
   std::string map;
+  TlsTexts tls;
   double rtt = 1;  ///< ms
   bool json = false;
   std::string svg;
@@ -47,7 +48,7 @@ void warn_if_too_much(const std::string& file, const Map& map, const plan::Netwo
 }
 
 Exit run(const Arguments& arguments) {
-  const MapArgument argument = get_map(arguments.map);
+  const MapArgument argument = get_map(arguments.map, arguments.tls);
   print(argument.loaded.diagnostics);
   if (!argument.loaded.map) return argument.exit;
   const Map map = argument.map();
@@ -81,6 +82,7 @@ void add_plan(Program& program, Exit& exit) {
       .type_name("MS");
   command.add_flag("--json", arguments->json, "One JSON object on standard output, for scripts");
   command.add_option("--svg", arguments->svg, "Write a picture of the address spaces").type_name("FILE");
+  add_tls_options(command, arguments->tls);
   command.footer(
       "Example:\n  coupler plan device.yaml --rtt 2.5 --svg device.svg\n"
       "The driver makes the same requests. It warns when they do not fit into their time.");

@@ -2,13 +2,16 @@
 #include "coupler/cli/report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/printable.hpp"
+#include "coupler/map/rights_text.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -66,6 +69,34 @@ std::string summary(const std::string& file, const Map& map) {
   return fmt::format("{}: ok: {}, {}{}, fingerprint {}", printable(file), map.name,
                      counted(static_cast<std::ptrdiff_t>(map.points.size()), "point"), by_table(map),
                      fingerprint_text(map.fingerprint));
+}
+
+namespace {
+
+std::string role_text(const Security& security, std::optional<std::uint16_t> role) {
+  return role ? "as " + printable(security.roles[*role].name) : "no rights";
+}
+
+}  // namespace
+
+std::string rights_table(const Map& map) {
+  if (!map.security.present()) return {};
+  std::vector<std::array<std::string, 3>> rows{{"role", "may read", "may write"}};
+  for (const Role& role : map.security.roles)
+    rows.push_back(
+        {printable(role.name), rights_text(map, role, Right::read), rights_text(map, role, Right::write)});
+  std::array<std::size_t, 2> widths{};
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  std::string text;
+  for (const auto& [role, read, write] : rows)
+    text += fmt::format("  {:<{}}  {:<{}}  {}\n", role, widths[0], read, widths[1], write);
+  const auto plain = map.security.plain;
+  text += fmt::format("  {}: {}\n", plain_clients(map.security), role_text(map.security, plain));
+  if (map.security.files.present())
+    text += fmt::format("  certificates without one of these roles: {}\n",
+                        role_text(map.security, map.security.no_role));
+  return text;
 }
 
 std::string lock_report(const NewLock& lock) {

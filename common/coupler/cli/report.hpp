@@ -12,6 +12,9 @@ namespace coupler::cli {
 /// "device.yaml: ok: device, 3 points (1 coil, 2 discrete inputs), fingerprint 0123456789abcdef"
 std::string summary(const std::string& file, const Map& map);
 
+/// Which role may read and write which points, as a table; empty without `security`.
+std::string rights_table(const Map& map);
+
 /// What was written of a lock, as lines; empty if nothing was.
 std::string lock_report(const NewLock& lock);
 

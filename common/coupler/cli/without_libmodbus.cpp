@@ -26,6 +26,12 @@ Exit dump(const Map& /*map*/, const DumpOptions& /*options*/) {
   return complain("dump", failed, what, remedy);
 }
 
+#ifdef COUPLER_WITH_TLS
+void add_pin(Program& program, Exit& exit) {
+  add_absent(program, exit, "pin", "Print the pin of a device's certificate");
+}
+#endif
+
 void add_probe(Program& program, Exit& exit) {
   add_absent(program, exit, "probe", "Find out what a device answers to");
 }

@@ -84,6 +84,14 @@ void decode_text(const std::uint16_t* registers, const Format& format, std::stri
   text.resize(decode_text(registers, format, text.data()));
 }
 
+bool is_plain_text(std::string_view text) {
+  while (!text.empty()) {
+    const std::int32_t code = take_code_point(text);
+    if (code < 0x20 || (code >= 0x7F && code < 0xA0)) return false;
+  }
+  return true;
+}
+
 TextError encode_text(std::string_view text, const Format& format, std::uint16_t* registers) {
   if (text.find('\0') != std::string_view::npos) return TextError::has_nul;
   std::size_t size = 0;

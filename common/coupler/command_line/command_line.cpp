@@ -2,6 +2,7 @@
 #include "coupler/command_line/command_line.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <utility>
 
@@ -37,6 +38,11 @@ Option Option::one_value() {
 Option Option::no_extra_values() { return Option(option_->allow_extra_args(false)); }
 Option Option::delimiter(char sign) { return Option(option_->delimiter(sign)); }
 
+Option Option::path() {
+  return Option(option_->transform(
+      [](const std::string& text) { return text.empty() ? text : std::filesystem::absolute(text).string(); },
+      ""));
+}
 Option Option::in_range(int min, int max) { return Option(option_->check(CLI::Range(min, max))); }
 Option Option::in_range(double min, double max) { return Option(option_->check(CLI::Range(min, max))); }
 Option Option::one_of(std::vector<std::string> values) {

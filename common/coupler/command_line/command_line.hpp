@@ -39,6 +39,8 @@ class Option {
   Option in_range(double min, double max);
   Option one_of(std::vector<std::string> values);
   Option positive();
+  /// A path, which becomes absolute: its value holds wherever it is used.
+  Option path();
 
   /// Once the command line is parsed.
   bool given() const;

@@ -9,6 +9,7 @@
 #include "coupler/map/fields.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/identity.hpp"
+#include "coupler/map/rights_text.hpp"
 #include "coupler/plan/explain.hpp"
 #include "coupler/plan/picture.hpp"
 
@@ -26,7 +27,7 @@ bool is_for_node(const Map& map) {
     return point.line.present() || is_analogue(point) || point.counter.present() || point.latched.present();
   };
   return !map.sim.empty() || map.service.watchdog.present() || map.service.readback ||
-         !map.service.listen.empty() || !map.service.allow.empty() ||
+         !map.service.listen.empty() || !map.service.allow.empty() || map.security.present() ||
          std::any_of(map.points.begin(), map.points.end(), wired);
 }
 
@@ -86,11 +87,25 @@ FactGroup service(const Map& map) {
   std::string allow;
   for (const std::string_view each : service.allow)
     allow += fmt::format("{}{}", allow.empty() ? "" : ", ", each);
-  return {"Node",
-          {{"Listens on", service.listen.empty() ? "every interface" : std::string(service.listen)},
-           {"Who may connect", allow.empty() ? "everyone" : allow},
-           {"Watchdog", watchdog_words(service.watchdog)},
-           {"Read back outputs", service.readback ? "yes" : "no"}}};
+  FactGroup group{"Node",
+                  {{"Listens on", service.listen.empty() ? "every interface" : std::string(service.listen)},
+                   {"Who may connect", allow.empty() ? "everyone" : allow},
+                   {"Watchdog", watchdog_words(service.watchdog)},
+                   {"Read back outputs", service.readback ? "yes" : "no"}}};
+  for (const Role& role : map.security.roles)
+    group.facts.push_back({fmt::format("Role {}", role.name),
+                           fmt::format("reads {}; writes {}", rights_text(map, role, Right::read),
+                                       rights_text(map, role, Right::write))});
+  const auto role_of = [&](std::optional<std::uint16_t> role) {
+    return role ? std::string(map.security.roles[*role].name) : "may do nothing";
+  };
+  if (map.security.files.present()) group.facts.push_back({"TLS at port", fmt::to_string(map.security.port)});
+  if (map.security.files.present())
+    group.facts.push_back({"Certificates without a role", role_of(map.security.no_role)});
+  if (map.security.present())
+    group.facts.push_back(
+        {map.security.files.present() ? "Clients without TLS" : "Every client", role_of(map.security.plain)});
+  return group;
 }
 
 FactGroup identity(const Map& map) {

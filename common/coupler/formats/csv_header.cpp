@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "coupler/formats/csv_words.hpp"
-#include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler::formats {
 namespace {
@@ -28,7 +28,7 @@ std::vector<std::string_view> column_names() {
 /// The heading's own column, or what --columns says of it.
 std::string column_of(std::string_view heading, const ImportOptions& options) {
   for (const auto& [column, given] : options.columns)
-    if (loader::lower(given) == loader::lower(heading)) return column;
+    if (lower(given) == lower(heading)) return column;
   return formats::column_of(heading);
 }
 
@@ -39,9 +39,9 @@ bool is_known(const Column& column) {
 /// What becomes of a column that is none of a point's.
 void report_unknown(const Cell& heading, std::string_view key, Problems& problems) {
   const auto names = column_names();
-  const std::string_view near = loader::nearest(key, names);
+  const std::string_view near = nearest(key, names);
   const bool slip =
-      std::any_of(names.begin(), names.end(), [&](const auto name) { return loader::is_slip(key, name); });
+      std::any_of(names.begin(), names.end(), [&](const auto name) { return is_slip(key, name); });
   if (slip)
     problems.error(heading.at, fmt::format("a point has no key {}", shown(heading.text)),
                    fmt::format("did you mean '{}'? If not, give the column another heading", near));
@@ -87,9 +87,8 @@ std::vector<Column> read_header(const Row& header, const ImportOptions& options,
   }
   need_columns(header, columns, options, problems);
   for (const auto& [column, heading] : options.columns)
-    if (std::none_of(header.begin(), header.end(), [&, &name = heading](const Cell& c) {
-          return loader::lower(c.text) == loader::lower(name);
-        }))
+    if (std::none_of(header.begin(), header.end(),
+                     [&, &name = heading](const Cell& c) { return lower(c.text) == lower(name); }))
       problems.error(header.front().at, fmt::format("--columns: there is no heading {}", shown(heading)),
                      "write it as the file does");
   return columns;

@@ -140,7 +140,7 @@ const Code* find_code(std::uint64_t number) {
 
 /// "R/W" -> "rw", "Data type" -> "datatype"
 std::string letters_and_digits(std::string_view text) {
-  std::string word = loader::lower(text);
+  std::string word = lower(text);
   word.erase(std::remove_if(word.begin(), word.end(),
                             [](char c) { return !loader::is_letter(c) && !loader::is_digit(c); }),
              word.end());
@@ -161,7 +161,7 @@ std::vector<std::string_view> numbers_of(std::string_view text) {
 
 /// Behind "FC" or "function code"; the text itself if neither stands there.
 std::string_view without_fc(std::string_view text) {
-  const std::string low = loader::lower(text);
+  const std::string low = lower(text);
   for (const std::string_view word : {"function code", "function", "fc"})
     if (low.compare(0, word.size(), word) == 0) return text.substr(word.size());
   return text;
@@ -212,7 +212,7 @@ std::string column_of(std::string_view heading) {
   const std::string word = letters_and_digits(heading);
   for (const auto& [said, meant] : columns)
     if (word == said) return std::string(meant);
-  std::string key = loader::lower(heading);
+  std::string key = lower(heading);
   std::replace(key.begin(), key.end(), ' ', '_');
   return key;
 }

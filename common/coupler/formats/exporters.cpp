@@ -77,6 +77,9 @@ const Exporter* find_exporter(std::string_view name) {
 }
 
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) {
+  if (map.connection.tls.present())
+    warnings.add("the map has TLS, and this format has not",
+                 "name the coupler's port without TLS, where a node lets in whom its 'plain' says");
   for (const Point& point : map.points) {
     if (is_of_the_node(point))
       warnings.add(

@@ -25,7 +25,7 @@ std::string text(std::string_view value) { return flow(scalar("", std::string(va
 
 /// "cell_north_speed"
 std::string unique_id(const Map& map, const std::string& name) {
-  std::string id = loader::lower(fmt::format("{}_{}", map.name, name));
+  std::string id = lower(fmt::format("{}_{}", map.name, name));
   std::replace_if(
       id.begin(), id.end(), [](char c) { return !loader::is_letter(c) && !loader::is_digit(c); }, '_');
   return id;
@@ -120,7 +120,7 @@ struct Entities {
 /// The id that Home Assistant gives a sensor of that name, unless another one has it: then it adds _2, _3 …
 std::string entity_id(const std::string& name) {
   std::string id;
-  for (const char c : loader::lower(name)) {
+  for (const char c : lower(name)) {
     if (loader::is_letter(c) || loader::is_digit(c))
       id += c;
     else if (!id.empty() && id.back() != '_')

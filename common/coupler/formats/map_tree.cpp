@@ -26,8 +26,7 @@ bool is_plain_character(char c) {
 bool is_plain(std::string_view text) {
   if (text.empty() || !std::all_of(text.begin(), text.end(), is_plain_character)) return false;
   const bool is_number = text.size() > 1 && loader::is_digit(text[1]);
-  return (loader::is_letter(text[0]) || loader::is_digit(text[0]) || is_number) &&
-         loader::lower(text) != "null";
+  return (loader::is_letter(text[0]) || loader::is_digit(text[0]) || is_number) && lower(text) != "null";
 }
 
 /// Can only be text, with quotes or without.
@@ -60,7 +59,7 @@ std::string key_text(std::string_view key) { return is_plain(key) ? std::string(
 std::string value_text(const Entry& entry, const Key* key) {
   if (key != nullptr && entry.kind == Entry::Kind::scalar)
     for (const std::string_view word : loader::words(key->choices))
-      if (loader::lower(word) == loader::lower(entry.text)) return std::string(word);
+      if (lower(word) == lower(entry.text)) return std::string(word);
   return flow(entry);
 }
 

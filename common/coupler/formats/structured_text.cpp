@@ -72,7 +72,7 @@ std::string bytes_of(const Point& point) {
 }  // namespace
 
 bool is_reserved(std::string_view name) {
-  return reserved_words.find(fmt::format(" {} ", loader::lower(name))) != std::string_view::npos;
+  return reserved_words.find(fmt::format(" {} ", lower(name))) != std::string_view::npos;
 }
 
 std::string identifier(std::string_view name) {

@@ -87,7 +87,7 @@ class Writer {
     return unique(global_names_, name, point);
   }
   static std::string unique(UniqueNames& names, const std::string& name, std::string_view point) {
-    return name + names.make(loader::lower(name), point).substr(name.size());
+    return name + names.make(lower(name), point).substr(name.size());
   }
 
   void name_points() {

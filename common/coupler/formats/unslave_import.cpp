@@ -31,7 +31,7 @@ constexpr Kind kinds[] = {{"HR", Table::holding_registers},
 const Kind* kind_of(std::string_view key) {
   for (const Kind& kind : kinds) {
     const std::string_view number = key.substr(std::min(kind.letters.size(), key.size()));
-    if (loader::lower(key.substr(0, kind.letters.size())) == loader::lower(kind.letters) && !number.empty() &&
+    if (lower(key.substr(0, kind.letters.size())) == lower(kind.letters) && !number.empty() &&
         std::all_of(number.begin(), number.end(), loader::is_digit))
       return &kind;
   }
@@ -52,7 +52,7 @@ class RegisterReader {
       return;
     }
     const std::string number = without_zeros(given.key.substr(kind->letters.size()));
-    const std::string name = loader::lower(kind->letters) + "_" + number;
+    const std::string name = lower(kind->letters) + "_" + number;
     if (!seen_.insert(name).second) {
       problems_.warning(given.key_at,
                         fmt::format("{} is given twice, so this one is left out", shown(given.key)),
@@ -130,7 +130,7 @@ std::optional<ForeignUnit> read_slave(const Entry& slave, Problems& problems) {
 std::vector<Entry> read_device(const Entry& root, Problems& problems) {
   std::vector<Entry> keys;
   const Entry* mode = find(root, "mode");
-  const bool tcp = mode != nullptr && loader::lower(mode->text) == "tcp";
+  const bool tcp = mode != nullptr && lower(mode->text) == "tcp";
   if (!tcp)
     problems.warning(mode != nullptr ? mode->at : root.at,
                      "the device is on a serial line, but a map is for Modbus/TCP",

@@ -15,7 +15,7 @@ std::string lua_literal(std::string_view text) { return double_quoted(text, "\\{
 
 /// Names of protocols and of their fields: lower case, digits, '_'.
 std::string protocol_of(std::string_view name) {
-  std::string out = "coupler_" + loader::lower(name);
+  std::string out = "coupler_" + lower(name);
   for (char& c : out)
     if (!loader::is_letter(c) && !loader::is_digit(c)) c = '_';
   return out;

@@ -3,6 +3,7 @@
 #include "coupler/generate/macros.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "coupler/generate/code.hpp"
 #include "coupler/generate/member.hpp"
@@ -33,6 +34,7 @@ using ::coupler::OnReconnect;
 using ::coupler::OnShutdown;
 using ::coupler::Point;
 using ::coupler::Poll;
+using ::coupler::Role;
 using ::coupler::Verify;
 using ::coupler::Safe;
 using ::coupler::Serial;
@@ -52,7 +54,7 @@ using namespace ::std::chrono_literals;
 template <::std::uint16_t... Words>
 constexpr ::std::uint16_t registers[] = {{Words...}};
 
-{values}{points}{sim}{allow}{unreadable}{sequences}// The file itself, byte by byte: the node serves it.
+{values}{points}{sim}{allow}{roles}{unreadable}{sequences}// The file itself, byte by byte: the node serves it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 constexpr char text[] =
@@ -75,6 +77,7 @@ constexpr Map map{{
     {on_reconnect}, {on_shutdown}, {unreadable_name},
     {coupler_watchdog},  // timeout, recovery, feed every, arm, feed, reset, how it shows that it has expired
     {poll}, {changes}, {verify},
+    {security},  // roles, those of clients without TLS and without a role, files, port
 }};
 
 }}  // namespace coupler::maps::{name}
@@ -163,6 +166,36 @@ std::string row(const WatchdogSequences::Write& write) {
                      write.if_different);
 }
 
+/// A role; its rights stand before it.
+std::string rights_name(std::size_t role) { return fmt::format("rights_of_role_{}", role); }
+
+std::string roles(const Security& security) {
+  std::string out;
+  std::string rows;
+  for (std::size_t i = 0; i < security.roles.size(); ++i) {
+    const Role& role = security.roles[i];
+    if (!role.rights.empty())
+      out += fmt::format(
+          "// {}: 1 may read, 2 may write; of each point.\nconstexpr ::std::uint8_t {}[] = {{{}}};\n\n",
+          comment(role.name), rights_name(i), fmt::join(role.rights.begin(), role.rights.end(), ", "));
+    rows += fmt::format("    {{{}, {}, {}}},\n", literal(role.name),
+                        role.rights.empty() ? "{}" : rights_name(i), role.reads_all);
+  }
+  if (rows.empty()) return out;
+  return out + fmt::format("// Name, rights, reads all.\nconstexpr Role roles[] = {{\n{}}};\n\n", rows);
+}
+
+std::string security(const Security& security) {
+  if (!security.present()) return "{}";
+  const auto index = [](std::optional<std::uint16_t> role) {
+    return role ? fmt::format("::std::uint16_t{{{}}}", *role) : "{}";
+  };
+  const CredentialFiles& files = security.files;
+  return fmt::format("{{roles, {}, {}, {{{}, {}, {}, {}}}, {}}}", index(security.plain),
+                     index(security.no_role), literal(files.certificate), literal(files.key),
+                     literal(files.ca), literal(files.revoked), security.port);
+}
+
 /// One of the addresses that may connect.
 std::string row(std::string_view address) { return fmt::format("    {},\n", literal(address)); }
 
@@ -225,7 +258,8 @@ std::string table_source(const Map& map, const Provenance& provenance) {
       arg("allow", array("::std::string_view allow", "Who may connect.", map.service.allow)),
       arg("unreadable", array("Unreadable unreadable", "What is never read.", map.unreadable)),
       arg("unreadable_name", map.unreadable.empty() ? "{}" : "unreadable"),
-      arg("sequences", sequences(map.coupler_watchdog)),
+      arg("sequences", sequences(map.coupler_watchdog)), arg("roles", roles(map.security)),
+      arg("security", security(map.security)),
       arg("coupler_watchdog", coupler_watchdog(map.coupler_watchdog)),
       arg("on_reconnect", enumerator(map.on_reconnect)), arg("on_shutdown", enumerator(map.on_shutdown)),
       arg("poll", enumerator(map.poll)), arg("changes", map.changes), arg("verify", enumerator(map.verify)),

@@ -42,6 +42,12 @@ inline std::string written(const Serial& line) {
   return fmt::format("{} {}{}", line.device, rate_and_parity(line), line.rs485 ? " rs485" : "");
 }
 
+inline std::string written(const Tls& tls) {
+  if (!tls.present()) return "none";
+  return fmt::format("{}, {}, {}{}{}", tls.certificate, tls.key, tls.pin.empty() ? tls.ca : tls.pin,
+                     tls.name.empty() ? "" : " as ", tls.name);
+}
+
 /// What a key of a point is about.
 enum class About { point, reading, writing };
 
@@ -68,7 +74,13 @@ constexpr auto fields_of(const Connection*) {
   return std::make_tuple(
       field("address", &Connection::address, change), field("port", &Connection::port, change),
       field("unit", &Connection::unit, change), field("timeout", &Connection::timeout, change),
-      field("framing", &Connection::framing, change), field("serial", &Connection::serial, change));
+      field("framing", &Connection::framing, change), field("serial", &Connection::serial, change),
+      field("tls", &Connection::tls, change));
+}
+
+constexpr auto fields_of(const Tls*) {
+  return std::make_tuple(field("certificate", &Tls::certificate), field("key", &Tls::key),
+                         field("ca", &Tls::ca), field("name", &Tls::name), field("pin", &Tls::pin));
 }
 
 constexpr auto fields_of(const Serial*) {

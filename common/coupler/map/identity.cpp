@@ -48,11 +48,22 @@ std::optional<Head> read_head(const std::array<std::uint16_t, head_size>& area) 
 std::optional<Report> read_report(const std::array<std::uint16_t, report_size>& area) {
   std::array<std::uint16_t, head_size> first{};
   std::copy_n(area.begin(), first.size(), first.begin());
-  const auto head = read_head(first);
-  if (!head) return {};
+  auto report = read_report_head(first);
+  if (!report) return report;
   const auto counter = [&](std::size_t at) { return codec::decode<std::uint32_t>(&area[at], Order::ABCD); };
-  Report report{*head, area[at_watchdog_state], area[at_watchdog_left], counter(at_uptime), {}};
-  for (std::size_t i = 0; i < counters.size(); ++i) report.counts[i] = counter(counters[i].at);
+  report->has_statistics = true;
+  report->uptime = counter(at_uptime);
+  for (std::size_t i = 0; i < counters.size(); ++i) report->counts[i] = counter(counters[i].at);
+  return report;
+}
+
+std::optional<Report> read_report_head(const std::array<std::uint16_t, head_size>& area) {
+  const auto head = read_head(area);
+  if (!head) return {};
+  Report report;
+  report.head = *head;
+  report.watchdog_state = area[at_watchdog_state];
+  report.watchdog_left = area[at_watchdog_left];
   return report;
 }
 

@@ -114,12 +114,15 @@ struct Report {
   Head head;
   std::uint16_t watchdog_state = 0;
   std::uint16_t watchdog_left = 0;                      ///< ms
+  bool has_statistics = false;                          ///< the rest is known: not every client may read it
   std::uint32_t uptime = 0;                             ///< s
   std::array<std::uint32_t, counters.size()> counts{};  ///< in the order of `counters`
 };
 
 /// nullopt: as read_head().
 std::optional<Report> read_report(const std::array<std::uint16_t, report_size>& area);
+/// The same without the statistics.
+std::optional<Report> read_report_head(const std::array<std::uint16_t, head_size>& area);
 
 /// Which machine a node runs on: two nodes with one map are told apart by it.
 struct Machine {

@@ -8,6 +8,7 @@
 #include "coupler/base/enumeration.hpp"
 #include "coupler/base/span.hpp"
 #include "coupler/map/point.hpp"
+#include "coupler/map/security.hpp"
 #include "coupler/map/serial.hpp"
 #include "coupler/map/watchdog.hpp"
 #include "coupler/modbus/limits.hpp"
@@ -16,7 +17,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 11;
+constexpr int model_version = 12;
 
 /// Where the coupler is. ROS parameters and arguments override it.
 struct Connection {
@@ -26,6 +27,7 @@ struct Connection {
   std::chrono::milliseconds timeout = usual_timeout(false);
   Framing framing = Framing::tcp;  ///< at `address`; a serial port has RTU
   Serial serial{};                 ///< instead of `address`
+  Tls tls{};                       ///< absent: plain Modbus/TCP
 
   constexpr bool is_rtu() const { return serial.present() || framing == Framing::rtu; }
   constexpr bool present() const { return serial.present() || !address.empty(); }
@@ -141,6 +143,7 @@ struct Map {
   Poll poll = Poll::all;
   bool changes = true;  ///< the driver listens to changes that a node announces; false: it polls only
   Verify verify = Verify::require;
+  Security security{};
 };
 
 /// The point of that name, or nullptr.

@@ -15,10 +15,12 @@ namespace coupler {
 namespace {
 
 constexpr std::string_view tcp = "tcp://";
+constexpr std::string_view tls = "tls://";
 constexpr std::string_view rtu_over_tcp = "rtu+tcp://";
 constexpr std::string_view rtu = "rtu:";
 
 constexpr auto form_of_tcp = "write tcp://HOST[:PORT][/UNIT], as in tcp://192.168.1.17:502/1";
+constexpr auto form_of_tls = "write tls://HOST[:PORT][/UNIT], as in tls://192.168.1.17:802/1";
 constexpr auto form_of_rtu_over_tcp =
     "write rtu+tcp://HOST[:PORT][/UNIT], as in rtu+tcp://192.168.1.17:4001/1";
 
@@ -151,21 +153,30 @@ tl::expected<NodeAddress, NetworkError> parse_serial_port(std::string_view rest,
 }  // namespace
 
 bool names_a_node(std::string_view argument) {
-  return starts_with(argument, tcp) || starts_with(argument, rtu) || starts_with(argument, rtu_over_tcp);
+  return starts_with(argument, tcp) || starts_with(argument, tls) || starts_with(argument, rtu) ||
+         starts_with(argument, rtu_over_tcp);
 }
 
-std::string node_argument(const std::string& argument) {
+std::string node_argument(const std::string& argument, const Connection& otherwise) {
   if (names_a_node(argument)) return argument;
-  return std::string(starts_with(argument, "/") ? rtu : tcp) + argument;
+  const std::string_view over_tcp = otherwise.tls.present() ? tls : tcp;
+  return std::string(starts_with(argument, "/") ? rtu : over_tcp) + argument;
 }
 
 tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argument,
                                                            const Connection& otherwise) {
   if (starts_with(argument, tcp))
     return parse_host_and_port(argument.substr(tcp.size()), otherwise, form_of_tcp);
+  if (starts_with(argument, tls)) {
+    Connection usual = otherwise;
+    if (!otherwise.tls.present()) usual.port = default_tls_port;
+    auto node = parse_host_and_port(argument.substr(tls.size()), usual, form_of_tls);
+    if (node) node->tls = true;
+    return node;
+  }
   if (starts_with(argument, rtu)) return parse_serial_port(argument.substr(rtu.size()), otherwise);
   if (!starts_with(argument, rtu_over_tcp))
-    return wrong("the address of a device begins with tcp:// or rtu:", form_of_tcp);
+    return wrong("the address of a device begins with tcp://, tls:// or rtu:", form_of_tcp);
   auto node = parse_host_and_port(argument.substr(rtu_over_tcp.size()), otherwise, form_of_rtu_over_tcp);
   if (!node) return node;
   if (!is_rtu_unit(node->unit))
@@ -183,8 +194,9 @@ std::string node_address_text(const Connection& connection) {
   if (connection.serial.present())
     return fmt::format("{}{}/{}", rtu, connection.serial.device, connection.unit);
   const bool bracketed = connection.address.find(':') != std::string_view::npos;
-  return fmt::format(bracketed ? "{}[{}]:{}/{}" : "{}{}:{}/{}", connection.is_rtu() ? rtu_over_tcp : tcp,
-                     connection.address, connection.port, connection.unit);
+  const std::string_view scheme = connection.is_rtu() ? rtu_over_tcp : connection.tls.present() ? tls : tcp;
+  return fmt::format(bracketed ? "{}[{}]:{}/{}" : "{}{}:{}/{}", scheme, connection.address, connection.port,
+                     connection.unit);
 }
 
 Map found_at(const Map& map, const NodeAddress& where) {
@@ -195,6 +207,7 @@ Map found_at(const Map& map, const NodeAddress& where) {
   connection.unit = where.unit;
   connection.framing = where.framing;
   connection.serial = where.serial;
+  if (!where.tls) connection.tls = {};
   connection.changed_from(map.connection.is_rtu());
   return found;
 }

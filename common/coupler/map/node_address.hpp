@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device in place of a map's file: tcp://HOST[:PORT][/UNIT], rtu+tcp://HOST[:PORT][/UNIT] or
-// rtu:DEVICE[/UNIT][?baud=…&parity=…&stop_bits=…&rs485=…].
+// A device in place of a map's file: tcp://HOST[:PORT][/UNIT], tls://HOST[:PORT][/UNIT],
+// rtu+tcp://HOST[:PORT][/UNIT] or rtu:DEVICE[/UNIT][?baud=…&parity=…&stop_bits=…&rs485=…].
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,15 @@ struct NodeAddress {
   std::uint8_t unit = Connection{}.unit;
   Framing framing = Framing::tcp;
   Serial serial{};  ///< its device is a part of the argument
+  bool tls = false;
 };
 
 /// The argument means a device, well written or not.
 bool names_a_node(std::string_view argument);
 
-/// Where a command expects a device in any case, "tcp://" may be left out, and "rtu:" before a path.
-std::string node_argument(const std::string& argument);
+/// Where a command expects a device in any case, "tcp://" may be left out ("tls://" if `otherwise` has that),
+/// and "rtu:" before a path.
+std::string node_argument(const std::string& argument, const Connection& otherwise = {});
 
 /// "tcp://10.0.0.7", "tcp://cell:1502/3", "tcp://[fe80::1]:502", "rtu:/dev/ttyUSB0/17?baud=9600&parity=none".
 /// What is not given is `otherwise`'s.
@@ -41,7 +43,7 @@ std::string place_text(const Connection& connection);
 std::string node_address_text(const Connection& connection);
 
 /// `map` with the connection of where it was found, which counts, not where it says that it is. It views the
-/// argument that `where` was read from.
+/// argument that `where` was read from. With TLS the certificates are the map's.
 Map found_at(const Map& map, const NodeAddress& where);
 
 }  // namespace coupler

@@ -36,6 +36,15 @@ Span<const WatchdogSequences::Write> OwnedMap::keep(const std::vector<WatchdogSe
   return sequences_.emplace_back(sequence.begin(), sequence.end());
 }
 
+Span<const Role> OwnedMap::keep(const std::vector<Role>& roles) {
+  roles_.assign(roles.begin(), roles.end());
+  return roles_;
+}
+
+Span<const std::uint8_t> OwnedMap::keep(const std::vector<std::uint8_t>& rights) {
+  return rights_.emplace_back(rights.begin(), rights.end());
+}
+
 void OwnedMap::finish(Map head, const std::vector<Point>& points, const std::vector<SimWire>& sim) {
   points_.assign(points.begin(), points.end());
   sim_.assign(sim.begin(), sim.end());

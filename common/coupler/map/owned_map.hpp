@@ -35,6 +35,9 @@ class OwnedMap {
   Span<const WatchdogSequences::Write> keep(const std::vector<WatchdogSequences::Write>& sequence);
   /// Keeps the list; what its elements view must be kept, too.
   Span<const std::string_view> keep(const std::vector<std::string_view>& list);
+  Span<const Role> keep(const std::vector<Role>& roles);
+  /// Keeps a copy of a role's rights.
+  Span<const std::uint8_t> keep(const std::vector<std::uint8_t>& rights);
 
   /// Ends the building: sorts the points and fills in fingerprint and checksum. `head` brings all fields but
   /// those and `points` and `sim`; its views, and those of points and wires, must point into what was kept
@@ -48,6 +51,8 @@ class OwnedMap {
   std::pmr::deque<std::pmr::vector<NamedValue>> values_;
   std::pmr::deque<std::pmr::vector<Unreadable>> areas_;
   std::pmr::deque<std::pmr::vector<WatchdogSequences::Write>> sequences_;
+  std::pmr::vector<Role> roles_;
+  std::pmr::deque<std::pmr::vector<std::uint8_t>> rights_;
   std::pmr::vector<Point> points_;
   std::pmr::vector<SimWire> sim_;
   Map map_;

@@ -244,6 +244,33 @@ Rules rules_of_a_wire() {
   return {{{"oneOf", {has("from"), has("square")}}}, {{"dependencies", {{"invert", {"from"}}}}}};
 }
 
+/// The path of a PEM file, and not what is in it.
+Json path_of_pem() { return {{"minLength", 1}, {"not", {{"pattern", "-----BEGIN"}}}}; }
+
+/// `security:`: nothing of TLS, or all of it.
+Rules rules_of_security() {
+  Rules rules;
+  for (const std::string_view key : {"certificate", "key", "ca", "revoked"})
+    rules.push_back(only(key, path_of_pem()));
+  rules.push_back({{"dependencies",
+                    {{"certificate", {"key", "ca"}},
+                     {"key", {"certificate"}},
+                     {"ca", {"certificate"}},
+                     {"revoked", {"certificate"}},
+                     {"port", {"certificate"}},
+                     {"no_role", {"certificate"}}}}});
+  return rules;
+}
+
+/// `tls:`
+Rules rules_of_tls() {
+  Rules rules;
+  for (const std::string_view key : {"certificate", "key", "ca"}) rules.push_back(only(key, path_of_pem()));
+  rules.push_back(only("pin", {{"pattern", "^sha256:(:*[0-9A-Fa-f]){64}:*$"}}));
+  rules.push_back({{"oneOf", {has("ca"), has("pin")}}});
+  return rules;
+}
+
 }  // namespace
 
 Rules point_rules(Section section) {
@@ -256,6 +283,10 @@ Rules point_rules(Section section) {
     rules = {only("device", {{"minLength", 1}}), only("channel", {{"minLength", 1}})};
   } else if (section == Section::pwm) {
     rules = {only("chip", {{"minLength", 1}})};
+  } else if (section == Section::security) {
+    rules = rules_of_security();
+  } else if (section == Section::tls) {
+    rules = rules_of_tls();
   } else if (loader::overlap(section, bits)) {
     add_rules_of_bits(section, rules);
   } else if (loader::overlap(section, registers)) {

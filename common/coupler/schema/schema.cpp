@@ -38,8 +38,14 @@ Json points_of(Section section) {
                      {"additionalProperties", std::move(point)}});
 }
 
+/// name -> role.
+Json roles_of(Section section) {
+  return {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", or_nothing(object_of(section))}};
+}
+
 Json values_of(const Key& key) {
   if (key.kind == ValueKind::points) return points_of(key.inside);
+  if (key.kind == ValueKind::roles) return roles_of(key.inside);
   if (key.inside == Section::none) return value_schema(key);
   Json object = object_of(key.inside);
   if (key.inside == Section::mapping) return or_nothing(std::move(object));

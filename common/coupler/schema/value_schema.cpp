@@ -178,7 +178,10 @@ Json value_schema(const Key& key) {
                  any_of({text("^[A-Za-z][A-Za-z0-9_]*$", "use letters, digits and '_', a letter first"),
                          {{"type", "boolean"}}})}}},
               {"additionalProperties", false}};
+    case ValueKind::patterns:
+      return any_of({{{"enum", {"all", "none"}}}, {{"type", "array"}, {"items", {{"type", "string"}}}}});
     case ValueKind::section:
+    case ValueKind::roles:
     case ValueKind::points: break;
   }
   return Json::object();

@@ -14,12 +14,13 @@ class Attack:
     guarded: bool  # only of a node with a watchdog and a list of allowed clients
     alone: bool  # nobody else may be connected
     waits: bool  # `run` yields where it waits, and all that do take turns
+    tls: bool  # only of a node with TLS
 
 
-def attack(name, guarded=False, alone=False, waits=False):
+def attack(name, guarded=False, alone=False, waits=False, tls=False):
     """Puts a function on the list."""
     def enlist(function):
-        ATTACKS.append(Attack(name, function, guarded, alone, waits))
+        ATTACKS.append(Attack(name, function, guarded, alone, waits, tls))
         return function
     return enlist
 
@@ -29,4 +30,4 @@ TARGET = 1000  # first of 125 holding registers
 TARGET_REGISTERS = 125
 TARGET_COIL = 100  # first of 16 coils
 
-from attacks import framing, requests, connections, listening, scheduling, waiting, guards  # noqa: E402,F401 in the order in which they run
+from attacks import framing, requests, connections, listening, scheduling, waiting, guards, tls  # noqa: E402,F401 in the order in which they run

@@ -84,6 +84,35 @@ TEST(NodeAddress, Settings_that_are_not_given_can_be_those_of_a_map) {
             (Serial{"/dev/ttyUSB0", 19200, Serial::Parity::odd, 1, false}));
 }
 
+TEST(NodeAddress, Tls_has_a_port_of_its_own) {
+  const auto node = parse_node_address("tls://press");
+  ASSERT_TRUE(node) << node.error().what;
+  EXPECT_TRUE(node->tls);
+  EXPECT_EQ(node->port, 802);
+  EXPECT_EQ(parse_node_address("tls://press:1802/3")->port, 1802);
+  Connection map;
+  map.port = 1802;
+  EXPECT_EQ(parse_node_address("tls://press", map)->port, 802) << "that is the map's without TLS";
+  map.tls.certificate = "cell1.pem";
+  EXPECT_EQ(parse_node_address("tls://press", map)->port, 1802);
+  EXPECT_FALSE(parse_node_address("tcp://press", map)->tls);
+}
+
+TEST(NodeAddress, What_is_left_out_before_a_host_is_as_the_map_has_it) {
+  Connection map;
+  EXPECT_EQ(node_argument("press", map), "tcp://press");
+  map.tls.certificate = "cell1.pem";
+  EXPECT_EQ(node_argument("press", map), "tls://press");
+  EXPECT_EQ(node_argument("tcp://press", map), "tcp://press");
+}
+
+TEST(NodeAddress, A_map_found_without_TLS_has_none) {
+  Map map;
+  map.connection.tls.certificate = "cell1.pem";
+  EXPECT_TRUE(found_at(map, *parse_node_address("tls://press")).connection.tls.present());
+  EXPECT_FALSE(found_at(map, *parse_node_address("tcp://press")).connection.tls.present());
+}
+
 TEST(NodeAddress, Rtu_may_go_over_tcp) {
   const auto node = parse_node_address("rtu+tcp://cell:4001/3");
   ASSERT_TRUE(node) << node.error().what;

@@ -26,10 +26,12 @@ VALIDATOR = jsonschema.Draft7Validator(SCHEMA)
 # What the schema does not see, by the reason. Maps of test/maps/bad.
 UNSEEN = {name + ".yaml" for name in (
     # between keys
-    "serial_and_address unit_of_a_serial_line broadcast_that_is_read broadcast_with_a_watchdog "
+    "tls_with_rtu security_at_the_plain_port serial_and_address unit_of_a_serial_line broadcast_that_is_read broadcast_with_a_watchdog "
     # between points, or between a point and a limit
     "overlap overlap_of_parts overlap_of_access overlap_of_inputs overlap_of_a_wired_input point_name_is_taken "
     "line_in_two_points point_exceeds_the_limits string_is_too_long_to_write preset_area "
+    # between roles and what they name
+    "security_plain_is_no_role security_role_is_called_none security_of_no_point "
     # in the digits of an address: JSON has numbers
     "modicon_past_65536 modicon_numbers_read_from_zero "
     # between entries of a list

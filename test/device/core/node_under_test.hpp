@@ -38,7 +38,7 @@ class FakeClock final : public Clock {
 /// Remembers what it was told.
 class FakeScheduleSink final : public ScheduleSink {
  public:
-  void add(const modbus::Change& outcome) override { told.push_back(outcome); }
+  void add_outcome(const modbus::Change& outcome, const ClientSession*) override { told.push_back(outcome); }
   std::vector<modbus::Change> told;
 };
 

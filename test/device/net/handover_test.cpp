@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "test/device/net/tcp_under_test.hpp"
 
 namespace coupler::device {
@@ -89,6 +91,29 @@ TEST(HandingOver, Who_has_written_an_output_feeds_the_watchdog_of_the_next) {
   const auto clients = one.tcp.release();
   ASSERT_EQ(clients.size(), 1U);
   EXPECT_TRUE(clients[0].has_written);
+}
+
+TEST(HandingOver, Who_has_written_an_output_is_named_by_address_certificate_and_role) {
+  TcpUnderTest one;
+  one.node.watchdog = OutputWatchdog(Watchdog{std::chrono::hours(1), {}, {}});
+  one.node.lines.outputs = {{0, {0, 0}}};
+  EXPECT_EQ(one.tcp.writers(), "");
+  Client client = one.connect(5);
+  const Client reader = one.connect(6);
+  client.send(adu(1, pdu(5, {0, 0xFF00})));
+  one.settle();
+  EXPECT_EQ(one.tcp.writers(), "127.0.0.5");
+  auto clients = one.tcp.release();
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(0x0A000006);
+  for (OpenConnection& each : clients) {
+    TlsPeer peer{{}, ShortText("cell1"), ShortText(each.has_written ? "operator" : "viewer")};
+    std::memcpy(&peer.address, &address, sizeof address);
+    each.tls = peer;
+  }
+  one.tcp.take_over(std::move(clients), TimePoint::clock::now());
+  EXPECT_EQ(one.tcp.writers(), "'cell1' (10.0.0.6, operator)");
 }
 
 }  // namespace

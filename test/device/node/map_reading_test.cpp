@@ -23,7 +23,7 @@ class Reading : public testing::Test {
     auto reading = MapReading::start(loop_, {std::move(work)}, {});
     EXPECT_TRUE(reading.has_value());
     while (!(*reading)->is_over({})) loop_.run_once(std::chrono::milliseconds(100));
-    return (*reading)->take();
+    return (*reading)->take().map([](MapRead read) { return read.map; });
   }
 
   Loop loop_;

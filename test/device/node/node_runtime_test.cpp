@@ -39,7 +39,7 @@ bool reload_ends(NodeRuntime& runtime, Loop& loop, const FakeLog& log) {
 /// A simulated node with lamp and speed, and a map that it reads at the next reload.
 class Simulated : public testing::Test {
  protected:
-  Simulated() { EXPECT_TRUE(runtime_.start(first_->map()).has_value()); }
+  Simulated() { EXPECT_TRUE(runtime_.start(first_->map(), {}).has_value()); }
 
   static MapBuilder plant() {
     MapBuilder builder("plant");
@@ -124,7 +124,7 @@ TEST(OnItsBoard, Lines_that_cannot_be_had_are_refused) {
           .build();
   Loop loop;
   NodeRuntime runtime(loop, options, {[&] { return next; }}, nobody, log);
-  ASSERT_TRUE(runtime.start(first->map()).has_value());
+  ASSERT_TRUE(runtime.start(first->map(), {}).has_value());
   runtime.reload(0);
   EXPECT_FALSE(reload_ends(runtime, loop, log));
   EXPECT_THAT(log.lines, Contains(HasSubstr("point 'horn'")));
@@ -137,7 +137,7 @@ TEST(BuiltIn, A_node_without_a_file_ignores_the_wish_to_reload) {
   Loop loop;
   NodeRuntime runtime(loop, options, {}, nobody, log);
   const MapPtr map = MapBuilder().many(Table::coils, 0, 1).build();
-  ASSERT_TRUE(runtime.start(map->map()).has_value());
+  ASSERT_TRUE(runtime.start(map->map(), {}).has_value());
   runtime.reload(0);
   EXPECT_THAT(log.lines.back(), HasSubstr("built in"));
 }

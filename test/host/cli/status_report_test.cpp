@@ -17,13 +17,17 @@ constexpr Connection where{"cell", 502, 1, std::chrono::milliseconds(1)};
 NodeStatus node() {
   NodeStatus status;
   status.at = std::chrono::system_clock::time_point(std::chrono::milliseconds(1500));
-  status.report = identity::Report{{0x0123456789ABCDEF, 300, 0xF409A1FE}, 2, 345, 93784, {}};
+  status.report = identity::Report{{0x0123456789ABCDEF, 300, 0xF409A1FE}, 2, 345, true, 93784, {}};
   for (std::size_t i = 0; i < identity::counters.size(); ++i)
     status.report->counts[i] = 1000 + static_cast<std::uint32_t>(i);
   status.further = {identity::machine_of("cell-7", 0xAB), {true, true}, 2000};
   status.identification = {{0, "OpenCoupler"}, {1, "press"}, {2, "0.1.0"}, {0x80, "x"}};
   return status;
 }
+
+const host::Certificates certificates{
+    {"cell1", "operator", {{}, std::chrono::system_clock::time_point(std::chrono::hours(24))}},
+    {"press", {}, {{}, std::chrono::system_clock::time_point(std::chrono::hours(1))}}};
 
 NodeStatus foreign() {
   NodeStatus status;
@@ -48,6 +52,18 @@ TEST(StatusText, Everything_has_a_line) {
     EXPECT_THAT(text, HasSubstr(line));
   for (const identity::Counter& counter : identity::counters)
     EXPECT_THAT(text, HasSubstr(std::string(counter.text)));
+}
+
+TEST(StatusText, With_TLS_it_names_the_certificates) {
+  NodeStatus status = node();
+  EXPECT_THAT(status_text(status, where), Not(HasSubstr("certificate")));
+  status.certificates = certificates;
+  EXPECT_THAT(
+      status_text(status, where),
+      HasSubstr("  certificate of this side              'cell1', until 1970-01-02 00:00 UTC, role operator\n"
+                "  certificate of the node               'press', until 1970-01-01 01:00 UTC\n"));
+  status.certificates->own.role.clear();
+  EXPECT_THAT(status_text(status, where), HasSubstr("UTC, without a role\n"));
 }
 
 TEST(StatusText, What_a_node_does_not_say_is_unknown) {
@@ -82,7 +98,9 @@ TEST(StatusText, Of_a_foreign_coupler_it_is_the_identification_made_harmless) {
 }
 
 TEST(StatusJson, Everything_has_a_key) {
-  const auto json = ordered_json::parse(status_json(node(), where));
+  NodeStatus status = node();
+  status.certificates = certificates;
+  const auto json = ordered_json::parse(status_json(status, where));
   const auto expected = ordered_json::parse(R"({
     "device": "tcp://cell:502/1", "time": "1970-01-01T00:00:01.500Z", "trouble": null, "node": true,
     "name": "press", "version": "0.1.0", "fingerprint": "0123456789abcdef",
@@ -92,6 +110,8 @@ TEST(StatusJson, Everything_has_a_key) {
       "exceptions_03": 1004, "exceptions_04": 1005, "foreign_units": 1006, "connections": 1007,
       "connections_refused": 1008, "connections_evicted": 1009, "connections_bad_frames": 1010,
       "connections_timed_out": 1011, "hardware_errors": 1012, "events_lost": 1013, "watchdog_trips": 1014},
+    "certificates": {"own": {"name": "cell1", "role": "operator", "ends": "1970-01-02T00:00:00.000Z"},
+      "device": {"name": "press", "role": null, "ends": "1970-01-01T01:00:00.000Z"}},
     "identification": {"VendorName": "OpenCoupler", "ProductCode": "press", "MajorMinorRevision": "0.1.0",
       "object 80": "x"}})");
   EXPECT_EQ(json, expected) << json.dump(2);

@@ -91,7 +91,7 @@ TEST_F(NodeOutputsTest, A_node_that_cannot_after_all_has_it_done_by_the_driver) 
   };
   EXPECT_EQ(schedule("lamp", 1, milliseconds(100)).text, "accepted: the driver does it");
   EXPECT_EQ(schedule("lamp", 0, milliseconds(300)).text, "accepted: the driver does it");
-  EXPECT_EQ(device.count("schedule"), 1U);
+  EXPECT_EQ(device.count("schedule"), 2U) << "the refusal may be about one output";
   run_for(milliseconds(110));
   EXPECT_EQ(lamp(), 1);
 }

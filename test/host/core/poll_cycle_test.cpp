@@ -30,6 +30,18 @@ TEST_F(PollCycleTest, A_map_without_points_is_never_due) {
   EXPECT_EQ(cycle->select(now), nullptr);
 }
 
+TEST_F(PollCycleTest, What_was_given_up_is_asked_for_again_when_the_device_may_have_changed) {
+  missing = {1};
+  plan(registers({0, 1}));
+  run();
+  ASSERT_THAT(given_up, testing::SizeIs(1));
+  EXPECT_THAT(run(), ElementsAre("0+1"));
+  missing.clear();
+  cycle->try_again();
+  EXPECT_THAT(run(), ElementsAre("0+2"));
+  EXPECT_THAT(run(), ElementsAre("0+2"));
+}
+
 TEST_F(PollCycleTest, Each_rate_has_deadlines_of_its_own) {
   plan(MapBuilder()
            .add(hr, "fast", 0, codec::Type::UINT, at_rate(50))

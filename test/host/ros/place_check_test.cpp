@@ -41,6 +41,28 @@ TEST(PlaceCheck, A_port_does_nothing_on_a_serial_line) {
   EXPECT_THAT(useless_setting(settings, on_a_line()), IsEmpty()) << "it is at an address then";
 }
 
+TEST(PlaceCheck, TLS_needs_all_of_its_files) {
+  Settings settings;
+  settings.certificate = "/cell1.pem";
+  Map map = at_an_address();
+  apply(settings, map);
+  EXPECT_THAT(place_error(settings, map.connection), HasSubstr("TLS needs key"));
+  settings.key = "/cell1.key";
+  apply(settings, map);
+  EXPECT_THAT(place_error(settings, map.connection), HasSubstr("TLS needs ca (or pin)"));
+  settings.ca = "/authority.pem";
+  apply(settings, map);
+  EXPECT_THAT(place_error(settings, map.connection), IsEmpty());
+  map.connection.framing = Framing::rtu;
+  EXPECT_THAT(place_error(settings, map.connection), HasSubstr("RTU has no TLS"));
+}
+
+TEST(PlaceCheck, A_name_for_TLS_does_nothing_without_it) {
+  Settings settings;
+  settings.tls_name = "press";
+  EXPECT_THAT(useless_setting(settings, at_an_address()), HasSubstr("tls_name has no meaning without TLS"));
+}
+
 TEST(PlaceCheck, What_a_driver_shows_of_its_device_may_be_given_to_it) {
   for (const Map& map : {at_an_address(), on_a_line()}) {
     Settings shown = with_map({}, map);

@@ -109,6 +109,48 @@ TEST(Settings, Settings_that_a_serial_port_cannot_have_are_refused) {
   }
 }
 
+TEST(Settings, Certificates_make_a_connection_one_with_TLS) {
+  Settings settings;
+  ASSERT_TRUE(set(settings, "certificate", "cell1.pem"));
+  ASSERT_TRUE(set(settings, "key", "/keys/cell1.key"));
+  ASSERT_TRUE(set(settings, "ca", "authority.pem"));
+  Map map;
+  apply(settings, map);
+  EXPECT_EQ(map.connection.port, 802) << "the map has none";
+  EXPECT_EQ(map.connection.tls.key, "/keys/cell1.key");
+  EXPECT_EQ(map.connection.tls.certificate.front(), '/')
+      << "it begins in the working directory, not beside the map";
+  Map elsewhere;
+  elsewhere.connection.port = 1802;
+  apply(settings, elsewhere);
+  EXPECT_EQ(elsewhere.connection.port, 1802);
+}
+
+TEST(Settings, A_pin_takes_the_place_of_an_authority_and_the_other_way_round) {
+  const std::string pin = "sha256:" + std::string(64, 'a');
+  Map map;
+  map.connection.tls = {"cell1.pem", "cell1.key", "authority.pem", "", "", ""};
+  Settings pinned;
+  ASSERT_TRUE(set(pinned, "pin", pin));
+  apply(pinned, map);
+  EXPECT_EQ(map.connection.tls.ca, "");
+  EXPECT_EQ(map.connection.tls.pin, pin);
+  Settings believing;
+  ASSERT_TRUE(set(believing, "ca", "other.pem"));
+  apply(believing, map);
+  EXPECT_EQ(map.connection.tls.pin, "");
+  EXPECT_FALSE(set(pinned, "pin", "sha1:00"));
+}
+
+TEST(Settings, A_serial_port_has_no_TLS) {
+  Map map;
+  map.connection.tls = {"cell1.pem", "cell1.key", "authority.pem", "", "", ""};
+  Settings settings;
+  settings.serial = "/dev/ttyUSB0";
+  apply(settings, map);
+  EXPECT_FALSE(map.connection.tls.present());
+}
+
 TEST(Settings, What_is_not_set_stays_as_the_map_has_it) {
   Map map;
   map.name = "device";

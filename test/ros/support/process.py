@@ -14,6 +14,7 @@ from support.patience import PATIENCE
 
 BUILD = pathlib.Path(os.environ["COUPLER_BUILD_DIR"])
 SERVING = re.compile(r"serving .* on \S+:(\d+)")
+TLS = re.compile(r"TLS at \S+:(\d+)")
 NAME = "__name:="  # gives the node its name
 
 # `nohup ./check` leaves it ignored, and a node that is started so takes no SIGHUP.
@@ -127,13 +128,19 @@ class Node(Process):
     """coupler-node on the simulated chip."""
 
     def __init__(self, map_path, port=0):
-        super().__init__("coupler-node", map_path, "--sim", "--listen", "127.0.0.1", "--port", port)
+        super().__init__("coupler-node", map_path, "--sim", "--listen", "127.0.0.1", "--port", port,
+                         "--tls-port", 0)
 
     @property
     def port(self):
         """Where it serves, once it does: it has read the map by then."""
         self._wait_until(lambda: SERVING.search(self.output), "a port")
         return int(SERVING.search(self.output)[1])
+
+    @property
+    def tls_port(self):
+        self._wait_until(lambda: TLS.search(self.output), "a port for TLS")
+        return int(TLS.findall(self.output)[-1])
 
     def reload(self):
         self._child.send_signal(signal.SIGHUP)

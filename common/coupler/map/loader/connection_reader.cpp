@@ -36,6 +36,32 @@ void check_serial(const Reader& top, const Connection& connection, const Context
           fmt::format("remove '{}' if the coupler is on a serial line, else 'serial'", other));
 }
 
+void check_tls(const Reader& top, Connection& connection, const Context& context) {
+  const auto reader = top.inside("tls", "a map");
+  if (!reader) return;
+  const Position at = top.find("tls")->key_at;
+  if (context.served) {  // how to reach it is for whoever does
+    connection.tls = {};
+    return;
+  }
+  connection.tls.folder = context.folder;
+  for (const std::string_view key : {"certificate", "key", "ca"}) check_pem_path(*reader, key, context);
+  for (const std::string_view key : {"certificate", "key"})
+    if (!reader->has(key))
+      context.problems.error(
+          at, fmt::format("'tls' has no '{}'", key),
+          fmt::format("add the path of that file, as in '{}: {}'", key, reader->example(key)));
+  if (reader->has("pin") == reader->has("ca"))
+    context.problems.error(
+        at, reader->has("pin") ? "'tls' has both 'ca' and 'pin'" : "'tls' has neither 'ca' nor 'pin'",
+        "give the coupler's authority, or the pin that 'coupler pin HOST' shows");
+  if (reader->has("pin") && !is_pin(connection.tls.pin))
+    context.problems.error(reader->find("pin")->at, fmt::format("'pin': '{}' is no pin", connection.tls.pin),
+                           "write 'sha256:' and 64 hexadecimal digits, as 'coupler pin HOST' shows them");
+  if (connection.is_rtu()) context.problems.error(at, "a coupler that speaks RTU has no TLS", "remove 'tls'");
+  if (!top.has("port")) connection.port = default_tls_port;
+}
+
 /// MSL 2.2
 void check_unit(const Reader& top, const Connection& connection, const Context& context) {
   if (!connection.is_rtu() || connection.is_broadcast() || is_rtu_unit(connection.unit)) return;
@@ -52,6 +78,7 @@ Connection read_connection(const Reader& top, const Entry* usual_line, const Con
   top.fields(connection);
   check_address(top, connection, context);
   check_serial(top, connection, context);
+  check_tls(top, connection, context);
   check_unit(top, connection, context);
   if (!top.has("timeout")) connection.timeout = usual_timeout(connection.is_rtu());
   return connection;

@@ -106,6 +106,9 @@ constexpr Key keys[] = {
     project("serial", S::map, K::section, "{device: /dev/ttyUSB0}",
             "the serial port of the coupler, instead of an address")
         .holds(S::serial),
+    project("tls", S::map, K::section, "{certificate: cell1.pem, key: cell1.key, ca: authority.pem}",
+            "how this machine proves itself to the coupler, and the coupler to it")
+        .holds(S::tls),
     project("preset", S::map, K::preset, "wago_750", "a kind of coupler, and what is true of all of them"),
     project("limits", S::map, K::section, "{read_registers: 64}", "what the device takes in one request")
         .holds(S::limits),
@@ -117,6 +120,9 @@ constexpr Key keys[] = {
     project("allow", S::map, K::list, "[192.168.0.0/24, 10.0.0.7]", "who may connect to the node"),
     project("watchdog", S::map, K::section, "{timeout: 500ms}", "safe state when the client is silent")
         .holds(S::watchdog),
+    project("security", S::map, K::section, "{roles: {viewer: {read: all}}, plain: viewer}",
+            "who may read and write which points of the node")
+        .holds(S::security),
     project("readback", S::map, K::boolean, "true", "compare a line's level after driving it")
         .otherwise("false"),
     // The tables.
@@ -307,6 +313,30 @@ constexpr Key keys[] = {
         .otherwise("automatic")
         .one_of<Watchdog::Recovery>(),
     project("heartbeat", S::watchdog, K::address, "100", "the register that a PLC's program watches"),
+    // `security:`
+    project("roles", S::security, K::roles, "{viewer: {read: all}}", "what clients of each role may do")
+        .holds(S::role)
+        .needed(),
+    project("plain", S::security, K::text, "viewer", "the role of clients without TLS").otherwise("none"),
+    project("no_role", S::security, K::text, "viewer",
+            "the role of clients whose certificate has none of these")
+        .otherwise("none"),
+    project("certificate", S::security, K::text, "press.pem", "the file of the node's certificate"),
+    project("key", S::security, K::text, "press.key", "the file of its key"),
+    project("ca", S::security, K::text, "authority.pem", "the file of the authority of the clients"),
+    project("revoked", S::security, K::text, "revoked.pem", "the file of what it has revoked"),
+    project("port", S::security, K::integer, "802", "the TCP port for TLS").otherwise("802").within(1, 65535),
+    project("read", S::role, K::patterns, "[door, \"valve_*\"]", "which points it may read")
+        .otherwise("none"),
+    project("write", S::role, K::patterns, "[lamp, \"valve_*\"]", "which points it may write")
+        .otherwise("none"),
+    // `tls:`
+    project("certificate", S::tls, K::text, "cell1.pem", "the file of this machine's certificate").needed(),
+    project("key", S::tls, K::text, "cell1.key", "the file of its key").needed(),
+    project("ca", S::tls, K::text, "authority.pem", "the file of the coupler's authority"),
+    project("name", S::tls, K::text, "press", "the name in the coupler's certificate, if not its address"),
+    project("pin", S::tls, K::text, "\"sha256:0d0e…\"",
+            "of the coupler's certificate, in place of `ca` and `name`"),
     // `serial:`
     project("device", S::serial, K::text, "/dev/ttyUSB0", "the port's device file").needed(),
     project("baud", S::serial, K::integer, "9600", "bits a second").otherwise("19200").within(50, 4000000),

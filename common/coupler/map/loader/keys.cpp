@@ -26,6 +26,9 @@ std::string_view describe(Section section) {
     case Section::defaults: return "'defaults'";
     case Section::area: return "an area";
     case Section::serial: return "'serial'";
+    case Section::security: return "'security'";
+    case Section::role: return "a role";
+    case Section::tls: return "'tls'";
     case Section::none: break;
   }
   return "nothing";

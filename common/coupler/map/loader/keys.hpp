@@ -35,7 +35,10 @@ enum class Section : std::uint32_t {
   defaults = 1U << 16U,
   area = 1U << 17U,  ///< one element of `unreadable:` or `reserve:`
   serial = 1U << 18U,
-  last = serial
+  security = 1U << 19U,
+  role = 1U << 20U,  ///< one of `roles:`
+  tls = 1U << 21U,
+  last = tls
 };
 constexpr Section operator|(Section a, Section b) {
   return static_cast<Section>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
@@ -69,6 +72,8 @@ enum class ValueKind : std::uint8_t {
   section,   ///< only what Key::inside says
   names,     ///< integer -> identifier
   points,    ///< name -> point: a map as Key::inside says; for bits just an address is good
+  roles,     ///< name -> role: a map as Key::inside says
+  patterns,  ///< all, none, or a list of names of points, with '*' and '?'
 };
 
 /// A bare number of seconds above it is refused: somebody meant milliseconds.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -63,8 +64,8 @@ void check_filled_in(const Map& map, loader::Position first, loader::Problems& p
                  "write them into the map");
 }
 
-LoadResult load(std::string_view text, std::string_view file, LockFile lock, std::string_view name,
-                bool served) {
+LoadResult load(std::string_view file, LockFile lock, const loader::MapSource& source) {
+  const std::string_view text = source.text;
   lock::Parsed known;
   const std::string lock_text = lock.text.value_or("");
   if (lock.text) known = lock::parse(*lock.text, lock.path);
@@ -77,7 +78,7 @@ LoadResult load(std::string_view text, std::string_view file, LockFile lock, std
   const auto map = OwnedMap::make();
   std::optional<loader::MapLayout> layout;
   if (const auto root = loader::parse_document(text, problems))
-    layout = loader::read_map(*root, {text, name, served}, placement, problems, *map);
+    layout = loader::read_map(*root, source, placement, problems, *map);
   if (layout && layout->first_addressless.line > 0)
     check_filled_in(map->map(), layout->first_addressless, problems);
   LoadResult result{nullptr, std::move(placement.problems)};
@@ -95,17 +96,15 @@ LoadResult load(std::string_view text, std::string_view file, LockFile lock, std
 
 }  // namespace
 
-LoadResult load_map(std::string_view text, std::string_view file) {
-  return load(text, file, LockFile{}, {}, false);
-}
+LoadResult load_map(std::string_view text, std::string_view file) { return load(file, LockFile{}, {text}); }
 
 LoadResult load_served_map(std::string_view text, std::string_view file) {
-  return load(text, file, LockFile{}, {}, true);
+  return load(file, LockFile{}, {text, {}, true});
 }
 
 LoadResult load_map_with_lock(std::string_view text, std::string_view file, LockFile lock,
                               std::string_view name) {
-  return load(text, file, std::move(lock), name, false);
+  return load(file, std::move(lock), {text, name});
 }
 
 LoadResult load_map_file(const std::string& path, LockUse use, std::string_view name) {
@@ -122,7 +121,8 @@ LoadResult load_map_file(const std::string& path, LockUse use, std::string_view 
     return unreadable(lock.path, lock_text.error(),
                       "it is the lock of the map: make it a file that can be read");
   if (lock_text) lock.text = std::move(*lock_text);
-  return load_map_with_lock(*text, path, std::move(lock), name);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return load(path, std::move(lock), {*text, name, false, folder});
 }
 
 }  // namespace coupler

@@ -140,7 +140,8 @@ MapLayout finish(Map head, const DraftPoints& drafts, const std::vector<SimWire>
 
 std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Placement& placement,
                                   Problems& problems, OwnedMap& map) {
-  const Context context{problems, map, source.served, has_only_inherited_keys(file)};
+  const Context context{problems, map, source.served, has_only_inherited_keys(file),
+                        map.keep(std::string(source.folder))};
   if (file.kind != Entry::Kind::map) {
     problems.error(file.at, fmt::format("a map consists of keys, but this is {}", shown(file)),
                    "begin with 'name: NAME'");
@@ -167,6 +168,7 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   check_unreadable(unreadable, points, context);
   check_broadcast(top, points, head, context);
   check_reserved(reserved, points, context);
+  head.security = read_security(top, points, head.connection.port, context);
   if (problems.has_errors()) return std::nullopt;
   head.unreadable = map.keep(sorted_unreadable(unreadable));
   return finish(head, points, sim, source.text, defaults.addressing, map);

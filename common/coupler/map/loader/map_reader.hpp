@@ -32,6 +32,15 @@ Limits read_limits(const Reader& top);
 /// What the top of the file says about a node that serves the map.
 Service read_service(const Reader& top, const Context& context);
 
+/// The value of a key that names a file of certificates or keys. Nothing is a problem, since it would mean no
+/// TLS; so is PEM text in its place: a node serves its map to clients, and a map is in repositories.
+void check_pem_path(const Reader& section, std::string_view key, const Context& context);
+
+/// `security:`. The rights are in the order of the finished map.
+/// `plain_port`: where clients without TLS connect.
+Security read_security(const Reader& top, const DraftPoints& points, std::uint16_t plain_port,
+                       const Context& context);
+
 /// `sim:`, the wires of the simulated chip: each from a coil, or with a square wave, to a discrete input of
 /// its own.
 std::vector<SimWire> read_sim(const Reader& top, const DraftPoints& points, const Context& context);
@@ -43,9 +52,10 @@ void read_coupler_watchdog(const Reader& top, const std::optional<Preset>& prese
 
 /// Where a map comes from.
 struct MapSource {
-  std::string_view text;    ///< of the file
-  std::string_view name{};  ///< of a map that gives none; empty: it has to
-  bool served = false;      ///< by a node, which may be newer than this program
+  std::string_view text;      ///< of the file
+  std::string_view name{};    ///< of a map that gives none; empty: it has to
+  bool served = false;        ///< by a node, which may be newer than this program
+  std::string_view folder{};  ///< of the file
 };
 
 /// Where the finished map stands in its file.

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "coupler/map/loader/document.hpp"
-#include "coupler/map/loader/nearest.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler::loader {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/loader/synonyms.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler::loader {
 namespace {

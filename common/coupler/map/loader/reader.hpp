@@ -27,6 +27,7 @@ struct Context {
   /// The file may be one of ros-modbus-device-driver, which ignores keys: those unlike all of ours are
   /// warnings.
   bool foreign = false;
+  std::string_view folder{};  ///< of the file, where paths in it begin
 
   void problem(bool is_warning, Position at, std::string what, std::string remedy) const {
     if (is_warning)

@@ -8,18 +8,12 @@
 #include <string>
 #include <string_view>
 
+#include "coupler/base/lower.hpp"
+
 namespace coupler::loader {
 
 constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// ASCII letters in lower case, whatever the locale.
-inline std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
 
 /// Decimal, whatever zeros lead it ("00010" is 10, unlike in YAML 1.1), or hexadecimal as 0x1F. No sign.
 std::optional<std::uint64_t> parse_unsigned(std::string_view text);

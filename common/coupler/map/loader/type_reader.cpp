@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "coupler/codec/type_name.hpp"
-#include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/loader/point_reader.hpp"
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler::loader {
 namespace {

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include "coupler/codec/type_name.hpp"
-#include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/loader/reader.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/loader/synonyms.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -48,7 +48,10 @@ void Reader::misplaced(const Entry& entry, Section elsewhere) const {
   constexpr Section of_a_table = any_point | Section::coil_line | Section::input_line;
   const bool of_points = overlap(section_, of_a_table) && overlap(elsewhere, of_a_table);
   const std::string slip = or_slip(entry.key, key_names(section_));
-  const std::string where = elsewhere == Section::map       ? "at the top of the map"
+  // In 'mapping', a key of the map is indented too far, whatever else has a key of that name.
+  const bool of_map =
+      elsewhere == Section::map || (section_ == Section::mapping && overlap(elsewhere, Section::map));
+  const std::string where = of_map                          ? "at the top of the map"
                             : elsewhere == Section::mapping ? "below 'mapping'"
                                                             : std::string();
   std::string remedy;

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "coupler/map/loader/map_reader.hpp"
-#include "coupler/map/loader/nearest.hpp"
 #include "coupler/map/loader/point_reader.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler::loader {
 namespace {

@@ -14,10 +14,10 @@ void ChangeRing::begin(std::uint32_t epoch) {
   newest_ = 0;
 }
 
-void ChangeRing::add(const modbus::Change& change) {
+void ChangeRing::add(const modbus::Change& change, const ClientSession* owner) {
   ++newest_;
   if (places_.empty()) return;
-  places_[(first_ + count_) % places_.size()] = {newest_, change};
+  places_[(first_ + count_) % places_.size()] = {newest_, change, owner};
   if (count_ < places_.size())
     ++count_;
   else
@@ -36,6 +36,11 @@ std::size_t ChangeRing::first_after(std::uint64_t seen) const {
       first = middle + 1;
   }
   return first;
+}
+
+const ChangeRing::Entry* ChangeRing::next_after(std::uint64_t number) const {
+  const std::size_t first = first_after(number);
+  return first < count_ ? &kept(first) : nullptr;
 }
 
 modbus::ChangesReply ChangeRing::reply_to(const modbus::ChangesRequest& request) const {

@@ -9,6 +9,8 @@
 
 namespace coupler::device {
 
+struct ClientSession;
+
 /// The newest changes, in the order in which they became known. They are numbered from 1 within an epoch;
 /// what is overwritten before a client has asked for it is lost to that client.
 class ChangeRing {
@@ -16,6 +18,7 @@ class ChangeRing {
   struct Entry {
     std::uint64_t number = 0;
     modbus::Change change{};
+    const ClientSession* owner = nullptr;  ///< who scheduled what came to this; of a bit nobody
   };
 
   /// Keeps as many changes as there are places, which outlive it.
@@ -26,7 +29,7 @@ class ChangeRing {
   /// 0: it has not begun, and nothing is to be added.
   std::uint32_t epoch() const { return epoch_; }
 
-  void add(const modbus::Change& change);
+  void add(const modbus::Change& change, const ClientSession* owner = nullptr);
   /// At least so many changes happened that nobody saw. They have numbers, too.
   void lose(std::uint32_t count) { newest_ += count; }
   /// Number of the newest change; 0: there was none.
@@ -38,6 +41,8 @@ class ChangeRing {
   }
   /// The reply but for its times. To a client whose numbers mean nothing it tells the newest number.
   modbus::ChangesReply reply_to(const modbus::ChangesRequest& request) const;
+  /// The oldest change after that number which is kept; null: there is none.
+  const Entry* next_after(std::uint64_t number) const;
 
  private:
   /// Its numbers are of another epoch, or were never given.

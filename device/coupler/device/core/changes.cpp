@@ -71,17 +71,18 @@ void Changes::tell(Table table, std::uint32_t address, std::uint16_t level, Time
              static_cast<std::uint16_t>(address), node_time(at)});
 }
 
-void Changes::add(const Change& outcome) {
-  if (are_told()) ring_.add(outcome);
+void Changes::add_outcome(const Change& outcome, const ClientSession* owner) {
+  if (are_told()) ring_.add(outcome, owner);
 }
 
 void Changes::lose(std::uint32_t count) {
   if (are_told()) ring_.lose(count);
 }
 
-std::size_t Changes::reply_to(const Wait& wait, TimePoint now, Span<std::uint8_t> pdu) const {
-  modbus::ChangesReply reply = ring_.reply_to(wait.request);
-  reply.arrived = node_time(wait.arrived);
+std::size_t Changes::reply_to(ClientSession& session, const Rights& rights, TimePoint now,
+                              Span<std::uint8_t> pdu) const {
+  modbus::ChangesReply reply = HeardChanges(ring_, rights, session).reply();
+  reply.arrived = node_time(session.wait->arrived);
   reply.replied = node_time(now);
   return modbus::reply_changes(reply, pdu);
 }

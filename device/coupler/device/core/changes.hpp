@@ -6,8 +6,10 @@
 
 #include "coupler/device/core/change_ring.hpp"
 #include "coupler/device/core/client_session.hpp"
+#include "coupler/device/core/heard_changes.hpp"
 #include "coupler/device/core/image.hpp"
 #include "coupler/device/core/output_schedule.hpp"
+#include "coupler/device/core/rights.hpp"
 #include "coupler/device/core/time.hpp"
 
 namespace coupler::device {
@@ -39,16 +41,18 @@ class Changes final : public ScheduleSink {
   /// Whether bits of the range have another level than the one that was told.
   bool differs(Table table, modbus::Range range) const;
   /// Something else that is told to whoever waits.
-  void add(const modbus::Change& outcome) override;
+  void add_outcome(const modbus::Change& outcome, const ClientSession* owner) override;
   /// At least so many changes of inputs were not seen.
   void lose(std::uint32_t count);
 
-  /// Whether a request is to be answered now: there is something to tell, or its time is over.
-  bool is_due(const Wait& wait, TimePoint now) const {
-    return now >= wait.until || ring_.has_news(wait.request);
+  /// Whether what the session waits for is to be answered now: there is something that it may hear, or its
+  /// time is over.
+  bool is_due(ClientSession& session, const Rights& rights, TimePoint now) const {
+    return now >= session.wait->until || HeardChanges(ring_, rights, session).has_news();
   }
   /// Writes the reply PDU that is sent now into `pdu` (at least max_pdu_size bytes); returns its size.
-  std::size_t reply_to(const Wait& wait, TimePoint now, Span<std::uint8_t> pdu) const;
+  std::size_t reply_to(ClientSession& session, const Rights& rights, TimePoint now,
+                       Span<std::uint8_t> pdu) const;
 
  private:
   Span<std::uint16_t> told(Span<const std::uint16_t> cells) const;

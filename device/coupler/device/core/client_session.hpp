@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "coupler/device/core/time.hpp"
+#include "coupler/map/security.hpp"
 #include "coupler/modbus/changes.hpp"
 
 namespace coupler::device {
@@ -18,10 +19,20 @@ struct Wait {
   std::uint8_t unit = 0;
 };
 
+/// What a client with limited rights has heard of changes. It counts only those that it may hear.
+struct Heard {
+  bool has_begun = false;
+  std::uint64_t upto = 0;    ///< number of the last change of the node that was looked at for it
+  std::uint64_t number = 0;  ///< of the last one that it heard, as it counts
+};
+
 /// What the node remembers of a connection, from when it is opened.
 struct ClientSession {
+  bool is_plain = true;        ///< without TLS: its rights are those of Security::plain
+  const Role* role = nullptr;  ///< of one with TLS; nullptr: none, so it has no rights
   bool has_written = false;    ///< a write of it to an output was carried out
   std::optional<Wait> wait{};  ///< nullopt: it waits for nothing
+  Heard heard{};
 };
 
 }  // namespace coupler::device

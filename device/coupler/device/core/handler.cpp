@@ -16,6 +16,15 @@ namespace {
 using modbus::Exception;
 using modbus::Function;
 
+tl::unexpected<Exception> no_right() { return tl::unexpected(Exception::illegal_function); }
+
+/// What the node says of all that it does, and so of its clients.
+bool shows_statistics(Table table, modbus::Range range) {
+  constexpr auto statistics = modbus::Range::of(identity::reserved.start() + identity::at_statistics,
+                                                identity::at_further - identity::at_statistics);
+  return table == Table::input_registers && statistics.overlaps(range);
+}
+
 Table table_of(Function read) {
   switch (read) {
     case Function::read_coils: return Table::coils;
@@ -133,6 +142,8 @@ Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
   const Table table = table_of(read.function);
   const auto cells = image_.find_readable(table, read.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!rights_of(call.session).may(Right::read, table, read.range)) return no_right();
+  if (shows_statistics(table, read.range) && !rights_of(call.session).reads_all()) return no_right();
   if (!read_hardware(table, read.range, cells, call.now)) return hardware_failed();
   if (table == Table::input_registers && identity::reserved.overlaps(read.range)) {
     write_statistics(statistics_, call.now, image_);
@@ -202,6 +213,7 @@ void Handler::begin_pulses_that_are_missing() {
 Handler::Answer Handler::carry_out(const modbus::WriteBits& write, const Call& call) {
   const auto cells = image_.find_writable(Table::coils, write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!rights_of(call.session).may(Right::write, Table::coils, write.range)) return no_right();
   put_next(write);
   if (const auto stored = store(Table::coils, write.range, cells, call.now); !stored)
     return tl::unexpected(stored.error());
@@ -250,7 +262,16 @@ void Handler::put_next(const modbus::WriteRegisters& write) {
   for (std::size_t i = 0; i < write.range.count(); ++i) next_[i] = modbus::get_u16(&write.values[2 * i]);
 }
 
+/// Its line, its channel or its hook says that a point is an output.
+bool Handler::may_reset_watchdog(const Rights& rights) {
+  return std::all_of(map_.points.begin(), map_.points.end(), [&](const Point& point) {
+    return rights.may(Right::write, point) || !is_writable(point) ||
+           !hardware_.driven(point.table, range(point), image_.find(point.table, range(point)));
+  });
+}
+
 Handler::Answer Handler::reset_watchdog(const modbus::WriteRegisters& write, const Call& call) {
+  if (!may_reset_watchdog(rights_of(call.session))) return no_right();
   if (modbus::get_u16(write.values.data()) != identity::watchdog_reset_code)
     return tl::unexpected(Exception::illegal_data_value);
   watchdog_.reset();
@@ -262,6 +283,7 @@ Handler::Answer Handler::carry_out(const modbus::WriteRegisters& write, const Ca
     return reset_watchdog(write, call);
   const auto cells = writable_registers(write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!rights_of(call.session).may(Right::write, Table::holding_registers, write.range)) return no_right();
   put_next(write);
   if (const auto stored = store(Table::holding_registers, write.range, cells, call.now); !stored)
     return tl::unexpected(stored.error());
@@ -271,6 +293,8 @@ Handler::Answer Handler::carry_out(const modbus::WriteRegisters& write, const Ca
 Handler::Answer Handler::carry_out(const modbus::MaskWrite& write, const Call& call) {
   const auto cells = writable_registers(write.range);
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
+  const auto changed = static_cast<std::uint16_t>(~write.and_mask);
+  if (!rights_of(call.session).may_write_bits(write.range.start(), changed)) return no_right();
   next_[0] = static_cast<std::uint16_t>((cells[0] & write.and_mask) | (write.or_mask & ~write.and_mask));
   if (const auto stored = store(Table::holding_registers, write.range, cells, call.now); !stored)
     return tl::unexpected(stored.error());
@@ -281,6 +305,9 @@ Handler::Answer Handler::carry_out(const modbus::ReadWriteRegisters& both, const
   const auto read = image_.find_readable(Table::holding_registers, both.read);
   const auto written = writable_registers(both.write.range);
   if (read.empty() || written.empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!rights_of(call.session).may(Right::read, Table::holding_registers, both.read) ||
+      !rights_of(call.session).may(Right::write, Table::holding_registers, both.write.range))
+    return no_right();
   put_next(both.write);
   if (const auto stored = store(Table::holding_registers, both.write.range, written, call.now); !stored)
     return tl::unexpected(stored.error());
@@ -294,6 +321,7 @@ Handler::Answer Handler::carry_out(const modbus::FileGroups& groups, const Call&
     if (!read_map_file(map_.text, group, reply.add(group.registers)))
       return tl::unexpected(Exception::illegal_data_address);
   }
+  if (!rights_of(call.session).reads_all()) return no_right();
   return reply.size();
 }
 

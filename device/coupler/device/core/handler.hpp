@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <tl/expected.hpp>
 
 #include "coupler/device/core/changes.hpp"
@@ -13,6 +14,7 @@
 #include "coupler/device/core/hardware.hpp"
 #include "coupler/device/core/image.hpp"
 #include "coupler/device/core/output_schedule.hpp"
+#include "coupler/device/core/rights.hpp"
 #include "coupler/device/core/statistics.hpp"
 #include "coupler/device/core/watchdog.hpp"
 #include "coupler/map/identity.hpp"
@@ -46,13 +48,16 @@ class Handler {
   /// number. Until then the node says that it does not know these functions.
   void tell_changes(std::uint32_t epoch, TimePoint now);
   const Changes& changes() const { return changes_; }
+  Rights rights_of(const ClientSession& session) const { return {map_, session}; }
+  /// Of a client with TLS, by the role in its certificate (empty: none), for ClientSession::role.
+  const Role* role_of(std::string_view name) const { return map_.security.role_of(name); }
 
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
   /// returns its size; `session` sent it. 0: the session waits for changes now, which it did not before.
-  /// Exceptions: those of parse_request(); 02 an address that is not
-  /// mapped, not readable or not writable; 03 a value that does not reset the watchdog, that the
-  /// map does not allow, or that an output cannot take; 04 hardware that cannot be read or driven, or an
-  /// output that the watchdog keeps in its safe state; 06 no place left to schedule such an output.
+  /// Exceptions: those of parse_request(); 01 a point that the client has no right to; 02 an address that is
+  /// not mapped, not readable or not writable; 03 a value that does not reset the watchdog, that the map does
+  /// not allow, or that an output cannot take; 04 hardware that cannot be read or driven, or an output that
+  /// the watchdog keeps in its safe state; 06 no place left to schedule such an output.
   std::size_t handle(modbus::Bytes request, ClientSession& session, TimePoint now, Span<std::uint8_t> reply);
 
   /// Drives the outputs to their safe state if the watchdog is due, drives what is scheduled for now or
@@ -99,6 +104,8 @@ class Handler {
   Answer carry_out(const modbus::ScheduleOutput& wanted, const Call& call);
   Answer carry_out(const modbus::CancelOutput& wanted, const Call& call);
 
+  /// Whether every output that the watchdog guards may be written.
+  bool may_reset_watchdog(const Rights& rights);
   Answer reset_watchdog(const modbus::WriteRegisters& write, const Call& call);
   Answer hardware_failed();
   /// Empty if one is not mapped, not writable, or holds in part a value that is only written as a whole: a
@@ -135,7 +142,8 @@ class Handler {
   // Outputs at a time: handler_schedule.cpp.
   bool can_schedule() const;
   Span<std::uint16_t> writable(Table table, modbus::Range range) const;
-  tl::expected<void, modbus::Exception> check(const modbus::ScheduleOutput& wanted, Table table);
+  tl::expected<void, modbus::Exception> check(const modbus::ScheduleOutput& wanted, Table table,
+                                              const ClientSession& session);
   Answer reply_schedule(std::uint16_t number, const Call& call) const;
   void drive_scheduled(TimePoint now);
   void drive(ScheduledOutput& which, TimePoint now);

@@ -28,8 +28,11 @@ Span<std::uint16_t> Handler::writable(Table table, modbus::Range range) const {
 }
 
 /// What a write of it would be answered now.
-tl::expected<void, Exception> Handler::check(const modbus::ScheduleOutput& wanted, Table table) {
+tl::expected<void, Exception> Handler::check(const modbus::ScheduleOutput& wanted, Table table,
+                                             const ClientSession& session) {
   if (writable(table, wanted.range).empty()) return tl::unexpected(Exception::illegal_data_address);
+  if (!rights_of(session).may(Right::write, table, wanted.range))
+    return tl::unexpected(Exception::illegal_function);
   const auto next = Span<std::uint16_t>(next_).first(wanted.range.count());
   if (table == Table::coils)
     put_next(modbus::WriteBits{wanted.range, wanted.values});
@@ -47,7 +50,8 @@ Handler::Answer Handler::carry_out(const modbus::ScheduleOutput& wanted, const C
       wanted.due > now + most_ahead)
     return tl::unexpected(Exception::illegal_data_value);
   const Table table = wanted.table == modbus::Function::read_coils ? Table::coils : Table::holding_registers;
-  if (const auto checked = check(wanted, table); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = check(wanted, table, call.session); !checked)
+    return tl::unexpected(checked.error());
   const TimePoint due(std::chrono::duration_cast<TimePoint::duration>(wanted.due));
   const ScheduledOutput* accepted = schedule_.add(wanted, table, due, call.session);
   if (accepted == nullptr) return tl::unexpected(Exception::server_device_busy);

@@ -102,7 +102,6 @@ void OutputSchedule::find_earliest() {
 void OutputSchedule::begin(ScheduledOutput& which, TimePoint end, Span<const std::uint16_t> before) {
   for (std::size_t i = 0; i < before.size(); ++i) which.set_value(i, before[i]);
   which.at = end;
-  which.owner = nullptr;
   which.order = ++last_order_;
   --waiting_;
   // Whoever goes on with it finds all of that, or one that waits and is dropped.
@@ -167,7 +166,8 @@ void OutputSchedule::remove(ScheduledOutput& which) {
 }
 
 void OutputSchedule::tell(const ScheduledOutput& which, Change::Kind kind, Reason reason, TimePoint at) {
-  if (sink_ != nullptr) sink_->add({static_cast<std::uint8_t>(reason), kind, which.number, node_time(at)});
+  const Change outcome{static_cast<std::uint8_t>(reason), kind, which.number, node_time(at)};
+  if (sink_ != nullptr) sink_->add_outcome(outcome, which.owner);
 }
 
 void OutputSchedule::tell_done(const ScheduledOutput& which, TimePoint at) {

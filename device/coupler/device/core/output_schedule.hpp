@@ -19,8 +19,8 @@ struct ClientSession;
 /// Who is told what became of scheduled outputs.
 class ScheduleSink {
  public:
-  /// The kind is done, cancelled or failed.
-  virtual void add(const modbus::Change& outcome) = 0;
+  /// The kind is done, cancelled or failed. `owner` scheduled it.
+  virtual void add_outcome(const modbus::Change& outcome, const ClientSession* owner) = 0;
 
  protected:
   ~ScheduleSink() = default;
@@ -42,7 +42,7 @@ struct ScheduledOutput {
   TimePoint at{};  ///< when it is due; of one that has begun, when it ends
   std::chrono::milliseconds duration{};
   std::uint64_t order = 0;  ///< in which they were accepted; of those that have begun, in which they did
-  const ClientSession* owner = nullptr;  ///< whose it is while it waits
+  const ClientSession* owner = nullptr;  ///< whose it is, until its outcome is told
   /// What the outputs are driven to; of one that has begun, what they were before. As on the wire.
   std::array<std::uint8_t, std::size_t{2} * modbus::max_scheduled_registers> packed{};
 

@@ -22,13 +22,14 @@ std::size_t Server::answer(const modbus::Frame& frame, ClientSession& session, T
 }
 
 std::size_t Server::answer_waiting(ClientSession& session, TimePoint now, Span<std::uint8_t> adu) {
-  if (!session.wait || !changes().is_due(*session.wait, now)) return 0;
+  if (!session.wait || !is_due(session, now)) return 0;
   return end_wait(session, now, adu);
 }
 
 std::size_t Server::end_wait(ClientSession& session, TimePoint now, Span<std::uint8_t> adu) {
   if (!session.wait) return 0;
-  const std::size_t pdu = changes().reply_to(*session.wait, now, adu.from(modbus::mbap_size));
+  const std::size_t pdu =
+      changes().reply_to(session, handler_.rights_of(session), now, adu.from(modbus::mbap_size));
   modbus::put_header({session.wait->transaction, session.wait->unit, {}}, pdu, adu.data());
   session.wait.reset();
   return modbus::mbap_size + pdu;

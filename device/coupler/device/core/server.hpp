@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "coupler/device/core/handler.hpp"
 #include "coupler/modbus/frame.hpp"
@@ -34,6 +35,14 @@ class Server {
   void end_session(const ClientSession& session, TimePoint now) { handler_.end_session(session, now); }
 
   const Changes& changes() const { return handler_.changes(); }
+  /// Of a client with TLS: Handler::role_of().
+  const Role* role_of(std::string_view name) const { return handler_.role_of(name); }
+  /// Whether there is a point that it may write.
+  bool may_write(const ClientSession& session) const { return handler_.rights_of(session).may_write_any(); }
+  /// Whether what the session waits for is to be answered now.
+  bool is_due(ClientSession& session, TimePoint now) const {
+    return handler_.changes().is_due(session, handler_.rights_of(session), now);
+  }
 
  private:
   std::uint8_t unit_;

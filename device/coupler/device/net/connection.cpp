@@ -6,7 +6,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
+#include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/codec/text.hpp"
+#include "coupler/device/net/client_socket.hpp"
 
 namespace coupler::device {
 namespace {
@@ -23,6 +29,7 @@ void Connection::open(Descriptor socket, const IpAddress& origin, TimePoint now)
   output_begin_ = output_end_ = 0;
   ended_ = has_asked_ = false;
   session_ = {};
+  tls_.reset();
   origin_ = origin;
   last_active_ = now;
   waiting_ = Waiting::for_request;
@@ -31,11 +38,15 @@ void Connection::open(Descriptor socket, const IpAddress& origin, TimePoint now)
 }
 
 void Connection::open(OpenConnection from, const IpAddress& origin, TimePoint now) {
-  assert(from.unread.size() <= modbus::max_adu_size && from.unsent.size() <= output_size);
+  assert(from.unread.size() <= longest_unread && from.unsent.size() <= output_size);
   open(std::move(from.socket), origin, now);
   if (!is_open()) return;
-  session_.has_written = from.has_written;
-  has_asked_ = true;
+  tls_ = from.tls;
+  session_.is_plain = !tls_;
+  if (tls_) session_.role = server_.role_of(tls_->role.view());
+  // Who may write nothing any more does not go on feeding the watchdog.
+  session_.has_written = from.has_written && server_.may_write(session_);
+  has_asked_ = from.has_asked;
   std::copy(from.unread.begin(), from.unread.end(), framer_.room().begin());
   framer_.filled(from.unread.size());
   std::copy(from.unsent.begin(), from.unsent.end(), output_.begin());
@@ -45,12 +56,29 @@ void Connection::open(OpenConnection from, const IpAddress& origin, TimePoint no
   ready(now);
 }
 
+std::string Connection::who() const {
+  if (!tls_) {
+    sockaddr_storage peer{};
+    socklen_t size = sizeof peer;
+    ::getpeername(socket_.get(), reinterpret_cast<sockaddr*>(&peer), &size);
+    return host_of(peer);
+  }
+  // They come from the process that does TLS, which has judged them; but it may be under somebody's control.
+  const auto shown = [](const ShortText& text) {
+    return codec::is_plain_text(text.view()) ? text.view() : "?";
+  };
+  const std::string_view role = tls_->role.view().empty() ? "no role" : shown(tls_->role);
+  return fmt::format("'{}' ({}, {})", shown(tls_->name), host_of(tls_->address), role);
+}
+
 OpenConnection Connection::release() {
   OpenConnection open;
   end_wait();
   loop_.forget(socket_.get(), *this);
   open.socket = std::move(socket_);
+  open.has_asked = has_asked_;
   open.has_written = session_.has_written;
+  open.tls = tls_;
   const modbus::Bytes rest = framer_.rest();
   open.unread.assign(rest.begin(), rest.end());
   open.unsent.assign(&output_[output_begin_], &output_[output_begin_] + (output_end_ - output_begin_));
@@ -126,15 +154,26 @@ bool Connection::answer(TimePoint now) {
     if (outcome == Outcome::nothing) return true;
     if (outcome == Outcome::frame) continue;
     ++statistics_.bad_frames;
+    tell_of_tls();
     return false;
   }
   return true;
 }
 
+/// A client that speaks TLS here has the wrong port, and cannot say so itself.
+void Connection::tell_of_tls() {
+  const modbus::Bytes said = framer_.rest();
+  constexpr std::uint8_t handshake = 0x16;  // RFC 8446, 5.1: type, then a version 3.x
+  if (said.size() > 2 && said[0] == handshake && said[1] == 3)
+    log_.warn_limited(
+        "TLS",
+        "a client speaks TLS at the port without it; TLS has the port that 'security' says, usually 802");
+}
+
 /// Answers whole frames while there is room for the longest reply; tells what comes next.
 Outcome Connection::fill_output(TimePoint now) {
   while (has_room()) {
-    if (session_.wait && server_.changes().is_due(*session_.wait, now)) put_waiting();
+    if (session_.wait && server_.is_due(session_, now)) put_waiting();
     const Outcome outcome = framer_.next();
     if (outcome == Outcome::nothing && ended_) put_waiting();
     if (outcome != Outcome::frame) return outcome;

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
+#include "coupler/device/core/log.hpp"
 #include "coupler/device/core/server.hpp"
 #include "coupler/device/net/loop.hpp"
 #include "coupler/device/net/open_connection.hpp"
@@ -24,8 +26,8 @@ class Connection : public EventHandler {
   /// single bytes do not extend it.
   static constexpr std::chrono::seconds timeout{5};
 
-  Connection(Loop& loop, Server& server, Waiters& waiters, Statistics& statistics)
-      : loop_(loop), server_(server), waiters_(waiters), statistics_(statistics) {}
+  Connection(Loop& loop, Server& server, Waiters& waiters, Statistics& statistics, Log& log)
+      : loop_(loop), server_(server), waiters_(waiters), statistics_(statistics), log_(log) {}
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
   ~Connection() { close(); }
@@ -51,12 +53,13 @@ class Connection : public EventHandler {
   /// It has written an output.
   bool has_written() const { return session_.has_written; }
   const IpAddress& origin() const { return origin_; }
+  /// For people: "10.0.0.6", with TLS "'cell1' (10.0.0.6, operator)".
+  std::string who() const;
   /// Of its last whole frame, or of its beginning.
   TimePoint last_active() const { return last_active_; }
 
  private:
-  /// Replies are sent together, a few long ones or many short ones.
-  static constexpr std::size_t output_size = 4 * modbus::max_adu_size;
+  static constexpr std::size_t output_size = longest_unsent;
   enum class Waiting { for_request, for_rest_of_frame, for_client_to_read };
 
   bool take_turn(TimePoint now);
@@ -64,6 +67,7 @@ class Connection : public EventHandler {
   bool answer(TimePoint now);
   modbus::Framer::Outcome fill_output(TimePoint now);
   void put_waiting();
+  void tell_of_tls();
   bool has_room() const;
   Span<std::uint8_t> room() { return Span<std::uint8_t>(output_).from(output_end_); }
   void list();
@@ -76,8 +80,10 @@ class Connection : public EventHandler {
   Server& server_;
   Waiters& waiters_;
   Statistics& statistics_;
+  Log& log_;
   Descriptor socket_;
   ClientSession session_;
+  std::optional<TlsPeer> tls_;       ///< nullopt: a client without TLS
   std::optional<TimePoint> listed_;  ///< among the waiters, until then
   IpAddress origin_{};
   modbus::Framer framer_;

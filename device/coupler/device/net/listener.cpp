@@ -20,18 +20,18 @@ namespace {
 constexpr int backlog = SOMAXCONN;
 constexpr std::size_t ipv6_network = 8;  ///< bytes of the /64
 
-std::string listen_error(const std::string& address, std::uint16_t port, int error) {
+std::string listen_error(const std::string& address, std::uint16_t port, const char* option, int error) {
   const std::string where = fmt::format("{}port {}", address.empty() ? "" : address + " ", port);
   if (error == EADDRINUSE)
     return fmt::format(
         "cannot listen on {}: another program listens there (ss -ltnp names it); stop it or choose another "
-        "port with --port",
-        where);
+        "port with {}",
+        where, option);
   if (error == EACCES)
     return fmt::format(
         "cannot listen on {}: not permitted; ports below 1024 need CAP_NET_BIND_SERVICE, so give the program "
-        "that (setcap cap_net_bind_service=ep) or choose another port, such as --port 1502",
-        where);
+        "that (setcap cap_net_bind_service=ep) or choose another port, such as {} 1{:03}",
+        where, option, port % 1000);
   if (error == EADDRNOTAVAIL)
     return fmt::format("cannot listen on {}: this machine does not have that address (ip address lists them)",
                        where);
@@ -114,7 +114,8 @@ tl::expected<Listener, std::string> Listener::share() const {
   return Listener{std::move(other), name, {}};
 }
 
-tl::expected<Listener, std::string> listen_on(const std::string& address, std::uint16_t port) {
+tl::expected<Listener, std::string> listen_on(const std::string& address, std::uint16_t port,
+                                              const char* option) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_STREAM;
@@ -139,7 +140,7 @@ tl::expected<Listener, std::string> listen_on(const std::string& address, std::u
       }
       error = socket.error();
     }
-  return tl::unexpected(listen_error(address, port, error));
+  return tl::unexpected(listen_error(address, port, option, error));
 }
 
 }  // namespace coupler::device

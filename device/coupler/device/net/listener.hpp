@@ -46,7 +46,9 @@ struct Listener {
 };
 
 /// Listens on a TCP port (0: any free one, which `name` tells), open to everyone. `address` is an IP
-/// address; empty: every interface, IPv6 and IPv4. The error says what failed and what to do.
-tl::expected<Listener, std::string> listen_on(const std::string& address, std::uint16_t port);
+/// address; empty: every interface, IPv6 and IPv4. The error says what failed and what to do; `option`
+/// chooses another port.
+tl::expected<Listener, std::string> listen_on(const std::string& address, std::uint16_t port,
+                                              const char* option = "--port");
 
 }  // namespace coupler::device

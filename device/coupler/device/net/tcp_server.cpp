@@ -2,9 +2,6 @@
 #include "coupler/device/net/tcp_server.hpp"
 
 #include <fmt/format.h>
-#include <netdb.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 
@@ -16,26 +13,20 @@
 #include <tuple>
 #include <utility>
 
+#include "coupler/device/net/client_socket.hpp"
+
 namespace coupler::device {
 namespace {
 
 constexpr std::chrono::milliseconds sweep_period{250};
 constexpr int accepts_per_turn = 16;      ///< a storm of connections leaves turns for the others
 constexpr std::size_t other_files = 160;  ///< GPIO lines with edges, logs, libraries
-constexpr int send_buffer = 16 * 1024;    ///< what the kernel holds for a client that does not read
 
 std::size_t affordable(std::size_t wanted) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return wanted;
   const std::size_t files = limit.rlim_cur;
   return std::clamp<std::size_t>(files > other_files ? files - other_files : 1, 1, wanted);
-}
-
-void configure(int socket) {
-  const int on = 1;
-  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
-  ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &send_buffer, sizeof send_buffer);
 }
 
 /// What accept(2) calls an error although only this one client is concerned.
@@ -46,12 +37,13 @@ bool concerns_the_client(int error) {
   return false;
 }
 
-std::string host_of(const sockaddr_storage& peer) {
-  std::array<char, NI_MAXHOST> host{};
-  if (::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), sizeof peer, host.data(), host.size(), nullptr,
-                    0, NI_NUMERICHOST) != 0)
-    return "a client";
-  return host.data();
+/// nullopt: it has left.
+std::optional<sockaddr_storage> peer_of(const OpenConnection& client) {
+  if (client.tls) return client.tls->address;
+  sockaddr_storage peer{};
+  socklen_t size = sizeof peer;
+  if (::getpeername(client.socket.get(), reinterpret_cast<sockaddr*>(&peer), &size) != 0) return std::nullopt;
+  return peer;
 }
 
 }  // namespace
@@ -64,7 +56,7 @@ TcpServer::TcpServer(Loop& loop, const Listener& listener, Server& server, Stati
       log_(log),
       waiters_(server, affordable(capacity)) {
   for (std::size_t i = affordable(capacity); i > 0; --i)
-    connections_.emplace_back(loop, server, waiters_, statistics);
+    connections_.emplace_back(loop, server, waiters_, statistics, log);
   for (Connection& connection : connections_) by_origin_.push_back(&connection);
   [[maybe_unused]] const bool watched = loop_.watch(listener_.socket.get(), Interest::read, *this);
   assert(watched);
@@ -77,25 +69,39 @@ std::size_t TcpServer::size() const {
       std::count_if(connections_.begin(), connections_.end(), [](const auto& c) { return c.is_open(); }));
 }
 
+std::string TcpServer::writers() const {
+  constexpr std::size_t most = 4;
+  std::string text;
+  std::size_t count = 0;
+  for (const Connection& each : connections_) {
+    if (!each.is_open() || !each.has_written()) continue;
+    if (++count <= most) text += (count == 1 ? "" : ", ") + each.who();
+  }
+  return count <= most ? text : fmt::format("{}, and {} more", text, count - most);
+}
+
 void TcpServer::ready(TimePoint now) {
   for (int i = 0; i < accepts_per_turn; ++i)
     if (!accept_one(now)) return;
 }
 
 void TcpServer::take_over(std::vector<OpenConnection> clients, TimePoint now) {
-  for (OpenConnection& client : clients) {
-    sockaddr_storage peer{};
-    socklen_t size = sizeof peer;
-    const bool is_there = ::getpeername(client.socket.get(), reinterpret_cast<sockaddr*>(&peer), &size) == 0;
-    if (!is_there || this->size() == capacity()) continue;
-    if (!listener_.allowed.admits(peer)) {
-      refuse(std::move(client.socket), peer);
-      continue;
-    }
-    in_use_ = true;
-    const IpAddress origin = origin_of(peer);
-    place_for(origin).open(std::move(client), origin, now);
-  }
+  for (OpenConnection& client : clients)
+    if (size() < capacity()) open(std::move(client), now);
+}
+
+void TcpServer::admit(OpenConnection client, TimePoint now) {
+  ++statistics_.connections;
+  open(std::move(client), now);
+}
+
+void TcpServer::open(OpenConnection client, TimePoint now) {
+  const auto peer = peer_of(client);
+  if (!peer) return;
+  if (!listener_.allowed.admits(*peer)) return refuse(std::move(client.socket), *peer);
+  in_use_ = true;
+  const IpAddress origin = origin_of(*peer);
+  place_for(origin).open(std::move(client), origin, now);
 }
 
 std::vector<OpenConnection> TcpServer::release() {
@@ -126,7 +132,7 @@ bool TcpServer::accept_one(TimePoint now) {
     refuse(std::move(socket), peer);
     return true;
   }
-  configure(socket.get());
+  configure_client(socket.get());
   ++statistics_.connections;
   in_use_ = true;
   pause_logged_ = false;

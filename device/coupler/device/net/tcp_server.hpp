@@ -31,9 +31,14 @@ class TcpServer : public EventHandler {
   std::size_t capacity() const { return connections_.size(); }
   /// Connections that are open now.
   std::size_t size() const;
+  /// Those that have written an output, and are still connected: Connection::who() of the first few, with
+  /// commas.
+  std::string writers() const;
 
   /// Continues with clients that another server released, if they may connect and there is room.
   void take_over(std::vector<OpenConnection> clients, TimePoint now);
+  /// A client that another process has let in, as if it had connected here.
+  void admit(OpenConnection client, TimePoint now);
   /// Releases all clients without closing their connections, after an answer to those that wait.
   std::vector<OpenConnection> release();
   /// Answers those that wait, since the node ends.
@@ -48,6 +53,7 @@ class TcpServer : public EventHandler {
   void tick(TimePoint now);
 
  private:
+  void open(OpenConnection client, TimePoint now);
   void sweep(TimePoint now);
   Connection& place_for(const IpAddress& newcomer);
   Connection& who_makes_room_for(const IpAddress& newcomer);

@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -86,7 +88,36 @@ class IoService::EdgeHandler : public EventHandler {
   Handler& handler_;
 };
 
-IoService::IoService(const ServingContext& context, Loop& loop, Log& log)
+/// Takes clients that another process has let in.
+class IoService::Intake : public EventHandler {
+ public:
+  Intake(Loop& loop, int channel, TcpServer& tcp) : loop_(loop), channel_(channel), tcp_(tcp) {
+    [[maybe_unused]] const bool watched = loop_.watch(channel_, Interest::read, *this);
+    assert(watched);
+  }
+  Intake(const Intake&) = delete;
+  Intake& operator=(const Intake&) = delete;
+  ~Intake() { loop_.forget(channel_, *this); }
+
+  void ready(TimePoint now) override {
+    std::array<std::uint8_t, longest_client_message> bytes{};
+    Descriptor socket;
+    const ssize_t size = receive_message(channel_, bytes, socket);
+    if (size == 0) return loop_.forget(channel_, *this);
+    if (size < 0) return;
+    const auto message = Span<const std::uint8_t>(bytes).first(static_cast<std::size_t>(size));
+    // Without TLS it would have the rights of others.
+    if (auto client = parse_client(message, std::move(socket)); client && client->tls)
+      tcp_.admit(*std::move(client), now);
+  }
+
+ private:
+  Loop& loop_;
+  int channel_;
+  TcpServer& tcp_;
+};
+
+IoService::IoService(const ServingContext& context, Loop& loop, Log& log, int clients)
     : loop_(loop),
       log_(log),
       statistics_(context.state->statistics()),
@@ -105,6 +136,7 @@ IoService::IoService(const ServingContext& context, Loop& loop, Log& log)
       trips_(statistics_.watchdog_trips) {
   handler_.set_machine(context.state->machine());
   handler_.tell_changes(random_epoch(), now_);
+  if (clients >= 0) intake_ = std::make_unique<Intake>(loop, clients, tcp_);
   for (InputGroup* group : context.wiring->event_sources())
     edge_handlers_.emplace_back(loop, *group, handler_, log);
 }
@@ -150,9 +182,12 @@ void IoService::turn() {
 void IoService::log_trips() {
   if (trips_ == statistics_.watchdog_trips) return;
   trips_ = statistics_.watchdog_trips;
+  const std::string writers = tcp_.writers();
   log_.warn_limited(
       "watchdog",
-      "the watchdog expired: no client that writes sent a request in time; outputs go to their safe state");
+      fmt::format("the watchdog expired: no client that writes sent a request in time; outputs go to their "
+                  "safe state; {}",
+                  writers.empty() ? "no such client is connected" : "still connected: " + writers));
 }
 
 std::string shutdown_summary(int signal, bool safe, const Statistics& statistics, TimePoint now) {

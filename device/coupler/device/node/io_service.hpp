@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <list>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ namespace coupler::device {
 /// Answers clients with the hardware of a map.
 class IoService {
  public:
-  /// All of them outlive it. The context is in force.
-  IoService(const ServingContext& context, Loop& loop, Log& log);
+  /// All of them outlive it. The context is in force. `clients`: where another process hands over those that
+  /// it has let in (send_client()); -1: none does.
+  IoService(const ServingContext& context, Loop& loop, Log& log, int clients = -1);
   IoService(const IoService&) = delete;
   IoService& operator=(const IoService&) = delete;
   ~IoService();
@@ -39,6 +41,7 @@ class IoService {
 
  private:
   class EdgeHandler;
+  class Intake;
 
   void turn();
   void log_trips();
@@ -54,7 +57,8 @@ class IoService {
   Handler handler_;
   Server server_;
   TcpServer tcp_;
-  Timer timer_;  ///< for what is scheduled
+  std::unique_ptr<Intake> intake_;  ///< null: of no clients
+  Timer timer_;                     ///< for what is scheduled
   TimePoint now_;
   std::uint32_t trips_;  ///< of the watchdog, that were logged
 };

@@ -8,12 +8,12 @@
 #include <variant>
 
 #include "coupler/base/standard_files.hpp"
+#include "coupler/device/log/stderr_log.hpp"
 #include "coupler/device/node/map_reading.hpp"
 #include "coupler/device/node/options.hpp"
 #include "coupler/device/node/program.hpp"
 #include "coupler/device/node/reload.hpp"
 #include "coupler/device/node/serving_context.hpp"
-#include "coupler/device/node/stderr_log.hpp"
 #include "coupler/map/loader/load.hpp"
 
 namespace coupler::device {
@@ -75,10 +75,12 @@ int main(int argc, char** argv) {
   if (const auto node = std::get<Options>(options).reload; node != 0)
     return ask_to_reload(static_cast<pid_t>(node), log);
   const MapInput input(std::get<Options>(options).map, log);
-  const auto map = read_first(input.first());
-  if (!map) {
-    if (!map.error().empty()) log.fail(map.error());
+  auto first = read_first(input.first());
+  if (!first) {
+    if (!first.error().empty()) log.fail(first.error());
     return ServeError::map_is_wrong;
   }
-  return serve((*map)->map(), std::get<Options>(options), log, input.again(), nullptr);
+  const coupler::MapPtr map = first->map;
+  return serve(map->map(), std::move(first->settings), std::get<Options>(options), log, input.again(),
+               nullptr);
 }

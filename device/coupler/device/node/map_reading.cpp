@@ -5,21 +5,35 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstring>
 #include <memory_resource>
 #include <new>
 #include <utility>
 
+#include "coupler/device/tls_process/tls_settings.hpp"
+
 namespace coupler::device {
 namespace {
 
-enum Status { done, logged, too_large };
+enum Status { done, logged, too_large, no_settings };
+
+/// What was written to the memory.
+std::string text_in(int memory) {
+  std::array<char, 1024> text{};
+  const ssize_t size = ::pread(memory, text.data(), text.size(), 0);
+  return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
+}
 
 }  // namespace
 
 MapReading::MapReading(Loop& loop, TimePoint now)
-    : loop_(loop), deadline_(now + timeout), arena_(std::make_shared<SharedArena>(room)) {}
+    : loop_(loop),
+      deadline_(now + timeout),
+      arena_(std::make_shared<SharedArena>(room)),
+      settings_(make_settings_memory()) {}
 
 MapReading::~MapReading() {
   if (is_watched_) loop_.forget(child_->descriptor(), *this);
@@ -47,16 +61,30 @@ tl::expected<std::unique_ptr<MapReading>, std::string> MapReading::start(Loop& l
 /// In the process of its own. Nothing is destroyed in it: the map is the other one's.
 int MapReading::read(const ReadMap& source, pid_t parent) {
   ::prctl(PR_SET_NAME, "coupler-map");
+  ::prctl(PR_SET_DUMPABLE, 0);  // it may read a key, which is for no core file
   if (!end_with_parent(parent, SIGKILL)) return logged;
-  close_descriptors(source.descriptor);
+  close_descriptors({source.descriptor, settings_.get()});
   std::pmr::set_default_resource(arena_.get());
   try {
+    if (!source.read) ::_exit(read_settings_of(*source.built_in));
     const MapPtr map = source.read();
+    if (map == nullptr) ::_exit(logged);
     made_[0].map = map.get();
-    ::_exit(map == nullptr ? logged : done);
+    ::_exit(read_settings_of(map->map()));
   } catch (const std::bad_alloc&) {
     return too_large;
   }
+}
+
+/// Returns a Status.
+int MapReading::read_settings_of(const Map& map) {
+  if (!map.security.files.present()) return done;
+  const auto settings = tls_settings_of(map);
+  if (settings && write_settings(settings_.get(), *settings)) return done;
+  const std::string why = settings ? "there is no memory for the certificates" : settings.error();
+  (void)!::ftruncate(settings_.get(), 0);
+  (void)!::pwrite(settings_.get(), why.data(), why.size(), 0);
+  return no_settings;
 }
 
 void MapReading::ready(TimePoint) {
@@ -69,22 +97,23 @@ bool MapReading::is_over(TimePoint now) {
   return status_ || now >= deadline_;
 }
 
-tl::expected<MapPtr, std::string> MapReading::take() {
+tl::expected<MapRead, std::string> MapReading::take() {
   if (!status_)
     return tl::unexpected(fmt::format(
         "the map could not be read in {} s; check the disk or the network file system that it is on",
         timeout.count()));
   if (*status_ == 0) {
     arena_->give_back_rest();
-    return MapPtr(arena_, made_[0].map);
+    return MapRead{MapPtr(arena_, made_[0].map), std::move(settings_)};
   }
   if (!WIFEXITED(*status_)) return tl::unexpected("the process that read the map " + describe_end(*status_));
+  if (WEXITSTATUS(*status_) == no_settings) return tl::unexpected("'security': " + text_in(settings_.get()));
   if (WEXITSTATUS(*status_) == too_large)
     return tl::unexpected(fmt::format("the map needs more than {} MiB of memory; remove points", room >> 20));
   return tl::unexpected(std::string());
 }
 
-tl::expected<MapPtr, std::string> read_first(const ReadMap& source) {
+tl::expected<MapRead, std::string> read_first(const ReadMap& source) {
   Loop loop;
   auto reading = MapReading::start(loop, source, TimePoint::clock::now());
   if (!reading) return tl::unexpected(std::move(reading).error());

@@ -6,6 +6,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "coupler/device/net/descriptor.hpp"
 #include "coupler/device/net/loop.hpp"
 #include "coupler/device/supervisor/child.hpp"
 #include "coupler/device/supervisor/shared_memory.hpp"
@@ -16,8 +17,18 @@ namespace coupler::device {
 /// How a node reads a map. It is called in a process of its own, which has none of the node's lines and
 /// sockets, and may take its time.
 struct ReadMap {
-  std::function<MapPtr()> read;  ///< null if the map is wrong, which it logs; empty: there is nothing to read
+  std::function<MapPtr()> read;  ///< null if the map is wrong, which it logs; empty: there is none to read
   int descriptor = -1;           ///< that it needs besides 0 to 2: the log's
+  const Map* built_in =
+      nullptr;  ///< in place of one that is read, with files that are: those of its `security`
+
+  bool reads_something() const { return read || built_in != nullptr; }
+};
+
+/// What was read.
+struct MapRead {
+  MapPtr map{};           ///< null: the one that is built in
+  Descriptor settings{};  ///< memory with TlsSettings, if the map has TLS
 };
 
 /// A map that is being read in a process of its own. It dies with this one.
@@ -36,7 +47,10 @@ class MapReading : public EventHandler {
   /// It has ended, or its time is over.
   bool is_over(TimePoint now);
   /// Once it is over. The error says what went wrong; it is empty if it is logged already.
-  tl::expected<MapPtr, std::string> take();
+  tl::expected<MapRead, std::string> take();
+
+  /// In a process that was forked meanwhile: forgets what is being read.
+  void leave() { settings_.close(); }
 
   void ready(TimePoint) override;
 
@@ -50,11 +64,13 @@ class MapReading : public EventHandler {
 
   MapReading(Loop& loop, TimePoint now);
   int read(const ReadMap& source, pid_t parent);
+  int read_settings_of(const Map& map);
 
   Loop& loop_;
   TimePoint deadline_;
   std::shared_ptr<SharedArena> arena_;
   SharedArray<Made> made_{1};
+  Descriptor settings_;  ///< of TLS; or why they could not be read
   std::optional<Child> child_;
   std::optional<int> status_;
   bool is_watched_ = false;
@@ -62,6 +78,6 @@ class MapReading : public EventHandler {
 
 /// The first map of a node, read in the same way, so that this process keeps none of the memory that it took;
 /// but for as long as it takes: nothing is served yet, and a signal ends both.
-tl::expected<MapPtr, std::string> read_first(const ReadMap& source);
+tl::expected<MapRead, std::string> read_first(const ReadMap& source);
 
 }  // namespace coupler::device

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -14,6 +15,7 @@
 #include "coupler/device/core/duration_end.hpp"
 #include "coupler/device/node/realtime.hpp"
 #include "coupler/map/fingerprint.hpp"
+#include "coupler/map/rights_text.hpp"
 
 namespace coupler::device {
 namespace {
@@ -43,11 +45,23 @@ NodeRuntime::NodeRuntime(Loop& loop, const Options& options, ReadMap again, Serv
       log_(log),
       firmware_(hooks) {}
 
-tl::expected<void, ServeError> NodeRuntime::start(const Map& map) {
+tl::expected<void, ServeError> NodeRuntime::start(const Map& map, Descriptor settings) {
   if (firmware_ != nullptr) hooks_ = std::make_unique<GuardedHooks>(*firmware_, map, log_);
   auto first = ServingContext::prepare(map, nullptr, options_, nullptr, hooks_.get(), log_);
   if (!first) return tl::unexpected(std::move(first).error());
   context_ = *std::move(first);
+  if (context_->tls_listener) {
+    if (auto prepared = prepare_tls(std::move(settings)); !prepared) return prepared;
+    for (TimePoint now = TimePoint::clock::now(); awaits_tls_;) {
+      now = loop_.run_once(std::chrono::milliseconds(100));
+      if (const auto answer = next_tls_->answer(now)) {
+        if (!answer->empty()) return tl::unexpected(ServeError{ServeError::map_is_wrong, *answer});
+        awaits_tls_ = false;
+      }
+    }
+    tls_ = std::move(next_tls_);
+    tls_->commit(context_->tls_listener->socket.get());
+  }
   if (context_->analogue && !context_->analogue->drive_all(false))
     return tl::unexpected(ServeError{ServeError::device_failed,
                                      "not every analogue output can be driven to its initial value"});
@@ -58,9 +72,11 @@ tl::expected<void, ServeError> NodeRuntime::start(const Map& map) {
 
 std::string NodeRuntime::status_line() const {
   const Map& map = *context_->map;
-  return fmt::format("serving {} ({} point{}, fingerprint {}) on {}{}", map.name, map.points.size(),
+  const auto& tls = context_->tls_listener;
+  return fmt::format("serving {} ({} point{}, fingerprint {}) on {}{}{}", map.name, map.points.size(),
                      map.points.size() == 1 ? "" : "s", fingerprint_text(map.fingerprint),
-                     context_->listener.name, options_.simulated ? ", simulated" : "");
+                     context_->listener.name, tls ? ", TLS at " + tls->name : "",
+                     options_.simulated ? ", simulated" : "");
 }
 
 int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> clients) {
@@ -69,6 +85,10 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
       log_errors(log_, {ServeError::device_failed, had.error()});
       return ServeError::device_failed;
     }
+  // The key is for another process.
+  for (TlsProcess* process : {tls_.get(), next_tls_.get()})
+    if (process != nullptr) process->leave();
+  if (reading_ != nullptr) reading_->leave();
   Loop loop;
   if (!loop.is_open()) {
     log_errors(log_, {ServeError::device_failed, std::strerror(errno)});
@@ -81,7 +101,7 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
   std::optional<Sampler> sampler;
   if (context_->channels)
     sampler.emplace(*context_->channels, Sampler::period_for(context_->map->polling.rate));
-  IoService service(*context_, loop, log_);
+  IoService service(*context_, loop, log_, tls_ ? tls_->clients() : -1);
   service.take_over(std::move(clients));
   service.run(
       [&](TimePoint now) {
@@ -98,8 +118,26 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
 }
 
 void NodeRuntime::beat() {
-  if (!std::exchange(has_announced_, true)) log_.write(status_line());
+  if (!std::exchange(has_announced_, true)) {
+    log_.write(status_line());
+    warn_of_open_outputs();
+  }
   manager_.beat();
+}
+
+/// Who limits what can be written, and leaves some of it to everybody, is to know it.
+void NodeRuntime::warn_of_open_outputs() {
+  const Security& security = context_->map->security;
+  if (!security.plain) return;
+  const Role& role = security.roles[*security.plain];
+  const auto may = [&](const Point& point) {
+    return is_writable(point) &&
+           role.may(Right::write, static_cast<std::size_t>(&point - context_->map->points.begin()));
+  };
+  const auto count = std::count_if(context_->map->points.begin(), context_->map->points.end(), may);
+  if (count > 0)
+    log_.warn(fmt::format("{} may write {} point{}, as {}; `coupler check` shows which",
+                          plain_clients(security), count, count == 1 ? "" : "s", role.name));
 }
 
 /// If this process died later, nobody would drive the outputs. What started the node starts it again.
@@ -115,7 +153,7 @@ int NodeRuntime::end_without_supervisor(IoService& service) {
 
 void NodeRuntime::reload(pid_t requester) {
   requests_.add(requester);
-  if (!again_.read) {
+  if (!again_.reads_something()) {
     const auto why =
         "SIGHUP is ignored: the map of this node is built in or came through standard input, so it cannot be "
         "read again";
@@ -131,6 +169,9 @@ void NodeRuntime::reload(pid_t requester) {
 
 void NodeRuntime::begin_reading(TimePoint now) {
   reading_ = nullptr;
+  next_ = nullptr;  // what was read before, and waits for the process that does TLS
+  next_tls_ = nullptr;
+  awaits_tls_ = false;
   auto reading = MapReading::start(loop_, again_, now);
   if (reading)
     reading_ = *std::move(reading);
@@ -140,23 +181,68 @@ void NodeRuntime::begin_reading(TimePoint now) {
 
 bool NodeRuntime::look_after(TimePoint now) {
   former_ = nullptr;
+  if (tls_) tls_->look_after(now);
   const bool taken = reading_ != nullptr && reading_->is_over(now) && take_map();
-  return reconnect(now) || taken;
+  const bool is_ready = (taken && !awaits_tls_) || tls_is_ready(now);
+  return reconnect(now) || is_ready;
 }
 
 bool NodeRuntime::take_map() {
-  auto map = std::exchange(reading_, nullptr)->take();
-  if (!map) {
-    refuse({ServeError::map_is_wrong, std::move(map).error()});
+  auto read = std::exchange(reading_, nullptr)->take();
+  if (!read) {
+    refuse({ServeError::map_is_wrong, std::move(read).error()});
     return false;
   }
-  auto next = ServingContext::prepare((*map)->map(), *map, options_, context_.get(), hooks_.get(), log_);
-  if (!next) {
-    refuse(next.error());
+  if (read->map) {
+    auto next =
+        ServingContext::prepare(read->map->map(), read->map, options_, context_.get(), hooks_.get(), log_);
+    if (!next) {
+      refuse(next.error());
+      return false;
+    }
+    next_ = *std::move(next);
+    if (!next_->tls_listener) return true;
+  }
+  if (const auto prepared = prepare_tls(std::move(read->settings)); !prepared) {
+    next_ = nullptr;
+    refuse(prepared.error());
     return false;
   }
-  next_ = *std::move(next);
   return true;
+}
+
+/// The process that does TLS looks at the settings: awaits_tls_.
+tl::expected<void, ServeError> NodeRuntime::prepare_tls(Descriptor settings) {
+  if (!tls_) {
+    auto process = TlsProcess::start(loop_, log_);
+    if (!process) return tl::unexpected(ServeError{ServeError::device_failed, std::move(process).error()});
+    next_tls_ = *std::move(process);
+  }
+  (tls_ ? tls_ : next_tls_)->prepare(std::move(settings));
+  awaits_tls_ = true;
+  return {};
+}
+
+/// It has: what was read can come into force. What it refuses is logged.
+bool NodeRuntime::tls_is_ready(TimePoint now) {
+  if (!awaits_tls_) return false;
+  const auto answer = (tls_ ? tls_ : next_tls_)->answer(now);
+  if (!answer) return false;
+  awaits_tls_ = false;
+  if (answer->empty() && next_) return true;
+  if (!answer->empty()) {
+    next_ = nullptr;
+    next_tls_ = nullptr;
+    refuse({ServeError::map_is_wrong, *answer});
+    return false;
+  }
+  // A map that is built in stays as it is.
+  tls_->commit(context_->tls_listener->socket.get());
+  const std::string text = "read the certificates again: " + status_line();
+  log_.write(text);
+  requests_.reply(true, text);
+  manager_.ready(status_line());
+  return false;
 }
 
 void NodeRuntime::refuse(const ServeError& error) {
@@ -179,7 +265,7 @@ bool NodeRuntime::reconnect(TimePoint now) {
 }
 
 void NodeRuntime::change(std::vector<OpenConnection>& clients) {
-  if (!next_) return;
+  if (!next_ || awaits_tls_) return;  // what was read may still be refused
   const bool same = next_->looks_like(*context_);
   end_durations_that_do_not_fit();
   next_->state->take_over(*context_->state, TimePoint::clock::now());
@@ -191,11 +277,15 @@ void NodeRuntime::change(std::vector<OpenConnection>& clients) {
   // It may have expired since the new lines were requested.
   if (safe) next_->state->watchdog().expire(next_->hardware().drive_safe(), TimePoint::clock::now());
   if (!same) clients.clear();
+  if (next_tls_) tls_ = std::move(next_tls_);
+  if (!next_->tls_listener) tls_ = nullptr;
+  if (tls_) tls_->commit(next_->tls_listener->socket.get());
   // It takes time to free a large map, and clients wait: it is done later.
   former_ = std::exchange(context_, std::exchange(next_, nullptr));
   const std::string text =
       fmt::format("read the map again: {}{}", status_line(), same ? "" : "; clients have to connect again");
   log_.write(text);
+  warn_of_open_outputs();
   requests_.reply(true, text);
   manager_.ready(status_line());
 }

@@ -16,6 +16,7 @@
 #include "coupler/device/node/service_manager.hpp"
 #include "coupler/device/node/serving_context.hpp"
 #include "coupler/device/supervisor/supervisor.hpp"
+#include "coupler/device/tls_process/tls_process.hpp"
 
 namespace coupler::device {
 
@@ -27,8 +28,8 @@ class NodeRuntime final : public Workload {
   NodeRuntime(Loop& loop, const Options& options, ReadMap again, ServiceManager& manager, Log& log,
               Hooks* hooks = nullptr);
 
-  /// Puts the first map in force; it outlives the runtime.
-  tl::expected<void, ServeError> start(const Map& map);
+  /// Puts the first map in force; it outlives the runtime. `settings`: as MapRead.
+  tl::expected<void, ServeError> start(const Map& map, Descriptor settings);
 
   int serve(SupervisorLink& supervisor, std::vector<OpenConnection> clients) override;
   void reload(pid_t requester) override;
@@ -43,8 +44,11 @@ class NodeRuntime final : public Workload {
 
  private:
   std::string status_line() const;
+  void warn_of_open_outputs();
   void begin_reading(TimePoint now);
   bool take_map();
+  tl::expected<void, ServeError> prepare_tls(Descriptor settings);
+  bool tls_is_ready(TimePoint now);
   void refuse(const ServeError& error);
   bool reconnect(TimePoint now);
   void end_durations_that_do_not_fit();
@@ -64,6 +68,9 @@ class NodeRuntime final : public Workload {
   std::unique_ptr<ServingContext> next_;    ///< waits for change()
   std::unique_ptr<ServingContext> former_;  ///< waits to be freed
   std::unique_ptr<MapReading> reading_;     ///< null: no map is being read
+  std::unique_ptr<TlsProcess> tls_;         ///< null: the map in force has no TLS
+  std::unique_ptr<TlsProcess> next_tls_;    ///< of a map that is the first to have it
+  bool awaits_tls_ = false;                 ///< its answer to what was read
   ReloadRequests requests_;
   TimePoint next_look_{};
 };

@@ -41,6 +41,8 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
       "--listen", options.listen,
       "IP address to listen on (default: the map's 'listen', or every interface; with --sim 127.0.0.1)");
   app.add_option("--port", options.port, "TCP port (default: the map's, usually 502; 0: any free one)");
+  app.add_option("--tls-port", options.tls_port,
+                 "TCP port for TLS, if the map has that (default: the map's, usually 802; 0: any free one)");
   app.add_flag("--sim", options.simulated,
                "Simulate every coil and discrete input, wired as the map's sim: section says");
   app.add_flag("--realtime", options.realtime,

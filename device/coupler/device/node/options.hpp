@@ -15,6 +15,7 @@ struct Options {
   std::string map;                    ///< a file; programs with a built-in map have none
   std::string listen;                 ///< empty: as address_for() says
   std::optional<std::uint16_t> port;  ///< default: the map's
+  std::optional<std::uint16_t> tls_port;
   bool simulated = false;
   bool realtime = false;     ///< ahead of other programs, memory locked
   std::uint32_t reload = 0;  ///< process id of a node that is to read its map again; 0: serve

@@ -7,10 +7,10 @@
 #include <variant>
 
 #include "coupler/base/standard_files.hpp"
+#include "coupler/device/log/stderr_log.hpp"
 #include "coupler/device/node/node_runtime.hpp"
 #include "coupler/device/node/options.hpp"
 #include "coupler/device/node/realtime.hpp"
-#include "coupler/device/node/stderr_log.hpp"
 #include "coupler/device/supervisor/supervisor.hpp"
 
 namespace coupler::device {
@@ -22,7 +22,14 @@ int run(const Map& map, Hooks* hooks, int argc, char** argv) {
   const auto options = parse_options(argc, argv, MapSource::built_in);
   if (const int* status = std::get_if<int>(&options)) return *status;
   StderrLog log(std::getenv("JOURNAL_STREAM"));
-  return serve(map, std::get<Options>(options), log, {}, hooks);
+  if (!map.security.files.present()) return serve(map, {}, std::get<Options>(options), log, {}, hooks);
+  const ReadMap files{{}, log.descriptor(), &map};
+  auto read = read_first(files);
+  if (!read) {
+    log.fail("error: " + read.error());
+    return ServeError::map_is_wrong;
+  }
+  return serve(map, std::move(read->settings), std::get<Options>(options), log, files, hooks);
 }
 
 }  // namespace
@@ -31,7 +38,8 @@ int main_with(const Map& map, int argc, char** argv) { return run(map, nullptr, 
 
 int main_with(const Map& map, Hooks& hooks, int argc, char** argv) { return run(map, &hooks, argc, argv); }
 
-int serve(const Map& map, const Options& options, StderrLog& log, const ReadMap& again, Hooks* hooks) {
+int serve(const Map& map, Descriptor settings, const Options& options, StderrLog& log, const ReadMap& again,
+          Hooks* hooks) {
   const auto failed = [&](const ServeError& error) {
     log_errors(log, error);
     return error.reason;
@@ -45,7 +53,7 @@ int serve(const Map& map, const Options& options, StderrLog& log, const ReadMap&
   log.never_wait();
   ServiceManager manager(std::getenv("NOTIFY_SOCKET"), std::getenv("WATCHDOG_USEC"));
   NodeRuntime runtime(loop, options, again, manager, log, hooks);
-  if (const auto started = runtime.start(map); !started) return failed(started.error());
+  if (const auto started = runtime.start(map, std::move(settings)); !started) return failed(started.error());
   const bool safe = Supervisor(loop, signals, runtime, log).run();
   manager.stopping();
   if (safe) return 0;

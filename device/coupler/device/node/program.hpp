@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupler/device/core/hooks.hpp"
+#include "coupler/device/net/descriptor.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::device {
@@ -17,10 +18,12 @@ int main_with(const Map& map, int argc, char** argv);
 /// The same with a firmware's code behind the points.
 int main_with(const Map& map, Hooks& hooks, int argc, char** argv);
 
-/// Serves the map until a signal asks to stop, then drives the outputs to their safe state. SIGHUP makes it
-/// read the map again, unless `again` is empty. `hooks`, which may be null, are behind its points. From now
-/// on the log waits for nobody. Returns the exit status: 0 stopped, 1 a node cannot serve this map, 3 network
-/// or hardware failed, or an output could not be driven to its safe state at the end.
-int serve(const Map& map, const Options& options, StderrLog& log, const ReadMap& again, Hooks* hooks);
+/// Serves the map until a signal asks to stop, then drives the outputs to their safe state. `settings`: as
+/// MapRead. SIGHUP makes it read the map again, unless `again` is empty. `hooks`, which may be null, are
+/// behind its points. From now on the log waits for nobody. Returns the exit status: 0 stopped, 1 a node
+/// cannot serve this map, 3 network or hardware failed, or an output could not be driven to its safe state at
+/// the end.
+int serve(const Map& map, Descriptor settings, const Options& options, StderrLog& log, const ReadMap& again,
+          Hooks* hooks);
 
 }  // namespace coupler::device

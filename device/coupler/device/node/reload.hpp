@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "coupler/device/node/stderr_log.hpp"
+#include "coupler/device/log/stderr_log.hpp"
 
 namespace coupler::device {
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -13,15 +14,40 @@
 namespace coupler::device {
 namespace {
 
-tl::expected<Listener, std::string> listen(const ServingContext* before, const std::string& address,
-                                           std::uint16_t port) {
+/// Where the node before this one listened.
+struct Before {
+  const std::string& address;
+  std::uint16_t port;
+  const Listener& listener;
+};
+
+/// `before` may be null.
+tl::expected<Listener, std::string> listen(const Before* before, const std::string& address,
+                                           std::uint16_t port, const char* option) {
   if (before != nullptr && before->address == address && before->port == port)
     return before->listener.share();
-  auto listener = listen_on(address, port);
+  auto listener = listen_on(address, port, option);
   if (!listener && before != nullptr && before->port == port)
     return tl::unexpected(listener.error() +
                           "; this node already listens on that port: restart it to change only the address");
   return listener;
+}
+
+/// Opens the listeners of a context whose address and ports are known. The error says why one cannot be.
+tl::expected<void, std::string> listen_all(ServingContext& context, const ServingContext* before) {
+  std::optional<Before> plain;
+  std::optional<Before> tls;
+  if (before != nullptr) plain.emplace(Before{before->address, before->port, before->listener});
+  if (before != nullptr && before->tls_listener)
+    tls.emplace(Before{before->address, before->tls_port, *before->tls_listener});
+  auto listener = listen(plain ? &*plain : nullptr, context.address, context.port, "--port");
+  if (!listener) return tl::unexpected(std::move(listener).error());
+  context.listener = *std::move(listener);
+  if (!context.map->security.files.present()) return {};
+  listener = listen(tls ? &*tls : nullptr, context.address, context.tls_port, "--tls-port");
+  if (!listener) return tl::unexpected(std::move(listener).error());
+  context.tls_listener = *std::move(listener);
+  return {};
 }
 
 }  // namespace
@@ -42,9 +68,9 @@ tl::expected<std::unique_ptr<ServingContext>, ServeError> ServingContext::prepar
   context->map = &map;
   context->address = address_for(map, options);
   context->port = options.port.value_or(map.connection.port);
-  auto listener = listen(before, context->address, context->port);
-  if (!listener) return failed(ServeError::device_failed, std::move(listener).error());
-  context->listener = *std::move(listener);
+  context->tls_port = options.tls_port.value_or(map.security.port);
+  if (auto listens = listen_all(*context, before); !listens)
+    return failed(ServeError::device_failed, std::move(listens).error());
   context->listener.allowed = *std::move(allowed);
   context->state = std::make_unique<SharedState>(
       map, TimePoint::clock::now(), before == nullptr ? this_machine() : before->state->machine());

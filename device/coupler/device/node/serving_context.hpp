@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 
@@ -45,6 +46,8 @@ struct ServingContext {
   std::string address;  ///< that the listener was asked for
   std::uint16_t port = 0;
   Listener listener;
+  std::uint16_t tls_port = 0;
+  std::optional<Listener> tls_listener{};    ///< nullopt: the map has no TLS
   std::unique_ptr<PreparedWiring> prepared;  ///< before it is in force
   std::unique_ptr<Wiring> wiring;            ///< when it is
   std::unique_ptr<SharedState> state;

@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 namespace coupler::device {
 namespace {
@@ -80,15 +81,17 @@ bool end_with_parent(pid_t parent, int signal) {
   return ::getppid() == parent;
 }
 
-void close_descriptors(int kept) {
-  const unsigned first = STDERR_FILENO + 1;
-  if (kept < static_cast<int>(first)) {
-    ::close_range(first, UINT_MAX, 0);
-    return;
+void close_descriptors(std::initializer_list<int> kept) {
+  std::vector<int> sorted(kept);
+  std::sort(sorted.begin(), sorted.end());
+  auto first = static_cast<unsigned>(STDERR_FILENO) + 1;
+  for (const int each : sorted) {
+    const auto number = static_cast<unsigned>(each);
+    if (each < 0 || number < first) continue;
+    if (number > first) ::close_range(first, number - 1, 0);
+    first = number + 1;
   }
-  const auto between = static_cast<unsigned>(kept);
-  if (between > first) ::close_range(first, between - 1, 0);
-  ::close_range(between + 1, UINT_MAX, 0);
+  ::close_range(first, UINT_MAX, 0);
 }
 
 }  // namespace coupler::device

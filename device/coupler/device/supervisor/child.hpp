@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
@@ -51,7 +52,8 @@ bool ended_well(int status);
 /// Ends the process that calls it when its parent does. False: it has ended already.
 bool end_with_parent(pid_t parent, int signal);
 
-/// For a child that must not hold what its parent has: all descriptors but 0 to 2 and `kept`.
-void close_descriptors(int kept);
+/// For a child that must not hold what its parent has: all descriptors but 0 to 2 and those that are kept (-1
+/// is none).
+void close_descriptors(std::initializer_list<int> kept);
 
 }  // namespace coupler::device

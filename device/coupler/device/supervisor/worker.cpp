@@ -2,7 +2,6 @@
 #include "coupler/device/supervisor/worker.hpp"
 
 #include <sys/prctl.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,11 +9,10 @@
 #include <cassert>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
-#include <optional>
 #include <utility>
 #include <variant>
 
+#include "coupler/device/net/message.hpp"
 #include "coupler/device/net/signals.hpp"
 
 namespace coupler::device {
@@ -27,97 +25,25 @@ struct Ended {};    ///< the other process has ended
 struct Nothing {};  ///< for now
 using Message = std::variant<Beat, MakeRoom, OpenConnection, Ended, Nothing>;
 
-struct Pair {
-  Descriptor one;
-  Descriptor other;
-};
-
-enum class Kind : std::uint8_t { beat, make_room, client };
-
-/// The beginning of each message; what of a client is unread and unsent follows.
-struct Head {
-  Kind kind;
-  bool has_written = false;
-  std::uint16_t unread = 0;
-  std::uint16_t unsent = 0;
-};
-
-constexpr std::size_t longest_body = 4096;
+constexpr std::uint8_t beat_tag = 'B';
+constexpr std::uint8_t make_room_tag = 'R';
 
 /// Without waiting: a message that the socket does not take is lost.
-void send(int socket, Kind kind) {
-  const Head head{kind};
-  (void)::send(socket, &head, sizeof head, MSG_DONTWAIT | MSG_NOSIGNAL);
-}
-
-/// Memory for one descriptor beside a message.
-union Control {
-  cmsghdr alignment;
-  std::array<char, CMSG_SPACE(sizeof(int))> bytes;
-};
-
-template <std::size_t N>
-msghdr message_of(std::array<iovec, N>& parts, Control& control) {
-  msghdr message{};
-  message.msg_iov = parts.data();
-  message.msg_iovlen = parts.size();
-  message.msg_control = control.bytes.data();
-  message.msg_controllen = sizeof control.bytes;
-  return message;
-}
-
-Descriptor descriptor_of(msghdr& message) {
-  const cmsghdr* control = CMSG_FIRSTHDR(&message);
-  if (control == nullptr || control->cmsg_type != SCM_RIGHTS) return {};
-  int fd = -1;
-  std::memcpy(&fd, CMSG_DATA(control), sizeof fd);
-  return Descriptor(fd);
-}
-
-std::optional<Pair> open_pair() {
-  std::array<int, 2> pair{};
-  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair.data()) != 0) return std::nullopt;
-  return Pair{Descriptor(pair[0]), Descriptor(pair[1])};
-}
-
-/// Waits until the socket takes it. Both processes have the connection then.
-void send_client(int socket, const OpenConnection& client) {
-  assert(client.unread.size() + client.unsent.size() <= longest_body);
-  Head head{Kind::client, client.has_written, static_cast<std::uint16_t>(client.unread.size()),
-            static_cast<std::uint16_t>(client.unsent.size())};
-  // sendmsg() does not change what it sends.
-  std::array<iovec, 3> parts{{{&head, sizeof head},
-                              {const_cast<std::uint8_t*>(client.unread.data()), client.unread.size()},
-                              {const_cast<std::uint8_t*>(client.unsent.data()), client.unsent.size()}}};
-  Control control{};
-  msghdr message = message_of(parts, control);
-  cmsghdr* rights = CMSG_FIRSTHDR(&message);
-  rights->cmsg_level = SOL_SOCKET;
-  rights->cmsg_type = SCM_RIGHTS;
-  rights->cmsg_len = CMSG_LEN(sizeof(int));
-  const int fd = client.socket.get();
-  std::memcpy(CMSG_DATA(rights), &fd, sizeof fd);
-  while (::sendmsg(socket, &message, MSG_NOSIGNAL) < 0 && errno == EINTR) {
-  }
-}
+void send(int socket, std::uint8_t tag) { (void)send_message(socket, {{&tag, 1}}, -1, Waits::no); }
 
 /// Without waiting.
 Message receive(int socket) {
-  Head head{};
-  std::array<std::uint8_t, longest_body> body{};
-  std::array<iovec, 2> parts{{{&head, sizeof head}, {body.data(), body.size()}}};
-  Control control{};
-  msghdr message = message_of(parts, control);
-  const ssize_t size = ::recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+  std::array<std::uint8_t, longest_client_message> bytes{};
+  Descriptor descriptor;
+  const ssize_t size = receive_message(socket, bytes, descriptor);
   // An error (the other process ended and left something unread) comes once; what it sent comes after that.
   if (size < 0) return Nothing{};
   if (size == 0) return Ended{};
-  if (head.kind == Kind::beat) return Beat{};
-  if (head.kind == Kind::make_room) return MakeRoom{};
-  OpenConnection client{descriptor_of(message), head.has_written};
-  client.unread.assign(body.begin(), body.begin() + head.unread);
-  client.unsent.assign(body.begin() + head.unread, body.begin() + head.unread + head.unsent);
-  return client;
+  if (bytes[0] == beat_tag) return Beat{};
+  if (bytes[0] == make_room_tag) return MakeRoom{};
+  auto client = parse_client(Span<const std::uint8_t>(bytes).first(static_cast<std::size_t>(size)),
+                             std::move(descriptor));
+  return client ? Message(*std::move(client)) : Message(Nothing{});
 }
 
 /// The life of the child. Its end of the channel is closed by the kernel, when its exit status is settled.
@@ -138,9 +64,11 @@ void SupervisorLink::watch(Loop& loop) {
   assert(watched);
 }
 
-void SupervisorLink::beat() { send(channel_.get(), Kind::beat); }
+void SupervisorLink::beat() { send(channel_.get(), beat_tag); }
 
-void SupervisorLink::give(const OpenConnection& client) { send_client(channel_.get(), client); }
+void SupervisorLink::give(const OpenConnection& client) {
+  (void)send_client(channel_.get(), client, Waits::until_it_is_taken);
+}
 
 bool SupervisorLink::is_silent(TimePoint now) {
   silence_.sample(now, std::exchange(heard_, false), std::chrono::nanoseconds(0));
@@ -157,7 +85,7 @@ void SupervisorLink::ready(TimePoint) {
 
 tl::expected<std::unique_ptr<Worker>, int> Worker::start(Loop& loop, const Work& work,
                                                          std::function<void()> on_beat) {
-  auto pair = open_pair();
+  auto pair = open_channel();
   if (!pair) return tl::unexpected(errno);
   const pid_t parent = ::getpid();
   auto child = Child::start([&]() -> int {
@@ -195,9 +123,9 @@ void Worker::ready(TimePoint now) {
   }
 }
 
-void Worker::make_room() { send(channel_.get(), Kind::make_room); }
+void Worker::make_room() { send(channel_.get(), make_room_tag); }
 
-void Worker::beat() { send(channel_.get(), Kind::beat); }
+void Worker::beat() { send(channel_.get(), beat_tag); }
 
 void Worker::terminate(int signal) { child_.signal(signal); }
 

@@ -20,14 +20,16 @@ using modbus::Exception;
 using plan::ReadSpan;
 using State = Reading::State;
 
-/// Devices answer a range that they do not have, or that is too long for them, with either of these.
-constexpr bool is_rejection(Exception code) {
-  return code == Exception::illegal_data_address || code == Exception::illegal_data_value;
+/// Devices answer a range that they do not have, or that is too long for them, with either of these; a node
+/// one that may not be read with 01.
+constexpr bool is_rejection(Exception code, bool is_node) {
+  return code == Exception::illegal_data_address || code == Exception::illegal_data_value ||
+         (is_node && code == Exception::illegal_function);
 }
 
 /// The answer can be another one for a part of the range: one line that fails is answered for all.
-constexpr bool is_of_the_range(Exception code) {
-  return code != Exception::illegal_function && code != Exception::acknowledge &&
+constexpr bool is_of_the_range(Exception code, bool is_node) {
+  return (is_node || code != Exception::illegal_function) && code != Exception::acknowledge &&
          code != Exception::server_device_busy;
 }
 
@@ -144,8 +146,8 @@ Result<> DeviceReader::connect() {
   if (auto opened = transport_.connect(); !opened) return opened;
   if (map_.verify != Verify::off && !map_.connection.is_broadcast())
     if (auto identified = identify(); !identified) return identified;
-  const bool is_node = known_.identity.value_or(Identity::Verdict::foreign) != Identity::Verdict::foreign;
-  if (auto started = changes_.start(is_node); !started) return started;
+  is_node_ = known_.identity.value_or(Identity::Verdict::foreign) != Identity::Verdict::foreign;
+  if (auto started = changes_.start(is_node_); !started) return started;
   plan();
   connected_ = true;
   return {};
@@ -214,7 +216,7 @@ Result<> DeviceReader::ask(const ReadSpan& span, std::vector<ReadSpan>& next) {
   }
   const host::ExceptionReply* exception = exception_in(answer.error());
   if (exception == nullptr || is_unit_away(answer.error())) return answer;
-  if (is_of_the_range(exception->code)) return in_parts(span, exception->code, next);
+  if (is_of_the_range(exception->code, is_node_)) return in_parts(span, exception->code, next);
   fail(span, exception->code);
   next.push_back(span);
   return {};
@@ -230,7 +232,7 @@ Result<> DeviceReader::in_parts(const ReadSpan& span, Exception code, std::vecto
   std::vector<ReadSpan> parts;
   for (const ReadSpan& piece : split.pieces)
     if (auto answer = ask(piece, parts); !answer) return answer;
-  if (!is_rejection(code)) {  // it may pass: the whole is asked for again
+  if (!is_rejection(code, is_node_)) {  // it may pass: the whole is asked for again
     next.push_back(span);
     return {};
   }

@@ -62,7 +62,8 @@ class DeviceReader {
 
   // For the time of a connection.
   bool connected_ = false;
-  Snapshot known_;               ///< blank_, with what follows from the identity
+  bool is_node_ = false;  ///< of this project, which knows every function: exception 01 is about rights
+  Snapshot known_;        ///< blank_, with what follows from the identity
   std::vector<ReadSpan> spans_;  ///< the requests of a look
 
   std::array<std::uint16_t, modbus::max_read_bits> registers_{};  ///< bits too, as registers

@@ -44,6 +44,7 @@ Result<bool> read_area(host::Transport& transport, NodeStatus& status) {
 
 Result<> read_all(host::Transport& transport, const Identify& identify, NodeStatus& status) {
   if (auto connected = transport.connect(); !connected) return connected;
+  status.certificates = transport.certificates();
   const auto answered = read_area(transport, status);
   if (!answered) return tl::make_unexpected(answered.error());
   std::optional<Error> failure;
@@ -101,6 +102,20 @@ std::string functions_text(const identity::Functions& functions) {
   return text.empty() ? "none" : text;
 }
 
+ordered_json or_null(const std::string& text) { return text.empty() ? ordered_json() : ordered_json(text); }
+
+std::string certificate_text(const host::Certificate& shown) {
+  return fmt::format("'{}', until {}", printable(shown.name), minute_text(shown.validity.end));
+}
+
+std::string role_text(const host::Certificate& own) {
+  return own.role.empty() ? "without a role" : "role " + printable(own.role);
+}
+
+ordered_json certificate_json(const host::Certificate& shown) {
+  return {{"name", shown.name}, {"role", or_null(shown.role)}, {"ends", time_text(shown.validity.end)}};
+}
+
 /// An older node does not say how long it is.
 std::string timeout_text(const NodeStatus& status) {
   if (status.report->watchdog_state == 0) return "none";
@@ -122,8 +137,6 @@ std::string uptime_text(std::uint32_t seconds) {
 std::string row(std::string_view what, const std::string& value) {
   return fmt::format("  {:<36}  {}\n", what, value);
 }
-
-ordered_json or_null(const std::string& text) { return text.empty() ? ordered_json() : ordered_json(text); }
 
 ordered_json functions_json(const identity::Functions& functions) {
   ordered_json json = ordered_json::array();
@@ -165,6 +178,11 @@ std::string status_text(const NodeStatus& status, const Connection& where) {
   }
   const Report& report = *status.report;
   std::string text = fmt::format("the node at {}, {}:\n", device, time_text(status.at));
+  if (status.certificates) {
+    text += row("certificate of this side",
+                certificate_text(status.certificates->own) + ", " + role_text(status.certificates->own));
+    text += row("certificate of the node", certificate_text(status.certificates->device));
+  }
   text += row("map", or_unknown(object(status, product_code)));
   text += row("fingerprint", fingerprint_text(report.head.fingerprint));
   text += row("size and CRC-32 of the map",
@@ -175,6 +193,8 @@ std::string status_text(const NodeStatus& status, const Connection& where) {
   text += row("watchdog", watchdog_text(report));
   text += row("timeout of the watchdog", timeout_text(status));
   text += row("function codes of its own", functions_text(status.further.functions));
+  if (!report.has_statistics)
+    return text + row("statistics", "not for clients that may not read every point");
   text += row("uptime", uptime_text(report.uptime));
   for (std::size_t i = 0; i < identity::counters.size(); ++i)
     text += row(identity::counters[i].text, fmt::to_string(report.counts[i]));
@@ -196,7 +216,11 @@ std::string status_json(const NodeStatus& status, const Connection& where) {
                     {"functions", nullptr},
                     {"uptime_s", nullptr},
                     {"statistics", nullptr},
+                    {"certificates", nullptr},
                     {"identification", identification_json(status)}};
+  if (status.certificates)
+    json["certificates"] = {{"own", certificate_json(status.certificates->own)},
+                            {"device", certificate_json(status.certificates->device)}};
   if (status.report) {
     const Report& report = *status.report;
     json["name"] = or_null(object(status, product_code));
@@ -210,8 +234,10 @@ std::string status_json(const NodeStatus& status, const Connection& where) {
     if (const auto timeout = status.further.watchdog_timeout; timeout != 0)
       json["watchdog"]["timeout_ms"] = timeout;
     json["functions"] = functions_json(status.further.functions);
-    json["uptime_s"] = report.uptime;
-    json["statistics"] = statistics_json(report);
+    if (report.has_statistics) {
+      json["uptime_s"] = report.uptime;
+      json["statistics"] = statistics_json(report);
+    }
   }
   // A text of the device need not be UTF-8.
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);

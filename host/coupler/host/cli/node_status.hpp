@@ -23,6 +23,7 @@ struct NodeStatus {
   std::optional<identity::Report> report{};              ///< nullopt: a foreign coupler, or no answer
   identity::Further further{};                           ///< as far as the node says
   std::map<std::uint8_t, std::string> identification{};  ///< the objects of FC 43/14
+  std::optional<host::Certificates> certificates{};      ///< of a connection with TLS
 };
 
 /// FC 43/14 over the same connection.

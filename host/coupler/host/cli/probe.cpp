@@ -146,6 +146,11 @@ Exit run(const ProbeArguments& arguments) {
   return exit;
 }
 
+constexpr const char* example =
+    "Example:\n  coupler probe 192.168.1.17 --known voltage=230.4 --known frequency=50.02 --out meter.yaml\n"
+    "  coupler probe /dev/ttyUSB0 --baud 9600\n"
+    "Ctrl-C ends it and shows what was found so far.";
+
 }  // namespace
 
 void add_probe(Program& program, Exit& exit) {
@@ -203,10 +208,8 @@ void add_probe(Program& program, Exit& exit) {
                   "Write a draft of the map; - is standard output, and the report is on standard error then")
       .type_name("FILE");
   command.add_flag("--force", arguments->force, "Replace an existing file");
-  command.footer(
-      "Example:\n  coupler probe 192.168.1.17 --known voltage=230.4 --known frequency=50.02 --out "
-      "meter.yaml\n  coupler probe /dev/ttyUSB0 --baud 9600\n"
-      "Ctrl-C ends it and shows what was found so far.");
+  add_tls_options(command, arguments->tls);
+  command.footer(example);
   command.callback([arguments, &exit] { exit = run(*arguments); });
 }
 

@@ -8,6 +8,7 @@
 
 #include <tl/expected.hpp>
 
+#include "coupler/cli/tls_argument.hpp"
 #include "coupler/host/scan/known_value.hpp"
 #include "coupler/host/scan/scan.hpp"
 #include "coupler/map/map.hpp"
@@ -17,6 +18,7 @@ namespace coupler::cli {
 /// As it was typed.
 struct ProbeArguments {
   std::string host;
+  TlsTexts tls;
   std::vector<std::string> units;
   std::uint32_t from = scan::Task{}.window.start();
   std::uint32_t to = scan::Task{}.window.last();

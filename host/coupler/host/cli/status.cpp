@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "coupler/cli/commands.hpp"
+#include "coupler/cli/tls_argument.hpp"
 #include "coupler/host/cli/modbus_client.hpp"
 #include "coupler/host/cli/node_status.hpp"
 #include "coupler/map/node_address.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 struct Arguments {
   std::string host;
+  TlsTexts tls;
   double timeout = 1;  ///< s
   bool json = false;
 };
@@ -24,6 +26,12 @@ Exit run(const Arguments& arguments) {
   const auto where = parse_node_address(address);
   if (!where) return complain("status", bad_call, where.error().what, where.error().remedy);
   Connection connection = found_at({}, *where).connection;
+  if (!where->tls && any_given(arguments.tls))
+    return complain("status", bad_call, "certificates are for a place with TLS",
+                    "write tls:// before the host");
+  if (where->tls) overlay(connection.tls, arguments.tls.view());
+  if (const auto problem = where->tls ? tls_problem(connection.tls) : std::nullopt)
+    return complain("status", bad_call, "tls:// needs certificates", *problem);
   connection.timeout = std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000));
   const auto transport = host::make_transport(connection);
   const NodeStatus status = read_status(*transport, [&](modbus::ReadDeviceIdentification wanted) {
@@ -53,7 +61,8 @@ void add_status(Program& program, Exit& exit) {
   const auto arguments = std::make_shared<Arguments>();
   command
       .add_option("HOST", arguments->host,
-                  "HOST[:PORT][/UNIT], with tcp:// in front or not, or a serial port as /dev/ttyUSB0[/UNIT]")
+                  "HOST[:PORT][/UNIT], with tcp:// or tls:// in front or not, or a serial port as "
+                  "/dev/ttyUSB0[/UNIT]")
       .required()
       .type_name("");
   command.add_option("--timeout", arguments->timeout, "Longest wait for an answer, in seconds")
@@ -61,6 +70,7 @@ void add_status(Program& program, Exit& exit) {
       .show_default()
       .type_name("S");
   command.add_flag("--json", arguments->json, "One JSON object on standard output, for scripts");
+  add_tls_options(command, arguments->tls);
   command.footer(
       "Example:\n  coupler status raspberrypi\n  coupler status 10.0.0.7:1502/1 --json\n"
       "Exit status 1: a foreign coupler; 3: no answer.");

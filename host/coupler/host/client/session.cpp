@@ -2,6 +2,7 @@
 #include "coupler/host/client/session.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,21 +16,47 @@ namespace {
 
 using host::WriteResult;
 
-/// A connection to nowhere if the options cannot be understood; that is reported.
-Map moved(Map map, const Options& options) {
+/// As long as the options exist their paths say the same.
+Options with_absolute_paths(Options options) {
+  for (std::string* path : {&options.tls.certificate, &options.tls.key, &options.tls.ca})
+    if (!path->empty()) *path = std::filesystem::absolute(*path).string();
+  return options;
+}
+
+/// Why the options cannot be understood, and what to do; empty: `connection` is where they say.
+std::string move_to(Map& map, const Options& options) {
   Connection& connection = map.connection;
+  const bool had_tls = connection.tls.present();
+  overlay(connection.tls, options.tls.view());
+  const bool has_tls = connection.tls.present();
+  if (has_tls && !had_tls && connection.port == modbus::default_port) connection.port = default_tls_port;
   if (names_a_node(options.address)) {
     const auto where = parse_node_address(options.address, connection);
-    if (where)
-      map = found_at(map, *where);
-    else
-      connection = {};
-    if (!where && options.on_report)
-      options.on_report(Level::error, fmt::format("{}; {}", where.error().what, where.error().remedy));
+    if (!where) return fmt::format("{}; {}", where.error().what, where.error().remedy);
+    if (where->tls && !has_tls)
+      return fmt::format(
+          "{}: there are no certificates for TLS; add them to the map, as in 'tls: {{certificate: cell1.pem, "
+          "key: cell1.key, ca: authority.pem}}', or to Options::tls",
+          options.address);
+    map = found_at(map, *where);
   } else if (!options.address.empty()) {
-    map = found_at(map, {options.address, connection.port, connection.unit});
+    map = found_at(map, {options.address, connection.port, connection.unit, Framing::tcp, {}, has_tls});
   }
+  if (const auto missing = missing_key(connection.tls); !missing.empty())
+    return fmt::format("TLS needs '{}', too; add it to the map's 'tls', or to Options::tls", missing);
+  if (const auto pin = connection.tls.pin; !pin.empty() && !is_pin(pin))
+    return fmt::format(
+        "'{}' is no pin; write 'sha256:' and 64 hexadecimal digits, as `coupler pin` prints them", pin);
   if (options.port) connection.port = *options.port;
+  return {};
+}
+
+/// A connection to nowhere if the options cannot be understood; that is reported.
+Map moved(Map map, const Options& options) {
+  if (const std::string wrong = move_to(map, options); !wrong.empty()) {
+    map.connection = {};
+    if (options.on_report) options.on_report(Level::error, wrong);
+  }
   return map;
 }
 
@@ -91,7 +118,7 @@ PendingWrite refused(std::string_view why) {
 }
 
 Session::Session(const Map& map, Options options)
-    : options_(std::move(options)), map_(moved(map, options_)), values_(map_) {}
+    : options_(with_absolute_paths(std::move(options))), map_(moved(map, options_)), values_(map_) {}
 
 Session::~Session() { disconnect(); }
 

@@ -18,6 +18,7 @@
 #include "coupler/host/client/last_values.hpp"
 #include "coupler/host/client/scheduling.hpp"
 #include "coupler/host/core/device_thread.hpp"
+#include "coupler/map/tls_texts.hpp"
 
 namespace coupler::client {
 
@@ -26,11 +27,13 @@ using host::Level;
 using Quality = host::PointQuality::State;
 
 struct Options {
-  /// A host, or as the tools take it: tcp://HOST:PORT/UNIT, rtu+tcp://HOST:PORT/UNIT,
+  /// A host, or as the tools take it: tcp://HOST:PORT/UNIT, tls://HOST:PORT/UNIT, rtu+tcp://HOST:PORT/UNIT,
   /// rtu:DEVICE/UNIT?baud=…&parity=… Empty: the map's.
   std::string address;
   std::optional<std::uint16_t> port;  ///< default: the map's
-  std::optional<Verify> verify;       ///< what to do if the device has another map; default: the map's
+  /// What is given takes the place of that in the map's `tls`. Paths begin in the working directory.
+  TlsTexts tls{};
+  std::optional<Verify> verify;  ///< what to do if the device has another map; default: the map's
   /// Gets lines for a log: why the device cannot be reached, how two maps differ. Called in the connection's
   /// thread, or in one that sets a value; it must neither wait nor use the client.
   std::function<void(Level, const std::string&)> on_report{};

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/host/core/health.hpp"
+
 namespace coupler::host {
 
 namespace {
@@ -156,6 +158,7 @@ Time Device::connect() {
   transport_.rank(Rank::read);
   wrote_last_ = false;
   node_ = {};
+  is_node_ = false;
   Result<> result = state_ == State::open ? Result<>{} : transport_.connect();
   state_ = result ? State::open : State::none;
   if (result && verify_ != Verify::off) result = prove_equal();
@@ -168,7 +171,7 @@ Time Device::connect() {
   state_ = State::verified;
   listen();
   scheduler_.connected(listener_.is_active() && node_.functions.schedules_outputs);
-  poller_.start(listener_.is_active());
+  poller_.start(is_node_ || map_.connection.tls.present(), listener_.is_active());
   replies_at_connect_ = transport_.replies();
   if (map_.connection.is_broadcast() || (verify_ != Verify::off && identity_suffices_)) came_online();
   return due();
@@ -204,7 +207,8 @@ Result<> Device::prove_equal() {
   }
   explains_silence_ = false;
   Result<identity::Further> further;
-  if (identity->verdict != Identity::Verdict::foreign) further = read_further(transport_);
+  is_node_ = identity->verdict != Identity::Verdict::foreign;
+  if (is_node_) further = read_further(transport_);
   if (!further) return tl::make_unexpected(further.error());
   node_ = *further;
   peer_ = to_string(node_.machine);
@@ -241,7 +245,7 @@ void Device::came_online() {
   if (std::exchange(state_, State::online) == State::online) return;
   backoff_.reset();
   last_error_text_.clear();
-  statistics_.online();
+  statistics_.online(transport_.certificates());
   qualities_.online(true);
   sink_.on_online(true);
   const std::string connected = peer_.empty() ? "connected" : "connected to " + peer_;
@@ -249,6 +253,10 @@ void Device::came_online() {
     sink_.on_report(Level::warning, fmt::format("{}; {} writes were dropped meanwhile", connected, dropped));
   else
     sink_.on_report(Level::info, connected);
+  if (const Health certificates =
+          certificates_health(statistics_.snapshot(), std::chrono::system_clock::now());
+      certificates.level != Level::info)
+    sink_.on_report(certificates.level, certificates.text);
 }
 
 void Device::lost(const Error& error) {

@@ -144,6 +144,7 @@ class Device {
   Time retry_at_ = Time::min();
   std::string last_error_text_;             ///< of the last attempt, so that it is logged once
   bool explains_silence_ = true;            ///< until the identity was answered, or silence_text() logged
+  bool is_node_ = false;                    ///< of this project, as far as it was asked
   identity::Further node_;                  ///< what it says of itself; empty if it is none
   std::string peer_;                        ///< which machine it is, if a node says so
   std::uint64_t reported_fingerprint_ = 0;  ///< whose differences have been logged

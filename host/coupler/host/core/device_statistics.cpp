@@ -48,8 +48,9 @@ void DeviceStatistics::identified(Identity::Verdict verdict, const identity::Mac
   ++revision_;
 }
 
-void DeviceStatistics::online() {
+void DeviceStatistics::online(const std::optional<Certificates>& certificates) {
   const std::lock_guard lock(mutex_);
+  now_.certificates = certificates;
   now_.online = true;
   now_.trouble.clear();
   ++now_.connections;

@@ -11,6 +11,7 @@
 #include "coupler/host/core/error.hpp"
 #include "coupler/host/core/histogram.hpp"
 #include "coupler/host/core/identity_check.hpp"
+#include "coupler/host/core/transport.hpp"
 #include "coupler/host/core/write.hpp"
 
 namespace coupler::host {
@@ -45,6 +46,7 @@ struct DeviceSnapshot {
   std::uint64_t changes_lost = 0;                             ///< that it could not tell any more
   std::array<std::uint64_t, WriteResult::outcomes> writes{};  ///< by outcome
   WatchdogStatus watchdog;                                    ///< the coupler's own
+  std::optional<Certificates> certificates;                   ///< at the last connect, if that has TLS
   Histogram latency;                                          ///< from request to answer
   Histogram cycles;  ///< from the deadline of a polling cycle to its last answer
 
@@ -63,7 +65,7 @@ class DeviceStatistics {
   void heard(std::uint64_t changes, std::uint64_t lost);
   void watchdog(const WatchdogStatus& status);
   void identified(Identity::Verdict verdict, const identity::Machine& machine);
-  void online();
+  void online(const std::optional<Certificates>& certificates);
   void offline(const std::string& trouble);
 
   DeviceSnapshot snapshot() const;

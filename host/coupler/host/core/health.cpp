@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/core/health.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace coupler::host {
@@ -75,6 +77,23 @@ Health watchdog_health(const DeviceSnapshot& now) {
   if (watchdog.state == WatchdogStatus::State::fed) return {Level::info, "fed"};
   if (watchdog.error_text.empty()) return {Level::warning, "not fed: the device is offline"};
   return {Level::error, watchdog.error_text};
+}
+
+Health certificates_health(const DeviceSnapshot& now, std::chrono::system_clock::time_point at) {
+  if (!now.certificates) return {Level::info, "not connected yet"};
+  const Validity& own = now.certificates->own.validity;
+  const Validity& device = now.certificates->has_pin ? own : now.certificates->device.validity;
+  Health health{Level::info, "good until " + minute_text(std::min(own.end, device.end))};
+  const auto look = [&](const char* whose, const Validity& validity) {
+    const auto expiry = expiry_text(validity, at);
+    if (!expiry) return;
+    const std::string before = health.level == Level::info ? "" : health.text + "; ";
+    health.text = fmt::format("{}{} certificate {}", before, whose, *expiry);
+    health.level = std::max(health.level, at < validity.end ? Level::warning : Level::error);
+  };
+  look("this machine's", own);
+  if (!now.certificates->has_pin) look("the device's", device);
+  return health;
 }
 
 }  // namespace coupler::host

@@ -2,6 +2,7 @@
 // A device's state as text and level: the rules behind /diagnostics.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,10 @@ Health writes_health(const DeviceSnapshot& before, const DeviceSnapshot& now);
 
 /// The coupler's own watchdog. error: it has expired, or it is not fed.
 Health watchdog_health(const DeviceSnapshot& now);
+
+/// Of a TLS connection. error: one of its certificates has expired, so the next connect fails; warning: one
+/// soon does.
+Health certificates_health(const DeviceSnapshot& now, std::chrono::system_clock::time_point at);
 
 /// "foreign", "equal", …; "not asked".
 std::string_view to_string(const std::optional<Identity::Verdict>& verdict);

@@ -49,7 +49,9 @@ Result<std::optional<identity::Head>> read_identity(Transport& transport) {
 }
 
 Result<std::optional<identity::Report>> read_report(Transport& transport) {
-  return read_area<std::array<std::uint16_t, identity::report_size>>(transport, identity::read_report);
+  auto report = read_area<std::array<std::uint16_t, identity::report_size>>(transport, identity::read_report);
+  if (!report || *report) return report;
+  return read_area<std::array<std::uint16_t, identity::head_size>>(transport, identity::read_report_head);
 }
 
 Result<identity::Further> read_further(Transport& transport) {

@@ -18,7 +18,8 @@ using MapLoader = std::function<LoadResult(std::string_view text, std::string_vi
 /// nullopt: a foreign coupler, which answers with an exception or with something else.
 Result<std::optional<identity::Head>> read_identity(Transport& transport);
 
-/// All that a node of any age has in its identity area; nullopt as above.
+/// All that a node of any age has in its identity area, or without the statistics, if they may not be read;
+/// nullopt as above.
 Result<std::optional<identity::Report>> read_report(Transport& transport);
 
 /// Which machine a node runs on, hostname in printable ASCII, and what it can do. Empty: the node is older

@@ -19,6 +19,7 @@ constexpr auto the_driver_ends = "the driver ends";
 std::string refusal(modbus::Exception code) {
   std::string what = to_string(Error(ExceptionReply{code}));
   switch (code) {
+    case Exception::illegal_function: return what + ": this certificate has no right to write it";
     case Exception::illegal_data_address: return what + ": its map has no such output";
     case Exception::illegal_data_value:
       return what +
@@ -76,13 +77,13 @@ Result<> OutputScheduler::answer(const ScheduledWrite& what, std::promise<Schedu
     return {};
   }
   if (can_node(what, listener)) {
-    const Result<ScheduleAnswer> given = give_to_node(what, listener);
+    const Result<std::optional<ScheduleAnswer>> given = give_to_node(what, listener);
     if (!given) {
       to.set_value({0, "it may be carried out or not: " + to_string(given.error())});
       return tl::make_unexpected(given.error());
     }
-    if (node_can_) {
-      to.set_value(*given);
+    if (*given) {
+      to.set_value(**given);
       return {};
     }
   }
@@ -113,16 +114,18 @@ modbus::ScheduleRequest OutputScheduler::request(const ScheduledWrite& what,
   return modbus::ScheduleRequest::coils(when, {bits.data(), count});
 }
 
-Result<ScheduleAnswer> OutputScheduler::give_to_node(const ScheduledWrite& what,
-                                                     const ChangeListener& listener) {
+Result<std::optional<ScheduleAnswer>> OutputScheduler::give_to_node(const ScheduledWrite& what,
+                                                                    const ChangeListener& listener) {
   const auto reply = transport_.schedule(request(what, listener));
   if (reply) {
     by_node_.add(reply->number, {++last_number_, what});
-    return ScheduleAnswer{last_number_, "accepted: the node does it"};
+    return std::optional(ScheduleAnswer{last_number_, "accepted: the node does it"});
   }
   const ExceptionReply* exception = exception_in(reply.error());
   if (exception == nullptr || is_unit_away(reply.error())) return tl::make_unexpected(reply.error());
-  node_can_ = exception->code != Exception::illegal_function;
+  // A gateway before it does not know the function; or it is this output that this client may not write,
+  // which a write will tell. Nothing is between the two ends of TLS.
+  if (exception->code == Exception::illegal_function && !map_.connection.tls.present()) return std::nullopt;
   return ScheduleAnswer{0, "the node refuses it with " + refusal(exception->code)};
 }
 

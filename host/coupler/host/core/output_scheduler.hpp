@@ -79,7 +79,9 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   }
   Result<> answer(const ScheduledWrite& what, std::promise<ScheduleAnswer>& to,
                   const ChangeListener& listener);
-  Result<ScheduleAnswer> give_to_node(const ScheduledWrite& what, const ChangeListener& listener);
+  /// nullopt: the device does not do it.
+  Result<std::optional<ScheduleAnswer>> give_to_node(const ScheduledWrite& what,
+                                                     const ChangeListener& listener);
   ScheduleAnswer keep(const ScheduledWrite& what);
   void cancel_at_node(const ChangeListener& listener);
   modbus::ScheduleRequest request(const ScheduledWrite& what, const ChangeListener& listener) const;

@@ -56,6 +56,7 @@ class PacedTransport : public Transport {
   void listen(WaitListener& listener) { listener_ = &listener; }
   Woken wait_until(Time time) override { return transport_.wait_until(time); }
   std::uint64_t discarded() const override { return transport_.discarded(); }
+  std::optional<Certificates> certificates() const override { return transport_.certificates(); }
   void wake() override { transport_.wake(); }
 
   /// Makes a request only to see that the device answers: the first point that can be read, or else coil 0.

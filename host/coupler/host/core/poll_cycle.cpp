@@ -158,6 +158,17 @@ void PollCycle::give_up(Time now) {
   done(now);
 }
 
+void PollCycle::try_again() {
+  const bool any = std::find(given_up_.begin(), given_up_.end(), true) != given_up_.end();
+  if (!any && rejected_ranges_.empty()) return;
+  given_up_.assign(given_up_.size(), false);
+  rejected_ranges_.clear();
+  for (Group& group : groups_) {
+    group.stale = group.soon = true;
+    group.joined_again = false;
+  }
+}
+
 std::vector<RejectedRange> PollCycle::take_rejected_ranges() { return std::exchange(findings_, {}); }
 
 std::vector<PollCycle::Status> PollCycle::status() const {

@@ -69,6 +69,10 @@ class PollCycle {
   /// The device does not know the function of current(): its points are given up until the next start().
   void give_up(Time now);
 
+  /// The device may have other points, or other rights for this client: what was given up is asked for again,
+  /// from the next cycle on, and what was rejected once more.
+  void try_again();
+
   /// What was learned since the last call about requests that were rejected: each once.
   std::vector<RejectedRange> take_rejected_ranges();
 

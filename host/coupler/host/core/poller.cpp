@@ -19,7 +19,8 @@ Poller::Poller(const Map& map, PacedTransport& transport, Clock& clock, Writer& 
       cycle_(map),
       told_(map_, cycle_, writer, qualities, sink) {}
 
-void Poller::start(bool told) {
+void Poller::start(bool is_node, bool told) {
+  is_node_ = is_node;
   qualities_.connected();
   cycle_.start(clock_.now());
   told_.start(told);
@@ -85,17 +86,9 @@ void Poller::on_exception(modbus::Exception code) {
   switch (code) {
     // Devices answer a range that they do not have, or that is too long for them, with either of these.
     case modbus::Exception::illegal_data_address:
-    case modbus::Exception::illegal_data_value:
-      statistics_.rejected();
-      for (const std::uint32_t point : cycle_.rejected(clock_.now())) {
-        qualities_.rejected({&point, 1}, code);
-        sink_.on_report(Level::warning,
-                        fmt::format("{} is not in the device: {}; it is not read again while this "
-                                    "connection lasts",
-                                    map_.points[point].name, why));
-      }
-      return;
+    case modbus::Exception::illegal_data_value: on_rejection(code, "is not in the device"); return;
     case modbus::Exception::illegal_function:
+      if (is_node_) return on_rejection(code, "may not be read here");
       statistics_.rejected();
       qualities_.rejected(span.points, code);
       cycle_.give_up(clock_.now());
@@ -108,6 +101,17 @@ void Poller::on_exception(modbus::Exception code) {
       qualities_.exception(span.points, code);
       if (cycle_.answered(code, clock_.now()))
         sink_.on_report(Level::warning, fmt::format("{} cannot be read now: {}", describe(span), why));
+  }
+}
+
+/// Of a request; parts of it may be good.
+void Poller::on_rejection(modbus::Exception code, std::string_view what) {
+  statistics_.rejected();
+  const std::string why = to_string(Error(ExceptionReply{code}));
+  for (const std::uint32_t point : cycle_.rejected(clock_.now())) {
+    qualities_.rejected({&point, 1}, code);
+    sink_.on_report(Level::warning, fmt::format("{} {}: {}; it is not read again while this connection lasts",
+                                                map_.points[point].name, what, why));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/paced_transport.hpp"
@@ -25,8 +26,8 @@ class Poller {
   Poller(const Map& map, PacedTransport& transport, Clock& clock, Writer& writer,
          DeviceStatistics& statistics, PointQualities& qualities, Sink& sink);
 
-  /// A new connection; `told`: to a node that tells changes of its bits.
-  void start(bool told);
+  /// A new connection; `is_node`: to a node of this project; `told`: that tells changes of its bits.
+  void start(bool is_node, bool told);
   /// When step() has something to do.
   Time due() const { return cycle_.due(); }
   /// As PollCycle's.
@@ -47,6 +48,7 @@ class Poller {
   void publish_bits(const ReadSpan& span, Stamp stamp);
   const ReadSpan& without_hidden(const ReadSpan& span);
   void on_exception(modbus::Exception code);
+  void on_rejection(modbus::Exception code, std::string_view what);
   void report_rejected_ranges();
   std::string describe(const ReadSpan& span) const;
 
@@ -59,6 +61,7 @@ class Poller {
   Sink& sink_;
   PollCycle cycle_;
   ToldBits told_;
+  bool is_node_ = false;  ///< which knows every function: exception 01 is about rights
   ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< kept for its memory
   std::array<std::uint8_t, modbus::max_read_bits> bits_{};
   std::array<std::uint16_t, modbus::max_read_registers> registers_{};

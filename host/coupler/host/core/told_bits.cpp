@@ -155,6 +155,9 @@ void ToldBits::show(Told& told, Stamp stamp) {
   writer_.shown(one_.points);
 }
 
+/// It may be another map, or other rights.
+void ToldBits::on_new_epoch() { cycle_.try_again(); }
+
 void ToldBits::on_gap() {
   for (Told& told : points_) {
     forget(told);

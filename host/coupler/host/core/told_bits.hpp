@@ -45,6 +45,7 @@ class ToldBits : public ChangeSink {
   Stamp read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp);
 
   void on_change(const modbus::Change& change, std::uint64_t number, Stamp stamp) override;
+  void on_new_epoch() override;
   void on_gap() override;
   void on_heard(std::uint64_t newest, std::optional<Stamp> stamp) override;
   void on_end() override;

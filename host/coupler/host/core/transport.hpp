@@ -5,8 +5,10 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "coupler/base/span.hpp"
+#include "coupler/credentials/validity.hpp"
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/error.hpp"
 #include "coupler/map/table.hpp"
@@ -31,6 +33,19 @@ struct WaitAnswer {
   Result<modbus::ChangesReply> reply;  ///< an error is an exception
   Time sent{};
   Time received{};
+};
+
+/// What one side of a TLS connection shows of itself.
+struct Certificate {
+  std::string name;  ///< its common name
+  std::string role;  ///< of a client; empty: none
+  Validity validity;
+};
+
+struct Certificates {
+  Certificate own;
+  Certificate device;
+  bool has_pin = false;  ///< the device's is believed for that, beyond its end
 };
 
 /// The port to one unit of a Modbus device. One request is in flight at a time; its reply is awaited for the
@@ -105,6 +120,9 @@ class Transport {
   /// Bytes that came after their time, or were no reply: of all units that share the connection. From
   /// any thread.
   virtual std::uint64_t discarded() const { return 0; }
+
+  /// Of the last connection that was made; nullopt: none with TLS. From any thread.
+  virtual std::optional<Certificates> certificates() const { return std::nullopt; }
 
   enum class Woken { by_time, by_call, by_bytes };
   /// Returns when bytes have come (or the connection has ended), after wake(), or at `time`.

@@ -44,6 +44,11 @@ std::string line_conflict(const std::vector<Map>& maps) {
   std::map<Place, const Map*> first;
   for (const Map& map : maps) {
     const Map& other = *first.emplace(place_of(map.connection), &map).first->second;
+    if (other.connection.tls != map.connection.tls)
+      return fmt::format(
+          "{} and {} are behind one address and port, but one has {} as 'tls', and the other {}; give both "
+          "the same",
+          other.name, map.name, written(other.connection.tls), written(map.connection.tls));
     if (have_same_line(other.connection, map.connection)) continue;
     const auto settings = [](const Map& of) {
       return of.connection.serial.present() ? written(of.connection.serial)

@@ -41,6 +41,7 @@ ModbusTransport::ModbusTransport(const Connection& connection)
     : host_(connection.address),
       port_(connection.port),
       unit_(connection.unit),
+      tls_(connection.tls.present() ? std::optional(TlsTexts::of(connection.tls)) : std::nullopt),
       context_(modbus_new_tcp_pi(host_.c_str(), fmt::to_string(port_).c_str()), modbus_free) {
   modbus_set_byte_timeout(context_.get(), 0, 0);  // none: the response timeout holds for the whole reply
   modbus_set_error_recovery(context_.get(), MODBUS_ERROR_RECOVERY_NONE);
@@ -62,9 +63,18 @@ Result<> ModbusTransport::connect() { return open(interrupted_); }
 Result<> ModbusTransport::open(const Event& interrupt) {
   close();
   if (auto selected = select(unit_, timeout_); !selected) return selected;
+  const Deadline deadline(timeout_);
   auto opened = open_socket(host_, port_, timeout_, interrupt);
   if (!opened) return tl::make_unexpected(opened.error());
+  if (tls_) {
+    auto link = open_tls(*std::move(opened), host_, *tls_, deadline, interrupt);
+    if (!link)
+      return fail(NotConnected{fmt::format("{} port {}: {}", host_, port_, to_string(link.error()))});
+    link_ = *std::move(link);
+    opened = link_->take_socket();
+  }
   const std::lock_guard lock(socket_mutex_);
+  if (link_) certificates_ = link_->certificates();
   if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
   socket_ = opened->release();
   modbus_set_socket(context_.get(), socket_);
@@ -74,10 +84,24 @@ Result<> ModbusTransport::open(const Event& interrupt) {
 void ModbusTransport::close() {
   wait_.reset();
   wait_answer_.reset();
+  {
+    const std::lock_guard lock(socket_mutex_);
+    if (socket_ >= 0) modbus_close(context_.get());
+    socket_ = -1;
+  }
+  link_ = nullptr;
+}
+
+tl::unexpected<Error> ModbusTransport::failed(Error error) const {
+  if (link_ && std::holds_alternative<TransportFailure>(error))
+    if (std::string problem = link_->problem(); !problem.empty())
+      return fail(TransportFailure{std::move(problem)});
+  return tl::unexpected<Error>(std::move(error));
+}
+
+std::optional<Certificates> ModbusTransport::certificates() const {
   const std::lock_guard lock(socket_mutex_);
-  if (socket_ < 0) return;
-  modbus_close(context_.get());
-  socket_ = -1;
+  return certificates_;
 }
 
 void ModbusTransport::interrupt() {
@@ -93,14 +117,13 @@ void ModbusTransport::hang_up() {
 Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
   if (socket_ < 0) return fail(NotConnected{"not connected"});
   const Deadline deadline(timeout_);
-  if (auto sent = send_request(socket_, next_header(), request.pdu()); !sent)
-    return tl::make_unexpected(sent.error());
-  if (auto before = receive_wait_before(deadline); !before) return tl::make_unexpected(before.error());
+  if (auto sent = send_request(socket_, next_header(), request.pdu()); !sent) return failed(sent.error());
+  if (auto before = receive_wait_before(deadline); !before) return failed(before.error());
   const int left = std::max(deadline.left(), 1);  // libmodbus takes no 0
   modbus_set_response_timeout(context_.get(), static_cast<std::uint32_t>(left / 1000),
                               static_cast<std::uint32_t>(left % 1000 * 1000));
   const int size = modbus_receive_confirmation(context_.get(), reply_.data());
-  if (size < 0) return tl::make_unexpected(receive_error(errno, timeout_));
+  if (size < 0) return failed(receive_error(errno, timeout_));
   const Span<const std::uint8_t> adu(reply_.data(), static_cast<std::size_t>(size));
   if (auto ours = check_adu(adu, sent_); !ours) return tl::make_unexpected(ours.error());
   return modbus::Bytes(adu.data() + modbus::mbap_size, adu.size() - modbus::mbap_size);
@@ -119,10 +142,10 @@ Result<> ModbusTransport::send_pdu(modbus::Bytes pdu) {
 }
 
 Result<modbus::Bytes> ModbusTransport::receive_pdu() {
-  if (auto before = receive_wait_before(answer_by_); !before) return tl::make_unexpected(before.error());
+  if (auto before = receive_wait_before(answer_by_); !before) return failed(before.error());
   modbus::Framer framer;
   const auto reply = receive_reply(socket_, sent_, timeout_, answer_by_, framer);
-  if (!reply) return tl::make_unexpected(reply.error());
+  if (!reply) return failed(reply.error());
   std::copy(reply->begin(), reply->end(), reply_.begin());
   return modbus::Bytes(reply_.data(), reply->size());
 }
@@ -159,7 +182,7 @@ Result<> ModbusTransport::receive_wait_before(const Deadline& deadline) {
 }
 
 Result<> ModbusTransport::take_wait_reply(const Result<modbus::Bytes>& pdu) {
-  if (!pdu) return tl::make_unexpected(pdu.error());
+  if (!pdu) return failed(pdu.error());
   const auto reply = modbus::parse_changes_reply(*pdu);
   if (!reply && !reply.error().exception) return fail(BadFrame{"not the reply to a wait for changes"});
   wait_answer_ = {reply ? Result<modbus::ChangesReply>(*reply)

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/modbus/tls_link.hpp"
 #include "coupler/modbus/frame.hpp"
 
 struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for its context
@@ -33,6 +34,7 @@ class ModbusTransport : public MultiUnitTransport {
   bool can_wait() const override { return true; }
   Result<> send_wait(const modbus::ChangesRequest& request) override;
   Result<> receive_wait() override;
+  std::optional<Certificates> certificates() const override;
   std::optional<WaitAnswer> take_wait_answer() override { return std::exchange(wait_answer_, std::nullopt); }
   Woken wait_until(Time time) override;
   void wake() override { wakeup_.call(); }
@@ -59,9 +61,14 @@ class ModbusTransport : public MultiUnitTransport {
     Deadline answer_by;
   };
 
+  /// Says why a connection with TLS has ended.
+  tl::unexpected<Error> failed(Error error) const;
+
   std::string host_;
   std::uint16_t port_;
   std::uint8_t unit_;
+  std::optional<TlsTexts> tls_;    ///< nullopt: plain Modbus/TCP
+  std::unique_ptr<TlsLink> link_;  ///< of a connection with TLS
   std::chrono::milliseconds timeout_{0};
   std::unique_ptr<_modbus, void (*)(_modbus*)> context_;
   Event interrupted_;
@@ -71,8 +78,10 @@ class ModbusTransport : public MultiUnitTransport {
   Deadline answer_by_{std::chrono::milliseconds(0)};
   std::optional<Wait> wait_;
   std::optional<WaitAnswer> wait_answer_;  ///< until it is taken
-  std::mutex socket_mutex_;  ///< between closing the socket and interrupt(); never held during a request
+  /// Between the owner and other threads, of what follows; never held during a request.
+  mutable std::mutex socket_mutex_;
   int socket_ = -1;
+  std::optional<Certificates> certificates_;
 };
 
 }  // namespace coupler::host

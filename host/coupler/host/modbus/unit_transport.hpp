@@ -51,6 +51,7 @@ class UnitTransport : public Transport {
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;
   std::uint64_t discarded() const override { return shared_->transport->discarded(); }
+  std::optional<Certificates> certificates() const override { return shared_->transport->certificates(); }
   Woken wait_until(Time time) override { return wait_for(wakeup_, interrupted_, -1, time); }
   void wake() override;
 

@@ -123,6 +123,13 @@ class MapFinder {
   Source from_node(const NodeAddress& node, const Settings& settings) {
     Map asked = found_at({}, node);
     apply(settings, asked);
+    if (settings.map) {  // it says whether there is TLS, and at which port
+      asked.connection.port = settings.port.value_or(node.port);
+      if (node.tls && !asked.connection.tls.present())
+        return fail(wrong_call, "tls:// needs certificate, key and ca (or pin): give them as settings");
+      if (!node.tls && asked.connection.tls.present())
+        return fail(wrong_call, *settings.map + " is without TLS; write tls://, or leave out certificate");
+    }
     if (const auto wrong = place_error(settings, asked.connection); !wrong.empty())
       return fail(wrong_call, wrong);
     if (const auto useless = useless_setting(settings, found_at({}, node)); !useless.empty())

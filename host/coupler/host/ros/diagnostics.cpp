@@ -70,6 +70,7 @@ Diagnostics::Diagnostics(const Map& map, Node& node)
   add("polling", &Diagnostics::polling);
   add("writes", &Diagnostics::writes);
   if (map.coupler_watchdog.present()) add("watchdog", &Diagnostics::watchdog);
+  if (map.connection.tls.present()) add("certificates", &Diagnostics::certificates);
 }
 
 bool Diagnostics::update(const DeviceSnapshot& device, const std::vector<PointQuality>& points) {
@@ -126,6 +127,20 @@ DiagnosticEntry Diagnostics::watchdog() {
   values.add("timeout ms", static_cast<std::uint64_t>(map_.coupler_watchdog.timeout.count()));
   values.add("fed", now_.watchdog.state == WatchdogStatus::State::fed);
   values.add("times expired", now_.watchdog.expiries);
+  return result;
+}
+
+DiagnosticEntry Diagnostics::certificates() {
+  DiagnosticEntry result = entry_of(certificates_health(now_, std::chrono::system_clock::now()));
+  if (!now_.certificates) return result;
+  Values values(result);
+  const auto& [own, device, has_pin] = *now_.certificates;
+  values.add("this machine", own.name);
+  values.add("role", own.role);
+  values.add("ends", minute_text(own.validity.end));
+  values.add("the device", device.name);
+  values.add("the device's ends", minute_text(device.validity.end));
+  values.add("the device has a pin", has_pin);
   return result;
 }
 

@@ -50,6 +50,7 @@ class Diagnostics {
   DiagnosticEntry polling();
   DiagnosticEntry writes();
   DiagnosticEntry watchdog();
+  DiagnosticEntry certificates();
 
   Map map_;
   std::string hardware_id_;

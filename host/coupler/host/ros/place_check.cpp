@@ -11,6 +11,11 @@ namespace coupler::host {
 
 std::string place_error(const Settings& settings, const Connection& connection) {
   if (settings.address && settings.serial) return "both address and serial are given; give one of them";
+  if (const auto missing = missing_key(connection.tls); !missing.empty())
+    return fmt::format("TLS needs {}{}, which is neither a setting nor in the map", missing,
+                       missing == "ca" ? " (or pin)" : "");
+  if (connection.is_rtu() && connection.tls.present())
+    return "a coupler that speaks RTU has no TLS; leave out framing: rtu, or the certificate";
   if (!connection.is_rtu() || is_rtu_unit(connection.unit)) return {};
   return fmt::format("unit {} cannot be asked; with RTU give 1 to 247", connection.unit);
 }
@@ -32,6 +37,11 @@ std::string useless_setting(const Settings& settings, const Map& map) {
   Map applied = map;
   apply(settings, applied);
   const Connection& connection = applied.connection;
+  if (!connection.tls.present())
+    for (const auto& [key, given] : {std::pair("tls_name", settings.tls_name), std::pair("pin", settings.pin),
+                                     std::pair("ca", settings.ca), std::pair("key", settings.key)})
+      if (given && !given->empty() && !connection.serial.present())
+        return fmt::format("{} has no meaning without TLS; leave it out, or give certificate, too", key);
   if (connection.serial.present()) {
     if (!changes(settings.port, before.port)) return {};
     return fmt::format(

@@ -27,6 +27,11 @@ struct Settings {
   std::optional<Serial::Parity> parity;
   std::optional<std::uint16_t> stop_bits;
   std::optional<bool> rs485;
+  std::optional<std::string> certificate;  ///< this machine's; it and the next two are absolute paths
+  std::optional<std::string> key;
+  std::optional<std::string> ca;
+  std::optional<std::string> tls_name;
+  std::optional<std::string> pin;
   std::optional<double> rate;                        ///< Hz, above 0
   std::optional<std::chrono::milliseconds> timeout;  ///< above 0; given in seconds
   std::optional<Verify> verify;
@@ -45,7 +50,7 @@ struct SettingKey {
   std::string_view unit;  ///< follows a number; or empty
   std::string_view help;
 };
-extern const std::array<SettingKey, 16> setting_keys;
+extern const std::array<SettingKey, 21> setting_keys;
 /// Of all of them, with the aliases.
 std::vector<std::string_view> setting_names();
 bool is_setting(std::string_view name);

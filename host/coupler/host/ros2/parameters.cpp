@@ -14,7 +14,7 @@
 
 #include "coupler/base/starts_with.hpp"
 #include "coupler/host/ros2/rcl/error.hpp"
-#include "coupler/map/loader/nearest.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler::host {
 namespace {
@@ -183,7 +183,7 @@ std::vector<std::string> GivenParameters::unknown(std::string_view full_name,
                         one.name, fmt::join(devices, ", ")));
         continue;
       }
-      if (is_for_all(section.node) && loader::nearest(setting, names).empty()) continue;
+      if (is_for_all(section.node) && nearest(setting, names).empty()) continue;
       lines.push_back(unknown_parameter(one.name, setting));
     }
   }

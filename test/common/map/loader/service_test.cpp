@@ -43,5 +43,81 @@ TEST(Service, All_of_it_is_read) {
   EXPECT_TRUE(service.readback);
 }
 
+TEST(Security, Without_it_everybody_may_do_everything) {
+  EXPECT_FALSE(test::load_with("")->map().security.present());
+}
+
+TEST(Security, Roles_have_rights_by_the_names_of_points) {
+  const MapPtr owned = test::load_clean(
+      "name: cell\n"
+      "security:\n"
+      "  roles:\n"
+      "    operator: {read: all, write: [lamp, 'valve_?']}\n"
+      "    viewer: {read: [door, '*amp']}\n"
+      "    nobody:\n"
+      "  plain: viewer\n"
+      "mapping:\n"
+      "  discrete_inputs: {door: 0}\n"
+      "  coils: {valve_1: 2, lamp: 0, siren: {address: 3, access: write}}\n");
+  const Map& map = owned->map();
+  ASSERT_EQ(map.security.roles.size(), 3U);
+  const auto granted = [&](std::size_t role, Right right) {
+    std::string names;
+    for (std::size_t i = 0; i < map.points.size(); ++i)
+      if (map.security.roles[role].may(right, i)) names += std::string(map.points[i].name) + ' ';
+    return names;
+  };
+  EXPECT_EQ(granted(0, Right::read), "lamp valve_1 siren door ") << "all is all, though siren cannot be read";
+  EXPECT_EQ(granted(0, Right::write), "lamp valve_1 ");
+  EXPECT_EQ(granted(1, Right::read), "lamp door ");
+  EXPECT_EQ(granted(2, Right::read) + granted(1, Right::write), "");
+  EXPECT_TRUE(map.security.roles[0].reads_all);
+  EXPECT_FALSE(map.security.roles[1].reads_all);
+  ASSERT_TRUE(map.security.plain);
+  EXPECT_EQ(map.security.roles[*map.security.plain].name, "viewer");
+}
+
+TEST(Security, With_certificates_it_has_all_that_TLS_needs) {
+  const MapPtr owned = test::load_clean(
+      "name: cell\n"
+      "security:\n"
+      "  certificate: press.pem\n"
+      "  key: press.key\n"
+      "  ca: authority.pem\n"
+      "  no_role: viewer\n"
+      "  roles: {viewer: {read: all}}\n"
+      "mapping:\n"
+      "  coils: {lamp: 0}\n");
+  const Security& security = owned->map().security;
+  EXPECT_EQ(security.files.certificate, "press.pem");
+  EXPECT_EQ(security.files.key, "press.key");
+  EXPECT_EQ(security.files.ca, "authority.pem");
+  EXPECT_EQ(security.port, 802);
+  ASSERT_NE(security.role_of("unheard of"), nullptr);
+  EXPECT_EQ(security.role_of("unheard of")->name, "viewer");
+  EXPECT_FALSE(security.plain);
+}
+
+TEST(Connection, With_TLS_has_port_802) {
+  const char* tls = "tls: {certificate: cell1.pem, key: cell1.key, ca: authority.pem}";
+  const MapPtr owned = test::load_with(tls);
+  EXPECT_EQ(owned->map().connection.port, 802);
+  EXPECT_EQ(owned->map().connection.tls.key, "cell1.key");
+  EXPECT_EQ(test::load_with(std::string("port: 1802\n") + tls)->map().connection.port, 1802);
+}
+
+TEST(Security, Without_plain_clients_may_do_nothing) {
+  const MapPtr owned = test::load_with("security: {roles: {operator: {read: all}}}");
+  EXPECT_TRUE(owned->map().security.present());
+  EXPECT_FALSE(owned->map().security.plain);
+}
+
+TEST(Security, That_of_a_served_map_is_the_nodes_own) {
+  const LoadResult loaded = load_served_map(
+      "{name: cell, security: {roles: {operator: {certificate: any}}}, mapping: {coils: {lamp: 0}}}", "cell");
+  ASSERT_TRUE(loaded.map);
+  EXPECT_FALSE(loaded.map->map().security.present());
+}
+
 }  // namespace
 }  // namespace coupler

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/map/loader/nearest.hpp"
+#include "coupler/map/nearest.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "coupler/map/loader/scalar.hpp"
+#include "coupler/base/lower.hpp"
 
-namespace coupler::loader {
+namespace coupler {
 unsigned edit_distance(std::string_view a, std::string_view b) {
   const std::size_t width = b.size() + 1;
   std::vector<unsigned> before(width);
@@ -67,4 +68,4 @@ std::string suggestion(std::string_view word, const std::vector<std::string_view
   return nearest_or(word, candidates, fmt::format("write one of {}", fmt::join(candidates, ", ")));
 }
 
-}  // namespace coupler::loader
+}  // namespace coupler

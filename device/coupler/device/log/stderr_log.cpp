@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/device/node/stderr_log.hpp"
+#include "coupler/device/log/stderr_log.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

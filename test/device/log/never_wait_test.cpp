@@ -16,8 +16,8 @@
 #include <string>
 #include <string_view>
 
-#include "coupler/device/node/stderr_log.hpp"
-#include "test/device/node/stderr_reader.hpp"
+#include "coupler/device/log/stderr_log.hpp"
+#include "test/device/log/stderr_reader.hpp"
 
 namespace coupler::device {
 namespace {

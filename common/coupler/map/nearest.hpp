@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace coupler::loader {
+namespace coupler {
 
 /// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
 unsigned edit_distance(std::string_view a, std::string_view b);
@@ -27,4 +27,4 @@ std::string suggestion(std::string_view word, const std::vector<std::string_view
 std::string nearest_or(std::string_view word, const std::vector<std::string_view>& candidates,
                        std::string otherwise);
 
-}  // namespace coupler::loader
+}  // namespace coupler

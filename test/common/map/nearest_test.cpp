@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/map/loader/nearest.hpp"
+#include "coupler/map/nearest.hpp"
 
 #include <gtest/gtest.h>
 
-namespace coupler::loader {
+namespace coupler {
 namespace {
 
 TEST(Nearest, Edits_are_insertions_deletions_replacements_and_swaps) {
@@ -46,4 +46,4 @@ TEST(Nearest, Nothing_is_suggested_for_another_word) {
 }
 
 }  // namespace
-}  // namespace coupler::loader
+}  // namespace coupler

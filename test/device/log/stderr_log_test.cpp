@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "coupler/device/node/stderr_log.hpp"
+#include "coupler/device/log/stderr_log.hpp"
 
 namespace coupler::device {
 namespace {
@@ -18,7 +18,7 @@ std::string stderr_stream() {
 }
 
 /// What the log says of one event of each kind.
-std::string said(const char* journal_stream, bool is_really = false) {
+std::string logged(const char* journal_stream, bool is_really = false) {
   testing::internal::CaptureStderr();
   const std::string stream = is_really ? stderr_stream() : "";
   StderrLog log(is_really ? stream.c_str() : journal_stream);
@@ -33,13 +33,14 @@ TEST(StderrLog, People_see_who_speaks_and_diagnostics_as_editors_know_them) {
   const std::string expected =
       "coupler-node: serving\ncoupler-node: lost\ncoupler-node: refused\nmap.yaml:3:7: error: wrong; mend "
       "it\n";
-  EXPECT_EQ(said(nullptr), expected);
-  EXPECT_EQ(said("1:2"), expected) << "a journal that stderr does not lead to";
-  EXPECT_EQ(said("nonsense"), expected);
+  EXPECT_EQ(logged(nullptr), expected);
+  EXPECT_EQ(logged("1:2"), expected) << "a journal that stderr does not lead to";
+  EXPECT_EQ(logged("nonsense"), expected);
 }
 
 TEST(StderrLog, The_journal_sees_how_important_it_is) {
-  EXPECT_EQ(said(nullptr, true), "<6>serving\n<4>lost\n<3>refused\n<3>map.yaml:3:7: error: wrong; mend it\n");
+  EXPECT_EQ(logged(nullptr, true),
+            "<6>serving\n<4>lost\n<3>refused\n<3>map.yaml:3:7: error: wrong; mend it\n");
 }
 
 TEST(StderrLog, Of_what_clients_cause_again_and_again_it_says_one_line_a_second) {

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// coupler certificates: an authority, and what nodes and clients need of it, as files to copy.
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tl/expected.hpp>
+
+#include "coupler/cli/commands.hpp"
+#include "coupler/codec/text.hpp"
+#include "coupler/credentials/credentials.hpp"
+#include "coupler/map/network.hpp"
+#include "coupler/map/security.hpp"
+#include "coupler/tls/issue.hpp"
+
+namespace coupler::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Problem = tl::unexpected<std::string>;
+
+struct Arguments {
+  std::string folder;
+  std::vector<std::string> nodes;
+  std::vector<std::string> clients;
+  bool rsa = false;
+  bool csr = false;
+};
+
+/// NAME, and what follows the first colon.
+std::pair<std::string, std::string> split(const std::string& text) {
+  const auto colon = text.find(':');
+  if (colon == std::string::npos) return {text, {}};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+/// It is a file's name, too.
+bool is_name(std::string_view name) {
+  const auto is_good = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '.';
+  };
+  return !name.empty() && name.size() <= 64 && name.front() != '.' && name != "authority" &&
+         std::all_of(name.begin(), name.end(), is_good);
+}
+
+Problem bad_name(const std::string& name) {
+  return tl::unexpected(fmt::format(
+      "'{}' is no name for a certificate; use letters, digits, '-', '_' and '.', and not 'authority'", name));
+}
+
+/// An IPv6 address in the form in which a certificate shows it; others as they are.
+std::string shortest(const std::string& host) {
+  in6_addr address{};
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  if (::inet_pton(AF_INET6, host.c_str(), &address) != 1) return host;
+  return ::inet_ntop(AF_INET6, &address, text.data(), text.size());
+}
+
+tl::expected<tls::Subject, std::string> node_of(const std::string& text) {
+  const auto [name, hosts] = split(text);
+  if (!is_name(name)) return bad_name(name);
+  tls::Subject subject{name, true, {}, {}};
+  for (std::string_view rest = hosts; !rest.empty();) {
+    const auto comma = std::min(rest.find(','), rest.size());
+    subject.hosts.emplace_back(rest.substr(0, comma));
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  if (subject.hosts.empty()) subject.hosts.push_back(name);
+  for (std::string& host : subject.hosts) {
+    if (const auto parsed = parse_host(host); !parsed)
+      return tl::unexpected(
+          fmt::format("--node {}: '{}' {}; {}", text, host, parsed.error().what, parsed.error().remedy));
+    host = shortest(host);
+  }
+  return subject;
+}
+
+tl::expected<tls::Subject, std::string> client_of(const std::string& text) {
+  auto [name, role] = split(text);
+  if (!is_name(name)) return bad_name(name);
+  if (role.size() > longest_role_name || !codec::is_plain_text(role))
+    return tl::unexpected(
+        fmt::format("--client {}: a role has 1 to 64 bytes and no control characters", name));
+  return tls::Subject{name, false, {}, role};
+}
+
+/// A new file; a key can be read by its owner only.
+tl::expected<void, std::string> write_new(const fs::path& path, const std::string& text, bool is_secret) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, is_secret ? 0600 : 0644);
+  const bool is_written =
+      fd >= 0 && ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  const int error = errno;
+  if (fd >= 0) ::close(fd);
+  if (!is_written)
+    return tl::unexpected(fmt::format("{} cannot be written: {}", path.string(), std::strerror(error)));
+  return {};
+}
+
+tl::expected<void, std::string> make_folder(const fs::path& folder, bool is_secret) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && is_secret) fs::permissions(folder, fs::perms::owner_all, error);
+  if (error) return tl::unexpected(fmt::format("{} cannot be made: {}", folder.string(), error.message()));
+  return {};
+}
+
+/// DIR/authority, made if it is not there.
+tl::expected<tls::Pem, std::string> authority_in(const fs::path& folder) {
+  const fs::path own = folder / "authority";
+  if (fs::exists(own / "authority.pem")) {
+    auto certificate = read_pem_file("authority's certificate", "authority.pem", own.string());
+    if (!certificate) return tl::unexpected(std::move(certificate).error());
+    auto key = read_pem_file("authority's key", "authority.key", own.string(), true);
+    if (!key) return tl::unexpected(std::move(key).error());
+    return tls::Pem{*std::move(certificate), *std::move(key)};
+  }
+  fs::path place = fs::absolute(folder).lexically_normal();
+  if (place.filename().empty()) place = place.parent_path();  // it was written with a slash at its end
+  constexpr std::size_t longest = 48;                         // with the words before it 64 bytes at most
+  auto made = tls::make_authority("Authority of " + place.filename().string().substr(0, longest));
+  if (!made) return made;
+  if (auto done = make_folder(own, true); !done) return tl::unexpected(std::move(done).error());
+  if (auto done = write_new(own / "authority.key", made->key, true); !done)
+    return tl::unexpected(std::move(done).error());
+  if (auto done = write_new(own / "authority.pem", made->certificate, false); !done)
+    return tl::unexpected(std::move(done).error());
+  fmt::print("{}: made; it stays here: whoever has authority.key can make clients of any role\n",
+             own.string());
+  return made;
+}
+
+/// NAME, NAME-2, NAME-3 …: the newest that has a file with this ending, and the first one that has no file.
+struct Stems {
+  std::optional<std::string> newest;
+  std::string next;
+};
+
+Stems stems_in(const fs::path& folder, const std::string& name, const char* ending) {
+  Stems stems{std::nullopt, name};
+  const auto is_taken = [&](const char* with) { return fs::exists(folder / (stems.next + with)); };
+  for (int number = 2; is_taken(".pem") || is_taken(".key") || is_taken(".csr"); ++number) {
+    if (is_taken(ending)) stems.newest = stems.next;
+    stems.next = fmt::format("{}-{}", name, number);
+  }
+  return stems;
+}
+
+/// Each of the roles may read all: a beginning, which is safe.
+std::string lines_for_map(const tls::Subject& subject, const std::string& stem,
+                          const std::vector<std::string>& roles) {
+  if (!subject.is_node)
+    return fmt::format("tls: {{certificate: {0}.pem, key: {0}.key, ca: authority.pem}}\n", stem);
+  std::string text =
+      fmt::format("security:\n  certificate: {0}.pem\n  key: {0}.key\n  ca: authority.pem\n  roles:\n", stem);
+  for (const std::string& role : roles) text += fmt::format("    {}: {{read: all}}\n", role);
+  return text;
+}
+
+/// Of the clients; "viewer" if there are none.
+std::vector<std::string> roles_of(const std::vector<tls::Subject>& subjects) {
+  std::vector<std::string> roles;
+  for (const tls::Subject& subject : subjects)
+    if (!subject.role.empty() && std::find(roles.begin(), roles.end(), subject.role) == roles.end())
+      roles.push_back(subject.role);
+  return roles.empty() ? std::vector<std::string>{"viewer"} : roles;
+}
+
+std::string what_it_is(const tls::Subject& subject) {
+  if (subject.is_node) return fmt::format("the node {}", fmt::join(subject.hosts, ", "));
+  return subject.role.empty() ? "a client without a role"
+                              : fmt::format("a client with the role {}", subject.role);
+}
+
+/// One certificate with its key, unless there is one that has more than a third of its life left.
+tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subject& subject,
+                                        tls::KeyKind kind, const tls::Pem& authority,
+                                        const std::vector<std::string>& roles) {
+  const fs::path own = folder / subject.name;
+  if (auto done = make_folder(own, true); !done) return done;
+  const Stems stems = stems_in(own, subject.name + (kind == tls::KeyKind::rsa ? "-rsa" : ""), ".pem");
+  if (stems.newest) {
+    const auto text = read_pem_file("certificate", *stems.newest + ".pem", own.string());
+    if (!text) return tl::unexpected(text.error());
+    const bool is_same = tls::subject_of(*text) == subject;
+    if (is_same && tls::is_to_be_renewed(*text) == false) {
+      fmt::print("{}: {}.pem is good for more than a third of its life; nothing to do\n", own.string(),
+                 *stems.newest);
+      return {};
+    }
+  }
+  const auto made = tls::issue(subject, kind, authority);
+  if (!made) return tl::unexpected(made.error());
+  if (auto done = write_new(own / (stems.next + ".key"), made->key, true); !done) return done;
+  if (auto done = write_new(own / (stems.next + ".pem"), made->certificate, false); !done) return done;
+  if (!fs::exists(own / "authority.pem"))
+    if (auto done = write_new(own / "authority.pem", authority.certificate, false); !done) return done;
+  fmt::print("{}: {}, {}; copy the folder there, and write into the map:\n", own.string(),
+             stems.newest ? "made anew" : "made", what_it_is(subject));
+  fmt::print("{}", lines_for_map(subject, stems.next, roles));
+  return {};
+}
+
+/// A request for another authority.
+tl::expected<void, std::string> ask_for(const fs::path& folder, const tls::Subject& subject,
+                                        tls::KeyKind kind) {
+  const fs::path own = folder / subject.name;
+  if (auto done = make_folder(own, true); !done) return done;
+  const Stems stems = stems_in(own, subject.name + (kind == tls::KeyKind::rsa ? "-rsa" : ""), ".csr");
+  const auto made = tls::request(subject, kind);
+  if (!made) return tl::unexpected(made.error());
+  if (auto done = write_new(own / (stems.next + ".key"), made->key, true); !done) return done;
+  if (auto done = write_new(own / (stems.next + ".csr"), made->certificate, false); !done) return done;
+  fmt::print("{}: {}.csr asks for {}; the authority's answer is {}.pem\n", own.string(), stems.next,
+             what_it_is(subject), stems.next);
+  return {};
+}
+
+Exit certificates(const Arguments& arguments) {
+  std::vector<tls::Subject> subjects;
+  for (const auto& [texts, parse] :
+       {std::pair(&arguments.nodes, &node_of), std::pair(&arguments.clients, &client_of)})
+    for (const std::string& text : *texts) {
+      auto subject = parse(text);
+      if (!subject) return complain("certificates", bad_call, subject.error(), {});
+      subjects.push_back(*std::move(subject));
+    }
+  if (subjects.empty())
+    return complain("certificates", bad_call, "there is nothing to make",
+                    "add --node NAME or --client NAME:ROLE");
+  const auto kind = arguments.rsa ? tls::KeyKind::rsa : tls::KeyKind::p256;
+  tls::Pem authority;
+  if (!arguments.csr) {
+    auto found = authority_in(arguments.folder);
+    if (!found) return complain("certificates", bad_input, found.error(), {});
+    authority = *std::move(found);
+  }
+  for (const tls::Subject& subject : subjects) {
+    const auto done = arguments.csr ? ask_for(arguments.folder, subject, kind)
+                                    : provide(arguments.folder, subject, kind, authority, roles_of(subjects));
+    if (!done) return complain("certificates", bad_input, done.error(), {});
+  }
+  return ok;
+}
+
+}  // namespace
+
+void add_certificates(Program& program, Exit& exit) {
+  auto command = program.add_command(
+      "certificates", "Make keys and certificates for nodes and clients with TLS, or renew them.");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      .add_option("DIR", arguments->folder,
+                  "Where they are kept, a folder each; it is made if it is not there")
+      .required()
+      .type_name("");
+  command
+      .add_option("--node", arguments->nodes,
+                  "A node, and the DNS names and IP addresses by which clients reach it (default: its name)")
+      .type_name("NAME[:HOST,…]");
+  command.add_option("--client", arguments->clients, "A client, and its role").type_name("NAME[:ROLE]");
+  command.add_flag("--rsa", arguments->rsa,
+                   "Keys for peers that know no elliptic curves: RSA with 3072 bits");
+  command.add_flag("--csr", arguments->csr,
+                   "Requests for an authority that the plant has, in place of certificates");
+  command.footer(
+      "Example:\n  coupler certificates cell --node press:192.168.1.10 --client cell1:operator\nCalled "
+      "again, it "
+      "makes what is missing, and renews what has less than a third of its life left.");
+  command.callback([arguments, &exit] { exit = certificates(*arguments); });
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "coupler/command_line/command_line.hpp"
+#include "coupler/map/tls_texts.hpp"
+
+namespace coupler::cli {
+
+/// How a command proves itself to a device with TLS: options in place of what the map says. `arguments`
+/// outlive the call of the command.
+void add_tls_options(command_line::Command& command, TlsTexts& arguments);
+
+bool any_given(const TlsTexts& arguments);
+
+/// What a place with tls:// misses, and what to do; nullopt: nothing.
+std::optional<std::string> tls_problem(const Tls& tls);
+
+}  // namespace coupler::cli

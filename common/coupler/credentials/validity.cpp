@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/credentials/validity.hpp"
+
+#include <algorithm>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+namespace coupler {
+
+using std::chrono::system_clock;
+
+system_clock::time_point warns_from(const Validity& validity) {
+  constexpr system_clock::duration longest_ahead = std::chrono::hours(30 * 24);
+  return validity.end - std::min(longest_ahead, (validity.end - validity.begin) / 3);
+}
+
+std::optional<std::string> expiry_text(const Validity& validity, system_clock::time_point now) {
+  if (now < warns_from(validity)) return std::nullopt;
+  return fmt::format("{} on {}; renew it ('coupler certificates')",
+                     now < validity.end ? "expires" : "has expired", minute_text(validity.end));
+}
+
+std::string minute_text(system_clock::time_point time) {
+  return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(system_clock::to_time_t(time)));
+}
+
+}  // namespace coupler

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/tls/context.hpp"
+
+#include <openssl/err.h>
+#include <openssl/pem.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coupler/tls/socket_bio.hpp"
+
+namespace coupler::tls {
+namespace {
+
+using Problem = tl::unexpected<std::string>;
+
+Problem problem(std::string text) { return tl::unexpected(std::move(text)); }
+
+std::vector<CertificatePtr> read_certificates(const std::string& pem) {
+  std::vector<CertificatePtr> all;
+  const BioPtr reader = reader_of(pem);
+  while (X509* next = PEM_read_bio_X509(reader.get(), nullptr, no_password, nullptr)) all.emplace_back(next);
+  ERR_clear_error();  // the end is one
+  return all;
+}
+
+tl::expected<std::vector<KeyPtr>, std::string> read_keys(const std::string& pem) {
+  std::vector<KeyPtr> all;
+  const BioPtr reader = reader_of(pem);
+  while (EVP_PKEY* next = PEM_read_bio_PrivateKey(reader.get(), nullptr, no_password, nullptr))
+    all.emplace_back(next);
+  if (pem.find("ENCRYPTED") != std::string::npos)
+    return problem("the key is protected by a password; 'openssl pkey -in KEY -out NEW' takes it off");
+  ERR_clear_error();
+  if (all.empty())
+    return problem(
+        "the key's file has no PEM key ('-----BEGIN PRIVATE KEY-----'); 'openssl pkey -inform DER' converts "
+        "one");
+  return all;
+}
+
+/// Shows, for each key, the certificate that belongs to it, followed by those of the file that belong to
+/// none.
+tl::expected<void, std::string> use_own(SSL_CTX* context, const Credentials& credentials) {
+  auto certificates = read_certificates(credentials.certificate);
+  if (certificates.empty())
+    return problem(
+        "the certificate's file has no PEM certificate ('-----BEGIN CERTIFICATE-----'); 'openssl x509 "
+        "-inform "
+        "DER' converts one");
+  auto keys = read_keys(credentials.key);
+  if (!keys) return problem(std::move(keys).error());
+  std::vector<std::pair<CertificatePtr, KeyPtr>> own;
+  for (KeyPtr& key : *keys)
+    for (CertificatePtr& certificate : certificates)
+      if (certificate && X509_check_private_key(certificate.get(), key.get()) == 1) {
+        own.emplace_back(std::move(certificate), std::move(key));
+        break;
+      }
+  ERR_clear_error();
+  if (own.size() != keys->size())
+    return problem(
+        "the key does not belong to the certificate; a copy of the two may not be complete, or one of them "
+        "was renewed");
+  const std::unique_ptr<STACK_OF(X509), void (*)(STACK_OF(X509)*)> chain(
+      sk_X509_new_null(), [](STACK_OF(X509) * all) { sk_X509_free(all); });
+  for (const CertificatePtr& certificate : certificates)
+    if (certificate) sk_X509_push(chain.get(), certificate.get());
+  for (const auto& [certificate, key] : own)
+    if (SSL_CTX_use_cert_and_key(context, certificate.get(), key.get(), chain.get(), 1) != 1)
+      return problem(fmt::format("the certificate cannot be used: {}", take_openssl_error()));
+  return {};
+}
+
+tl::expected<void, std::string> believe(SSL_CTX* context, const Credentials& credentials) {
+  X509_STORE* store = SSL_CTX_get_cert_store(context);
+  for (const CertificatePtr& authority : read_certificates(credentials.ca)) {
+    X509_STORE_add_cert(store, authority.get());
+    SSL_CTX_add_client_CA(context, authority.get());
+  }
+  // An authority below another one can be believed by itself: the other may have more below it.
+  X509_STORE_set_flags(store, X509_V_FLAG_PARTIAL_CHAIN);
+  if (credentials.revoked.empty()) return {};
+  const BioPtr reader = reader_of(credentials.revoked);
+  bool any = false;
+  while (const CrlPtr next{PEM_read_bio_X509_CRL(reader.get(), nullptr, no_password, nullptr)})
+    any = X509_STORE_add_crl(store, next.get()) == 1 || any;
+  ERR_clear_error();
+  if (!any)
+    return problem(
+        "the list of revoked certificates has no PEM list ('-----BEGIN X509 CRL-----'); 'openssl crl -inform "
+        "DER' converts one");
+  X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK | X509_V_FLAG_CRL_CHECK_ALL);
+  return {};
+}
+
+void set_rules(SSL_CTX* context) {
+  SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
+  SSL_CTX_set_security_level(context, 2);  // 112 bits: P-224, RSA with 2048 bits, no SHA-1
+  SSL_CTX_set_cipher_list(context, "ECDHE+AESGCM:ECDHE+CHACHA20:ECDHE+AESCCM");
+  SSL_CTX_set_options(context, SSL_OP_NO_TICKET | SSL_OP_NO_COMPRESSION | SSL_OP_NO_RENEGOTIATION);
+  SSL_CTX_set_num_tickets(context, 0);
+  SSL_CTX_set_session_cache_mode(context, SSL_SESS_CACHE_OFF);
+  SSL_CTX_set_mode(context, SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER |
+                                SSL_MODE_RELEASE_BUFFERS);
+  // One call handles one record, so that a flood of those without data is seen, and others have their turn.
+  SSL_CTX_clear_mode(context, SSL_MODE_AUTO_RETRY);
+  SSL_CTX_set_verify(context, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, nullptr);
+  set_verification(context);
+}
+
+}  // namespace
+
+tl::expected<Context, std::string> Context::make(Side side, const Credentials& credentials) {
+  ERR_clear_error();
+  ContextPtr context(SSL_CTX_new(side == Side::server ? TLS_server_method() : TLS_client_method()));
+  if (!context) return problem(take_openssl_error());
+  set_rules(context.get());
+  if (auto used = use_own(context.get(), credentials); !used) return problem(std::move(used).error());
+  if (auto believed = believe(context.get(), credentials); !believed)
+    return problem(std::move(believed).error());
+  if (side == Side::server && read_certificates(credentials.ca).empty())
+    return problem(
+        "the authority's file has no PEM certificate ('-----BEGIN CERTIFICATE-----'): no client could be "
+        "believed");
+  return Context(side, std::move(context));
+}
+
+Context Context::of_stranger() {
+  ContextPtr context(SSL_CTX_new(TLS_client_method()));
+  if (!context) throw std::bad_alloc();
+  set_rules(context.get());
+  return Context(Side::client, std::move(context));
+}
+
+SslPtr Context::connection(int socket, Verification& verification) const {
+  SslPtr ssl(SSL_new(context_.get()));
+  if (!ssl) throw std::bad_alloc();
+  BIO* const bio = socket_bio(socket).release();  // it is the connection's then, for both directions
+  SSL_set_bio(ssl.get(), bio, bio);
+  verify_with(ssl.get(), verification);
+  if (side_ == Side::server)
+    SSL_set_accept_state(ssl.get());
+  else
+    SSL_set_connect_state(ssl.get());
+  return ssl;
+}
+
+Validity Context::validity() const {
+  SSL_CTX* context = context_.get();
+  std::optional<Validity> first;
+  for (long which = SSL_CERT_SET_FIRST; SSL_CTX_set_current_cert(context, which) == 1;
+       which = SSL_CERT_SET_NEXT) {
+    const Validity each = validity_of(SSL_CTX_get0_certificate(context));
+    if (!first || each.end < first->end) first = each;
+  }
+  return first.value_or(Validity{});
+}
+
+}  // namespace coupler::tls

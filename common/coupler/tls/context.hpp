@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "coupler/credentials/credentials.hpp"
+#include "coupler/tls/openssl.hpp"
+#include "coupler/tls/verification.hpp"
+
+namespace coupler::tls {
+
+enum class Side { server, client };
+
+/// What all connections of one side have in common: TLS 1.2 and 1.3 with certificates on both sides (MBTPS),
+/// ephemeral keys and authenticated ciphers. No tickets, no resumption, no early data, no compression, no
+/// renegotiation.
+class Context {
+ public:
+  /// The error is one line: what is wrong with the credentials, and what to do. A client that knows the
+  /// server by its pin needs no authority.
+  static tl::expected<Context, std::string> make(Side side, const Credentials& credentials);
+
+  /// Of a client without a certificate, which looks at that of a server.
+  static Context of_stranger();
+
+  /// A connection over a connected, non-blocking socket, before its handshake. Both outlive it. Throws
+  /// std::bad_alloc like any container.
+  SslPtr connection(int socket, Verification& verification) const;
+
+  /// Of its own certificate; of several the one that ends first.
+  Validity validity() const;
+
+  /// Whether it would still believe a certificate that another context believed; its time does not count.
+  std::optional<std::string> why_refused(X509* certificate, STACK_OF(X509) * chain) const {
+    return why_refused_now(context_.get(), certificate, chain);
+  }
+
+ private:
+  Context(Side side, ContextPtr context) : side_(side), context_(std::move(context)) {}
+
+  Side side_;
+  ContextPtr context_;
+};
+
+}  // namespace coupler::tls

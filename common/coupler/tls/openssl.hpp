@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Owners of OpenSSL's objects, and the text of its last error.
+#pragma once
+
+#include <openssl/bio.h>
+#include <openssl/evp.h>
+#include <openssl/ssl.h>
+#include <openssl/x509.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "coupler/credentials/validity.hpp"
+
+namespace coupler::tls {
+
+template <auto free>
+struct FreedBy {
+  template <class T>
+  void operator()(T* object) const {
+    free(object);
+  }
+};
+
+using BioPtr = std::unique_ptr<BIO, FreedBy<BIO_free>>;
+using KeyPtr = std::unique_ptr<EVP_PKEY, FreedBy<EVP_PKEY_free>>;
+using CertificatePtr = std::unique_ptr<X509, FreedBy<X509_free>>;
+using CrlPtr = std::unique_ptr<X509_CRL, FreedBy<X509_CRL_free>>;
+using StorePtr = std::unique_ptr<X509_STORE, FreedBy<X509_STORE_free>>;
+using StoreContextPtr = std::unique_ptr<X509_STORE_CTX, FreedBy<X509_STORE_CTX_free>>;
+using ContextPtr = std::unique_ptr<SSL_CTX, FreedBy<SSL_CTX_free>>;
+using SslPtr = std::unique_ptr<SSL, FreedBy<SSL_free>>;
+
+/// The reason of the oldest error that OpenSSL noted in this thread, which then has none; "unknown error".
+std::string take_openssl_error();
+
+/// Of a certificate.
+Validity validity_of(const X509* certificate);
+
+/// For OpenSSL's readers of PEM text, which would ask for the password of a protected key at the terminal.
+int no_password(char* room, int size, int writes, void* data);
+
+/// To be read by OpenSSL; it outlives that.
+BioPtr reader_of(std::string_view text);
+
+}  // namespace coupler::tls

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/device/net/client_socket.hpp"
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+
+#include <array>
+
+namespace coupler::device {
+
+void configure_client(int socket) {
+  const int on = 1;
+  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+  ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &client_send_buffer, sizeof client_send_buffer);
+}
+
+std::string host_of(const sockaddr_storage& peer) {
+  std::array<char, NI_MAXHOST> host{};
+  if (::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), sizeof peer, host.data(), host.size(), nullptr,
+                    0, NI_NUMERICHOST) != 0)
+    return "a client";
+  return host.data();
+}
+
+}  // namespace coupler::device

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/socket.h>
+
+#include <string>
+
+namespace coupler::device {
+
+/// What the kernel holds for a client that does not read, in bytes.
+constexpr int client_send_buffer = 16 * 1024;
+
+/// Of a client's TCP connection: no delay, an end that is noticed, a small send buffer.
+void configure_client(int socket);
+
+/// The address of a client as text; "a client" if it has none.
+std::string host_of(const sockaddr_storage& peer);
+
+}  // namespace coupler::device

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "coupler/device/core/log.hpp"
+#include "coupler/device/net/loop.hpp"
+#include "coupler/device/net/message.hpp"
+#include "coupler/device/supervisor/child.hpp"
+#include "coupler/device/supervisor/supervisor.hpp"
+
+namespace coupler::device {
+
+/// The process that does TLS for a node, seen from the supervisor. It has the key, and no lines; it hands
+/// each client that it lets in to the process that answers (net/open_connection.hpp), over a channel that
+/// outlives both. If it dies its clients lose their connections, and it is started again.
+class TlsProcess final : public EventHandler {
+ public:
+  /// For an answer; it reads no files.
+  static constexpr std::chrono::seconds timeout{5};
+
+  /// Both outlive it. The error says why it cannot be: no program, no descriptors.
+  static tl::expected<std::unique_ptr<TlsProcess>, std::string> start(Loop& loop, Log& log);
+  TlsProcess(const TlsProcess&) = delete;
+  TlsProcess& operator=(const TlsProcess&) = delete;
+  ~TlsProcess();
+
+  /// Has it look at settings, which are not in force by that.
+  void prepare(Descriptor settings);
+  /// Whether it has: nothing yet, or what is wrong with them (empty: they are good).
+  std::optional<std::string> answer(TimePoint now);
+  /// What was prepared is in force: it listens at a copy of that socket.
+  void commit(int listener);
+
+  /// Starts it again if it has ended. To be called every 100 ms or so.
+  void look_after(TimePoint now);
+
+  /// Where the process that answers takes clients from.
+  int clients() const { return clients_.one.get(); }
+  /// In a process that was forked and answers clients: closes everything else.
+  void leave();
+  pid_t pid() const { return child_ ? child_->pid() : 0; }
+
+  void ready(TimePoint now) override;
+
+ private:
+  TlsProcess(Loop& loop, Log& log, std::string program, Channel clients);
+  int start_process(TimePoint now);
+  std::string how_it_ended(std::chrono::milliseconds at_most);
+  void end_process();
+  void refuse(std::string why);
+  void send(std::uint8_t what, int descriptor);
+
+  Loop& loop_;
+  Log& log_;
+  std::string program_;
+  Channel clients_;  ///< one: for the process that answers, other: for the one that does TLS
+  Descriptor control_;
+  std::optional<Child> child_;
+  Descriptor settings_;  ///< in force
+  Descriptor listener_;
+  Descriptor prepared_;
+  bool waits_ = false;       ///< for the answer to what was prepared
+  int answers_to_skip_ = 0;  ///< to settings that are in force
+  std::optional<std::string> answer_;
+  TimePoint answer_by_{};
+  Backoff backoff_;
+  TimePoint started_{};
+  TimePoint start_again_{};
+};
+
+}  // namespace coupler::device

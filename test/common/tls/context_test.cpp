@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "test/common/tls/tls_pair.hpp"
+
+namespace coupler::tls {
+namespace {
+
+using testing::HasSubstr;
+
+std::string problem_of(const Credentials& credentials, Side side = Side::server) {
+  const auto context = Context::make(side, credentials);
+  return context ? "" : context.error();
+}
+
+TEST(Context, Takes_a_key_with_its_certificate) {
+  EXPECT_EQ(problem_of(credentials_of(test_node())), "");
+  Credentials half = credentials_of(test_node());
+  half.key = credentials_of(test_node()).key;
+  EXPECT_THAT(problem_of(half), HasSubstr("does not belong to the certificate"));
+}
+
+TEST(Context, Takes_two_keys_of_different_kinds) {
+  const Credentials ec = credentials_of(test_node());
+  const Credentials rsa = credentials_of(test_node(), test_authority(), KeyKind::rsa);
+  Credentials both = ec;
+  both.certificate = ec.certificate + rsa.certificate;
+  both.key = rsa.key + ec.key;
+  EXPECT_EQ(problem_of(both), "");
+  TlsPair pair(both, credentials_of(test_client()));
+  pair.shake_hands();
+  EXPECT_TRUE(pair.are_open()) << pair.client.problem();
+}
+
+TEST(Context, Says_which_file_has_what_it_must_not_have) {
+  Credentials wrong = credentials_of(test_node());
+  wrong.certificate = "nothing";
+  EXPECT_THAT(problem_of(wrong), HasSubstr("certificate's file has no PEM certificate"));
+  wrong = credentials_of(test_node());
+  wrong.key = "nothing";
+  EXPECT_THAT(problem_of(wrong), HasSubstr("no PEM key"));
+  wrong = credentials_of(test_node());
+  wrong.ca = "";
+  EXPECT_THAT(problem_of(wrong), HasSubstr("authority's file has no PEM certificate"));
+  EXPECT_EQ(problem_of(wrong, Side::client), "") << "it may know the server's pin";
+  wrong = credentials_of(test_node());
+  wrong.revoked = "nothing";
+  EXPECT_THAT(problem_of(wrong), HasSubstr("no PEM list"));
+}
+
+TEST(Context, A_protected_key_is_refused_and_nobody_is_asked_for_a_password) {
+  Credentials wrong = credentials_of(test_node());
+  wrong.key = "-----BEGIN ENCRYPTED PRIVATE KEY-----\nMIG=\n-----END ENCRYPTED PRIVATE KEY-----\n";
+  EXPECT_THAT(problem_of(wrong), HasSubstr("protected by a password"));
+}
+
+TEST(Context, Knows_how_long_its_own_certificate_is_good) {
+  const Validity validity = Context::make(Side::server, credentials_of(test_node()))->validity();
+  EXPECT_GE(validity.end - validity.begin, certificate_life);
+  EXPECT_LT(validity.end - validity.begin, certificate_life + std::chrono::hours(48));
+  EXPECT_EQ(expiry_text(validity, std::chrono::system_clock::now()), std::nullopt);
+}
+
+}  // namespace
+}  // namespace coupler::tls
