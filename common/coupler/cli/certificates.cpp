@@ -160,13 +160,16 @@ Stems stems_in(const fs::path& folder, const std::string& name, const char* endi
   return stems;
 }
 
-/// Each of the roles may read all: a beginning, which is safe.
+/// With paths from the map beside which the subject's folder is. Each of the roles may read all: a beginning,
+/// which is safe.
 std::string lines_for_map(const tls::Subject& subject, const std::string& stem,
                           const std::vector<std::string>& roles) {
   if (!subject.is_node)
-    return fmt::format("tls: {{certificate: {0}.pem, key: {0}.key, ca: authority.pem}}\n", stem);
-  std::string text =
-      fmt::format("security:\n  certificate: {0}.pem\n  key: {0}.key\n  ca: authority.pem\n  roles:\n", stem);
+    return fmt::format("tls: {{certificate: {0}/{1}.pem, key: {0}/{1}.key, ca: {0}/authority.pem}}\n",
+                       subject.name, stem);
+  std::string text = fmt::format(
+      "security:\n  certificate: {0}/{1}.pem\n  key: {0}/{1}.key\n  ca: {0}/authority.pem\n  roles:\n",
+      subject.name, stem);
   for (const std::string& role : roles) text += fmt::format("    {}: {{read: all}}\n", role);
   return text;
 }
@@ -209,7 +212,7 @@ tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subje
   if (auto done = write_new(own / (stems.next + ".pem"), made->certificate, false); !done) return done;
   if (!fs::exists(own / "authority.pem"))
     if (auto done = write_new(own / "authority.pem", authority.certificate, false); !done) return done;
-  fmt::print("{}: {}, {}; copy the folder there, and write into the map:\n", own.string(),
+  fmt::print("{}: {}, {}; copy the folder beside its map, and write into that:\n", own.string(),
              stems.newest ? "made anew" : "made", what_it_is(subject));
   fmt::print("{}", lines_for_map(subject, stems.next, roles));
   return {};

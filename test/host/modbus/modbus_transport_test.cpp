@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/modbus/modbus_transport.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <future>
@@ -187,6 +188,22 @@ TEST(ModbusTransport, Silence_is_a_timeout) {
   std::uint16_t word = 0;
   EXPECT_TRUE(is<Timeout>(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
   EXPECT_TRUE(is<Timeout>(transport.read_file_record(1, 0, {&word, 1})));
+}
+
+TEST(ModbusTransport, A_device_that_speaks_TLS_at_this_port_is_named) {
+  test::LoopbackServer secure([](int fd) {
+    std::uint8_t query[12];
+    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+    const std::uint8_t alert[] = {0x15, 3, 3, 0, 2, 2, 70};
+    (void)::send(fd, alert, sizeof alert, MSG_NOSIGNAL);
+    return false;
+  });
+  ModbusTransport transport(connection_to(secure.port()));
+  ASSERT_TRUE(transport.connect());
+  std::uint16_t word = 0;
+  const auto read = transport.read_registers(Table::holding_registers, Range::of(1, 1), &word);
+  ASSERT_FALSE(read);
+  EXPECT_THAT(to_string(read.error()), testing::HasSubstr("speaks TLS at this port"));
 }
 
 TEST(ModbusTransport, A_reply_to_another_request_is_a_bad_frame) {

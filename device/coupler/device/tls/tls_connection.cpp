@@ -7,12 +7,18 @@
 #include <cerrno>
 #include <utility>
 
+#include "coupler/tls/alert.hpp"
+
 namespace coupler::device {
 namespace {
 
 std::uint32_t epoll_events(short wanted) {
   return ((wanted & POLLIN) != 0 ? EPOLLIN : 0U) | ((wanted & POLLOUT) != 0 ? EPOLLOUT : 0U);
 }
+
+/// RFC 8446 6, "protocol_version", fatal: OpenSSL says nothing to a client that does not speak TLS, which
+/// would see the connection end and not know why.
+constexpr std::array<std::uint8_t, 7> wrong_port{0x15, 3, 3, 0, 2, 2, 70};
 
 tls::Verification of_a_client() {
   tls::Verification verification;
@@ -67,6 +73,8 @@ void TlsConnection::end(TimePoint now) {
   if (!session_.problem().empty()) observer_.failed(*this, session_.problem());
   watch(plain_events_, 0);
   plain_.close();
+  if (session_.problem() == tls::no_tls)
+    (void)::send(socket_.get(), wrong_port.data(), wrong_port.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   ::shutdown(socket_.get(), SHUT_WR);
   state_ = State::draining;
   deadline_ = now + drain_timeout;

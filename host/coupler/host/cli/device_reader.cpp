@@ -265,10 +265,13 @@ void DeviceReader::keep(const ReadSpan& span) {
 }
 
 void DeviceReader::fail(const ReadSpan& span, Exception code) {
+  const bool is_right = is_node_ && code == Exception::illegal_function;  // a node knows how to read
+  const std::string why = host::to_string(host::Error(host::ExceptionReply{code})) +
+                          (is_right ? ": this client has no right to read it" : "");
   for (const std::uint32_t point : span.points) {
     Reading& failed = reading(point);
     failed.exception = code;
-    failed.why = host::to_string(host::Error(host::ExceptionReply{code}));
+    failed.why = why;
   }
 }
 

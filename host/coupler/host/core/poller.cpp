@@ -88,7 +88,7 @@ void Poller::on_exception(modbus::Exception code) {
     case modbus::Exception::illegal_data_address:
     case modbus::Exception::illegal_data_value: on_rejection(code, "is not in the device"); return;
     case modbus::Exception::illegal_function:
-      if (is_node_) return on_rejection(code, "may not be read here");
+      if (is_node_) return on_rejection(code, "cannot be read, since this client has no right to");
       statistics_.rejected();
       qualities_.rejected(span.points, code);
       cycle_.give_up(clock_.now());

@@ -24,6 +24,9 @@ Error receive_error(int error, std::chrono::milliseconds timeout) {
   }
 }
 
+/// RFC 8446 5.1: what a device with TLS answers to plain Modbus, where the protocol's number would be 0.
+bool is_tls_alert(Span<const std::uint8_t> adu) { return adu[0] == 0x15 && adu[1] == 3; }
+
 /// libmodbus checks nothing in the header of a reply: it finds its end by the function code.
 Result<> check_adu(Span<const std::uint8_t> adu, const modbus::Frame& request) {
   const bool is_modbus = adu.size() > modbus::mbap_size && modbus::get_u16(&adu[2]) == 0 &&
@@ -122,7 +125,10 @@ Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
   const int left = std::max(deadline.left(), 1);  // libmodbus takes no 0
   modbus_set_response_timeout(context_.get(), static_cast<std::uint32_t>(left / 1000),
                               static_cast<std::uint32_t>(left % 1000 * 1000));
+  reply_[0] = 0;
   const int size = modbus_receive_confirmation(context_.get(), reply_.data());
+  if (size < 0 && is_tls_alert(reply_))
+    return fail(BadFrame{"the device speaks TLS at this port; reach it by tls:// (docs/security.md)"});
   if (size < 0) return failed(receive_error(errno, timeout_));
   const Span<const std::uint8_t> adu(reply_.data(), static_cast<std::size_t>(size));
   if (auto ours = check_adu(adu, sent_); !ours) return tl::make_unexpected(ours.error());
