@@ -60,9 +60,9 @@ def _sleep(processor, pipe):
     os.sched_setaffinity(0, {processor})
     stall = STALL if ask_for_real_time(ahead=1) else STALL_AMONG_OTHERS
     gc.disable()
-    stalls = []
+    stalls, now = [], time.perf_counter()
     while True:
-        due = time.perf_counter() + NAP
+        due = now + NAP  # from the last look on: he may also be kept from running while he is awake
         time.sleep(NAP)
         now = time.perf_counter()
         if now - due > stall:

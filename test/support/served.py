@@ -6,7 +6,6 @@ import pathlib
 import re
 import signal
 import subprocess
-import tempfile
 import time
 
 PATIENCE = 120  # seconds; no rule, only reached when something is broken
@@ -16,7 +15,7 @@ class Served:
     """A program that says "serving WHAT on HOST:PORT" once it does."""
 
     def __init__(self, command, start_seconds=PATIENCE, **popen):
-        self._log = tempfile.TemporaryFile()
+        self._log = open(os.memfd_create("log"), "w+b")  # no disk, which others may keep busy
         self._child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log, **popen)
         self.port = self._wait_for_port(start_seconds)
 
