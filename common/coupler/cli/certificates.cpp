@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -170,7 +171,10 @@ std::string lines_for_map(const tls::Subject& subject, const std::string& stem,
   std::string text = fmt::format(
       "security:\n  certificate: {0}/{1}.pem\n  key: {0}/{1}.key\n  ca: {0}/authority.pem\n  roles:\n",
       subject.name, stem);
-  for (const std::string& role : roles) text += fmt::format("    {}: {{read: all}}\n", role);
+  const char* hint = "  # and what it may write, as in write: [lamp, \"valve_*\"]";
+  for (const std::string& role : roles)
+    text += fmt::format("    {}: {{read: all}}{}\n", role, std::exchange(hint, ""));
+  text += "  plain: none  # clients without TLS; name a role here while some have none\n";
   return text;
 }
 
@@ -199,7 +203,15 @@ tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subje
   if (stems.newest) {
     const auto text = read_pem_file("certificate", *stems.newest + ".pem", own.string());
     if (!text) return tl::unexpected(text.error());
-    const bool is_same = tls::subject_of(*text) == subject;
+    const auto before = tls::subject_of(*text);
+    if (before && before->is_node != subject.is_node)
+      return tl::unexpected(fmt::format("{} is a {} already; give the {} another name", own.string(),
+                                        before->is_node ? "node" : "client",
+                                        subject.is_node ? "node" : "client"));
+    const bool is_same = before == subject;
+    if (before && !is_same)
+      fmt::print("{}: {}.pem, {}, stays good until it ends; revoke it if nobody is to use it any more\n",
+                 own.string(), *stems.newest, what_it_is(*before));
     if (is_same && tls::is_to_be_renewed(*text) == false) {
       fmt::print("{}: {}.pem is good for more than a third of its life; nothing to do\n", own.string(),
                  *stems.newest);
@@ -278,8 +290,9 @@ void add_certificates(Program& program, Exit& exit) {
   command.add_option("--client", arguments->clients, "A client, and its role").type_name("NAME[:ROLE]");
   command.add_flag("--rsa", arguments->rsa,
                    "Keys for peers that know no elliptic curves: RSA with 3072 bits");
-  command.add_flag("--csr", arguments->csr,
-                   "Requests for an authority that the plant has, in place of certificates");
+  command.add_flag(
+      "--csr", arguments->csr,
+      "Requests for an authority that the plant has, in place of certificates: new ones at each call");
   command.footer(
       "Example:\n  coupler certificates cell --node press:192.168.1.10 --client cell1:operator\nCalled "
       "again, it "

@@ -25,6 +25,8 @@ std::optional<std::string> tls_problem(const Tls& tls) {
   if (!tls.present() || !missing_key(tls).empty())
     return "give --certificate FILE and --key FILE, this side's own, and --ca FILE, the device's authority "
            "(or --pin)";
+  if (!tls.ca.empty() && !tls.pin.empty())
+    return "give --ca, the device's authority, or --pin, of its certificate, and not both";
   if (!tls.pin.empty() && !is_pin(tls.pin)) return "a pin is 'sha256:' and 64 hexadecimal digits";
   return std::nullopt;
 }

@@ -34,10 +34,8 @@ constexpr void overlay(Tls& tls, const Tls& given) {
   put(given.ca, tls.ca);
   put(given.name, tls.name);
   put(given.pin, tls.pin);
-  if (!given.pin.empty())
-    tls.ca = {};
-  else if (!given.ca.empty())
-    tls.pin = {};
+  if (given.ca.empty() && !given.pin.empty()) tls.ca = {};
+  if (given.pin.empty() && !given.ca.empty()) tls.pin = {};
 }
 
 }  // namespace coupler

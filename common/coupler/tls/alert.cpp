@@ -23,7 +23,9 @@ struct Alert {
 /// RFC 8446, 6.2.
 constexpr Alert alerts[] = {
     {40, "handshake_failure", "no version or cipher in common, or a rule of its own"},
-    {42, "bad_certificate", "it does not accept this certificate: its role may be malformed"},
+    {42, "bad_certificate",
+     "it does not accept this certificate, and its log says why: one that is not valid yet, a malformed "
+     "role, another pin"},
     {43, "unsupported_certificate", "this certificate is for another purpose"},
     {44, "certificate_revoked", "this certificate is revoked"},
     {45, "certificate_expired", "this certificate has expired, or its clock is wrong"},

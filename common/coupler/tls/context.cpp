@@ -73,7 +73,10 @@ tl::expected<void, std::string> use_own(SSL_CTX* context, const Credentials& cre
     if (certificate) sk_X509_push(chain.get(), certificate.get());
   for (const auto& [certificate, key] : own)
     if (SSL_CTX_use_cert_and_key(context, certificate.get(), key.get(), chain.get(), 1) != 1)
-      return problem(fmt::format("the certificate cannot be used: {}", take_openssl_error()));
+      return problem(
+          fmt::format("the certificate cannot be used: {}; have it issued again with P-256, or RSA with 2048 "
+                      "bits or more, and SHA-256",
+                      take_openssl_error()));
   return {};
 }
 

@@ -83,10 +83,12 @@ bool believes(X509_STORE_CTX* store, const SSL* ssl, Verification& verification)
   }
   if (verification.pin) {
     if (const Pin& pin = *verification.seen; pin != *verification.pin)
-      return reject(store, verification,
-                    fmt::format("its certificate has the pin {}, which is not the one that is expected; if "
-                                "it was renewed, 'coupler pin' shows the new one",
-                                pin_text(pin)));
+      return reject(
+          store, verification,
+          fmt::format(
+              "its certificate has the pin {}, which is not the one that is expected; if "
+              "it was renewed, take the one that 'coupler pin FILE' shows on the device's own machine",
+              pin_text(pin)));
     X509_STORE_CTX_set_error(store, X509_V_OK);
     return true;
   }
@@ -219,8 +221,8 @@ std::string problem_text(int error, const X509* certificate, const X509* own) {
       return "'revoked' has no list of the authority that issued its certificate; add that";
     case X509_V_ERR_HOSTNAME_MISMATCH:
     case X509_V_ERR_IP_ADDRESS_MISMATCH:
-      return "its certificate is for another name or address; connect by one that it has, or set 'name' to "
-             "it";
+      return "its certificate is for another name or address; connect by one that it has, or give that as "
+             "'name' (an option: --tls-name)";
     case X509_V_ERR_INVALID_PURPOSE:
       return "its certificate is for another purpose (that of a server shown by a client, or the other way "
              "round); have one issued for this side";

@@ -89,6 +89,9 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
   for (TlsProcess* process : {tls_.get(), next_tls_.get()})
     if (process != nullptr) process->leave();
   if (reading_ != nullptr) reading_->leave();
+  // It takes time to free a large map, and clients wait: only its ports are given up.
+  for (ServingContext* other : {former_.get(), next_.get()})
+    if (other != nullptr) other->stop_listening();
   Loop loop;
   if (!loop.is_open()) {
     log_errors(log_, {ServeError::device_failed, std::strerror(errno)});
@@ -250,7 +253,8 @@ void NodeRuntime::refuse(const ServeError& error) {
   const std::string text =
       fmt::format("the new map is refused; the old one stays in force: {}", status_line());
   log_.fail(text);
-  requests_.reply(false, text);
+  requests_.reply(false,
+                  error.errors.empty() ? text + " (the node's log says why)" : error.errors + "; " + text);
   manager_.ready(status_line());
 }
 

@@ -59,6 +59,13 @@ struct ServingContext {
   /// there are some.
   bool reconnect_channels(bool safe);
 
+  /// In a process that was forked while another context is in force, or may still be refused: otherwise its
+  /// ports would stay taken for as long as that process lives.
+  void stop_listening() {
+    listener.socket.close();
+    if (tls_listener) tls_listener->socket.close();
+  }
+
   /// Whether clients need not notice when one is replaced by the other.
   bool looks_like(const ServingContext& other) const;
   /// Whether its watchdog has expired.

@@ -18,11 +18,20 @@ tl::unexpected<NoLiveMap> none(Exit exit, std::string what, std::string remedy) 
   return tl::make_unexpected(NoLiveMap{exit, std::move(what), std::move(remedy)});
 }
 
+/// A node knows how to give its map.
+bool is_no_right(const host::Error& error) {
+  const auto* exception = host::exception_in(error);
+  return exception != nullptr && exception->code == modbus::Exception::illegal_function;
+}
+
 }  // namespace
 
 tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where) {
   const auto transport = host::make_transport(where);
   const auto served = host::fetch_served_map(*transport);
+  if (!served && is_no_right(served.error()))
+    return none(failed, "the node gives its map only to clients that may read every point (exception 01)",
+                "give the file of its map instead, or a certificate whose role has 'read: all'");
   if (!served && host::exception_in(served.error()) != nullptr)
     return none(failed, "the node does not give its map: " + host::to_string(served.error()), give_a_file);
   if (!served)

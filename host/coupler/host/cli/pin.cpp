@@ -44,9 +44,17 @@ Exit pin_of_file(const std::string& path) {
   return ok;
 }
 
-Exit run(const Arguments& arguments) {
+/// Also one that is not there.
+bool names_a_file(const std::string& place) {
+  constexpr std::string_view ending = ".pem";
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(arguments.host, ignored)) return pin_of_file(arguments.host);
+  const bool ends_so =
+      place.size() > ending.size() && place.compare(place.size() - ending.size(), ending.size(), ending) == 0;
+  return ends_so || std::filesystem::is_regular_file(place, ignored);
+}
+
+Exit run(const Arguments& arguments) {
+  if (names_a_file(arguments.host)) return pin_of_file(arguments.host);
   const std::string address = names_a_node(arguments.host) ? arguments.host : "tls://" + arguments.host;
   const auto where = parse_node_address(address);
   if (!where) return complain("pin", bad_call, where.error().what, where.error().remedy);

@@ -44,6 +44,8 @@ std::string move_to(Map& map, const Options& options) {
   }
   if (const auto missing = missing_key(connection.tls); !missing.empty())
     return fmt::format("TLS needs '{}', too; add it to the map's 'tls', or to Options::tls", missing);
+  if (!connection.tls.ca.empty() && !connection.tls.pin.empty())
+    return "TLS has both 'ca' and 'pin'; give the device's authority, or the pin of its certificate";
   if (const auto pin = connection.tls.pin; !pin.empty() && !is_pin(pin))
     return fmt::format(
         "'{}' is no pin; write 'sha256:' and 64 hexadecimal digits, as `coupler pin` prints them", pin);

@@ -86,9 +86,13 @@ void Poller::on_exception(modbus::Exception code) {
   switch (code) {
     // Devices answer a range that they do not have, or that is too long for them, with either of these.
     case modbus::Exception::illegal_data_address:
-    case modbus::Exception::illegal_data_value: on_rejection(code, "is not in the device"); return;
+    case modbus::Exception::illegal_data_value:
+      on_rejection(code, "is not in the device", "it is not read again while this connection lasts");
+      return;
     case modbus::Exception::illegal_function:
-      if (is_node_) return on_rejection(code, "cannot be read, since this client has no right to");
+      if (is_node_)
+        return on_rejection(code, "cannot be read: this client has no right to",
+                            "it is read again when the node has read its map again");
       statistics_.rejected();
       qualities_.rejected(span.points, code);
       cycle_.give_up(clock_.now());
@@ -105,13 +109,12 @@ void Poller::on_exception(modbus::Exception code) {
 }
 
 /// Of a request; parts of it may be good.
-void Poller::on_rejection(modbus::Exception code, std::string_view what) {
+void Poller::on_rejection(modbus::Exception code, std::string_view what, std::string_view until) {
   statistics_.rejected();
   const std::string why = to_string(Error(ExceptionReply{code}));
   for (const std::uint32_t point : cycle_.rejected(clock_.now())) {
     qualities_.rejected({&point, 1}, code);
-    sink_.on_report(Level::warning, fmt::format("{} {}: {}; it is not read again while this connection lasts",
-                                                map_.points[point].name, what, why));
+    sink_.on_report(Level::warning, fmt::format("{} {}: {}; {}", map_.points[point].name, what, why, until));
   }
 }
 

@@ -48,7 +48,7 @@ class Poller {
   void publish_bits(const ReadSpan& span, Stamp stamp);
   const ReadSpan& without_hidden(const ReadSpan& span);
   void on_exception(modbus::Exception code);
-  void on_rejection(modbus::Exception code, std::string_view what);
+  void on_rejection(modbus::Exception code, std::string_view what, std::string_view until);
   void report_rejected_ranges();
   std::string describe(const ReadSpan& span) const;
 

@@ -14,6 +14,8 @@ std::string place_error(const Settings& settings, const Connection& connection) 
   if (const auto missing = missing_key(connection.tls); !missing.empty())
     return fmt::format("TLS needs {}{}, which is neither a setting nor in the map", missing,
                        missing == "ca" ? " (or pin)" : "");
+  if (!connection.tls.ca.empty() && !connection.tls.pin.empty())
+    return "both ca and pin are given; give the device's authority, or the pin of its certificate";
   if (connection.is_rtu() && connection.tls.present())
     return "a coupler that speaks RTU has no TLS; leave out framing: rtu, or the certificate";
   if (!connection.is_rtu() || is_rtu_unit(connection.unit)) return {};

@@ -18,7 +18,7 @@ void apply(const Settings& settings, Tls& tls) {
   put(settings.ca, tls.ca);
   put(settings.tls_name, tls.name);
   put(settings.pin, tls.pin);
-  if (settings.pin) tls.ca = {};
+  if (settings.pin && !settings.ca) tls.ca = {};
   if (settings.ca && !settings.pin) tls.pin = {};
 }
 
