@@ -4,7 +4,7 @@
 them when it reads its map again, and when one of its processes dies. The tools against OpenSSL's s_server: which they
 believe. Certificates are made by OpenSSL's own program.
 
-    tls_test.py NODE COUPLER MAP
+    tls_test.py NODE GENERATED_NODE COUPLER MAP
 """
 import contextlib
 import json
@@ -24,7 +24,7 @@ import threading
 import peer
 from authority import Authority
 
-NODE, COUPLER, MAP = sys.argv[1:4]
+NODE, GENERATED, COUPLER, MAP = sys.argv[1:5]
 if shutil.which("openssl") is None:
     peer.skip("the program openssl is missing; apt install openssl")
 
@@ -44,11 +44,11 @@ ECHO = adu(8, 0, 0, 0x12, 0x34)
 
 
 class Node:
-    def __init__(self, folder):
+    def __init__(self, folder, *command):
         self.folder = pathlib.Path(folder)
         self.said = []
         self.process = subprocess.Popen(
-            [NODE, "cell.yaml", "--sim", "--listen", "127.0.0.1", "--port", "0", "--tls-port", "0"], cwd=folder,
+            [*command, "--sim", "--listen", "127.0.0.1", "--port", "0", "--tls-port", "0"], cwd=folder,
             stderr=subprocess.PIPE, text=True)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -380,13 +380,29 @@ def which_servers_are_believed(folder, checks):
                      "sha256:" + own.strip().split("=")[-1].replace(":", "").lower())
 
 
+def a_generated_node(folder, checks):
+    """Its map is built in, and its certificates are files all the same."""
+    node = Node(folder, GENERATED)
+    try:
+        who_is_let_in(node, checks)
+        what_each_may_do(node, checks)
+        client = Client(node, "operator")
+        node.process.send_signal(signal.SIGHUP)
+        node.await_line("read the certificates again")
+        checks.equal("generated: a client stays when the certificates are read again", client.code(READ_LAMP), 1)
+        client.close()
+    finally:
+        node.end()
+    checks.equal("generated: the node ends well", node.process.returncode, 0)
+
+
 def main():
     checks = peer.Checks()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         ca = make_certificates(folder)
         shutil.copy(MAP, folder / "cell.yaml")
-        node = Node(folder)
+        node = Node(folder, NODE, "cell.yaml")
         try:
             who_is_let_in(node, checks)
             a_weak_key_and_old_versions(node, checks)
@@ -399,6 +415,7 @@ def main():
         finally:
             node.end()
         checks.equal("the node ends well", node.process.returncode, 0)
+        a_generated_node(folder, checks)
         if checks.failed:
             print(node.text())
     checks.done("a node with TLS against Python's ssl and OpenSSL: who is let in, what each may do, reloads, deaths")
