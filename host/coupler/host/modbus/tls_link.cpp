@@ -24,7 +24,7 @@ namespace {
 class Link final : public TlsLink {
  public:
   Link(Descriptor socket, const tls::Context& context, Certificate own, tls::Verification verification)
-      : own_(std::move(own)),
+      : certificates_{std::move(own), {}, false},
         socket_(std::move(socket)),
         verification_(std::move(verification)),
         session_(context.connection(socket_.get(), verification_), socket_.get(), verification_) {}
@@ -60,7 +60,10 @@ class Link final : public TlsLink {
     given_ = Descriptor(pair[1]);
     // libmodbus waits with select(), which knows no descriptor above FD_SETSIZE.
     if (given_.get() >= FD_SETSIZE) return "too many open files";
+    certificates_.device = {verification_.peer.name, {}, session_.peer_validity()};
+    certificates_.has_pin = verification_.pin.has_value();
     session_.carry(carried_.get());
+    // From here on the session is that thread's.
     thread_ = std::thread([this] { run(); });
     return {};
   }
@@ -71,9 +74,7 @@ class Link final : public TlsLink {
     return problem_;
   }
 
-  Certificates certificates() const override {
-    return {own_, {verification_.peer.name, {}, session_.peer_validity()}, verification_.pin.has_value()};
-  }
+  Certificates certificates() const override { return certificates_; }
 
  private:
   void run() {
@@ -97,7 +98,7 @@ class Link final : public TlsLink {
     ::shutdown(socket_.get(), SHUT_RDWR);
   }
 
-  Certificate own_;
+  Certificates certificates_;
   Descriptor socket_;
   tls::Verification verification_;
   tls::Session session_;
