@@ -193,6 +193,28 @@ std::string what_it_is(const tls::Subject& subject) {
                               : fmt::format("a client with the role {}", subject.role);
 }
 
+/// Whether the newest certificate of the folder is the subject's, and good for long; it tells that, or what
+/// becomes of it. The error: the folder is another one's.
+tl::expected<bool, std::string> is_kept(const fs::path& own, const std::string& stem,
+                                        const tls::Subject& subject) {
+  const auto text = read_pem_file("certificate", stem + ".pem", own.string());
+  if (!text) return tl::unexpected(text.error());
+  const auto before = tls::subject_of(*text);
+  if (!before) return false;
+  if (before->is_node != subject.is_node)
+    return tl::unexpected(fmt::format("{} is a {} already; give the {} another name", own.string(),
+                                      before->is_node ? "node" : "client",
+                                      subject.is_node ? "node" : "client"));
+  if (*before == subject && tls::is_to_be_renewed(*text) == false) {
+    fmt::print("{}: {}.pem is good for more than a third of its life; nothing to do\n", own.string(), stem);
+    return true;
+  }
+  if (!(*before == subject))
+    fmt::print("{}: {}.pem, {}, stays good until it ends; revoke it if nobody is to use it any more\n",
+               own.string(), stem, what_it_is(*before));
+  return false;
+}
+
 /// One certificate with its key, unless there is one that has more than a third of its life left.
 tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subject& subject,
                                         tls::KeyKind kind, const tls::Pem& authority,
@@ -201,22 +223,9 @@ tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subje
   if (auto done = make_folder(own, true); !done) return done;
   const Stems stems = stems_in(own, subject.name + (kind == tls::KeyKind::rsa ? "-rsa" : ""), ".pem");
   if (stems.newest) {
-    const auto text = read_pem_file("certificate", *stems.newest + ".pem", own.string());
-    if (!text) return tl::unexpected(text.error());
-    const auto before = tls::subject_of(*text);
-    if (before && before->is_node != subject.is_node)
-      return tl::unexpected(fmt::format("{} is a {} already; give the {} another name", own.string(),
-                                        before->is_node ? "node" : "client",
-                                        subject.is_node ? "node" : "client"));
-    const bool is_same = before == subject;
-    if (before && !is_same)
-      fmt::print("{}: {}.pem, {}, stays good until it ends; revoke it if nobody is to use it any more\n",
-                 own.string(), *stems.newest, what_it_is(*before));
-    if (is_same && tls::is_to_be_renewed(*text) == false) {
-      fmt::print("{}: {}.pem is good for more than a third of its life; nothing to do\n", own.string(),
-                 *stems.newest);
-      return {};
-    }
+    const auto kept = is_kept(own, *stems.newest, subject);
+    if (!kept) return tl::unexpected(kept.error());
+    if (*kept) return {};
   }
   const auto made = tls::issue(subject, kind, authority);
   if (!made) return tl::unexpected(made.error());
