@@ -36,8 +36,7 @@ MapArgument from_node(const std::string& argument, const TlsTexts& tls) {
     return no_map(bad_call, argument, "certificates are for a place with TLS",
                   "write tls:// in place of tcp://");
   MapArgument found{{}, ok, *node};
-  if (node->tls) overlay(found.tls, tls.view());
-  if (const auto problem = node->tls ? tls_problem(found.tls) : std::nullopt)
+  if (const auto problem = use_tls_options(*node, tls, found.tls))
     return no_map(bad_call, argument, "tls:// needs certificates", *problem);
   Connection connection = found_at({}, *node).connection;
   connection.tls = found.tls;

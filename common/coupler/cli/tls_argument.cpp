@@ -31,4 +31,10 @@ std::optional<std::string> tls_problem(const Tls& tls) {
   return std::nullopt;
 }
 
+std::optional<std::string> use_tls_options(const NodeAddress& where, const TlsTexts& arguments, Tls& tls) {
+  if (!where.tls) return std::nullopt;
+  overlay(tls, arguments.view());
+  return tls_problem(tls);
+}
+
 }  // namespace coupler::cli

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "coupler/command_line/command_line.hpp"
+#include "coupler/map/node_address.hpp"
 #include "coupler/map/tls_texts.hpp"
 
 namespace coupler::cli {
@@ -17,5 +18,9 @@ bool any_given(const TlsTexts& arguments);
 
 /// What a place with tls:// misses, and what to do; nullopt: nothing.
 std::optional<std::string> tls_problem(const Tls& tls);
+
+/// If the place is one with tls://: puts the options in the place of what `tls` says, and returns
+/// tls_problem().
+std::optional<std::string> use_tls_options(const NodeAddress& where, const TlsTexts& arguments, Tls& tls);
 
 }  // namespace coupler::cli

@@ -75,25 +75,26 @@ TEST_F(HealthTest, Writes_that_did_not_arrive_are_a_warning_while_they_happen) {
 TEST_F(HealthTest, A_certificate_that_ends_soon_is_a_warning_and_one_that_has_ended_an_error) {
   const std::chrono::system_clock::time_point today{std::chrono::seconds(1'795'651'200)};  // 2026-11-26
   constexpr std::chrono::hours day(24);
-  EXPECT_EQ(certificates_health(now, today).text, "not connected yet");
+  EXPECT_EQ(certificates_health(now.certificates, today).text, "not connected yet");
 
   now.certificates = {{"cell1", "operator", {today - day, today + 700 * day}},
                       {"press", {}, {today, today + 90 * day}}};
-  EXPECT_EQ(certificates_health(now, today).level, Level::info);
-  EXPECT_EQ(certificates_health(now, today).text, "good until 2027-02-24 00:00 UTC");
+  EXPECT_EQ(certificates_health(now.certificates, today).level, Level::info);
+  EXPECT_EQ(certificates_health(now.certificates, today).text, "good until 2027-02-24 00:00 UTC");
 
-  const Health soon = certificates_health(now, today + 60 * day);
+  const Health soon = certificates_health(now.certificates, today + 60 * day);
   EXPECT_EQ(soon.level, Level::warning);
   EXPECT_EQ(soon.text,
             "the device's certificate expires on 2027-02-24 00:00 UTC; renew it ('coupler certificates')");
   now.certificates->own.validity.end = today + 59 * day;
-  const Health late = certificates_health(now, today + 60 * day);
+  const Health late = certificates_health(now.certificates, today + 60 * day);
   EXPECT_EQ(late.level, Level::error);
   EXPECT_THAT(late.text, HasSubstr("this machine's certificate has expired on 2027-01-24"));
   EXPECT_THAT(late.text, HasSubstr("; the device's certificate expires on"));
 
   now.certificates->has_pin = true;  // it is believed beyond its end
-  EXPECT_THAT(certificates_health(now, today + 60 * day).text, testing::Not(HasSubstr("the device's")));
+  EXPECT_THAT(certificates_health(now.certificates, today + 60 * day).text,
+              testing::Not(HasSubstr("the device's")));
 }
 
 }  // namespace

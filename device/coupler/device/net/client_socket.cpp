@@ -16,6 +16,13 @@ void configure_client(int socket) {
   ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &client_send_buffer, sizeof client_send_buffer);
 }
 
+std::optional<sockaddr_storage> peer_of(int socket) {
+  sockaddr_storage peer{};
+  socklen_t size = sizeof peer;
+  if (::getpeername(socket, reinterpret_cast<sockaddr*>(&peer), &size) != 0) return std::nullopt;
+  return peer;
+}
+
 std::string host_of(const sockaddr_storage& peer) {
   std::array<char, NI_MAXHOST> host{};
   if (::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), sizeof peer, host.data(), host.size(), nullptr,

@@ -3,6 +3,7 @@
 
 #include <sys/socket.h>
 
+#include <optional>
 #include <string>
 
 namespace coupler::device {
@@ -12,6 +13,9 @@ constexpr int client_send_buffer = 16 * 1024;
 
 /// Of a client's TCP connection: no delay, an end that is noticed, a small send buffer.
 void configure_client(int socket);
+
+/// Who is at the other end of a client's socket; nullopt: it has left.
+std::optional<sockaddr_storage> peer_of(int socket);
 
 /// The address of a client as text; "a client" if it has none.
 std::string host_of(const sockaddr_storage& peer);

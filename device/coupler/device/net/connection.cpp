@@ -57,12 +57,7 @@ void Connection::open(OpenConnection from, const IpAddress& origin, TimePoint no
 }
 
 std::string Connection::who() const {
-  if (!tls_) {
-    sockaddr_storage peer{};
-    socklen_t size = sizeof peer;
-    ::getpeername(socket_.get(), reinterpret_cast<sockaddr*>(&peer), &size);
-    return host_of(peer);
-  }
+  if (!tls_) return host_of(peer_of(socket_.get()).value_or(sockaddr_storage{}));
   // They come from the process that does TLS, which has judged them; but it may be under somebody's control.
   const auto shown = [](const ShortText& text) {
     return codec::is_plain_text(text.view()) ? text.view() : "?";

@@ -37,15 +37,6 @@ bool concerns_the_client(int error) {
   return false;
 }
 
-/// nullopt: it has left.
-std::optional<sockaddr_storage> peer_of(const OpenConnection& client) {
-  if (client.tls) return client.tls->address;
-  sockaddr_storage peer{};
-  socklen_t size = sizeof peer;
-  if (::getpeername(client.socket.get(), reinterpret_cast<sockaddr*>(&peer), &size) != 0) return std::nullopt;
-  return peer;
-}
-
 }  // namespace
 
 TcpServer::TcpServer(Loop& loop, const Listener& listener, Server& server, Statistics& statistics, Log& log,
@@ -96,7 +87,7 @@ void TcpServer::admit(OpenConnection client, TimePoint now) {
 }
 
 void TcpServer::open(OpenConnection client, TimePoint now) {
-  const auto peer = peer_of(client);
+  const auto peer = client.tls ? std::optional(client.tls->address) : peer_of(client.socket.get());
   if (!peer) return;
   if (!listener_.allowed.admits(*peer)) return refuse(std::move(client.socket), *peer);
   in_use_ = true;

@@ -125,8 +125,7 @@ tl::expected<ProbeCall, WrongCall> understand(const ProbeArguments& arguments, c
     return wrong(fmt::format("--from {} is greater than --to {}", arguments.from, arguments.to), "swap them");
   ProbeCall call;
   call.connection = found_at({}, *where).connection;
-  if (where->tls) overlay(call.connection.tls, arguments.tls.view());
-  if (const auto problem = where->tls ? tls_problem(call.connection.tls) : std::nullopt)
+  if (const auto problem = use_tls_options(*where, arguments.tls, call.connection.tls))
     return wrong("tls:// needs certificates", *problem);
   const Serial& line = call.connection.serial;
   auto units = units_of(arguments.units, call.connection, names_a_unit(*where, address));

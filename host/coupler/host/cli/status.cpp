@@ -29,8 +29,7 @@ Exit run(const Arguments& arguments) {
   if (!where->tls && any_given(arguments.tls))
     return complain("status", bad_call, "certificates are for a place with TLS",
                     "write tls:// before the host");
-  if (where->tls) overlay(connection.tls, arguments.tls.view());
-  if (const auto problem = where->tls ? tls_problem(connection.tls) : std::nullopt)
+  if (const auto problem = use_tls_options(*where, arguments.tls, connection.tls))
     return complain("status", bad_call, "tls:// needs certificates", *problem);
   connection.timeout = std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000));
   const auto transport = host::make_transport(connection);

@@ -245,7 +245,8 @@ void Device::came_online() {
   if (std::exchange(state_, State::online) == State::online) return;
   backoff_.reset();
   last_error_text_.clear();
-  statistics_.online(transport_.certificates());
+  const auto certificates = transport_.certificates();
+  statistics_.online(certificates);
   qualities_.online(true);
   sink_.on_online(true);
   const std::string connected = peer_.empty() ? "connected" : "connected to " + peer_;
@@ -253,10 +254,9 @@ void Device::came_online() {
     sink_.on_report(Level::warning, fmt::format("{}; {} writes were dropped meanwhile", connected, dropped));
   else
     sink_.on_report(Level::info, connected);
-  if (const Health certificates =
-          certificates_health(statistics_.snapshot(), std::chrono::system_clock::now());
-      certificates.level != Level::info)
-    sink_.on_report(certificates.level, certificates.text);
+  if (const Health health = certificates_health(certificates, std::chrono::system_clock::now());
+      health.level != Level::info)
+    sink_.on_report(health.level, health.text);
 }
 
 void Device::lost(const Error& error) {

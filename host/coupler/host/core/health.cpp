@@ -79,10 +79,11 @@ Health watchdog_health(const DeviceSnapshot& now) {
   return {Level::error, watchdog.error_text};
 }
 
-Health certificates_health(const DeviceSnapshot& now, std::chrono::system_clock::time_point at) {
-  if (!now.certificates) return {Level::info, "not connected yet"};
-  const Validity& own = now.certificates->own.validity;
-  const Validity& device = now.certificates->has_pin ? own : now.certificates->device.validity;
+Health certificates_health(const std::optional<Certificates>& certificates,
+                           std::chrono::system_clock::time_point at) {
+  if (!certificates) return {Level::info, "not connected yet"};
+  const Validity& own = certificates->own.validity;
+  const Validity& device = certificates->has_pin ? own : certificates->device.validity;
   Health health{Level::info, "good until " + minute_text(std::min(own.end, device.end))};
   const auto look = [&](const char* whose, const Validity& validity) {
     const auto expiry = expiry_text(validity, at);
@@ -92,7 +93,7 @@ Health certificates_health(const DeviceSnapshot& now, std::chrono::system_clock:
     health.level = std::max(health.level, at < validity.end ? Level::warning : Level::error);
   };
   look("this machine's", own);
-  if (!now.certificates->has_pin) look("the device's", device);
+  if (!certificates->has_pin) look("the device's", device);
   return health;
 }
 

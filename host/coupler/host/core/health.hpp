@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ Health watchdog_health(const DeviceSnapshot& now);
 
 /// Of a TLS connection. error: one of its certificates has expired, so the next connect fails; warning: one
 /// soon does.
-Health certificates_health(const DeviceSnapshot& now, std::chrono::system_clock::time_point at);
+Health certificates_health(const std::optional<Certificates>& certificates,
+                           std::chrono::system_clock::time_point at);
 
 /// "foreign", "equal", …; "not asked".
 std::string_view to_string(const std::optional<Identity::Verdict>& verdict);

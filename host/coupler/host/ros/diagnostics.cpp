@@ -131,7 +131,7 @@ DiagnosticEntry Diagnostics::watchdog() {
 }
 
 DiagnosticEntry Diagnostics::certificates() {
-  DiagnosticEntry result = entry_of(certificates_health(now_, std::chrono::system_clock::now()));
+  DiagnosticEntry result = entry_of(certificates_health(now_.certificates, std::chrono::system_clock::now()));
   if (!now_.certificates) return result;
   Values values(result);
   const auto& [own, device, has_pin] = *now_.certificates;
