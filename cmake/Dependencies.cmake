@@ -53,6 +53,22 @@ if(NOT COUPLER_WITH_TLS)
   message(STATUS "Left out: TLS, coupler certificates, coupler pin (no OpenSSL 3, or COUPLER_TLS=OFF; apt install libssl-dev)")
 endif()
 
+# Ubuntu 22.04 does not have it.
+set(COUPLER_WITH_PANEL OFF)
+if(NOT COUPLER_PANEL STREQUAL OFF)
+  pkg_check_modules(httplib QUIET IMPORTED_TARGET cpp-httplib>=0.11)
+  if(httplib_FOUND AND libmodbus_FOUND)
+    set(COUPLER_WITH_PANEL ON)
+  elseif(COUPLER_PANEL STREQUAL ON)
+    message(FATAL_ERROR "COUPLER_PANEL=ON, but cpp-httplib 0.11 or libmodbus was not found "
+                        "(apt install libcpp-httplib-dev libmodbus-dev)")
+  endif()
+endif()
+if(NOT COUPLER_WITH_PANEL)
+  message(STATUS "Left out: coupler panel (no cpp-httplib, no libmodbus, or COUPLER_PANEL=OFF; "
+                 "apt install libcpp-httplib-dev libmodbus-dev)")
+endif()
+
 find_package(pugixml QUIET)
 if(NOT pugixml_FOUND)
   message(STATUS "Left out: coupler import modbuspal (no pugixml; apt install libpugixml-dev)")

@@ -34,6 +34,7 @@ option(COUPLER_COVERAGE "Instrument for gcov" OFF)
 set(COUPLER_SANITIZE "" CACHE STRING "Sanitizers, as -fsanitize= takes them")
 option(COUPLER_SERIAL "Reach couplers on serial lines; RTU over TCP is there without it" ON)
 set(COUPLER_TLS ${automatic} CACHE STRING "Modbus/TCP Security, by OpenSSL 3: AUTO, ON or OFF")
+set(COUPLER_PANEL ${automatic} CACHE STRING "coupler panel, by cpp-httplib: AUTO, ON or OFF")
 set(COUPLER_GPIOD AUTO CACHE STRING "Build the libgpiod backend: AUTO, ON or OFF")
 
 if(NOT COUPLER_IS_PART AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)

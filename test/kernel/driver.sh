@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The whole chain on a chip of the kernel: line, coupler-node, coupler_driver, topic, and back.
+# The whole chain on a chip of the kernel: line, coupler-node, coupler_driver, topic, and back; and what the driver records
+# of it, played to a driver without that chip.
 #   test/kernel/run --mem 1G test/kernel/driver.sh BUILD_DIR
 set -euo pipefail
 export PYTHONUNBUFFERED=1  # what rostopic prints is looked for in a file while it runs
@@ -19,7 +20,8 @@ plant_node plant.yaml
 # roscore gives its master 10 s to start, which this kernel may need on a busy machine.
 start core ../support/ros-master 11311
 check "a ROS master answers" wait_until says core http://
-start driver "$bin/coupler_driver" _address:=127.0.0.1 _port:=1502
+recording=$check_folder/plant.jsonl
+start driver "$bin/coupler_driver" _address:=127.0.0.1 _port:=1502 _record:="$recording"
 check "the driver connects, with the node's own map" wait_until says driver 'connected'
 
 echo "# pulling a line shows on its topic"
@@ -45,3 +47,15 @@ check "the node runs" running node
 check "the driver ends well on SIGINT" stop driver INT
 status=0; stop node INT || status=$?
 expect "the node ends on SIGINT, with 3: its chip is gone" 3 "$status"
+
+echo "# what was recorded on the chip is played where there is none"
+is_heard() { rosnode info /another | grep -A1 'topic: /plant/button$' | grep -q 'to: /rostopic'; }
+low=$(grep -c 'data: False' "$(log button)") high=$(grep -c 'data: True' "$(log button)")
+start another "$bin/coupler_driver" __name:=another _map:=plant.yaml _address:=127.0.0.1 _port:=1503
+check "rostopic hears another driver" wait_until is_heard
+start replay "$bin/coupler-node" --sim --replay "$recording" --speed 5 --listen 127.0.0.1 --port 1503
+check "the topic tells that the line was low" wait_until says button 'data: False' $((low + 1))
+check "then that it was high" wait_until says button 'data: True' $((high + 1))
+check "the driver tells of exception 04 once more" wait_until says another 'device failure'
+check "the node ends with the recording" wait_until ended "$(pid replay)"
+check "the driver ends well on SIGINT" stop another INT

@@ -57,6 +57,7 @@ class Browser:
         return self.driver.execute_script(script, *arguments)
 
     def open(self, path, size=DESKTOP, dark=False, scripts=True):
+        """`path`: of a file, or a URL."""
         self.command("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1,
                      mobile=size == PHONE)
         self.command("Emulation.setEmulatedMedia", media="",
@@ -65,7 +66,7 @@ class Browser:
         self.driver.get("about:blank")  # otherwise another #hash would not load the page again
         self.complaints()
         self.requests()
-        self.driver.get(pathlib.Path(path).absolute().as_uri())
+        self.driver.get(path if "://" in str(path) else pathlib.Path(path).absolute().as_uri())
 
     def complaints(self):
         """What is in the console since the last call."""

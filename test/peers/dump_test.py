@@ -219,6 +219,17 @@ def changes_are_told_as_json(coupler, map_file, device, checks):
     checks.equal("status after SIGINT", watch.end(), 0)
 
 
+def without_a_number_it_looks_once_a_second(coupler, map_file, device, checks):
+    began = time.monotonic()
+    with subprocess.Popen([coupler, "dump", map_file, "--at", f"127.0.0.1:{device.port}", "--watch", "--json"],
+                          stdout=subprocess.PIPE, text=True) as program:
+        for _ in range(3):
+            program.stdout.readline()
+        passed = time.monotonic() - began
+        program.terminate()
+    checks.equal(f"seconds until the third look, at least 1.9: {passed:.1f}", passed > 1.9, True)
+
+
 def a_terminal_is_drawn_over(coupler, map_file, device, checks):
     ours, its = pty.openpty()
     program = subprocess.Popen([coupler, "dump", map_file, "--at", f"127.0.0.1:{device.port}", "--watch", "0.1"],
@@ -318,6 +329,7 @@ def main():
         checks.equal("the device would tell of a write: mbpoll's", device.store.asked - READS, {6})
         device.store.asked.clear()
         changes_are_told_as_json(coupler, map_file, device, checks)
+        without_a_number_it_looks_once_a_second(coupler, map_file, device, checks)
         a_terminal_is_drawn_over(coupler, map_file, device, checks)
         checks.equal("functions that the device was asked for by --watch", device.store.asked, READS)
     a_node_needs_no_file(coupler, command, checks)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the peer tests share: starting a node, and saying what was proved."""
 import contextlib
+import os
+import pathlib
 import re
 import signal
 import socket
@@ -19,6 +21,12 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 def skip(reason):
     print(f"skipped: {reason}")
     sys.exit(SKIPPED)
+
+
+def is_sanitized():
+    """Whether the programs are those of a build with sanitizers, whose memory is another one."""
+    cache = pathlib.Path(os.environ.get("COUPLER_BUILD_DIR", ""), "CMakeCache.txt").read_text(encoding="utf-8")
+    return re.search(r"^COUPLER_SANITIZE:\w+=.+$", cache, re.M) is not None
 
 
 class Checks:

@@ -48,7 +48,7 @@ def refused_with_the_remedy(command, checks):
     done = subprocess.run([*ORDINARY, *command], stderr=subprocess.PIPE, text=True, timeout=peer.PATIENCE, check=False)
     checks.equal("exit status where it is refused", done.returncode, 3)
     wanted = ["LimitRTPRIO=11 and RestrictRealtime=no", "ulimit -r 11"]
-    if not is_sanitized():
+    if not peer.is_sanitized():  # the sanitizers make mlockall() do nothing: they could not map their shadow memory
         wanted += ["LimitMEMLOCK=infinity", "ulimit -l unlimited"]
     for remedy in wanted:
         checks.equal(f"it tells {remedy}", remedy in done.stderr, True)
@@ -63,16 +63,10 @@ def serves_ahead_of_others(command, checks):
             who = "the first process" if i == 0 else f"process {i + 1}"
             checks.equal(f"policy of {who}", os.sched_getscheduler(pid), os.SCHED_FIFO | os.SCHED_RESET_ON_FORK)
             checks.equal(f"priority of {who}", os.sched_getparam(pid).sched_priority, IO_PROCESS if i else SUPERVISOR)
-            if not is_sanitized():
+            if not peer.is_sanitized():
                 status = pathlib.Path(f"/proc/{pid}/status").read_text()
                 checks.equal(f"{who} has locked memory", int(re.search(r"VmLck:\s+(\d+)", status)[1]) > 0, True)
         checks.equal("exit status", node.stop(), 0)
-
-
-def is_sanitized():
-    """The sanitizers make mlockall() do nothing: they could not map their shadow memory."""
-    cache = pathlib.Path(os.environ.get("COUPLER_BUILD_DIR", ""), "CMakeCache.txt").read_text()
-    return re.search(r"^COUPLER_SANITIZE:\w+=.+$", cache, re.M) is not None
 
 
 main()

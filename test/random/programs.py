@@ -4,18 +4,18 @@ pymodbus or the firmware puts there is what the client has.
 
     programs.py BIN TEST_BIN MAPS
 """
-import json
 import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "peers"), str(HERE.parent / "ros")]
 
-from peer import PATIENCE, Checks, pymodbus_client, silent_port, skip  # noqa: E402  pylint: disable=wrong-import-position
+# pylint: disable=wrong-import-position
+from peer import PATIENCE, Checks, silent_port, skip  # noqa: E402
+from random_map import Map, PymodbusClient, masked  # noqa: E402
 
 try:
     from support.peer import Peer
@@ -74,65 +74,6 @@ class Program:
             self.child.wait()
             raise
         self._reader.join(PATIENCE)
-
-
-class PymodbusClient:
-    """pymodbus; registers as the vectors have them."""
-
-    def __init__(self, port):
-        self.client = pymodbus_client(port)
-        if not self.client.connect():
-            raise SystemExit("FAILED: pymodbus does not connect")
-
-    def get(self, point):
-        table, at, size = point["table"], point["address"], len(point["cases"][0]["raw"])
-        answer = getattr(self.client, "read_" + table)(at, size, 1)
-        if answer.isError():
-            return str(answer)
-        return [int(bit) for bit in answer.bits[:size]] if "bits" in point else answer.registers
-
-    def put(self, point, raw):
-        if "mask" in point:
-            raw = [self.get(point)[0] & ~int(point["mask"], 16) | raw[0]]
-        if "bits" in point:
-            return not self.client.write_coils(point["address"], [bool(bit) for bit in raw], 1).isError()
-        return not self.client.write_registers(point["address"], raw, 1).isError()
-
-
-class Map:
-    def __init__(self, coupler, path):
-        self.path, self.name = path, path.stem
-        with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([coupler, "generate", path, "--vectors", "--name", self.name, "--out", folder, "--quiet"],
-                           check=True, stdout=subprocess.DEVNULL)
-            self.points = json.loads((pathlib.Path(folder) / f"{self.name}_vectors.json").read_text())["points"]
-        text = path.read_text()
-        self.latched = {name for name in re.findall(r"^ +(\S+): \{.*latched:", text, re.M)}
-        self.counters = {name for name in re.findall(r"^ +(\S+): \{.*counter:", text, re.M)}
-        self.simulated = set(re.findall(r"^ +(\S+): \{.*line:", text, re.M)) | set(re.findall(r"\bto: (\w+)", text))
-        self.options = ["--listen", "127.0.0.1", "--port", "0"] + (["--sim"] if "line:" in text else [])
-
-    def case(self, index, number):
-        cases = self.points[index]["cases"]
-        return cases[(number + index) % len(cases)]
-
-    def raw(self, index, number):
-        """None: the case is only read, so nobody writes it."""
-        case = self.case(index, number)
-        if case.get("only"):
-            return None
-        return case["raw"] if "bits" in self.points[index] else [int(word, 16) for word in case["raw"]]
-
-    def settable(self):
-        return [(i, point) for i, point in enumerate(self.points)
-                if point["access"] != "read" and point["name"] not in self.latched]
-
-    def readable(self):
-        return [(i, point) for i, point in self.settable() if point["access"] == "read_write"]
-
-
-def masked(point, raw):
-    return [word & int(point["mask"], 16) for word in raw] if "mask" in point and isinstance(raw, list) else raw
 
 
 def client_of(bin_, tested, port):

@@ -38,7 +38,7 @@ class Changes(testing.RosTest):
     def begin(self, rate=SELDOM, timeout=60, wires="", before_node=lambda port: port):
         """`before_node` returns the port of something between the driver and the node."""
         self.map = process.write_map(MAP.format(rate=rate, timeout=timeout) + wires)
-        self.node = process.Node(self.map, free_port())
+        self.node = process.Node(self.map, port=free_port())
         self.addCleanup(lambda: self.node.end())  # pylint: disable=unnecessary-lambda
         self.port = self.node.port
         self.process = self.driver(f"_map:={self.map}", f"_port:={before_node(self.port)}")
@@ -143,7 +143,7 @@ class Changes(testing.RosTest):
         online = self.topic("/cell/online", Bool)
         self.node.end()
         online.becomes(False)
-        self.node = process.Node(self.map, self.port)
+        self.node = process.Node(self.map, port=self.port)
         online.becomes(True)
         self.set_lamp(True)
         self.lamp.becomes(True)

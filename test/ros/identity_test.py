@@ -100,7 +100,7 @@ class Identity(testing.RosTest):
         port = free_port()
         driver = self.driver("_address:=127.0.0.1", f"_port:={port}")
         driver.wait_for("waiting for the map of 127.0.0.1")
-        node = process.Node(process.write_map(press()), port)
+        node = process.Node(process.write_map(press()), port=port)
         self.addCleanup(node.end)
         self.assert_works(driver)
 
@@ -113,7 +113,7 @@ class Identity(testing.RosTest):
         self.assertIn(f"waiting for the map of 127.0.0.1 port {port}", entry.message)
         self.assertEqual(entry.hardware_id, f"127.0.0.1:{port} unit 1")
         self.assertEqual(set(diagnostics.known), {"map"})
-        node = process.Node(process.write_map(press()), port)
+        node = process.Node(process.write_map(press()), port=port)
         self.addCleanup(node.end)
         diagnostics.says(f"read from 127.0.0.1 port {port}", "map", DiagnosticStatus.OK)
         diagnostics.says("online", "press connection", DiagnosticStatus.OK)

@@ -50,7 +50,7 @@ class OtherClockTest(testing.RosTest):
     def begin(self, **clock):
         self.doCleanups()  # of the clock before
         path = process.write_map(MAP)
-        node = process.Node(path, free_port())
+        node = process.Node(path, port=free_port())
         self.addCleanup(node.end)
         self.clock = OtherClock(node.port, **clock)
         self.addCleanup(self.clock.stop)

@@ -168,7 +168,7 @@ class Failures(ScheduleTest):
 class ByTheNode(ScheduleTest):
     def begin(self, by=BY_NODE, text=MAP):
         self.map = process.write_map(text)
-        self.node = process.Node(self.map, free_port())
+        self.node = process.Node(self.map, port=free_port())
         self.addCleanup(lambda: self.node.end())  # pylint: disable=unnecessary-lambda
         self.start(self.node.port, by, text)
         self.lamp = self.topic("/cell/lamp", Bool)

@@ -66,7 +66,7 @@ class Tls(testing.RosTest):
         self.publisher("/press/speed/write", UInt16).publish(4711)
         self.topic("/press/speed", UInt16).wait_for(lambda value: value == 4711)
         self.publisher("/press/valve/write", Bool).publish(True)
-        driver.wait_for("write to valve: exception 01")
+        driver.wait_for("write to valve: exception 01 (illegal function): this client has no right to write it")
 
     def test_a_role_that_may_read_some_points_gets_those(self):
         driver = self.start("screen")

@@ -8,7 +8,7 @@ from std_msgs.msg import Bool, Int16
 from support import process, testing
 from support.peer import Peer
 from support.ports import free_port
-from support.ros import polled
+from support.ros import wait_for_graph
 from support.topics import Subscription, qos, types, wait_until
 
 INFO, WARN = 20, 30  # of rcl_interfaces/msg/Log, whose constants are of another type than its field
@@ -62,11 +62,11 @@ class Spellings(CallTest):
 
     def test_the_nodes_name_is_given_as_to_any_node(self):
         self.assert_drives("--map", self.map, "--ros-args", "-r", "__node:=io", "--remap", "__ns:=/cell", topic="/cell/called/level")
-        wait_until(lambda: ("io", "/cell") in polled.get_node_names_and_namespaces(), "the node")
+        wait_for_graph(lambda node: ("io", "/cell") in node.get_node_names_and_namespaces(), "the node")
 
     def test_it_may_have_an_enclave(self):
         self.assert_drives("--map", self.map, "--ros-args", "--enclave", "/cell/io")
-        wait_until(lambda: ("called_driver", "/", "/cell/io") in polled.get_node_names_and_namespaces_with_enclaves(), "the node")
+        wait_for_graph(lambda node: ("called_driver", "/", "/cell/io") in node.get_node_names_and_namespaces_with_enclaves(), "the node")
 
 
 class Wrong(CallTest):
@@ -173,10 +173,10 @@ class Logs(CallTest):
 
     def test_rosout_can_be_left_out_and_the_terminal_stays(self):
         self.assert_drives("--map", self.map, "--ros-args", "--disable-rosout-logs")
-        wait_until(lambda: "called_driver" in polled.get_node_names(), "the node")
+        wait_for_graph(lambda node: "called_driver" in node.get_node_names(), "the node")
         published = []
-        wait_until(lambda: published.append(dict(polled.get_publisher_names_and_types_by_node("called_driver", "/"))) or
-                   "/diagnostics" in published[-1], "its topics")
+        wait_for_graph(lambda node: published.append(dict(node.get_publisher_names_and_types_by_node("called_driver", "/"))) or
+                       "/diagnostics" in published[-1], "its topics")
         self.assertNotIn("/rosout", published[-1])
 
     def test_the_terminal_can_be_left_out_and_rosout_stays(self):

@@ -10,7 +10,7 @@ from support.parameters import Parameters
 from support.patience import NO_TIMEOUT
 from support.peer import Peer
 from support.ports import free_port
-from support.ros import polled
+from support.ros import polled, wait_for_graph
 from support.topics import Subscription, qos, types, wait_until
 
 MAP = """
@@ -40,16 +40,14 @@ SERVICES = {"write": "coupler_driver/srv/Write", "read": "coupler_driver/srv/Rea
             "schedule": "coupler_driver/srv/Schedule", "lamp/set": "std_srvs/srv/SetBool"}
 
 
-def nodes():
-    return {("" if space == "/" else space) + "/" + name for name, space in polled.get_node_names_and_namespaces()}
-
-
 class GraphTest(testing.RosTest):
     def map(self, name="shown", port=None):
         return process.write_map(MAP.format(name=name, port=port or free_port(), timeout=NO_TIMEOUT))
 
-    def appears(self, node):
-        wait_until(lambda: node in nodes(), f"{node} among {nodes()}")
+    @staticmethod
+    def appears(node):
+        space, name = node.rsplit("/", 1)
+        wait_for_graph(lambda asked: (name, space or "/") in asked.get_node_names_and_namespaces(), node)
 
 
 class Names(GraphTest):
@@ -120,10 +118,11 @@ class Waiting(GraphTest):
         driver = self.driver("--address", "127.0.0.1", "--port", port)
         node = f"coupler_127_0_0_1_{port}_driver"
         driver.wait_for("waiting for the map of 127.0.0.1")
-        served = process.Node(process.write_map("name: press\nmapping:\n  holding_registers: {speed: {address: 7, type: INT}}\n"), port)
+        served = process.Node(process.write_map("name: press\nmapping:\n  holding_registers: {speed: {address: 7, type: INT}}\n"), port=port)
         self.addCleanup(served.end)
         self.topic("/press/speed", Int16).wait_for(lambda value: value == 0)
-        wait_until(lambda: [info.node_name for info in polled.get_publishers_info_by_topic("/press/speed")] == [node], "its node")
+        wait_for_graph(lambda asked: [info.node_name for info in asked.get_publishers_info_by_topic("/press/speed")] == [node],
+                       "its node")
         self.assertEqual(Parameters(f"/{node}").get("name", "port"), ["press", port])
 
 
@@ -136,7 +135,7 @@ class Rivals(GraphTest):
         other = self.driver("--map", self.map(port=peer.port), "--ros-args", "-r", "__node:=other")
         one.wait_for("/other also publishes /shown/online: two drivers write to the same device")
         other.wait_for("/shown_driver also publishes /shown/online: two drivers write to the same device")
-        wait_until(lambda: "/other" in nodes(), "both")
+        self.appears("/other")
         self.assertEqual(one.output.count("/other also publishes /shown/online"), 1)
 
     def test_two_drivers_of_one_name_notice_each_other(self):

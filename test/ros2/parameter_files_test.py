@@ -6,7 +6,6 @@ from support import process, testing
 from support.parameters import Parameters, write_parameters
 from support.peer import Peer
 from support.ports import free_port
-from support.ros import polled
 from support.topics import wait_until
 
 MAP = """
@@ -130,7 +129,6 @@ class Names(FilesTest):
             driver = process.Driver("--map", self.map(), "--ros-args", "--params-file", path)
             self.assertIn(driver.wait(), (1, 2), driver.output)
             self.assertIn(path, driver.output)
-            self.assertNotIn("filed_driver", dict(polled.get_node_names_and_namespaces()))
 
 
 class Given(FilesTest):

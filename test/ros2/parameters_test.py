@@ -8,7 +8,7 @@ from support import process, testing
 from support.parameters import (BOOL, REAL, SERVICES, TEXT, TEXTS, UNSET, WHOLE, Parameters, parameter, value_of)
 from support.peer import Peer
 from support.ports import free_port
-from support.ros import polled
+from support.ros import polled, wait_for_graph
 from support.topics import Subscription, qos, wait_until
 
 MAP = """
@@ -23,7 +23,7 @@ mapping:
 SETTINGS = {"map": TEXT, "maps": TEXTS, "name": TEXT, "address": TEXT, "port": WHOLE, "unit": WHOLE,
             "framing": TEXT, "serial": TEXT, "baud": WHOLE, "parity": TEXT, "stop_bits": WHOLE, "rs485": TEXT,
             "certificate": TEXT, "key": TEXT, "ca": TEXT, "tls_name": TEXT, "pin": TEXT, "rate": REAL,
-            "timeout": REAL, "verify": TEXT, "poll": TEXT, "use_sim_time": BOOL}
+            "timeout": REAL, "verify": TEXT, "poll": TEXT, "record": TEXT, "panel": WHOLE, "use_sim_time": BOOL}
 OF_A_DEVICE = [name for name in SETTINGS if name not in ("map", "maps", "use_sim_time")]
 
 
@@ -37,7 +37,7 @@ class ParametersTest(testing.RosTest):
         self.map = process.write_map(MAP.format(name="given", port=port or self.peer.port))
         program = self.driver("--map", self.map, *arguments)
         program.wait_for("connected")
-        wait_until(lambda: "given_driver" in polled.get_node_names(), "the node")
+        wait_for_graph(lambda node: "given_driver" in node.get_node_names(), "the node")
         return program
 
 
@@ -47,12 +47,11 @@ class Declared(ParametersTest):
         wanted = {f"/given_driver/{name}": [f"rcl_interfaces/srv/{kind.__name__}"] for name, kind in SERVICES.items()}
         wanted["/given_driver/get_type_description"] = ["type_description_interfaces/srv/GetTypeDescription"]
 
-        def of_the_node(kind):
-            return dict(getattr(polled, f"get_{kind}_names_and_types_by_node")("given_driver", "/")).items()
-
-        wait_until(lambda: wanted.items() <= of_the_node("service"), "the services")
+        wait_for_graph(lambda node: wanted.items() <= dict(node.get_service_names_and_types_by_node("given_driver", "/")).items(),
+                       "the services")
         wanted = {"/parameter_events": ["rcl_interfaces/msg/ParameterEvent"], "/rosout": ["rcl_interfaces/msg/Log"]}
-        wait_until(lambda: wanted.items() <= of_the_node("publisher"), "the topics")
+        wait_for_graph(lambda node: wanted.items() <= dict(node.get_publisher_names_and_types_by_node("given_driver", "/")).items(),
+                       "the topics")
 
     def test_each_setting_is_listed_and_described_with_its_own_type(self):
         self.start()
@@ -143,8 +142,8 @@ class Changed(ParametersTest):
         self.start()
         events = Subscription("/parameter_events", ParameterEvent, qos(1000))
         self.addCleanup(events.close)
-        wait_until(lambda: any(info.node_name == "given_driver" for info in polled.get_publishers_info_by_topic("/parameter_events")),
-                   "the publisher")
+        wait_for_graph(lambda node: any(info.node_name == "given_driver"
+                                        for info in node.get_publishers_info_by_topic("/parameter_events")), "the publisher")
         wait_until(lambda: events.publishers >= 1, "the publisher")
         self.parameters.set(parameter("use_sim_time", BOOL, True))
         event = events.wait_for(lambda one: one.node == "/given_driver" and one.changed_parameters)

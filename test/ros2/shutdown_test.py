@@ -11,7 +11,6 @@ from support.device import FAILURE, Device, Refuse
 from support.patience import NO_TIMEOUT, PATIENCE
 from support.peer import Peer
 from support.ports import free_port
-from support.ros import polled
 from support.topics import types, wait_until
 
 MAP = f"""
@@ -44,7 +43,7 @@ class Shutdown(testing.RosTest):
                 driver.wait_for("connected")
                 self.topic("/shutdown/lamp", Bool).next()
                 self.assert_ends_soon(driver, by=by)
-                wait_until(lambda: "shutdown_driver" not in polled.get_node_names(), "the good-bye")
+                wait_until(lambda: "/shutdown/online" not in types(), "the good-bye")
 
     def test_while_it_offers_many_topics(self):
         points = "".join(f"    p{i}: {i}\n" for i in range(300))

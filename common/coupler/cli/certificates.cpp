@@ -83,10 +83,11 @@ tl::expected<tls::Subject, std::string> node_of(const std::string& text) {
   }
   if (subject.hosts.empty()) subject.hosts.push_back(name);
   for (std::string& host : subject.hosts) {
-    if (const auto parsed = parse_host(host); !parsed)
+    const auto parsed = parse_host(host);
+    if (!parsed)
       return tl::unexpected(
           fmt::format("--node {}: '{}' {}; {}", text, host, parsed.error().what, parsed.error().remedy));
-    host = shortest(host);
+    host = shortest(std::string(*parsed));  // without brackets
   }
   return subject;
 }
@@ -120,20 +121,44 @@ tl::expected<void, std::string> make_folder(const fs::path& folder, bool is_secr
   return {};
 }
 
-/// DIR/authority, made if it is not there.
-tl::expected<tls::Pem, std::string> authority_in(const fs::path& folder) {
+/// Whether what a subject's folder has is of DIR/authority, which may have been put away. `authority`: its
+/// certificate; empty: it is not there.
+tl::expected<void, std::string> expect_authority(const fs::path& own, const std::string& authority) {
+  if (!fs::exists(own / "authority.pem")) return {};
+  const auto text = read_pem_file("authority's certificate", "authority.pem", own.string());
+  if (!text) return tl::unexpected(text.error());
+  if (!authority.empty() && text->find(authority) != std::string::npos) return {};
+  const std::string other = (own.parent_path() / "authority").string();
+  return tl::unexpected(
+      authority.empty()
+          ? fmt::format("{} is of an authority that is not here; bring back {}, or begin another folder",
+                        own.string(), other)
+          : fmt::format("{} is of another authority than {}; begin another folder", own.string(), other));
+}
+
+/// DIR/authority, made if it is not there, and if nothing of these subjects is of another one.
+tl::expected<tls::Pem, std::string> authority_in(const fs::path& folder, tls::KeyKind kind,
+                                                 const std::vector<tls::Subject>& subjects) {
   const fs::path own = folder / "authority";
-  if (fs::exists(own / "authority.pem")) {
+  const bool is_there = fs::exists(own / "authority.pem");
+  std::string text;
+  if (is_there) {
     auto certificate = read_pem_file("authority's certificate", "authority.pem", own.string());
     if (!certificate) return tl::unexpected(std::move(certificate).error());
+    text = *std::move(certificate);
+  }
+  for (const tls::Subject& subject : subjects)
+    if (auto done = expect_authority(folder / subject.name, text); !done)
+      return tl::unexpected(std::move(done).error());
+  if (is_there) {
     auto key = read_pem_file("authority's key", "authority.key", own.string(), true);
     if (!key) return tl::unexpected(std::move(key).error());
-    return tls::Pem{*std::move(certificate), *std::move(key)};
+    return tls::Pem{std::move(text), *std::move(key)};
   }
   fs::path place = fs::absolute(folder).lexically_normal();
   if (place.filename().empty()) place = place.parent_path();  // it was written with a slash at its end
   constexpr std::size_t longest = 48;                         // with the words before it 64 bytes at most
-  auto made = tls::make_authority("Authority of " + place.filename().string().substr(0, longest));
+  auto made = tls::make_authority("Authority of " + place.filename().string().substr(0, longest), kind);
   if (!made) return made;
   if (auto done = make_folder(own, true); !done) return tl::unexpected(std::move(done).error());
   if (auto done = write_new(own / "authority.key", made->key, true); !done)
@@ -269,7 +294,7 @@ Exit certificates(const Arguments& arguments) {
   const auto kind = arguments.rsa ? tls::KeyKind::rsa : tls::KeyKind::p256;
   tls::Pem authority;
   if (!arguments.csr) {
-    auto found = authority_in(arguments.folder);
+    auto found = authority_in(arguments.folder, kind, subjects);
     if (!found) return complain("certificates", bad_input, found.error(), {});
     authority = *std::move(found);
   }
@@ -297,8 +322,9 @@ void add_certificates(Program& program, Exit& exit) {
                   "A node, and the DNS names and IP addresses by which clients reach it (default: its name)")
       .type_name("NAME[:HOST,…]");
   command.add_option("--client", arguments->clients, "A client, and its role").type_name("NAME[:ROLE]");
-  command.add_flag("--rsa", arguments->rsa,
-                   "Keys for peers that know no elliptic curves: RSA with 3072 bits");
+  command.add_flag(
+      "--rsa", arguments->rsa,
+      "Keys for peers that know no ECDSA: RSA with 3072 bits; also the authority's, if it is made now");
   command.add_flag(
       "--csr", arguments->csr,
       "Requests for an authority that the plant has, in place of certificates: new ones at each call");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "coupler/cli/certificate_check.hpp"
 #include "coupler/cli/commands.hpp"
 #include "coupler/cli/map_argument.hpp"
 #include "coupler/cli/report.hpp"
@@ -19,11 +20,29 @@ struct Arguments {
   bool locked = false;
 };
 
+/// A map whose certificates do not fit is none.
+std::vector<std::string> take_certificates(const std::string& file, MapArgument& argument) {
+  LoadResult& loaded = argument.loaded;
+  if (!loaded.map) return {};
+  CertificateFindings findings = check_certificates(loaded.map->map());
+  for (const std::string& problem : findings.problems) {
+    const std::size_t end = problem.find("; ");
+    loaded.diagnostics.push_back(
+        {Diagnostic::Severity::error, file, 0, 0, problem.substr(0, end),
+         end == std::string::npos ? "docs/security.md has the recipe" : problem.substr(end + 2)});
+  }
+  if (!findings.problems.empty()) {
+    loaded.map = nullptr;
+    argument.exit = bad_input;
+  }
+  return findings.lines;
+}
+
 Exit check(const Arguments& arguments) {
   Exit exit = ok;
   for (const std::string& file : arguments.maps) {
-    const MapArgument argument =
-        get_map(file, arguments.tls, arguments.locked ? LockUse::exact : LockUse::renew);
+    MapArgument argument = get_map(file, arguments.tls, arguments.locked ? LockUse::exact : LockUse::renew);
+    const std::vector<std::string> certificates = take_certificates(file, argument);
     const LoadResult& loaded = argument.loaded;
     exit = std::max(exit, argument.exit);
     if (arguments.json) {
@@ -31,8 +50,10 @@ Exit check(const Arguments& arguments) {
     } else {
       print(loaded.diagnostics);
       std::fputs(lock_report(loaded.lock).c_str(), stdout);
-      if (loaded.map) std::puts(summary(file, loaded.map->map()).c_str());
-      if (loaded.map) std::fputs(rights_table(loaded.map->map()).c_str(), stdout);
+      if (!loaded.map) continue;
+      std::puts(summary(file, loaded.map->map()).c_str());
+      std::fputs(rights_table(loaded.map->map()).c_str(), stdout);
+      for (const std::string& line : certificates) std::puts(line.c_str());
     }
   }
   return exit;
@@ -46,7 +67,7 @@ void add_check(Program& program, Exit& exit) {
   const auto arguments = std::make_shared<Arguments>();
   command
       .add_option("MAP", arguments->maps,
-                  "YAML or JSON files; - is standard input; tcp://HOST[:PORT][/UNIT] is a node")
+                  "YAML or JSON files; - is standard input; tcp:// or tls://HOST[:PORT][/UNIT] is a node")
       .required()
       .type_name("");
   command.add_flag("--json", arguments->json,

@@ -38,9 +38,11 @@ void add_export(Program& program, Exit& exit);
 void add_generate(Program& program, Exit& exit);
 void add_import(Program& program, Exit& exit);
 void add_init(Program& program, Exit& exit);
+void add_panel(Program& program, Exit& exit);
 void add_pin(Program& program, Exit& exit);
 void add_plan(Program& program, Exit& exit);
 void add_probe(Program& program, Exit& exit);
+void add_record(Program& program, Exit& exit);
 void add_schema(Program& program, Exit& exit);
 void add_status(Program& program, Exit& exit);
 

@@ -126,7 +126,7 @@ Exit run(const Arguments& arguments) {
                     fmt::format("'{}' is not a format that can be read", arguments.format),
                     "give one of " + names_of_formats());
   formats::ImportOptions options = arguments.options;
-  options.addressing = *parse_word<loader::Addressing>(arguments.addressing);
+  options.addressing = parse_word<loader::Addressing>(arguments.addressing).value_or(options.addressing);
   if (!parse_columns(arguments.columns, options.columns))
     return complain("import", bad_call,
                     fmt::format("--columns '{}' is not a list of columns", arguments.columns),

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -13,6 +15,7 @@
 #include "coupler/cli/commands.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/map/owned_map.hpp"
+#include "coupler/map/tls_texts.hpp"
 
 namespace coupler::cli {
 
@@ -27,6 +30,19 @@ struct NoLiveMap {
 /// bad_input: a foreign coupler, or a map that does not load; failed: the network, or no libmodbus.
 tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where);
 
+struct FoundMap {
+  MapPtr map;
+  Connection where;  ///< where the device has answered, without TLS; a view of the place or of the map
+};
+
+/// A map for a device of which nothing is known but its place, as node_argument() completes it: the one that
+/// it serves, else one with the preset of a coupler that its registers tell, else a draft of all that a scan
+/// finds, which may take minutes. Says on standard error, as `command`, which of them it is. Never writes to
+/// the device, and leaves no connection behind. bad_call: no place; bad_input: its map does not load; failed:
+/// the network, or Ctrl-C.
+tl::expected<FoundMap, NoLiveMap> map_of_unknown_device(std::string_view command, const std::string& place,
+                                                        const TlsTexts& tls);
+
 struct DumpOptions {
   std::vector<bool> chosen;                         ///< by point
   std::optional<std::chrono::nanoseconds> every{};  ///< nullopt: once
@@ -37,5 +53,29 @@ struct DumpOptions {
 /// until SIGINT or SIGTERM. Never writes to the device. ok: every readable point was read, or the reading was
 /// repeated; failed: the device is not reachable, or some points were not read.
 Exit dump(const Map& map, const DumpOptions& options);
+
+struct RecordOptions {
+  std::string file;                             ///< "-": standard output
+  bool csv = false;                             ///< in place of JSON lines
+  std::uint64_t keep = std::uint64_t{1} << 30;  ///< bytes of all its files together
+  bool sync = false;                            ///< what was recorded outlasts a loss of power
+};
+
+/// Records every change of the device at `map.connection` until SIGINT or SIGTERM. Never writes to the
+/// device. failed: the device was never reached; bad_call: the file cannot be written.
+Exit record(const Map& map, const RecordOptions& options);
+
+struct PanelOptions {
+  std::string listen = "127.0.0.1";  ///< IP address
+  std::uint16_t port = 0;            ///< 0: any free one
+  std::string name;                  ///< that browsers may call this machine besides its address; empty: none
+  std::string certificate;           ///< PEM file for HTTPS; empty: HTTP
+  std::string key;                   ///< its key's
+  bool write = false;                ///< pages may write
+};
+
+/// Serves a live page of the device at `map.connection` until SIGINT or SIGTERM. Writes what pages ask for
+/// only. bad_call: it cannot listen there, or not with that certificate.
+Exit panel(const Map& map, const PanelOptions& options);
 
 }  // namespace coupler::cli

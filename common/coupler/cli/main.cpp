@@ -26,9 +26,11 @@ int main(int argc, char** argv) {
   coupler::cli::add_generate(program, exit);
   coupler::cli::add_import(program, exit);
   coupler::cli::add_init(program, exit);
+  coupler::cli::add_panel(program, exit);
   coupler::cli::add_pin(program, exit);
   coupler::cli::add_plan(program, exit);
   coupler::cli::add_probe(program, exit);
+  coupler::cli::add_record(program, exit);
   coupler::cli::add_schema(program, exit);
   coupler::cli::add_status(program, exit);
   if (const auto done = program.parse(argc, argv)) return *done;

@@ -15,8 +15,10 @@
 #include <fmt/format.h>
 #include <tl/expected.hpp>
 
+#include "coupler/base/starts_with.hpp"
 #include "coupler/cli/live_device.hpp"
 #include "coupler/generate/output.hpp"
+#include "coupler/map/network.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -32,17 +34,50 @@ MapArgument no_map(Exit exit, const std::string& argument, std::string what, std
 MapArgument from_node(const std::string& argument, const TlsTexts& tls) {
   const auto node = parse_node_address(argument);
   if (!node) return no_map(bad_call, argument, node.error().what, node.error().remedy);
-  if (!node->tls && any_given(tls))
-    return no_map(bad_call, argument, "certificates are for a place with TLS",
-                  "write tls:// in place of tcp://");
   MapArgument found{{}, ok, *node};
   if (const auto problem = use_tls_options(*node, tls, found.tls))
-    return no_map(bad_call, argument, "tls:// needs certificates", *problem);
+    return no_map(bad_call, argument, problem->what, problem->remedy);
   Connection connection = found_at({}, *node).connection;
   connection.tls = found.tls;
   auto map = fetch_live_map(connection);
   if (!map) return no_map(map.error().exit, argument, map.error().what, map.error().remedy);
   found.loaded.map = std::move(*map);
+  return found;
+}
+
+bool ends_in(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+/// A file that is missing is none: only what can be a place, and no path or file of a map.
+bool can_be_a_device(const std::string& argument) {
+  if (names_a_node(argument)) return true;
+  std::error_code ignored;
+  const auto file = std::filesystem::status(argument, ignored);
+  if (std::filesystem::exists(file)) return std::filesystem::is_character_file(file);
+  for (const std::string_view end : {".yaml", ".yml", ".json"})
+    if (ends_in(argument, end)) return false;
+  if (starts_with(argument, "/")) return starts_with(argument, "/dev/");
+  if (argument.find('/') == std::string::npos) return argument != "-";
+  return parse_node_address(node_argument(argument)).has_value();
+}
+
+MapArgument find_map(std::string_view command, const std::string& argument, const TlsTexts& tls) {
+  const auto place = std::make_shared<const std::string>(node_argument(argument));
+  const auto node = parse_node_address(*place);
+  if (!node) return no_map(bad_call, argument, node.error().what, node.error().remedy);
+  MapArgument found{{}, ok, *node, {}, place};
+  if (const auto problem = use_tls_options(*node, tls, found.tls))
+    return no_map(bad_call, argument, problem->what, problem->remedy);
+  auto map = map_of_unknown_device(command, *place, tls);
+  if (!map) {
+    const bool is_name = !names_a_node(argument) && !node->serial.present() && !is_ip_address(node->host);
+    const std::string what = (is_name ? "no such file, and as a device: " : "") + map.error().what;
+    return no_map(map.error().exit, argument, what, map.error().remedy);
+  }
+  found.loaded.map = std::move(map->map);
+  found.node->unit = map->where.unit;
+  found.node->serial = map->where.serial;
   return found;
 }
 
@@ -79,9 +114,9 @@ class Scratch {
   std::string content() const {
     std::string text;
     std::array<char, 4096> piece{};
-    std::rewind(file_);
-    while (const std::size_t got = std::fread(piece.data(), 1, piece.size(), file_))
-      text.append(piece.data(), got);
+    if (std::fseek(file_, 0, SEEK_SET) != 0) return text;
+    while (std::feof(file_) == 0 && std::ferror(file_) == 0)
+      text.append(piece.data(), std::fread(piece.data(), 1, piece.size(), file_));
     return text;
   }
 
@@ -156,6 +191,10 @@ Map MapArgument::map() const {
 MapArgument get_map(const std::string& argument, const TlsTexts& tls, LockUse use) {
   if (names_a_node(argument)) return from_node(argument, tls);
   return from_file(use == LockUse::renew ? load_and_renew_lock(argument) : load_map_file(argument, use));
+}
+
+MapArgument get_map_or_find(std::string_view command, const std::string& argument, const TlsTexts& tls) {
+  return can_be_a_device(argument) ? find_map(command, argument, tls) : get_map(argument, tls);
 }
 
 MapArgument get_version(const std::string& argument, const TlsTexts& tls) {

@@ -31,10 +31,14 @@ std::optional<std::string> tls_problem(const Tls& tls) {
   return std::nullopt;
 }
 
-std::optional<std::string> use_tls_options(const NodeAddress& where, const TlsTexts& arguments, Tls& tls) {
+std::optional<TlsProblem> use_tls_options(const NodeAddress& where, const TlsTexts& arguments, Tls& tls) {
+  if (!where.tls && any_given(arguments))
+    return TlsProblem{"certificates are for a place with TLS", "write tls:// before the host"};
   if (!where.tls) return std::nullopt;
   overlay(tls, arguments.view());
-  return tls_problem(tls);
+  const auto missing = tls_problem(tls);
+  if (!missing) return std::nullopt;
+  return TlsProblem{"tls:// needs certificates", *missing};
 }
 
 }  // namespace coupler::cli

@@ -16,11 +16,15 @@ void add_tls_options(command_line::Command& command, TlsTexts& arguments);
 
 bool any_given(const TlsTexts& arguments);
 
+struct TlsProblem {
+  std::string what;
+  std::string remedy;
+};
+
 /// What a place with tls:// misses, and what to do; nullopt: nothing.
 std::optional<std::string> tls_problem(const Tls& tls);
 
-/// If the place is one with tls://: puts the options in the place of what `tls` says, and returns
-/// tls_problem().
-std::optional<std::string> use_tls_options(const NodeAddress& where, const TlsTexts& arguments, Tls& tls);
+/// Puts the options in the place of what `tls` says. nullopt: the two and the place fit together.
+std::optional<TlsProblem> use_tls_options(const NodeAddress& where, const TlsTexts& arguments, Tls& tls);
 
 }  // namespace coupler::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // In place of coupler/host/cli in a build without libmodbus.
 #include <string>
+#include <string_view>
 
 #include "coupler/cli/live_device.hpp"
 
@@ -22,8 +23,18 @@ tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& /*where*/) {
   return tl::make_unexpected(NoLiveMap{failed, what, std::string(remedy) + ", or give the map's file"});
 }
 
+tl::expected<FoundMap, NoLiveMap> map_of_unknown_device(std::string_view /*command*/,
+                                                        const std::string& /*place*/,
+                                                        const TlsTexts& /*tls*/) {
+  return tl::make_unexpected(NoLiveMap{failed, what, remedy});
+}
+
 Exit dump(const Map& /*map*/, const DumpOptions& /*options*/) {
   return complain("dump", failed, what, remedy);
+}
+
+Exit record(const Map& /*map*/, const RecordOptions& /*options*/) {
+  return complain("record", failed, what, remedy);
 }
 
 #ifdef COUPLER_WITH_TLS

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// In place of certificates.cpp and coupler/host/cli/pin.cpp in a build without OpenSSL.
+// In place of certificates.cpp, certificate_check.cpp and coupler/host/cli/pin.cpp in a build without
+// OpenSSL.
 #include <string>
 
+#include "coupler/cli/certificate_check.hpp"
 #include "coupler/cli/commands.hpp"
 
 namespace coupler::cli {
@@ -24,6 +26,11 @@ void add_certificates(Program& program, Exit& exit) {
 
 void add_pin(Program& program, Exit& exit) {
   add_absent(program, exit, "pin", "Print the pin of a device's certificate");
+}
+
+CertificateFindings check_certificates(const Map& map) {
+  if (!map.security.files.present() && !map.connection.tls.present()) return {};
+  return {{"  certificates are not checked: this program was built without OpenSSL 3"}, {}};
 }
 
 }  // namespace coupler::cli

@@ -70,6 +70,10 @@ Option Command::add_option(const std::string& name, std::optional<std::uint16_t>
                            const std::string& help) {
   return Option(app_->add_option(name, value, help));
 }
+Option Command::add_option(const std::string& name, std::optional<std::string>& value,
+                           const std::string& help) {
+  return Option(app_->add_option(name, value, help));
+}
 Option Command::add_flag(const std::string& name, bool& value, const std::string& help) {
   return Option(app_->add_flag(name, value, help));
 }

@@ -29,7 +29,7 @@ class Option {
   Option excludes(Option other);
 
   // How many values there are.
-  Option optional_value();      ///< none or one
+  Option optional_value();      ///< none or one; of a number none is 0
   Option one_value();           ///< each time; of a list each gives one more
   Option no_extra_values();     ///< the same, but the help text says "..." of a list
   Option delimiter(char sign);  ///< between the values of a list
@@ -63,6 +63,7 @@ class Command {
   Option add_option(const std::string& name, double& value, const std::string& help);
   Option add_option(const std::string& name, std::uint32_t& value, const std::string& help);
   Option add_option(const std::string& name, std::optional<std::uint16_t>& value, const std::string& help);
+  Option add_option(const std::string& name, std::optional<std::string>& value, const std::string& help);
   Option add_flag(const std::string& name, bool& value, const std::string& help);
 
   /// The last lines of the help text.

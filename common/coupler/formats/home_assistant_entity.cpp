@@ -75,9 +75,8 @@ bool Entity::writes_multiple(std::string_view key, Settings& settings) {
 }
 
 std::string_view Entity::word_of(Table table) {
-  return std::find_if(std::begin(inputs), std::end(inputs),
-                      [table](const Input& i) { return i.table == table; })
-      ->word;
+  const auto* last = std::end(inputs) - 1;  // for holding registers, so that one is always found
+  return std::find_if(std::begin(inputs), last, [table](const Input& i) { return i.table == table; })->word;
 }
 
 FoundPoint Entity::point(const std::string& suffix, Table table, unsigned address, PointUse use) const {

@@ -184,7 +184,7 @@ void SimulatedMemory::repeat(const Entry& device) {
 
 unsigned SimulatedMemory::table_end(unsigned cell) const {
   if (shared_) return ends_[3];
-  return *std::find_if(std::begin(ends_), std::end(ends_), [cell](unsigned end) { return cell < end; });
+  return *std::find_if(ends_, ends_ + 3, [cell](unsigned end) { return cell < end; });
 }
 
 SimulatedPlace SimulatedMemory::place_of(const SimulatedValue& value) const {

@@ -156,13 +156,13 @@ std::string node_hooks(const Map& map, const Provenance& provenance) {
 std::string node_core(const Map& map, const Provenance& provenance) {
   const NodeMemory memory = node_memory(map);
   const WithoutMacros macros = without_macros({provenance.name});
-  return fmt::format(core_form, fmt::arg("name", provenance.name),
-                     fmt::arg("source", comment(provenance.source)), fmt::arg("version", provenance.version),
-                     fmt::arg("fingerprint", map.fingerprint), fmt::arg("identity_size", identity::size),
-                     fmt::arg("areas", memory.areas), fmt::arg("cells", memory.cells),
-                     fmt::arg("bits", memory.bits), fmt::arg("links", memory.links),
-                     fmt::arg("pulses", memory.pulses), fmt::arg("members", hook_members(map, core_style)),
-                     fmt::arg("before", macros.before), fmt::arg("after", macros.after));
+  return fmt::format(
+      core_form, fmt::arg("name", provenance.name), fmt::arg("source", comment(provenance.source)),
+      fmt::arg("version", provenance.version), fmt::arg("fingerprint", map.fingerprint),
+      fmt::arg("identity_size", std::uint16_t{identity::size}), fmt::arg("areas", memory.areas),
+      fmt::arg("cells", memory.cells), fmt::arg("bits", memory.bits), fmt::arg("links", memory.links),
+      fmt::arg("pulses", memory.pulses), fmt::arg("members", hook_members(map, core_style)),
+      fmt::arg("before", macros.before), fmt::arg("after", macros.after));
 }
 
 }  // namespace coupler::generate

@@ -110,12 +110,17 @@ std::string source_lines(int line, const SourceSnippet& source, const Style& sty
                      style.end);
 }
 
+/// What is wrong, and what to do unless `what` says that already.
+std::string message(const Diagnostic& d) {
+  return printable_lines(d.remedy.empty() ? d.what : fmt::format("{}; {}", d.what, d.remedy));
+}
+
 }  // namespace
 
 std::string to_string(const Diagnostic& d) {
   const std::string where = d.line > 0 ? fmt::format("{}:{}:{}", d.file, d.line, d.column) : d.file;
   const char* severity = d.severity == Diagnostic::Severity::error ? "error" : "warning";
-  return printable_lines(fmt::format("{}: {}: {}; {}", where, severity, d.what, d.remedy));
+  return fmt::format("{}: {}: {}", printable_lines(where), severity, message(d));
 }
 
 void quote(Diagnostics& diagnostics, std::string_view text) {
@@ -170,10 +175,9 @@ std::string render(const Diagnostic& d, Colour colour) {
   const Style& style = colour == Colour::yes ? ansi : plain;
   const bool error = d.severity == Diagnostic::Severity::error;
   const std::string file = printable(d.file);
-  std::string text = fmt::format("{}{}:{} {}{}:{} {}; {}\n", style.bold,
-                                 d.line > 0 ? fmt::format("{}:{}:{}", file, d.line, d.column) : file,
-                                 style.end, error ? style.red : style.magenta, error ? "error" : "warning",
-                                 style.end, printable_lines(d.what), printable_lines(d.remedy));
+  std::string text = fmt::format(
+      "{}{}:{} {}{}:{} {}\n", style.bold, d.line > 0 ? fmt::format("{}:{}:{}", file, d.line, d.column) : file,
+      style.end, error ? style.red : style.magenta, error ? "error" : "warning", style.end, message(d));
   text += source_lines(d.line, d.source, style);
   for (const Diagnostic::Note& note : d.notes) {
     text += fmt::format("{}{}:{}:{}:{} {}note:{} {}\n", style.bold, file, note.line, note.column, style.end,

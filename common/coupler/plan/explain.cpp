@@ -87,6 +87,15 @@ std::string explain_end(const ReadSpan& span, const Map& map) {
   return {};
 }
 
+std::string_view words_of(NotRead reason) {
+  switch (reason) {
+    case NotRead::write_only: return "write-only";
+    case NotRead::unreadable: return "in what the map calls unreadable";
+    case NotRead::too_long: return "too long for one reply";
+  }
+  return {};
+}
+
 std::string_view to_string(NotRead reason) {
   switch (reason) {
     case NotRead::write_only: return "write_only";

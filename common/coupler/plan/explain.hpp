@@ -23,5 +23,7 @@ std::string explain_end(const ReadSpan& span, const Map& map);
 
 /// "write_only" …
 std::string_view to_string(NotRead reason);
+/// The same for people: "too long for one reply".
+std::string_view words_of(NotRead reason);
 
 }  // namespace coupler::plan

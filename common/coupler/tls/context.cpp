@@ -80,9 +80,18 @@ tl::expected<void, std::string> use_own(SSL_CTX* context, const Credentials& cre
   return {};
 }
 
+/// By its name and its signature.
+bool is_of_one_of(const std::vector<CertificatePtr>& authorities, X509_CRL* list) {
+  return std::any_of(authorities.begin(), authorities.end(), [list](const CertificatePtr& authority) {
+    return X509_NAME_cmp(X509_CRL_get_issuer(list), X509_get_subject_name(authority.get())) == 0 &&
+           X509_CRL_verify(list, X509_get0_pubkey(authority.get())) == 1;
+  });
+}
+
 tl::expected<void, std::string> believe(SSL_CTX* context, const Credentials& credentials) {
   X509_STORE* store = SSL_CTX_get_cert_store(context);
-  for (const CertificatePtr& authority : read_certificates(credentials.ca)) {
+  const auto authorities = read_certificates(credentials.ca);
+  for (const CertificatePtr& authority : authorities) {
     X509_STORE_add_cert(store, authority.get());
     SSL_CTX_add_client_CA(context, authority.get());
   }
@@ -91,13 +100,21 @@ tl::expected<void, std::string> believe(SSL_CTX* context, const Credentials& cre
   if (credentials.revoked.empty()) return {};
   const BioPtr reader = reader_of(credentials.revoked);
   bool any = false;
-  while (const CrlPtr next{PEM_read_bio_X509_CRL(reader.get(), nullptr, no_password, nullptr)})
+  bool any_fits = false;  // others are of authorities between, which clients show
+  while (const CrlPtr next{PEM_read_bio_X509_CRL(reader.get(), nullptr, no_password, nullptr)}) {
     any = X509_STORE_add_crl(store, next.get()) == 1 || any;
+    any_fits = any_fits || is_of_one_of(authorities, next.get());
+  }
   ERR_clear_error();
   if (!any)
     return problem(
         "the list of revoked certificates has no PEM list ('-----BEGIN X509 CRL-----'); 'openssl crl -inform "
         "DER' converts one");
+  if (!any_fits)
+    return problem(
+        "the list of revoked certificates is of none of the authorities in 'ca', so that all of their "
+        "clients "
+        "would be refused; have it made by each of them");
   X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK | X509_V_FLAG_CRL_CHECK_ALL);
   return {};
 }
@@ -139,6 +156,16 @@ Context Context::of_stranger() {
   if (!context) throw std::bad_alloc();
   set_rules(context.get());
   return Context(Side::client, std::move(context));
+}
+
+tl::expected<Context, std::string> Context::for_strangers(const Credentials& own) {
+  ERR_clear_error();
+  ContextPtr context(SSL_CTX_new(TLS_server_method()));
+  if (!context) return problem(take_openssl_error());
+  set_rules(context.get());
+  SSL_CTX_set_verify(context.get(), SSL_VERIFY_NONE, nullptr);
+  if (auto used = use_own(context.get(), own); !used) return problem(std::move(used).error());
+  return Context(Side::server, std::move(context));
 }
 
 SslPtr Context::connection(int socket, Verification& verification) const {

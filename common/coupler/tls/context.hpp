@@ -25,6 +25,9 @@ class Context {
   /// Of a client without a certificate, which looks at that of a server.
   static Context of_stranger();
 
+  /// Of a server whose clients need no certificate, as browsers: of `own` certificate and key only.
+  static tl::expected<Context, std::string> for_strangers(const Credentials& own);
+
   /// A connection over a connected, non-blocking socket, before its handshake. Both outlive it. Throws
   /// std::bad_alloc like any container.
   SslPtr connection(int socket, Verification& verification) const;

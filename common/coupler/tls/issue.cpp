@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/tls/issue.hpp"
 
-#include <arpa/inet.h>
 #include <openssl/err.h>
 #include <openssl/pem.h>
 #include <openssl/rand.h>
 #include <openssl/rsa.h>
 #include <openssl/x509v3.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -18,6 +16,7 @@
 
 #include "coupler/credentials/role_extension.hpp"
 #include "coupler/map/network.hpp"
+#include "coupler/tls/certificate_names.hpp"
 #include "coupler/tls/verification.hpp"
 
 namespace coupler::tls {
@@ -83,19 +82,6 @@ ExtensionPtr role_extension(const std::string& role) {
   return ExtensionPtr(X509_EXTENSION_create_by_OBJ(nullptr, object.get(), 0, octets.get()));
 }
 
-/// nullopt: it is of another kind.
-std::optional<std::string> host_of(const GENERAL_NAME& name) {
-  if (name.type != GEN_DNS && name.type != GEN_IPADD) return std::nullopt;
-  const ASN1_STRING* value = name.type == GEN_DNS ? name.d.dNSName : name.d.iPAddress;
-  const auto* bytes = reinterpret_cast<const char*>(ASN1_STRING_get0_data(value));
-  const auto size = static_cast<std::size_t>(ASN1_STRING_length(value));
-  if (name.type == GEN_DNS) return std::string(bytes, size);
-  std::array<char, INET6_ADDRSTRLEN> text{};
-  if (::inet_ntop(size == 4 ? AF_INET : AF_INET6, bytes, text.data(), text.size()) == nullptr)
-    return std::nullopt;
-  return std::string(text.data());
-}
-
 using Extensions = std::vector<ExtensionPtr>;
 
 void add(Extensions& all, int which, const std::string& value, X509V3_CTX* context) {
@@ -151,8 +137,8 @@ bool sign(X509* certificate, const Extensions& extensions, X509* authority, EVP_
 
 }  // namespace
 
-tl::expected<Pem, std::string> make_authority(const std::string& name) {
-  const KeyPtr key = make_key(KeyKind::p256);
+tl::expected<Pem, std::string> make_authority(const std::string& name, KeyKind kind) {
+  const KeyPtr key = make_key(kind);
   if (!key) return failed();
   const CertificatePtr certificate = begin_certificate(name, key.get(), authority_life);
   if (!certificate) return failed();
@@ -202,14 +188,9 @@ std::optional<Subject> subject_of(const std::string& certificate) {
   const CertificatePtr parsed = certificate_of(certificate);
   ERR_clear_error();
   if (!parsed) return std::nullopt;
-  Subject subject{common_name(parsed.get()), false, {}, {}};
-  using Names = std::unique_ptr<GENERAL_NAMES, FreedBy<GENERAL_NAMES_free>>;
-  const Names names(
-      static_cast<GENERAL_NAMES*>(X509_get_ext_d2i(parsed.get(), NID_subject_alt_name, nullptr, nullptr)));
-  subject.is_node = names != nullptr;
-  for (int i = 0; names && i < sk_GENERAL_NAME_num(names.get()); ++i)
-    if (auto host = host_of(*sk_GENERAL_NAME_value(names.get(), i)))
-      subject.hosts.push_back(*std::move(host));
+  auto hosts = hosts_of(parsed.get());
+  Subject subject{common_name(parsed.get()), hosts.has_value(), {}, {}};
+  if (hosts) subject.hosts = *std::move(hosts);
   std::optional<std::string> role;
   if (!read_role(parsed.get(), role) && role) subject.role = *role;
   return subject;

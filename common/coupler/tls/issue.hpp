@@ -39,7 +39,7 @@ constexpr std::chrono::hours authority_life{24 * 365 * 20};
 constexpr std::chrono::hours certificate_life{24 * 365 * 2};
 
 /// Of a new authority. The name has at most 64 bytes.
-tl::expected<Pem, std::string> make_authority(const std::string& name);
+tl::expected<Pem, std::string> make_authority(const std::string& name, KeyKind kind = KeyKind::p256);
 
 /// A new key and its certificate, with the authority's behind it.
 tl::expected<Pem, std::string> issue(const Subject& subject, KeyKind kind, const Pem& authority);

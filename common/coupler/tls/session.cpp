@@ -25,9 +25,8 @@ void note(int is_sent, int, int content, const void*, std::size_t, SSL*, void* s
 
 }  // namespace
 
-Session::Session(SslPtr ssl, int socket, const Verification& verification)
+Session::Session(SslPtr ssl, const Verification& verification)
     : ssl_(std::move(ssl)),
-      socket_(socket),
       verification_(verification),
       socket_wants_(SSL_is_server(ssl_.get()) != 0 ? POLLIN : POLLOUT) {
   SSL_set_msg_callback(ssl_.get(), note);

@@ -28,7 +28,7 @@ class Session {
   };
 
   /// `ssl` is over a non-blocking socket; the verification is its own. Both outlive it.
-  Session(SslPtr ssl, int socket, const Verification& verification);
+  Session(SslPtr ssl, const Verification& verification);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -81,7 +81,6 @@ class Session {
   bool is_blocked(int result);
 
   SslPtr ssl_;
-  int socket_;
   const Verification& verification_;
   int plain_ = -1;
   State state_ = State::handshake;

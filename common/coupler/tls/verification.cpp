@@ -17,9 +17,9 @@
 
 #include <fmt/format.h>
 
-#include "coupler/codec/text.hpp"
 #include "coupler/credentials/role_extension.hpp"
 #include "coupler/map/security.hpp"
+#include "coupler/tls/certificate_names.hpp"
 #include "coupler/tls/openssl.hpp"
 
 namespace coupler::tls {
@@ -45,6 +45,24 @@ bool only_role_is_unknown(const X509* certificate) {
       return false;
   }
   return true;
+}
+
+/// " (it has press, 10.0.0.7)"; empty: it has none.
+std::string names_text(const X509* certificate) {
+  constexpr std::size_t most = 8;
+  std::vector<std::string> names = hosts_of(certificate).value_or(std::vector<std::string>{});
+  if (names.empty()) return {};
+  if (names.size() > most) {
+    names.resize(most);
+    names.emplace_back("more");
+  }
+  return fmt::format(" (it has {})", fmt::join(names, ", "));
+}
+
+std::string key_kind(const X509* certificate) {
+  const EVP_PKEY* const key = X509_get0_pubkey(certificate);
+  const char* const name = key == nullptr ? nullptr : EVP_PKEY_get0_type_name(key);
+  return name == nullptr ? "a key of an unknown kind" : name;
 }
 
 /// Called by OpenSSL for each error. True: it is none here.
@@ -134,10 +152,14 @@ Pin pin_of(const X509* certificate) {
   return pin;
 }
 
-std::optional<Pin> pin_in(const std::string& pem) {
-  const CertificatePtr certificate(PEM_read_bio_X509(reader_of(pem).get(), nullptr, no_password, nullptr));
-  ERR_clear_error();
-  return certificate ? std::optional(pin_of(certificate.get())) : std::nullopt;
+std::vector<PinOfKey> pins_in(const std::string& pem) {
+  std::vector<PinOfKey> pins;
+  const BioPtr reader = reader_of(pem);
+  while (const CertificatePtr next{PEM_read_bio_X509(reader.get(), nullptr, no_password, nullptr)})
+    if (pins.empty() || X509_check_ca(next.get()) == 0)
+      pins.push_back({pin_of(next.get()), key_kind(next.get())});
+  ERR_clear_error();  // the end is one
+  return pins;
 }
 
 void set_verification(SSL_CTX* context) { SSL_CTX_set_cert_verify_callback(context, verify, nullptr); }
@@ -162,20 +184,6 @@ std::optional<std::string> why_refused_now(SSL_CTX* context, X509* certificate, 
   X509_STORE_CTX_set_verify_cb(store.get(), judge);
   if (X509_verify_cert(store.get()) == 1) return std::nullopt;
   return problem_text(X509_STORE_CTX_get_error(store.get()), certificate, nullptr);
-}
-
-std::string common_name(const X509* certificate) {
-  constexpr std::size_t most_bytes = 64;
-  const X509_NAME* subject = X509_get_subject_name(certificate);
-  const int at = X509_NAME_get_index_by_NID(const_cast<X509_NAME*>(subject), NID_commonName, -1);
-  if (at < 0) return "?";
-  unsigned char* text = nullptr;
-  const int size = ASN1_STRING_to_UTF8(&text, X509_NAME_ENTRY_get_data(X509_NAME_get_entry(subject, at)));
-  if (size < 0) return "?";
-  const std::unique_ptr<unsigned char, void (*)(unsigned char*)> owner(text,
-                                                                       [](auto* p) { OPENSSL_free(p); });
-  const std::string name(reinterpret_cast<const char*>(text), static_cast<std::size_t>(size));
-  return !name.empty() && name.size() <= most_bytes && codec::is_plain_text(name) ? name : "?";
 }
 
 std::optional<std::string> read_role(const X509* certificate, std::optional<std::string>& role) {
@@ -221,8 +229,10 @@ std::string problem_text(int error, const X509* certificate, const X509* own) {
       return "'revoked' has no list of the authority that issued its certificate; add that";
     case X509_V_ERR_HOSTNAME_MISMATCH:
     case X509_V_ERR_IP_ADDRESS_MISMATCH:
-      return "its certificate is for another name or address; connect by one that it has, or give that as "
-             "'name' (an option: --tls-name)";
+      return fmt::format(
+          "its certificate is for another name or address{}; connect by one that it has, or give that as "
+          "'name' (an option: --tls-name)",
+          names_text(certificate));
     case X509_V_ERR_INVALID_PURPOSE:
       return "its certificate is for another purpose (that of a server shown by a client, or the other way "
              "round); have one issued for this side";

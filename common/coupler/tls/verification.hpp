@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace coupler::tls {
 
@@ -18,8 +19,13 @@ using Pin = std::array<std::uint8_t, 32>;  ///< SHA-256 of a certificate's DER
 std::optional<Pin> parse_pin(std::string_view text);
 std::string pin_text(const Pin& pin);
 Pin pin_of(const X509* certificate);
-/// Of the first certificate in PEM text; nullopt: there is none.
-std::optional<Pin> pin_in(const std::string& pem);
+
+struct PinOfKey {
+  Pin pin;
+  std::string key;  ///< kind: "EC", "RSA" …
+};
+/// Of the first certificate in PEM text, and of all others that are no authority's. Empty: there is none.
+std::vector<PinOfKey> pins_in(const std::string& pem);
 
 /// Whom the other side of a connection proved to be.
 struct Peer {
@@ -48,9 +54,6 @@ void set_verification(SSL_CTX* context);
 /// Whether a certificate that was believed once still is, by the authorities and lists of this context. Its
 /// time does not count. Returns why not.
 std::optional<std::string> why_refused_now(SSL_CTX* context, X509* certificate, STACK_OF(X509) * chain);
-
-/// Of a certificate's subject; "?" if it has none that can be shown.
-std::string common_name(const X509* certificate);
 
 /// The role that a certificate names, as Peer. Error: it is malformed.
 std::optional<std::string> read_role(const X509* certificate, std::optional<std::string>& role);

@@ -12,10 +12,10 @@ from attacks.framing import READ
 from attacks.waiting import dropped, until
 from client import LATE
 
-HANDSHAKES = 1000
+HANDSHAKES = 5000
 SESSIONS = 250
 BURST = 10_000
-SILENT = 300  # more than are let into their handshake at a time
+SILENT = 5000  # many more than are let into their handshake at a time
 
 
 def tcp(node):
@@ -58,7 +58,7 @@ def is_closed(connection):
     return True
 
 
-@attack("a thousand handshakes without a certificate: whoever has one is let in, and the others are answered", tls=True)
+@attack("five thousand handshakes without a certificate: whoever has one is let in, and the others are answered", tls=True)
 def uncertified_flood(node):
     made = context(node, certified=False)
 
@@ -73,7 +73,7 @@ def uncertified_flood(node):
     is_served(node)
 
 
-@attack("three hundred connections that say nothing: a client is let in beside them", tls=True)
+@attack("five thousand connections that say nothing: a client is let in beside them", tls=True)
 def silent_handshakes(node):
     with contextlib.ExitStack() as stack:
         for _ in range(SILENT):

@@ -20,6 +20,12 @@ TEST(Diagnostic, About_a_whole_file_it_has_no_place) {
             "a.yaml: error: no such file; look");
 }
 
+TEST(Diagnostic, A_text_that_says_what_to_do_stands_alone) {
+  const Diagnostic error{Severity::error, "tls://press", 0, 0, "it is for another name; give that", ""};
+  EXPECT_EQ(to_string(error), "tls://press: error: it is for another name; give that");
+  EXPECT_EQ(render(error, Colour::no), "tls://press: error: it is for another name; give that\n");
+}
+
 /// `errors` and `warnings`, in turn as long as there are both.
 Diagnostics many(int errors, int warnings) {
   Diagnostics all;

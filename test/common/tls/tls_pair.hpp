@@ -67,9 +67,9 @@ struct TlsPair {
           Verification of_client = for_server("press"))
       : server_verification(std::move(of_server)),
         client_verification(std::move(of_client)),
-        server(Context::make(Side::server, servers).value().connection(wire[0], server_verification), wire[0],
+        server(Context::make(Side::server, servers).value().connection(wire[0], server_verification),
                server_verification),
-        client(Context::make(Side::client, clients).value().connection(wire[1], client_verification), wire[1],
+        client(Context::make(Side::client, clients).value().connection(wire[1], client_verification),
                client_verification) {}
 
   static Verification for_clients() {

@@ -83,7 +83,7 @@ TEST(Verification, A_server_has_the_name_or_address_by_which_it_was_reached) {
     EXPECT_EQ(problems_of(node, client, TlsPair::for_server(good)).second, "") << good;
   for (const char* bad : {"pres", "press.plant", "10.0.0.8"})
     EXPECT_THAT(problems_of(node, client, TlsPair::for_server(bad)).second,
-                HasSubstr("another name or address"))
+                HasSubstr("another name or address (it has press, 10.0.0.7)"))
         << bad;
 }
 
@@ -100,12 +100,24 @@ TEST(Verification, A_pin_stands_for_authority_and_name) {
   const Credentials node = credentials_of(test_node(), other);
   Verification pinned;
   pinned.server = "elsewhere";
-  pinned.pin = pin_in(node.certificate);
+  pinned.pin = pins_in(node.certificate).at(0).pin;
   ASSERT_TRUE(pinned.pin);
   // The client knows nothing of the node's authority, and the node believes the client's.
   EXPECT_EQ(problems_of(node, credentials_of(test_client()), pinned).second, "");
-  pinned.pin = pin_in(credentials_of(test_node()).certificate);
+  pinned.pin = pins_in(credentials_of(test_node()).certificate).at(0).pin;
   EXPECT_THAT(problems_of(node, credentials_of(test_client()), pinned).second, HasSubstr("pin sha256:"));
+}
+
+TEST(Verification, Every_certificate_of_a_file_that_is_no_authority_has_a_pin) {
+  const std::string both = credentials_of(test_node()).certificate +
+                           credentials_of(test_node(), test_authority(), KeyKind::rsa).certificate;
+  const auto pins = pins_in(both);
+  ASSERT_EQ(pins.size(), 2U);
+  EXPECT_EQ(pins[0].key, "EC");
+  EXPECT_EQ(pins[1].key, "RSA");
+  EXPECT_NE(pins[0].pin, pins[1].pin);
+  EXPECT_EQ(pins_in(test_authority().certificate).size(), 1U);
+  EXPECT_TRUE(pins_in("no certificate").empty());
 }
 
 TEST(Verification, Pins_have_one_form) {
@@ -130,13 +142,13 @@ TEST(Verification, Who_only_looks_sees_any_certificate) {
   looks.only_looks = true;
   Verification clients = TlsPair::for_clients();
   const Credentials node = credentials_of(test_node());
-  Session server(Context::make(Side::server, node).value().connection(wire[0], clients), wire[0], clients);
-  Session client(Context::of_stranger().connection(wire[1], looks), wire[1], looks);
+  Session server(Context::make(Side::server, node).value().connection(wire[0], clients), clients);
+  Session client(Context::of_stranger().connection(wire[1], looks), looks);
   for (int i = 0; i < 10; ++i) {
     if (client.state() == Session::State::handshake) client.shake_hands();
     if (server.state() == Session::State::handshake) server.shake_hands();
   }
-  EXPECT_EQ(looks.seen, pin_in(node.certificate));
+  EXPECT_EQ(looks.seen, pins_in(node.certificate).at(0).pin);
   EXPECT_THAT(server.problem(), HasSubstr("shows no certificate"));
 }
 

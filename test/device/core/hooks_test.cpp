@@ -22,8 +22,16 @@ struct FakeHooks : Hooks {
     calls.emplace_back(point, registers[0]);
     return calls.back() != refused;
   }
+  std::optional<modbus::Exception> refuse_read(Table table, modbus::Range range) override {
+    if (table == Table::holding_registers && range.contains(unreadable))
+      return modbus::Exception::server_device_busy;
+    return std::nullopt;
+  }
+  bool shows_identity() const noexcept override { return is_node; }
   void make_safe() override { ++safe; }
 
+  bool is_node = true;
+  std::uint32_t unreadable = 0x10000;  ///< a holding register
   std::optional<std::uint16_t> set;
   std::vector<std::pair<std::uint32_t, std::uint16_t>> calls;
   std::pair<std::uint32_t, std::uint16_t> refused{99, 0};
@@ -101,6 +109,21 @@ TEST_F(HookedNode, What_was_accepted_before_a_refusal_is_called_again_with_its_o
   EXPECT_EQ(ask(pdu(3, {0, 3})), (Pdu{3, 6, 0, 1, 0, 2, 0, 3}));
 }
 
+TEST_F(HookedNode, A_node_that_does_not_show_that_it_is_one_has_nothing_of_nodes) {
+  hooks.is_node = false;
+  Handler foreign{
+      map, Hardware(lines, nullptr, &hooked), {memory.image, statistics, watchdog, links, changes, schedule}};
+  foreign.set_machine({});
+  const auto answer = [&](const Pdu& request) {
+    std::array<std::uint8_t, modbus::max_pdu_size> reply{};
+    return Pdu(reply.data(), reply.data() + foreign.handle(request, session, now, reply));
+  };
+  EXPECT_EQ(answer(pdu(4, {0xFF00, 2})), (Pdu{0x84, 2}));
+  for (const Pdu& request : {Pdu{20, 0}, Pdu{43, 0}, Pdu{65, 0}, Pdu{66, 0}})
+    EXPECT_EQ(answer(request), (Pdu{static_cast<std::uint8_t>(request[0] | 0x80U), 1}));
+  EXPECT_EQ(answer(pdu(4, {0, 1})), (Pdu{4, 2, 0, 0}));
+}
+
 TEST_F(HookedNode, Each_for_itself_only_what_is_new_is_asked_about_and_what_is_refused_stays) {
   ASSERT_NE(write(0, {1, 2, 3, 3}), failure);
   hooks.calls.clear();
@@ -148,6 +171,20 @@ TEST_F(HookedNode, What_the_code_sets_is_read_from_the_next_request_on) {
   EXPECT_EQ(ask(pdu(4, {0, 1})), (Pdu{4, 2, 0, 0}));
   hooks.set = 0x1234;
   EXPECT_EQ(ask(pdu(4, {0, 1})), (Pdu{4, 2, 0x12, 0x34}));
+}
+
+TEST_F(HookedNode, The_code_may_refuse_what_is_read_with_an_exception_of_its_own) {
+  hooks.unreadable = 2;
+  EXPECT_EQ(ask(pdu(3, {0, 4})), (Pdu{0x83, 6}));
+  EXPECT_EQ(ask(pdu(3, {0, 2})), (Pdu{3, 4, 0, 0, 0, 0}));
+  EXPECT_EQ(ask(pdu(3, {3, 1})), (Pdu{3, 2, 0, 0}));
+  EXPECT_EQ(ask(pdu(3, {0, 100})), (Pdu{0x83, 2})) << "what nobody has is no question";
+  EXPECT_EQ(statistics.hardware_errors, 0U);
+}
+
+TEST_F(HookedNode, The_code_answers_unless_it_says_otherwise) {
+  EXPECT_TRUE(Hardware(lines, nullptr, &hooked).answers());
+  EXPECT_TRUE(Hardware(lines).answers()) << "where no code is";
 }
 
 TEST_F(HookedNode, The_code_is_told_to_make_its_outputs_safe) {

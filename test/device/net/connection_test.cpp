@@ -169,5 +169,58 @@ TEST_F(Connecting, A_client_that_never_reads_is_owed_little_and_dropped_and_the_
   EXPECT_FALSE(polite.is_closed());
 }
 
+/// Code that plays dead.
+struct SilentHooks : Hooks {
+  void put_new_values(Image&, Changes&) override {}
+  bool accept(std::uint32_t, const std::uint16_t*) override { return true; }
+  bool answers() override { return is_there; }
+
+  bool is_there = true;
+};
+
+/// A server whose points such code is behind.
+struct SilentNode {
+  Client connect() {
+    Client client(tcp.name());
+    while (tcp.size() < 1) loop.run_once(std::chrono::milliseconds(50));
+    return client;
+  }
+
+  NodeUnderTest node{fakes::MapBuilder().many(Table::holding_registers, 0, 2).build()};
+  SilentHooks hooks;
+  HookedPoints hooked{node.map, node.image, hooks};
+  Handler handler{node.map,
+                  Hardware(node.lines, nullptr, &hooked),
+                  {node.image, node.statistics, node.watchdog, node.links, node.changes, node.schedule},
+                  &node.clock};
+  Server server{1, handler, node.statistics};
+  FakeLog log;
+  Loop loop;
+  Listener listener = TcpUnderTest::listen({});
+  TcpServer tcp{loop, listener, server, node.statistics, log, 8};
+};
+
+TEST(SilentCode, Closes_the_connection_of_a_client_that_asks_and_does_nothing) {
+  SilentNode node;
+  Client client = node.connect();
+  client.send(question(1));
+  while (node.node.statistics.requests < 1) node.loop.run_once(std::chrono::milliseconds(50));
+  EXPECT_THAT(client.awaited(), ElementsAreArray(answer_to(1)));
+
+  node.hooks.is_there = false;
+  EXPECT_EQ(node.tcp.size(), 1U) << "it is asked when a client sends something";
+  client.send(adu(2, pdu(6, {0, 7})));
+  while (node.tcp.size() > 0) node.loop.run_once(std::chrono::milliseconds(50));
+  EXPECT_THAT(client.awaited(), IsEmpty());
+  EXPECT_TRUE(client.is_closed());
+  EXPECT_EQ(node.node.statistics.requests, 1U);
+
+  node.hooks.is_there = true;
+  Client later = node.connect();
+  later.send(question(3));
+  while (node.node.statistics.requests < 2) node.loop.run_once(std::chrono::milliseconds(50));
+  EXPECT_THAT(later.awaited(), ElementsAreArray(answer_to(3))) << "nothing was written";
+}
+
 }  // namespace
 }  // namespace coupler::device

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <stdexcept>
 
 #include "coupler/device/node/guarded_hooks.hpp"
@@ -25,6 +26,17 @@ class Throwing : public PointHooks {
     if (registers[0] > 100) throw std::out_of_range("too fast");
     return registers[0] != 13;
   }
+  bool answers() override {
+    if (mood == Mood::throws) throw std::runtime_error("no plan");
+    return mood == Mood::agrees;
+  }
+  std::optional<modbus::Exception> refuse_read(Table table, modbus::Range range) override {
+    EXPECT_EQ(table, Table::holding_registers);
+    EXPECT_EQ(range, modbus::Range::of(3, 2));
+    if (mood == Mood::throws) throw std::runtime_error("no sensor");
+    if (mood == Mood::agrees) return std::nullopt;
+    return modbus::Exception::server_device_busy;
+  }
   void serving_began() override { throw 7; }
   void make_safe() override {
     EXPECT_TRUE(set<std::int16_t>(0, 5).has_value());
@@ -32,11 +44,16 @@ class Throwing : public PointHooks {
   }
 
   bool is_calm = false;
+  enum class Mood { agrees, refuses, throws } mood = Mood::agrees;  ///< towards clients
 };
 
 class Guarded : public testing::Test {
  protected:
+  using Mood = Throwing::Mood;
   bool accept(std::uint16_t value) { return guarded_.accept(0, &value); }
+  std::optional<modbus::Exception> refuse_read() {
+    return guarded_.refuse_read(Table::holding_registers, modbus::Range::of(3, 2));
+  }
 
   MapPtr map_ = MapBuilder().add(Table::holding_registers, "speed", 0, Type::INT).build();
   Throwing hooks_{map_->map()};
@@ -51,6 +68,26 @@ TEST_F(Guarded, A_hook_that_throws_refuses_and_is_told) {
   EXPECT_FALSE(accept(101));
   EXPECT_THAT(log_.lines,
               ElementsAre("the hook of point 'speed' threw an exception: too fast; the write is refused"));
+}
+
+TEST_F(Guarded, What_is_asked_about_reads_is_passed_on_and_a_hook_that_throws_is_a_failed_device) {
+  EXPECT_EQ(refuse_read(), std::nullopt);
+  hooks_.mood = Mood::refuses;
+  EXPECT_EQ(refuse_read(), modbus::Exception::server_device_busy);
+  EXPECT_THAT(log_.lines, testing::IsEmpty());
+  hooks_.mood = Mood::throws;
+  EXPECT_EQ(refuse_read(), modbus::Exception::server_device_failure);
+  EXPECT_THAT(log_.lines, ElementsAre("refuse_read() threw an exception: no sensor"));
+}
+
+TEST_F(Guarded, Whether_it_answers_is_passed_on_and_a_hook_that_throws_answers) {
+  EXPECT_TRUE(guarded_.answers());
+  hooks_.mood = Mood::refuses;
+  EXPECT_FALSE(guarded_.answers());
+  EXPECT_THAT(log_.lines, testing::IsEmpty());
+  hooks_.mood = Mood::throws;
+  EXPECT_TRUE(guarded_.answers());
+  EXPECT_THAT(log_.lines, ElementsAre("answers() threw an exception: no plan"));
 }
 
 TEST_F(Guarded, A_process_whose_firmware_cannot_begin_does_not_serve) {
@@ -76,6 +113,7 @@ class Settable : public PointHooks {
  public:
   explicit Settable(const Map& map) : PointHooks(map) {}
   auto set_speed(std::int16_t value) { return set<std::int16_t>(0, value); }
+  auto set_lamp(bool on) { return set<bool>(0, on); }
 };
 
 TEST(PointHooks, A_value_is_set_in_the_process_that_serves_and_nowhere_else) {
@@ -86,6 +124,28 @@ TEST(PointHooks, A_value_is_set_in_the_process_that_serves_and_nowhere_else) {
   EXPECT_THAT(before.error(), testing::HasSubstr("this process does not answer clients"));
   hooks.allow_setting(nullptr);
   EXPECT_TRUE(hooks.set_speed(5).has_value());
+}
+
+TEST(PointHooks, Each_value_of_a_bit_is_told) {
+  const MapPtr map = MapBuilder().coil("lamp", 0).build();
+  const NodeMemory size = node_memory(map->map());
+  std::vector<Image::Area> areas(size.areas);
+  std::vector<std::uint16_t> cells(size.cells);
+  Image image(map->map(), areas, cells);
+  std::vector<ChangeRing::Entry> ring(200);
+  std::vector<std::uint16_t> told(image.bits().size());
+  Changes changes(image, ring, told);
+  changes.begin(1);
+  Settable hooks(map->map());
+  hooks.allow_setting(nullptr);
+  for (const bool on : {true, false, true, false}) ASSERT_TRUE(hooks.set_lamp(on));
+  hooks.put_new_values(image, changes);
+  EXPECT_EQ(changes.ring().newest(), 4U);
+  // Where nobody takes them, they do not become more and more, and the last one counts.
+  for (int i = 0; i < 1001; ++i) ASSERT_TRUE(hooks.set_lamp(i % 2 == 0));
+  hooks.put_new_values(image, changes);
+  EXPECT_LT(changes.ring().newest(), 100U);
+  EXPECT_EQ(image.find(Table::coils, modbus::Range::of(0, 1))[0], 1);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ struct TlsClient {
   TlsClient(const std::string& server, const Credentials& credentials, std::uint8_t host = 1)
       : socket(connect_to(server, host)),
         context(tls::Context::make(tls::Side::client, credentials).value()),
-        session(context.connection(socket.get(), verification), socket.get(), verification) {}
+        session(context.connection(socket.get(), verification), verification) {}
 
   void step() {
     if (session.state() == tls::Session::State::handshake &&

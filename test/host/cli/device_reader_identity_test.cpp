@@ -61,6 +61,9 @@ TEST(DeviceReader, Of_a_node_whose_map_cannot_be_compared_nothing_is_read) {
   node.loads = {};
   const Snapshot now = node.reader.look();
   EXPECT_EQ(now.readings.at(0).why, "the device's map cannot be compared");
+  ASSERT_EQ(now.notes.size(), 1U);
+  EXPECT_THAT(now.notes[0], testing::Not(HasSubstr("To read by the device's own map")))
+      << "nor can that be had";
   EXPECT_EQ(node.device.count("read coils 0+1"), 0U);
 }
 
@@ -99,7 +102,7 @@ TEST(DeviceReader, A_node_that_falls_silent_while_it_gives_its_map_is_no_foreign
     };
   };
   const Snapshot now = node.reader.look();
-  EXPECT_EQ(now.error_text, "no reply within 9 ms");
+  EXPECT_EQ(to_string(*now.error), "no reply within 9 ms");
   EXPECT_EQ(node.device.count("read coils 0+1"), 0U);
 }
 

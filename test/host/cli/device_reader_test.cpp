@@ -194,7 +194,7 @@ TEST(DeviceReader, A_device_that_is_not_there_has_no_values) {
   Looking looking(MapBuilder().coil("a", 0));
   looking.device.refuse_connect = host::NotConnected{"refused"};
   const Snapshot now = looking.reader.look();
-  EXPECT_EQ(now.error_text, "refused");
+  EXPECT_EQ(to_string(*now.error), "refused");
   EXPECT_EQ(now.readings.at(0).state, State::failed);
   EXPECT_EQ(now.readings.at(0).why, "refused");
 }
@@ -207,7 +207,7 @@ TEST(DeviceReader, A_device_that_falls_silent_keeps_the_values_of_this_look_only
       looking.device.next_errors = {host::Timeout{std::chrono::milliseconds(9)}};
   };
   Snapshot now = looking.reader.look();
-  EXPECT_EQ(now.error_text, "no reply within 9 ms");
+  EXPECT_EQ(to_string(*now.error), "no reply within 9 ms");
   EXPECT_EQ(looking.of(now, "a").state, State::good);
   EXPECT_EQ(looking.of(now, "b").why, "no reply within 9 ms");
   EXPECT_FALSE(looking.device.connected);
@@ -224,7 +224,7 @@ TEST(DeviceReader, A_unit_that_its_gateway_cannot_reach_is_offline) {
   Looking looking(MapBuilder().coil("a", 0).coil("b", 1));
   looking.device.refuses = [](const std::string&) { return Exception::gateway_target_failed_to_respond; };
   const Snapshot now = looking.reader.look();
-  EXPECT_THAT(now.error_text, HasSubstr("exception 0B"));
+  EXPECT_THAT(to_string(*now.error), HasSubstr("exception 0B"));
   EXPECT_THAT(looking.requests(), ElementsAre("connect", identity_question));
 }
 

@@ -85,7 +85,7 @@ TEST(DumpJson, It_is_one_line_that_says_whether_the_device_answers) {
   EXPECT_EQ(json::parse(text)["online"], true);
   EXPECT_EQ(json::parse(text)["trouble"], nullptr);
   EXPECT_EQ(json::parse(text)["device"], "tcp://[::1]:502/1");
-  now.error_text = "refused";
+  now.error = host::NotConnected{"refused"};
   EXPECT_EQ(json::parse(dump_json(map->map(), now))["online"], false);
   EXPECT_EQ(json::parse(dump_json(map->map(), now))["trouble"], "refused");
 }

@@ -69,7 +69,7 @@ TEST_F(DumpText, Notes_stand_below_the_table) {
 }
 
 TEST_F(DumpText, An_offline_device_is_called_so_in_the_first_line) {
-  now.error_text = "no reply within 9 ms";
+  now.error = host::Timeout{std::chrono::milliseconds(9)};
   EXPECT_THAT(table_lines(map(), now, Colour::no)[0], HasSubstr(": offline: no reply within 9 ms"));
 }
 
@@ -134,7 +134,7 @@ TEST_F(DumpText, Later_only_what_has_changed_is_news) {
 TEST_F(DumpText, Offline_is_told_once_and_what_comes_back_is_told_anew) {
   Snapshot away;
   away.at = noon;
-  away.error_text = "refused";
+  away.error = host::NotConnected{"refused"};
   EXPECT_THAT(change_lines(map(), &now, away), ElementsAre(std::string(noon_text) + " offline: refused"));
   EXPECT_THAT(change_lines(map(), &away, away), IsEmpty());
   EXPECT_THAT(change_lines(map(), &away, now),

@@ -127,7 +127,7 @@ TEST(StatusJson, What_a_node_does_not_have_is_null_or_empty) {
 
 TEST(StatusJson, Of_a_device_that_is_no_node_or_does_not_answer_the_keys_are_the_same) {
   NodeStatus silent;
-  silent.error_text = "no reply within 9 ms";
+  silent.error = host::Timeout{std::chrono::milliseconds(9)};
   const auto of_node = ordered_json::parse(status_json(node(), where));
   for (const NodeStatus& status : {foreign(), silent}) {
     const auto json = ordered_json::parse(status_json(status, where));

@@ -44,6 +44,25 @@ TEST_F(DeviceIdentityTest, A_node_that_is_older_is_connected_all_the_same) {
   EXPECT_THAT(sink->reports, ElementsAre("connected"));
 }
 
+TEST_F(DeviceIdentityTest, A_write_that_a_node_refuses_is_about_rights_and_one_that_another_refuses_is_not) {
+  serve(here());
+  start(here());
+  run_for(milliseconds(150));
+  device.next_errors.push_back(ExceptionReply{modbus::Exception::illegal_function});
+  push("a", 1);
+  engine->step();
+  EXPECT_EQ(sink->reported("write to a: exception 01 (illegal function): this client has no right to"), 1);
+  device.values.clear();
+  device.missing.insert({Table::input_registers, 0xFF00});
+  start(here());
+  run_for(milliseconds(150));
+  device.next_errors.push_back(ExceptionReply{modbus::Exception::illegal_function});
+  push("a", 1);
+  engine->step();
+  EXPECT_EQ(sink->reported("write to a: exception 01"), 1) << "start() begins a new list";
+  EXPECT_EQ(sink->reported("no right"), 0);
+}
+
 TEST_F(DeviceIdentityTest, A_foreign_coupler_is_quiet) {
   device.missing.insert({Table::input_registers, 0xFF00});
   start(here());

@@ -287,5 +287,23 @@ TEST_F(WriteQueueTest, A_write_that_a_newer_one_replaces_has_its_result_then) {
   EXPECT_FALSE(queue.has_results(number, queue.queued(number)));
 }
 
+TEST_F(WriteQueueTest, What_has_waited_longer_than_it_may_is_taken_out) {
+  const Time now = Time() + std::chrono::seconds(10);
+  Write dated = service_of(number, 1);
+  dated.until = now;
+  push(dated);
+  push(0, 1);
+  dated.registers[0] = 2;
+  dated.until = now + std::chrono::seconds(1);
+  push(dated);
+  EXPECT_FALSE(queue.take_late(now)) << "the moment itself is not too late";
+  const auto late = queue.take_late(now + std::chrono::milliseconds(1));
+  ASSERT_TRUE(late);
+  EXPECT_EQ(late->registers[0], 1);
+  EXPECT_FALSE(queue.take_late(now + std::chrono::milliseconds(1)));
+  EXPECT_EQ(queue.take()->point, 0U) << "what has no limit stays where it was";
+  EXPECT_EQ(queue.take()->registers[0], 2);
+}
+
 }  // namespace
 }  // namespace coupler::host

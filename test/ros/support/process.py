@@ -127,8 +127,9 @@ def driver_arguments(arguments):
 class Node(Process):
     """coupler-node on the simulated chip."""
 
-    def __init__(self, map_path, port=0):
-        super().__init__("coupler-node", map_path, "--sim", "--listen", "127.0.0.1", "--port", port,
+    def __init__(self, *arguments, port=0):
+        """The path of a map, or what plays a recording."""
+        super().__init__("coupler-node", *arguments, "--sim", "--listen", "127.0.0.1", "--port", port,
                          "--tls-port", 0)
 
     @property

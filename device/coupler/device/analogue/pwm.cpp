@@ -33,8 +33,8 @@ tl::expected<Chip, std::string> find_chip(const std::string& sysfs, std::string_
   std::string there;
   for (const std::string& name : names_in(all, "pwmchip")) {
     std::error_code error;
-    const Chip chip{name, fs::read_symlink(all + name + "/device", error).filename(),
-                    static_cast<unsigned>(read_number(all + name + "/npwm").value_or(0)), all + name + "/"};
+    Chip chip{name, fs::read_symlink(all + name + "/device", error).filename(),
+              static_cast<unsigned>(read_number(all + name + "/npwm").value_or(0)), all + name + "/"};
     if (chip.name == wanted || chip.device == wanted) return chip;
     there += fmt::format("{}{} with {} channel{}", there.empty() ? "" : ", ", chip.described(), chip.channels,
                          chip.channels == 1 ? "" : "s");

@@ -25,6 +25,17 @@ bool shows_statistics(Table table, modbus::Range range) {
   return table == Table::input_registers && statistics.overlaps(range);
 }
 
+/// What a node has, and a coupler of another make has not.
+bool is_of_nodes(Function function) {
+  switch (function) {
+    case Function::read_file_record:
+    case Function::encapsulated_interface:
+    case Function::wait_for_changes:
+    case Function::schedule_output: return true;
+    default: return false;
+  }
+}
+
 Table table_of(Function read) {
   switch (read) {
     case Function::read_coils: return Table::coils;
@@ -46,6 +57,7 @@ Handler::Handler(const Map& map, Hardware hardware, const NodeState& state, cons
       edge_points_(map, state.image, state.statistics, state.links, state.changes),
       schedule_(state.schedule),
       clock_(clock),
+      shows_identity_(hardware.shows_identity()),
       limits_values_(
           std::any_of(map.points.begin(), map.points.end(),
                       [](const Point& point) { return is_writable(point) && limits_values(point); })),
@@ -56,6 +68,7 @@ Handler::Handler(const Map& map, Hardware hardware, const NodeState& state, cons
 }
 
 void Handler::set_machine(const identity::Machine& machine) {
+  if (!shows_identity_) return;
   machine_ = machine;
   identity::Functions functions;
   functions.tells_changes = changes_.are_told();
@@ -131,8 +144,10 @@ Handler::Answer Handler::hardware_failed() {
 }
 
 Handler::Answer Handler::answer(const Call& call) {
-  if (call.request[0] == static_cast<std::uint8_t>(Function::schedule_output) && !can_schedule())
+  const auto function = static_cast<Function>(call.request[0]);
+  if (function == Function::schedule_output && !can_schedule())
     return tl::unexpected(Exception::illegal_function);
+  if (!shows_identity_ && is_of_nodes(function)) return tl::unexpected(Exception::illegal_function);
   const auto request = modbus::parse_request(call.request);
   if (!request) return tl::unexpected(request.error());
   return std::visit([&](const auto& what) { return carry_out(what, call); }, *request);
@@ -144,8 +159,10 @@ Handler::Answer Handler::carry_out(const modbus::Read& read, const Call& call) {
   if (cells.empty()) return tl::unexpected(Exception::illegal_data_address);
   if (!rights_of(call.session).may(Right::read, table, read.range)) return no_right();
   if (shows_statistics(table, read.range) && !rights_of(call.session).reads_all()) return no_right();
+  if (const auto refused = hardware_.refuse_read(table, read.range)) return tl::unexpected(*refused);
   if (!read_hardware(table, read.range, cells, call.now)) return hardware_failed();
   if (table == Table::input_registers && identity::reserved.overlaps(read.range)) {
+    if (!shows_identity_) return tl::unexpected(Exception::illegal_data_address);
     write_statistics(statistics_, call.now, image_);
     write_watchdog(watchdog_, call.now, image_);
   }

@@ -48,6 +48,8 @@ class Handler {
   /// number. Until then the node says that it does not know these functions.
   void tell_changes(std::uint32_t epoch, TimePoint now);
   const Changes& changes() const { return changes_; }
+  /// As Hooks'.
+  bool answers() const { return hardware_.answers(); }
   Rights rights_of(const ClientSession& session) const { return {map_, session}; }
   /// Of a client with TLS, by the role in its certificate (empty: none), for ClientSession::role.
   const Role* role_of(std::string_view name) const { return map_.security.role_of(name); }
@@ -162,6 +164,7 @@ class Handler {
   EdgePoints edge_points_;
   OutputSchedule& schedule_;
   const Clock* clock_;
+  bool shows_identity_;
   bool limits_values_;                                        ///< the map does, of a point that is written
   bool has_pulses_;                                           ///< the map has
   bool wrote_output_ = false;                                 ///< the request that is being answered has

@@ -44,6 +44,15 @@ class Hardware {
     return true;
   }
 
+  /// What the firmware's code, if there is any, says of the node, of a request, and of a read.
+  [[nodiscard]] bool shows_identity() const noexcept {
+    return hooked_ == nullptr || hooked_->shows_identity();
+  }
+  [[nodiscard]] bool answers() const { return hooked_ == nullptr || hooked_->answers(); }
+  [[nodiscard]] std::optional<modbus::Exception> refuse_read(Table table, modbus::Range range) const {
+    return hooked_ == nullptr ? std::nullopt : hooked_->refuse_read(table, range);
+  }
+
   /// Whether a firmware's code is behind points.
   bool has_code() const { return hooked_ != nullptr; }
 

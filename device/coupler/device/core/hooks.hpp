@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "coupler/device/core/changes.hpp"
 #include "coupler/device/core/image.hpp"
@@ -41,6 +42,19 @@ class Hooks {
   /// they had.
   [[nodiscard]] virtual bool accept(std::uint32_t point, const std::uint16_t* registers) = 0;
 
+  /// Whether the node shows that it is one, by its identity area and by FC 20, 43, 65 and 66; asked once.
+  [[nodiscard]] virtual bool shows_identity() const noexcept { return true; }
+
+  /// Whether the node answers; asked when a client has sent something. Otherwise its connection is closed, as
+  /// that to a device which has gone.
+  [[nodiscard]] virtual bool answers() { return true; }
+
+  /// A client reads these addresses: the exception that it gets in place of them; nullopt: none.
+  [[nodiscard]] virtual std::optional<modbus::Exception> refuse_read(Table /*table*/,
+                                                                     modbus::Range /*range*/) {
+    return std::nullopt;
+  }
+
   /// The watchdog expired, or the node ends. When the process that serves has died, this is called in another
   /// one, in which serving_began() was not called.
   virtual void make_safe() {}
@@ -70,6 +84,12 @@ class HookedPoints {
 
   /// Whether the range has an address of such an output.
   bool has_output(Table table, modbus::Range range) const;
+
+  [[nodiscard]] bool shows_identity() const noexcept { return hooks_.shows_identity(); }
+  [[nodiscard]] bool answers() { return hooks_.answers(); }
+  [[nodiscard]] std::optional<modbus::Exception> refuse_read(Table table, modbus::Range range) {
+    return hooks_.refuse_read(table, range);
+  }
 
   void make_safe() { hooks_.make_safe(); }
 

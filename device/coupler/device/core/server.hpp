@@ -17,6 +17,9 @@ class Server {
   Server(std::uint8_t unit, Handler& handler, Statistics& statistics)
       : unit_(unit), handler_(handler), statistics_(statistics) {}
 
+  /// As Hooks'.
+  bool answers() const { return handler_.answers(); }
+
   /// Writes the reply to `adu` and returns its size; 0: another unit's request, which gets no answer, or one
   /// that waits for changes (session.wait). `session` sent the frame, which arrived at `now`. `adu` has at
   /// least max_adu_size bytes, and twice as many if the session waits already: that is answered first.

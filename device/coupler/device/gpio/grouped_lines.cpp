@@ -53,6 +53,7 @@ void GroupedLines::release() {
 
 GroupedLines::Output GroupedLines::output(WiredOutputs wired) {
   std::vector<int> next;
+  next.reserve(wired.lines.size());
   for (const WiredOutputs::Line& line : wired.lines) next.push_back(line.level);
   auto shared = std::make_unique<SharedArray<int>>(next.size() + 1);
   copy(next, shared->all().first(next.size()));

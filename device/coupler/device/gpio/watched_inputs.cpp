@@ -13,6 +13,7 @@ constexpr std::size_t kept_changes = 1024;
 
 std::vector<WatchedLine> watched(const std::vector<LineSpec>& lines, Span<const int> levels) {
   std::vector<WatchedLine> all;
+  all.reserve(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i)
     all.emplace_back(i, lines[i].counted, lines[i].point->line.debounce, levels[i] != 0);
   return all;

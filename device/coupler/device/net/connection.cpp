@@ -148,6 +148,7 @@ bool Connection::answer(TimePoint now) {
     if (!send()) return false;
     if (outcome == Outcome::nothing) return true;
     if (outcome == Outcome::frame) continue;
+    if (is_away_) return false;
     ++statistics_.bad_frames;
     tell_of_tls();
     return false;
@@ -172,6 +173,8 @@ Outcome Connection::fill_output(TimePoint now) {
     const Outcome outcome = framer_.next();
     if (outcome == Outcome::nothing && ended_) put_waiting();
     if (outcome != Outcome::frame) return outcome;
+    is_away_ = !server_.answers();
+    if (is_away_) return Outcome::bad;
     output_end_ += server_.answer(framer_.frame(), session_, now, room());
     has_asked_ = true;
     last_active_ = now;

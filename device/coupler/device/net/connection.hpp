@@ -20,7 +20,7 @@ namespace coupler::device {
 /// for the client to read, no further request of it is carried out or received, so its replies are bounded.
 /// While its request waits for changes, it is one of the waiters. Its memory is used again for the next
 /// client.
-class Connection : public EventHandler {
+class Connection final : public EventHandler {
  public:
   /// For the rest of a frame once its beginning is there, and for a client to take a reply; absolute, so that
   /// single bytes do not extend it.
@@ -90,7 +90,8 @@ class Connection : public EventHandler {
   std::array<std::uint8_t, output_size> output_;
   std::size_t output_begin_ = 0;
   std::size_t output_end_ = 0;
-  bool ended_ = false;  ///< the client sends no more, but may wait for replies
+  bool ended_ = false;    ///< the client sends no more, but may wait for replies
+  bool is_away_ = false;  ///< the firmware stands for a device that has gone
   bool has_asked_ = false;
   TimePoint last_active_{};
   Waiting waiting_ = Waiting::for_request;

@@ -28,6 +28,11 @@ void GuardedHooks::log(const std::string& who, const char* what) {
   log_.fail(fmt::format("{} threw an exception: {}", who, what));
 }
 
+/// Clients ask as often as they like.
+void GuardedHooks::log_limited(const std::string& who, const std::string& what) {
+  log_.warn_limited("hook", fmt::format("{} threw an exception: {}", who, what));
+}
+
 bool GuardedHooks::begin(Waker* waker) {
   hooks_.allow_setting(waker);
   return guard([&] { hooks_.serving_began(); }, [&](const char* what) { log("serving_began()", what); });
@@ -45,13 +50,25 @@ bool GuardedHooks::made_safe() {
   return guard([&] { hooks_.make_safe(); }, [&](const char* what) { log("make_safe()", what); });
 }
 
+bool GuardedHooks::answers() {
+  bool does = true;
+  guard([&] { does = hooks_.answers(); }, [&](const char* what) { log_limited("answers()", what); });
+  return does;
+}
+
+std::optional<modbus::Exception> GuardedHooks::refuse_read(Table table, modbus::Range range) {
+  std::optional<modbus::Exception> refused;
+  const bool was_asked = guard([&] { refused = hooks_.refuse_read(table, range); },
+                               [&](const char* what) { log_limited("refuse_read()", what); });
+  // What `refused` was before is not to be relied on: GCC 12 forgets it with -O2.
+  return was_asked ? refused : modbus::Exception::server_device_failure;
+}
+
 bool GuardedHooks::accept(std::uint32_t point, const std::uint16_t* registers) {
   bool accepted = false;
   const auto thrown = [&](const char* what) {
-    // Clients write as often as they like.
-    log_.warn_limited("hook",
-                      fmt::format("the hook of point '{}' threw an exception: {}; the write is refused",
-                                  map_.points[point].name, what));
+    log_limited(fmt::format("the hook of point '{}'", map_.points[point].name),
+                fmt::format("{}; the write is refused", what));
   };
   return guard([&] { accepted = hooks_.accept(point, registers); }, thrown) && accepted;
 }

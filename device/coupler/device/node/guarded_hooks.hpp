@@ -24,11 +24,15 @@ class GuardedHooks final : public Hooks {
 
   void put_new_values(Image& image, Changes& changes) override { hooks_.put_new_values(image, changes); }
   [[nodiscard]] bool accept(std::uint32_t point, const std::uint16_t* registers) override;
+  [[nodiscard]] bool shows_identity() const noexcept override { return hooks_.shows_identity(); }
+  [[nodiscard]] bool answers() override;
+  [[nodiscard]] std::optional<modbus::Exception> refuse_read(Table table, modbus::Range range) override;
   void make_safe() override { (void)made_safe(); }
 
  private:
   bool made_safe();
   void log(const std::string& who, const char* what);
+  void log_limited(const std::string& who, const std::string& what);
 
   Hooks& hooks_;
   const Map& map_;

@@ -64,7 +64,7 @@ std::string by_code(const Statistics& statistics) {
 }  // namespace
 
 /// Takes edges from the kernel as they come. A line that is gone is not watched any more.
-class IoService::EdgeHandler : public EventHandler {
+class IoService::EdgeHandler final : public EventHandler {
  public:
   EdgeHandler(Loop& loop, InputGroup& group, Handler& handler, Log& log)
       : loop_(loop), group_(group), handler_(handler) {
@@ -89,7 +89,7 @@ class IoService::EdgeHandler : public EventHandler {
 };
 
 /// Takes clients that another process has let in.
-class IoService::Intake : public EventHandler {
+class IoService::Intake final : public EventHandler {
  public:
   Intake(Loop& loop, int channel, TcpServer& tcp) : loop_(loop), channel_(channel), tcp_(tcp) {
     [[maybe_unused]] const bool watched = loop_.watch(channel_, Interest::read, *this);

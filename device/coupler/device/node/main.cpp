@@ -14,6 +14,7 @@
 #include "coupler/device/node/program.hpp"
 #include "coupler/device/node/reload.hpp"
 #include "coupler/device/node/serving_context.hpp"
+#include "coupler/device/replay/replay.hpp"
 #include "coupler/map/loader/load.hpp"
 
 namespace coupler::device {
@@ -62,6 +63,13 @@ class MapInput {
   StderrLog& log_;
 };
 
+int play(const Options& options, const MapPtr& map, StderrLog& log) {
+  const auto played = serve_replay(options, map, log);
+  if (played) return *played;
+  log.fail("error: " + played.error().text);
+  return played.error().exit;
+}
+
 }  // namespace
 }  // namespace coupler::device
 
@@ -74,12 +82,16 @@ int main(int argc, char** argv) {
   StderrLog log(std::getenv("JOURNAL_STREAM"));
   if (const auto node = std::get<Options>(options).reload; node != 0)
     return ask_to_reload(static_cast<pid_t>(node), log);
+  const ReplayArguments& replay = std::get<Options>(options).replay;
+  if (!replay.file.empty() && std::get<Options>(options).map.empty())
+    return play(std::get<Options>(options), nullptr, log);
   const MapInput input(std::get<Options>(options).map, log);
   auto first = read_first(input.first());
   if (!first) {
     if (!first.error().empty()) log.fail(first.error());
     return ServeError::map_is_wrong;
   }
+  if (!replay.file.empty()) return play(std::get<Options>(options), first->map, log);
   const coupler::MapPtr map = first->map;
   return serve(map->map(), std::move(first->settings), std::get<Options>(options), log, input.again(),
                nullptr);

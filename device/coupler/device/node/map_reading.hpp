@@ -32,7 +32,7 @@ struct MapRead {
 };
 
 /// A map that is being read in a process of its own. It dies with this one.
-class MapReading : public EventHandler {
+class MapReading final : public EventHandler {
  public:
   /// A slow board reads the largest map in a third of it.
   static constexpr std::chrono::seconds timeout{60};

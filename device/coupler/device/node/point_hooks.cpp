@@ -3,9 +3,15 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <mutex>
 
 namespace coupler::device {
+namespace {
+
+constexpr std::size_t most_values = 16;
+
+}  // namespace
 
 void PointHooks::allow_setting(Waker* waker) {
   process_ = ::getpid();
@@ -22,9 +28,21 @@ void PointHooks::keep(std::uint32_t point, const std::uint16_t* registers) {
   const std::size_t count = range(map_.points[point]).count();
   const std::lock_guard lock(mutex_);
   const bool is_first = points_.empty();
-  if (set_[point].empty()) points_.push_back(point);
-  set_[point].assign(registers, registers + count);
+  std::vector<std::uint16_t>& values = set_[point];
+  if (values.empty()) points_.push_back(point);
+  const bool is_full = values.size() >= count * (holds_bits(map_.points[point].table) ? most_values : 1);
+  if (is_full) values.resize(values.size() - count);  // nobody has asked for long
+  values.insert(values.end(), registers, registers + count);
   if (is_first && waker_ != nullptr) waker_->wake();
+}
+
+void PointHooks::replace_registers(std::uint32_t point, const std::uint16_t* registers) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!set_[point].empty()) set_[point].clear();
+    points_.erase(std::remove(points_.begin(), points_.end(), point), points_.end());
+  }
+  keep(point, registers);
 }
 
 void PointHooks::put_new_values(Image& image, Changes& changes) {
@@ -33,10 +51,13 @@ void PointHooks::put_new_values(Image& image, Changes& changes) {
     const Point& point = map_.points[index];
     const auto cells = image.find(point.table, range(point));
     const std::uint16_t mask = own_bits(point);
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      cells[i] = static_cast<std::uint16_t>((cells[i] & ~mask) | (set_[index][i] & mask));
-    changes.compare(point.table, range(point));
-    set_[index].clear();
+    std::vector<std::uint16_t>& values = set_[index];
+    for (std::size_t begin = 0; begin < values.size(); begin += cells.size()) {
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        cells[i] = static_cast<std::uint16_t>((cells[i] & ~mask) | (values[begin + i] & mask));
+      changes.compare(point.table, range(point));
+    }
+    values.clear();
   }
   points_.clear();
 }

@@ -56,8 +56,15 @@ class PointHooks : public Hooks {
     return TypedValue<T>::decode(registers, map_.points[point]);
   }
 
-  /// From any thread of the process that serves: clients read the value from their next request on. The error
-  /// says what is wrong with it, or that this is another process.
+  /// The same as they stand on the wire: range(point).count() registers, or bits as 0 or 1.
+  void set_registers(std::uint32_t point, const std::uint16_t* registers) { keep(point, registers); }
+
+  /// The same in place of what was set and is not in the image yet.
+  void replace_registers(std::uint32_t point, const std::uint16_t* registers);
+
+  /// From any thread of the process that serves: clients read the value from their next request on, and hear
+  /// of each value of a bit, one behind the other, if they wait for changes. The error says what is wrong
+  /// with it, or that this is another process.
   template <class T>
   tl::expected<void, std::string> set(std::uint32_t point, const T& value) {
     std::array<std::uint16_t, modbus::max_read_bits> registers{};
@@ -77,8 +84,10 @@ class PointHooks : public Hooks {
   pid_t process_ = 0;       ///< the one that serves
   Waker* waker_ = nullptr;  ///< in it
   UrgentMutex mutex_;
-  std::vector<std::vector<std::uint16_t>> set_;  ///< by point; empty: not set since it was put into the image
-  std::vector<std::uint32_t> points_;            ///< those that are not empty
+  /// By point, what was set since it was put into the image: the last value, of bits, whose changes are told,
+  /// the ones before as well.
+  std::vector<std::vector<std::uint16_t>> set_;
+  std::vector<std::uint32_t> points_;  ///< those that are not empty
 };
 
 }  // namespace coupler::device

@@ -98,10 +98,12 @@ void ReloadRequests::add(pid_t requester) {
 }
 
 void ReloadRequests::reply(bool taken, std::string_view text) {
-  if (all_.empty()) return;
+  const std::vector<pid_t> requesters = std::exchange(all_, {});
+  if (requesters.empty()) return;
   const std::string answer = (taken ? "1" : "0") + std::string(text);
   const Descriptor socket = open_socket();
-  for (const pid_t requester : std::exchange(all_, {})) {
+  if (!socket.is_open()) return;
+  for (const pid_t requester : requesters) {
     const Name name = name_of(requester);
     ::sendto(socket.get(), answer.data(), answer.size(), MSG_NOSIGNAL, name.get(), name.size);
   }
@@ -120,7 +122,7 @@ int ask_to_reload(pid_t node, StderrLog& log) {
   const Descriptor socket = open_socket();
   const Name name = name_of(::getpid());
   const int on = 1;
-  if (::bind(socket.get(), name.get(), name.size) != 0 ||
+  if (!socket.is_open() || ::bind(socket.get(), name.get(), name.size) != 0 ||
       ::setsockopt(socket.get(), SOL_SOCKET, SO_PASSCRED, &on, sizeof on) != 0)
     return fail(fmt::format("cannot listen for the answer of the node: {}", std::strerror(errno)));
   if (::kill(node, SIGHUP) != 0)

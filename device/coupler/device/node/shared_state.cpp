@@ -7,6 +7,7 @@
 
 #include "coupler/device/core/each_point.hpp"
 #include "coupler/map/lookup_by_name.hpp"
+#include "coupler/map/same_value.hpp"
 
 namespace coupler::device {
 namespace {
@@ -15,16 +16,6 @@ Statistics started_at(TimePoint now) {
   Statistics statistics;
   statistics.started = now;
   return statistics;
-}
-
-/// Whether a value of one means the same in the other.
-bool same_value(const Point& a, const Point& b) {
-  const auto layout = [](const Point& p) {
-    const codec::Format& f = p.format;
-    return std::tuple(p.table, p.count, f.type, f.order, f.bit, f.half, f.length, f.encoding, p.scale.gain,
-                      p.scale.offset);
-  };
-  return layout(a) == layout(b);
 }
 
 /// Whether both drive the same, as far as the map says.

@@ -51,7 +51,7 @@ class SupervisorLink : public EventHandler {
 /// The process that drives lines and answers clients: a child with this process's memory and descriptors.
 /// When this process dies, it gets SIGTERM. Without a terminal it has a process group of its own, which is an
 /// orphan then: if it was stopped, the kernel makes it go on.
-class Worker : public EventHandler {
+class Worker final : public EventHandler {
  public:
   /// What it does; this process is its supervisor.
   using Work = std::function<int(SupervisorLink&)>;

@@ -61,6 +61,7 @@ class Control : public EventHandler {
     if (size <= 0) return;
     if (room[0] == tls_messages::prepare) prepare(descriptor.get());
     if (room[0] == tls_messages::commit && prepared_) commit(std::move(descriptor));
+    if (room[0] == tls_messages::alive) answer(tls_messages::still_alive, {});
   }
 
  private:

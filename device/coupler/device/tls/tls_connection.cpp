@@ -38,7 +38,7 @@ TlsConnection::TlsConnection(Loop& loop, Observer& observer, const tls::Context&
       began_(now),
       deadline_(now + handshake_timeout),
       verification_(of_a_client()),
-      session_(context.connection(socket_.get(), verification_), socket_.get(), verification_) {
+      session_(context.connection(socket_.get(), verification_), verification_) {
   socket_events_.fd = socket_.get();
   watch_all(now);
 }

@@ -19,7 +19,7 @@ namespace coupler::device {
 
 /// One client of a TlsServer, from accept(2) to its end: its handshake, then its bytes to and from the
 /// process that answers them, and after the last of them a moment in which the client can read why it ended.
-class TlsConnection : public EventHandler {
+class TlsConnection final : public EventHandler {
  public:
   static constexpr std::chrono::seconds handshake_timeout{5};
   static constexpr std::chrono::seconds write_timeout{5};  ///< for a client that takes nothing

@@ -148,16 +148,18 @@ Descriptor TlsServer::admit(TlsConnection& connection) {
                       fmt::format("{} cannot be let in: the process that answers does not take it", who));
     return {};
   }
+  // Each name is a kind of its own, so that nobody hides behind somebody else's connections: only the
+  // authority gives names.
   if (!peer.role)
-    log_.write_limited("client",
+    log_.write_limited("client " + peer.name,
                        fmt::format("{} connected by {}, without a role", who, connection.version()));
   else if (!lists(rules_->roles, peer.role))
     log_.warn_limited(
-        "role",
+        "role of " + peer.name,
         fmt::format("{} connected by {} as '{}', which is no role of the map; {}", who, connection.version(),
                     *peer.role, suggestion(*peer.role, {rules_->roles.begin(), rules_->roles.end()})));
   else
-    log_.write_limited("client as " + *peer.role,
+    log_.write_limited("client " + peer.name,
                        fmt::format("{} connected by {} as {}", who, connection.version(), *peer.role));
   return own;
 }

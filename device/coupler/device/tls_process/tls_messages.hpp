@@ -11,8 +11,10 @@ namespace coupler::device::tls_messages {
 // From the supervisor.
 constexpr std::uint8_t prepare = 'P';  ///< beside it: the memory of TlsSettings. It is answered.
 constexpr std::uint8_t commit = 'C';   ///< beside it: the socket that listens. What was prepared is in force.
+constexpr std::uint8_t alive = 'A';    ///< It is answered.
 
 // To it.
+constexpr std::uint8_t still_alive = 'a';
 constexpr std::uint8_t prepared = 'p';
 constexpr std::uint8_t refused = 'r';  ///< and why, one line
 

@@ -22,10 +22,11 @@
 namespace coupler::device {
 namespace {
 
-constexpr int no_program = 127;  // exit status, as a shell has it
+constexpr int no_program = 127;                         // exit status, as a shell has it
+constexpr std::chrono::milliseconds longest_turn{200};  // look_after() is called each 100 ms or so
 
 /// Beside this program, as in a build; where an installation has it, seen from this program; where this build
-/// would have installed it: the program may be another project's. Empty: nowhere.
+/// has or would have installed it: the program may be another project's. Empty: nowhere.
 std::string find_program() {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -55,10 +56,10 @@ std::string find_program() {
 tl::expected<std::unique_ptr<TlsProcess>, std::string> TlsProcess::start(Loop& loop, Log& log) {
   std::string program = find_program();
   if (program.empty())
-    return tl::unexpected(
-        fmt::format("'security' has a certificate, but {} is not installed: build it with OpenSSL 3 "
-                    "(libssl-dev), or install the package coupler-node",
-                    tls_messages::program_name));
+    return tl::unexpected(fmt::format(
+        "'security' has a certificate, but {} is not installed, neither beside this program nor in "
+        "{}: build it with OpenSSL 3 (libssl-dev), or install the package coupler-node",
+        tls_messages::program_name, COUPLER_LIBEXEC));
   const auto failed = [](int error) {
     return tl::unexpected(
         fmt::format("{} cannot be started: {}", tls_messages::program_name, std::strerror(error)));
@@ -86,6 +87,8 @@ int TlsProcess::start_process(TimePoint now) {
   child_ = *std::move(child);
   control_ = std::move(control->one);
   started_ = now;
+  cpu_wait_.emplace(child_->pid());
+  silence_.emplace(now, longest_turn, cpu_wait_->sample(now));
   if (!loop_.watch(control_.get(), Interest::read, *this)) return errno;
   answers_to_skip_ = 0;
   if (settings_.is_open()) {
@@ -151,13 +154,28 @@ void TlsProcess::look_after(TimePoint now) {
     if (now >= start_again_ && start_process(now) != 0) start_again_ = now + Backoff::longest;
     return;
   }
-  const std::string how = how_it_ended(std::chrono::milliseconds(0));
+  std::string how = how_it_ended(std::chrono::milliseconds(0));
+  if (how.empty() && is_silent(now)) {
+    how = fmt::format("was silent for {:.1f} s", std::chrono::duration<double>(silence_->lasted()).count());
+    end_process();
+  }
   if (how.empty()) return;
   const auto pause = backoff_.after(now - started_);
   start_again_ = now + pause;
   log_.warn(
       fmt::format("the TLS process {}; its clients have lost their connections; starting it again in {} ms",
                   how, pause.count()));
+}
+
+/// Much longer than a worker process may be: nobody's outputs wait for it, and handshakes on a small board
+/// take their time.
+bool TlsProcess::is_silent(TimePoint now) {
+  silence_->sample(now, std::exchange(heard_, false), cpu_wait_->sample(now));
+  if (now >= ask_at_) {
+    send(tls_messages::alive, -1);
+    ask_at_ = now + heartbeat_period;
+  }
+  return silence_->lasted() - silence_->starved() >= timeout;
 }
 
 void TlsProcess::leave() {
@@ -183,6 +201,8 @@ void TlsProcess::ready(TimePoint) {
     return;
   }
   if (size < 0) return;
+  heard_ = true;
+  if (room[0] == tls_messages::still_alive) return;
   if (answers_to_skip_ > 0) {
     --answers_to_skip_;
     return;

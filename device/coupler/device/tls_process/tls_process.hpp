@@ -11,16 +11,18 @@
 #include "coupler/device/net/loop.hpp"
 #include "coupler/device/net/message.hpp"
 #include "coupler/device/supervisor/child.hpp"
+#include "coupler/device/supervisor/cpu_time.hpp"
+#include "coupler/device/supervisor/heartbeat.hpp"
 #include "coupler/device/supervisor/supervisor.hpp"
 
 namespace coupler::device {
 
 /// The process that does TLS for a node, seen from the supervisor. It has the key, and no lines; it hands
 /// each client that it lets in to the process that answers (net/open_connection.hpp), over a channel that
-/// outlives both. If it dies its clients lose their connections, and it is started again.
+/// outlives both. If it dies or hangs its clients lose their connections, and it is started again.
 class TlsProcess final : public EventHandler {
  public:
-  /// For an answer; it reads no files.
+  /// For an answer; it reads no files. So long, too, it may be silent.
   static constexpr std::chrono::seconds timeout{5};
 
   /// Both outlive it. The error says why it cannot be: no program, no descriptors.
@@ -36,7 +38,7 @@ class TlsProcess final : public EventHandler {
   /// What was prepared is in force: it listens at a copy of that socket.
   void commit(int listener);
 
-  /// Starts it again if it has ended. To be called every 100 ms or so.
+  /// Starts it again if it has ended, or says nothing any more. To be called every 100 ms or so.
   void look_after(TimePoint now);
 
   /// Where the process that answers takes clients from.
@@ -52,6 +54,7 @@ class TlsProcess final : public EventHandler {
   int start_process(TimePoint now);
   std::string how_it_ended(std::chrono::milliseconds at_most);
   void end_process();
+  bool is_silent(TimePoint now);
   void refuse(std::string why);
   void send(std::uint8_t what, int descriptor);
 
@@ -61,6 +64,10 @@ class TlsProcess final : public EventHandler {
   Channel clients_;  ///< one: for the process that answers, other: for the one that does TLS
   Descriptor control_;
   std::optional<Child> child_;
+  std::optional<CpuWait> cpu_wait_;  ///< of the child
+  std::optional<Silence> silence_;   ///< of the child
+  bool heard_ = false;               ///< since it was sampled
+  TimePoint ask_at_{};
   Descriptor settings_;  ///< in force
   Descriptor listener_;
   Descriptor prepared_;

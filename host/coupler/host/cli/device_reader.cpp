@@ -9,6 +9,7 @@
 
 #include "coupler/host/core/poll_cycle.hpp"
 #include "coupler/map/node_address.hpp"
+#include "coupler/plan/explain.hpp"
 #include "coupler/plan/read_span.hpp"
 
 namespace coupler::cli {
@@ -31,15 +32,6 @@ constexpr bool is_rejection(Exception code, bool is_node) {
 constexpr bool is_of_the_range(Exception code, bool is_node) {
   return (is_node || code != Exception::illegal_function) && code != Exception::acknowledge &&
          code != Exception::server_device_busy;
-}
-
-std::string text_of(plan::NotRead reason) {
-  switch (reason) {
-    case plan::NotRead::write_only: return "write-only";
-    case plan::NotRead::unreadable: return "in what the map calls unreadable";
-    case plan::NotRead::too_long: return "too long for one reply";
-  }
-  return {};
 }
 
 /// Smaller requests for the points, which are some of those that `span` reads.
@@ -66,6 +58,7 @@ struct IdentityFindings {
 };
 
 std::string difference_note(const Map& map, const Identity& identity) {
+  if (identity.points.empty()) return difference_text(map, identity);
   return difference_text(map, identity) +
          "\nOnly points that are the same are read. To read by the device's own map, give " +
          node_address_text(map.connection) + " instead of this one";
@@ -107,7 +100,7 @@ DeviceReader::DeviceReader(const Map& map, const std::vector<bool>& chosen, host
     Reading& reading = blank_.readings.emplace_back(Reading{point});
     if (const auto reason = plan::why_not_read(map, map.points[point])) {
       reading.state = State::not_asked;
-      reading.why = text_of(*reason);
+      reading.why = plan::words_of(*reason);
     }
   }
 }
@@ -118,10 +111,9 @@ Snapshot DeviceReader::look() {
   if (done) now_ = known_;
   const Result<> read = done ? read_all() : done;
   if (!read) {
-    now_.error_text = to_string(read.error());
-    now_.is_silent = std::holds_alternative<host::Timeout>(read.error());
+    now_.error = read.error();
     for (Reading& reading : now_.readings)
-      if (reading.state == State::failed && reading.why.empty()) reading.why = now_.error_text;
+      if (reading.state == State::failed && reading.why.empty()) reading.why = to_string(*now_.error);
     lose_connection();
   }
   now_.at = std::chrono::system_clock::now();

@@ -74,8 +74,8 @@ Exit once(const Map& map, const DumpOptions& options) {
     for (const std::string& line : table_lines(map, now, Colour::no)) put(line);
   }
   if (!now.online())
-    complain("dump", failed, node_address_text(map.connection) + ": " + now.error_text,
-             reach_remedy(map.connection, now.is_silent,
+    complain("dump", failed, node_address_text(map.connection) + ": " + to_string(*now.error),
+             reach_remedy(map.connection, *now.error,
                           "check that a device serves there, or give another place with --at"));
   return now.online() && now.failed() == 0 ? ok : failed;
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/utc_text.hpp"
 #include "coupler/docs/point_description.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/map/node_address.hpp"
@@ -53,8 +54,8 @@ Cells cells_of(const Map& map, const Reading& reading) {
 
 std::string head(const Map& map, const Snapshot& now) {
   const std::string where =
-      printable(fmt::format("{} at {}, {}", map.name, node_address_text(map.connection), time_text(now.at)));
-  if (!now.online()) return fmt::format("{}: offline: {}", where, printable(now.error_text));
+      printable(fmt::format("{} at {}, {}", map.name, node_address_text(map.connection), utc_text(now.at)));
+  if (now.error) return fmt::format("{}: offline: {}", where, printable(host::to_string(*now.error)));
   if (const std::size_t failed = now.failed(); failed > 0)
     return fmt::format("{}: {} of {} points not read", where, failed, now.readings.size());
   return fmt::format("{}: {} point{}", where, now.readings.size(), now.readings.size() == 1 ? "" : "s");
@@ -98,12 +99,14 @@ std::vector<std::string> table_lines(const Map& map, const Snapshot& now, Colour
 
 std::vector<std::string> change_lines(const Map& map, const Snapshot* before, const Snapshot& now) {
   std::vector<std::string> lines;
-  const std::string time = time_text(now.at);
+  const std::string time = utc_text(now.at);
   const auto add = [&](const std::string& text) {
     lines.push_back(fmt::format("{} {}", time, printable(text)));
   };
-  if (!now.online()) {
-    if (before == nullptr || before->error_text != now.error_text) add("offline: " + now.error_text);
+  if (now.error) {
+    const std::string why = host::to_string(*now.error);
+    if (before == nullptr || before->online() || host::to_string(*before->error) != why)
+      add("offline: " + why);
     return lines;
   }
   const bool all = before == nullptr || !before->online();

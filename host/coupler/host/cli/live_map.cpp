@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/cli/live_device.hpp"
+#include "coupler/host/cli/live_map.hpp"
 
 #include <string>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include "coupler/host/cli/modbus_client.hpp"
+#include "coupler/host/cli/probe_scan.hpp"
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/map/node_address.hpp"
 
@@ -18,17 +20,17 @@ tl::unexpected<NoLiveMap> none(Exit exit, std::string what, std::string remedy) 
   return tl::make_unexpected(NoLiveMap{exit, std::move(what), std::move(remedy)});
 }
 
-/// A node knows how to give its map.
-bool is_no_right(const host::Error& error) {
-  const auto* exception = host::exception_in(error);
-  return exception != nullptr && exception->code == modbus::Exception::illegal_function;
+using Fetched = host::Result<std::optional<host::ServedMap>>;
+
+Fetched fetch(const Connection& where) { return host::fetch_served_map(*host::make_transport(where)); }
+
+/// The device can be reached, and perhaps it does not like the question, or has another unit id.
+bool is_silent(const host::Error& error) {
+  return !std::holds_alternative<host::NotConnected>(error) && !host::has_remedy(error) &&
+         (host::exception_in(error) == nullptr || host::is_unit_away(error));
 }
 
-}  // namespace
-
-tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where) {
-  const auto transport = host::make_transport(where);
-  const auto served = host::fetch_served_map(*transport);
+tl::expected<MapPtr, NoLiveMap> map_in(const Fetched& served, const Connection& where) {
   if (!served && is_no_right(served.error()))
     return none(failed, "the node gives its map only to clients that may read every point (exception 01)",
                 "give the file of its map instead, or a certificate whose role has 'read: all'");
@@ -36,13 +38,29 @@ tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where) {
     return none(failed, "the node does not give its map: " + host::to_string(served.error()), give_a_file);
   if (!served)
     return none(failed, "no answer from a node: " + host::to_string(served.error()),
-                reach_remedy(where, std::holds_alternative<host::Timeout>(served.error()),
+                reach_remedy(where, served.error(),
                              fmt::format("check that a node serves at {}, as unit {}", place_text(where),
                                          where.unit)));
   if (!*served) return none(bad_input, "a foreign coupler, which serves no map", give_a_file);
   auto map = host::load_node_map((*served)->text, (*served)->head, load_served_map);
   if (!map) return none(bad_input, "the node's map cannot be used: " + map.error(), give_a_file);
   return *map;
+}
+
+}  // namespace
+
+tl::expected<MapPtr, NoLiveMap> fetch_live_map(const Connection& where) {
+  return map_in(fetch(where), where);
+}
+
+tl::expected<MapPtr, NoLiveMap> fetch_map_if_node(const Connection& where) {
+  const Fetched served = fetch(where);
+  if (served ? !served->has_value() : is_silent(served.error())) return nullptr;
+  if (!served && std::holds_alternative<host::NotConnected>(served.error())) {
+    const WrongCall why = why_unreachable(served.error(), where);
+    return none(failed, why.what, why.remedy);
+  }
+  return map_in(served, where);
 }
 
 }  // namespace coupler::cli

@@ -8,9 +8,9 @@
 
 namespace coupler::cli {
 
-std::string reach_remedy(const Connection& where, bool is_silent, std::string_view over_tcp) {
-  if (where.is_rtu() && is_silent) return host::line_remedy(where);
-  return where.serial.present() ? std::string() : std::string(over_tcp);
+std::string reach_remedy(const Connection& where, const host::Error& error, std::string_view over_tcp) {
+  if (where.is_rtu() && std::holds_alternative<host::Timeout>(error)) return host::line_remedy(where);
+  return where.serial.present() || has_remedy(error) ? std::string() : std::string(over_tcp);
 }
 
 host::Result<scan::IdentificationPage> read_identification(host::MultiUnitTransport& transport,

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "coupler/base/utc_text.hpp"
 #include "coupler/host/cli/snapshot.hpp"
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/host/scan/identification.hpp"
@@ -19,17 +20,12 @@ using host::Result;
 
 bool is_answer(const Error& error) { return exception_in(error) != nullptr && !is_unit_away(error); }
 
-void take_error(NodeStatus& status, const Error& error) {
-  status.error_text = to_string(error);
-  status.is_silent = std::holds_alternative<host::Timeout>(error);
-}
-
 /// Whether the device has answered; an error ends the questions.
 Result<bool> read_area(host::Transport& transport, NodeStatus& status) {
   const auto report = host::read_report(transport);
   if (!report) {
     if (is_unit_away(report.error())) return tl::make_unexpected(report.error());
-    take_error(status, report.error());
+    status.error = report.error();
     transport.close();  // a late answer must not be taken for another
     if (auto connected = transport.connect(); !connected) return tl::make_unexpected(connected.error());
     return false;
@@ -50,7 +46,7 @@ Result<> read_all(host::Transport& transport, const Identify& identify, NodeStat
   std::optional<Error> failure;
   const auto ask = [&](modbus::ReadDeviceIdentification wanted) -> std::optional<scan::IdentificationPage> {
     auto page = identify(wanted);
-    if (page || is_answer(page.error())) status.error_text.clear();  // it is there, and foreign
+    if (page || is_answer(page.error())) status.error.reset();  // it is there, and foreign
     if (page) return *std::move(page);
     if (!is_answer(page.error())) failure = page.error();
     return std::nullopt;
@@ -113,7 +109,7 @@ std::string role_text(const host::Certificate& own) {
 }
 
 ordered_json certificate_json(const host::Certificate& shown) {
-  return {{"name", shown.name}, {"role", or_null(shown.role)}, {"ends", time_text(shown.validity.end)}};
+  return {{"name", shown.name}, {"role", or_null(shown.role)}, {"ends", utc_text(shown.validity.end)}};
 }
 
 /// An older node does not say how long it is.
@@ -162,7 +158,7 @@ ordered_json identification_json(const NodeStatus& status) {
 
 NodeStatus read_status(host::Transport& transport, const Identify& identify) {
   NodeStatus status;
-  if (const auto done = read_all(transport, identify, status); !done) take_error(status, done.error());
+  if (const auto done = read_all(transport, identify, status); !done) status.error = done.error();
   transport.close();
   status.at = std::chrono::system_clock::now();
   return status;
@@ -177,7 +173,7 @@ std::string status_text(const NodeStatus& status, const Connection& where) {
     return text.empty() ? text : fmt::format("identification of {} (FC 43/14):\n{}", device, text);
   }
   const Report& report = *status.report;
-  std::string text = fmt::format("the node at {}, {}:\n", device, time_text(status.at));
+  std::string text = fmt::format("the node at {}, {}:\n", device, utc_text(status.at));
   if (status.certificates) {
     text += row("certificate of this side",
                 certificate_text(status.certificates->own) + ", " + role_text(status.certificates->own));
@@ -203,8 +199,8 @@ std::string status_text(const NodeStatus& status, const Connection& where) {
 
 std::string status_json(const NodeStatus& status, const Connection& where) {
   ordered_json json{{"device", node_address_text(where)},
-                    {"time", time_text(status.at)},
-                    {"trouble", or_null(status.error_text)},
+                    {"time", utc_text(status.at)},
+                    {"trouble", or_null(status.error ? to_string(*status.error) : std::string())},
                     {"node", status.report.has_value()},
                     {"name", nullptr},
                     {"version", nullptr},

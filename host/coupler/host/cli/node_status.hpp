@@ -18,10 +18,9 @@ namespace coupler::cli {
 
 struct NodeStatus {
   std::chrono::system_clock::time_point at{};
-  std::string error_text{};                              ///< why not everything could be asked; empty: it was
-  bool is_silent = false;                                ///< that was a timeout
-  std::optional<identity::Report> report{};              ///< nullopt: a foreign coupler, or no answer
-  identity::Further further{};                           ///< as far as the node says
+  std::optional<host::Error> error{};        ///< why not everything could be asked; nullopt: it was
+  std::optional<identity::Report> report{};  ///< nullopt: a foreign coupler, or no answer
+  identity::Further further{};               ///< as far as the node says
   std::map<std::uint8_t, std::string> identification{};  ///< the objects of FC 43/14
   std::optional<host::Certificates> certificates{};      ///< of a connection with TLS
 };

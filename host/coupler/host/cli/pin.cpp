@@ -26,7 +26,7 @@ struct Arguments {
 
 /// Shakes hands until the device has shown its certificate. It will refuse a client without one after that.
 void look(int socket, tls::Verification& verification, const host::Deadline& deadline, std::string& problem) {
-  tls::Session session(tls::Context::of_stranger().connection(socket, verification), socket, verification);
+  tls::Session session(tls::Context::of_stranger().connection(socket, verification), verification);
   while (session.shake_hands() == tls::Session::State::handshake && !verification.seen) {
     pollfd wanted{socket, session.wants().socket, 0};
     if (::poll(&wanted, 1, deadline.left()) == 0) break;
@@ -37,10 +37,11 @@ void look(int socket, tls::Verification& verification, const host::Deadline& dea
 Exit pin_of_file(const std::string& path) {
   const auto text = read_pem_file("certificate", path, {});
   if (!text) return complain("pin", bad_input, text.error(), {});
-  const auto pin = tls::pin_in(*text);
-  if (!pin)
+  const auto pins = tls::pins_in(*text);
+  if (pins.empty())
     return complain("pin", bad_input, path + " has no PEM certificate", "give the file of a certificate");
-  fmt::print("{}\n", tls::pin_text(*pin));
+  for (const auto& [pin, key] : pins)
+    fmt::print("{}{}\n", tls::pin_text(pin), pins.size() == 1 ? "" : fmt::format("  # with {}", key));
   return ok;
 }
 

@@ -13,13 +13,12 @@
 #include "coupler/cli/output_argument.hpp"
 #include "coupler/cli/report.hpp"
 #include "coupler/generate/output.hpp"
-#include "coupler/host/cli/interruption.hpp"
-#include "coupler/host/cli/modbus_client.hpp"
 #include "coupler/host/cli/probe_call.hpp"
 #include "coupler/host/cli/probe_report.hpp"
-#include "coupler/host/cli/progress_bar.hpp"
-#include "coupler/host/core/clock.hpp"
+#include "coupler/host/cli/probe_scan.hpp"
+#include "coupler/host/scan/draft.hpp"
 #include "coupler/host/scan/known_value.hpp"
+#include "coupler/host/scan/recognition.hpp"
 #include "coupler/host/scan/scan.hpp"
 #include "coupler/map/fields.hpp"
 #include "coupler/map/node_address.hpp"
@@ -28,38 +27,6 @@ namespace coupler::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-scan::Findings look(const ProbeCall& call, ProgressBar& progress) {
-  ModbusClient client(call.connection);
-  host::SteadyClock clock;
-  const Interruption interruption([&] {
-    progress.end();
-    clock.stop();
-    client.interrupt();
-  });
-  return scan::scan(call.task, client, clock, progress);
-}
-
-/// With the settings of the line at which a unit has answered.
-scan::Findings look_at_each_line(ProbeCall& call) {
-  ProgressBar progress;
-  scan::Findings findings;
-  bool is_asked = false;
-  for (std::size_t i = 0; i < call.lines.size(); ++i) {
-    const Serial& line = call.lines[i];
-    call.connection.serial = line;
-    if (line.present())
-      progress.where(
-          fmt::format("at {}{}", rate_and_parity(line),
-                      call.lines.size() > 1 ? fmt::format(" ({} of {})", i + 1, call.lines.size()) : ""));
-    scan::Findings found = look(call, progress);
-    const bool is_refused = found.broke_off && found.requests == 0;  // perhaps not the next one
-    if (!is_refused || !is_asked) findings = std::move(found);
-    is_asked |= !is_refused;
-    if (findings.unit || (findings.broke_off && !is_refused) || progress.wants_end()) break;
-  }
-  return findings;
-}
 
 /// Before anything is asked: a draft that cannot be written would cost a scan.
 tl::expected<void, WrongCall> can_write(const ProbeArguments& arguments) {
@@ -101,25 +68,14 @@ Exit run(const ProbeArguments& arguments) {
     return complain("probe", bad_call, can.error().what, can.error().remedy);
 
   const scan::Findings findings = look_at_each_line(*call);
-  if (findings.broke_off)
-    complain("probe", failed, host::to_string(*findings.broke_off),
-             reach_remedy(
-                 call->connection, std::holds_alternative<host::Timeout>(*findings.broke_off),
-                 "check that the device is on, that the port is right, and that no other client holds its "
-                 "last connection"));
-  if (!findings.unit && findings.is_complete && call->connection.is_rtu())
-    return complain("probe", failed,
-                    fmt::format("none of {} units answers on this line", call->task.units.size()),
-                    call->connection.serial.present() ? "check A and B, the power, and the module's rate and "
-                                                        "parity: --baud and --parity say what is tried"
-                                                      : "check A and B, the power, and the gateway's rate "
-                                                        "and parity; if it translates, give its address "
-                                                        "without rtu+");
-  if (!findings.unit && findings.is_complete)
-    return complain(
-        "probe", failed,
-        fmt::format("a server accepts connections, but none of {} units answers", call->task.units.size()),
-        "give its unit id, as HOST/17, or try all with --units 0-247,255");
+  if (findings.broke_off) {
+    const WrongCall why = why_unreachable(*findings.broke_off, call->connection);
+    complain("probe", failed, why.what, why.remedy);
+  }
+  if (!findings.unit && findings.is_complete) {
+    const WrongCall why = why_no_unit(*call);
+    return complain("probe", failed, why.what, why.remedy);
+  }
   if (!findings.unit) return failed;
 
   std::vector<scan::Match> matches;
@@ -140,7 +96,10 @@ Exit run(const ProbeArguments& arguments) {
             : "run it again, to its end");
   }
   if (!arguments.out.empty()) {
-    const Exit written = write(arguments.out, scan::draft_map(findings, call->connection, matches));
+    const bool has_all = findings.recognition && matches.empty();
+    const Exit written =
+        write(arguments.out, has_all ? scan::recognised_map(*findings.recognition, call->connection)
+                                     : scan::draft_map(findings, call->connection, matches));
     if (written != ok) exit = written;
   }
   return exit;
@@ -158,7 +117,9 @@ void add_probe(Program& program, Exit& exit) {
       "probe",
       "Find out what a device without a map answers to, and draft its map. It reads and never writes.");
   const auto arguments = std::make_shared<ProbeArguments>();
-  command.add_option("HOST", arguments->host, "HOST[:PORT][/UNIT], or a serial port as /dev/ttyUSB0[/UNIT]")
+  command
+      .add_option("HOST", arguments->host,
+                  "HOST[:PORT][/UNIT], with tls:// in front or not, or a serial port as /dev/ttyUSB0[/UNIT]")
       .required()
       .type_name("");
   command

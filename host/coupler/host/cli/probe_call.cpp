@@ -126,7 +126,7 @@ tl::expected<ProbeCall, WrongCall> understand(const ProbeArguments& arguments, c
   ProbeCall call;
   call.connection = found_at({}, *where).connection;
   if (const auto problem = use_tls_options(*where, arguments.tls, call.connection.tls))
-    return wrong("tls:// needs certificates", *problem);
+    return wrong(problem->what, problem->remedy);
   const Serial& line = call.connection.serial;
   auto units = units_of(arguments.units, call.connection, names_a_unit(*where, address));
   if (!units) return tl::make_unexpected(units.error());

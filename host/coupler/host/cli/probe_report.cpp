@@ -59,6 +59,9 @@ std::string identification_text(const Findings& findings, const Connection& conn
   if (findings.node)
     text += fmt::format("an OpenCoupler node: it serves its map, see `coupler dump {}`\n",
                         node_at(connection, *findings.unit));
+  if (findings.recognition)
+    text += fmt::format("a {}, by its own registers: {}; `preset: {}`\n", findings.recognition->kind,
+                        channels_text(*findings.recognition), findings.recognition->preset);
   return text;
 }
 

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include <fmt/chrono.h>
-
 #include "coupler/map/functions.hpp"
 
 namespace coupler::cli {
@@ -40,14 +38,6 @@ bool take_change(const Map& map, const modbus::Change& bit, Snapshot& now) {
     any = any || reading.changed;
   }
   return any;
-}
-
-std::string time_text(std::chrono::system_clock::time_point time) {
-  using std::chrono::milliseconds;
-  const auto since = std::chrono::floor<milliseconds>(time.time_since_epoch());
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(since);
-  return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(static_cast<std::time_t>(seconds.count())),
-                     (since - seconds).count());
 }
 
 }  // namespace coupler::cli

@@ -30,13 +30,12 @@ struct Reading {
 
 struct Snapshot {
   std::chrono::system_clock::time_point at;
-  std::string error_text{};                           ///< why the device does not answer; empty: it does
-  bool is_silent = false;                             ///< it is a timeout
+  std::optional<host::Error> error{};                 ///< why the device does not answer; nullopt: it does
   std::optional<host::Identity::Verdict> identity{};  ///< nullopt: not answered
   std::vector<std::string> notes{};                   ///< about this connection, one or more lines each
   std::vector<Reading> readings{};                    ///< of the chosen points, in the map's order
 
-  bool online() const { return error_text.empty(); }
+  bool online() const { return !error; }
   std::size_t failed() const;
 };
 
@@ -45,8 +44,5 @@ void mark_changes(const Snapshot& before, Snapshot& now);
 
 /// Puts a bit that has changed since into the readings that hold it: they alone are marked. False: none does.
 bool take_change(const Map& map, const modbus::Change& bit, Snapshot& now);
-
-/// "2026-11-21T13:20:11.123Z"
-std::string time_text(std::chrono::system_clock::time_point time);
 
 }  // namespace coupler::cli

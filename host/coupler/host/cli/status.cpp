@@ -26,11 +26,8 @@ Exit run(const Arguments& arguments) {
   const auto where = parse_node_address(address);
   if (!where) return complain("status", bad_call, where.error().what, where.error().remedy);
   Connection connection = found_at({}, *where).connection;
-  if (!where->tls && any_given(arguments.tls))
-    return complain("status", bad_call, "certificates are for a place with TLS",
-                    "write tls:// before the host");
   if (const auto problem = use_tls_options(*where, arguments.tls, connection.tls))
-    return complain("status", bad_call, "tls:// needs certificates", *problem);
+    return complain("status", bad_call, problem->what, problem->remedy);
   connection.timeout = std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000));
   const auto transport = host::make_transport(connection);
   const NodeStatus status = read_status(*transport, [&](modbus::ReadDeviceIdentification wanted) {
@@ -41,10 +38,10 @@ Exit run(const Arguments& arguments) {
       stdout);
   std::fflush(stdout);
   const std::string device = node_address_text(connection);
-  if (!status.error_text.empty())
+  if (status.error)
     return complain(
-        "status", failed, device + ": " + status.error_text,
-        reach_remedy(connection, status.is_silent, "check that a node serves there, with this unit id"));
+        "status", failed, device + ": " + to_string(*status.error),
+        reach_remedy(connection, *status.error, "check that a node serves there, with this unit id"));
   if (!status.report)
     return complain("status", bad_input, device + " is a foreign coupler: it has no identity area",
                     "`coupler dump` shows its values if you have its map, `coupler probe` looks into it");

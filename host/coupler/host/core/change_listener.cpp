@@ -125,10 +125,10 @@ void ChangeListener::begin_epoch(const modbus::ChangesReply& reply) {
 }
 
 /// After a gap everything is read: not again and again without end.
-void ChangeListener::pause(Duration longest) {
+void ChangeListener::pause(Duration at_most) {
   const Time now = clock_.now();
   const bool again = gap_at_ && now - *gap_at_ < forgiven;
-  pause_ = again ? std::clamp<Duration>(2 * pause_, shortest, longest) : Duration::zero();
+  pause_ = again ? std::clamp<Duration>(2 * pause_, shortest, at_most) : Duration::zero();
   gap_at_ = now;
   resume_at_ = now + std::min<Duration>(pause_, longest_wait_);
 }

@@ -82,7 +82,7 @@ class ChangeListener : private WaitListener {
   void map_clock(const modbus::ChangesReply& reply, const WaitAnswer& answer);
   Stamp stamp(modbus::NodeTime at, const WaitAnswer& answer) const;
   std::uint16_t wait();
-  void pause(Duration longest);
+  void pause(Duration at_most);
   void say(LineLimit& lines, Level level, const std::string& text);
 
   std::chrono::milliseconds timeout_;

@@ -35,7 +35,7 @@ Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transpo
       transport_(transport, clock, map.limits, statistics_),
       watchdog_(map_, transport_, clock, statistics_, sink),
       writer_(map_, transport_, clock, statistics_, qualities_, sink),
-      poller_(map_, transport_, clock, writer_, statistics_, qualities_, sink),
+      poller_(map_, transport_, writer_, statistics_, qualities_, sink),
       scheduler_(map_, transport_, clock, writer_, poller_.changes(), sink),
       listener_(map.connection.timeout, transport_, clock, statistics_, scheduler_.changes(), sink) {}
 
@@ -162,6 +162,7 @@ Time Device::connect() {
   Result<> result = state_ == State::open ? Result<>{} : transport_.connect();
   state_ = result ? State::open : State::none;
   if (result && verify_ != Verify::off) result = prove_equal();
+  writer_.talks_to_node(is_node_ || map_.connection.tls.present());
   if (result) result = watchdog_.connected();
   if (result) result = writer_.reconnected();
   if (!result) {
@@ -213,6 +214,7 @@ Result<> Device::prove_equal() {
   node_ = *further;
   peer_ = to_string(node_.machine);
   statistics_.identified(identity->verdict, further->machine);
+  sink_.on_identified(is_node_);
   return judge(*identity);
 }
 

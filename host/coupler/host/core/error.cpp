@@ -22,10 +22,21 @@ struct Text {
 
 const ExceptionReply* exception_in(const Error& error) { return std::get_if<ExceptionReply>(&error); }
 
+bool is_no_right(const Error& error) {
+  const ExceptionReply* exception = exception_in(error);
+  return exception != nullptr && exception->code == modbus::Exception::illegal_function;
+}
+
 bool is_unit_away(const Error& error) {
   const ExceptionReply* exception = exception_in(error);
   return exception != nullptr && (exception->code == modbus::Exception::gateway_path_unavailable ||
                                   exception->code == modbus::Exception::gateway_target_failed_to_respond);
+}
+
+bool has_remedy(const Error& error) {
+  const auto* none = std::get_if<NotConnected>(&error);
+  const auto* broken = std::get_if<TransportFailure>(&error);
+  return (none != nullptr && none->has_remedy) || (broken != nullptr && broken->has_remedy);
 }
 
 std::string to_string(const Error& error) { return std::visit(Text{}, error); }

@@ -14,10 +14,12 @@ namespace coupler::host {
 /// There is no connection, and none could be made.
 struct NotConnected {
   std::string why;
+  bool has_remedy = false;  ///< `why` says what to do
 };
 /// The connection broke.
 struct TransportFailure {
   std::string why;
+  bool has_remedy = false;  ///< as above
 };
 /// No complete reply within the device's timeout.
 struct Timeout {
@@ -47,8 +49,14 @@ tl::unexpected<Error> fail(E error) {
 /// be taken for the answer to the next request.
 const ExceptionReply* exception_in(const Error& error);
 
+/// Of a node, which knows every function: this client has no right to ask for that (exception 01).
+bool is_no_right(const Error& error);
+
 /// A gateway is there and says that the unit behind it is not (exceptions 0A and 0B).
 bool is_unit_away(const Error& error);
+
+/// Its text says what to do: no general advice need follow.
+bool has_remedy(const Error& error);
 
 /// "exception 02 (illegal data address)", "no reply within 3000 ms" …
 std::string to_string(const Error& error);

@@ -66,7 +66,10 @@ Result<Identity> check_identity(Transport& transport, const Map& known, const Ma
   const auto text = fetch_map_text(transport, head.map_size);
   if (!text) {
     if (exception_in(text.error()) == nullptr) return tl::make_unexpected(text.error());
-    return unreadable(head.fingerprint, to_string(text.error()));
+    return unreadable(
+        head.fingerprint,
+        to_string(text.error()) +
+            (is_no_right(text.error()) ? ": it gives it only to clients that may read every point" : ""));
   }
   const auto device = load_node_map(*text, head, load);
   if (!device) return unreadable(head.fingerprint, device.error());

@@ -40,6 +40,7 @@ void NodeOutputs::add(std::uint16_t number, const AcceptedWrite& what) {
 
 std::vector<std::uint16_t> NodeOutputs::numbers() const {
   std::vector<std::uint16_t> numbers;
+  numbers.reserve(waiting_.size());
   for (const Waiting& one : waiting_) numbers.push_back(one.number);
   return numbers;
 }

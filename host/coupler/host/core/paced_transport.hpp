@@ -30,6 +30,7 @@ class PacedTransport : public Transport {
         gap_(limits.request_gap),
         delay_(limits.connect_delay) {}
 
+  Clock& clock() const { return clock_; }
   Result<> connect() override;
   void close() override { transport_.close(); }
   void interrupt() override { transport_.interrupt(); }

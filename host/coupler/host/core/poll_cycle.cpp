@@ -173,6 +173,7 @@ std::vector<RejectedRange> PollCycle::take_rejected_ranges() { return std::excha
 
 std::vector<PollCycle::Status> PollCycle::status() const {
   std::vector<Status> result;
+  result.reserve(groups_.size());
   for (const Group& group : groups_)
     result.push_back({group.points->rate, group.steps.size(), group.schedule.overruns()});
   return result;

@@ -7,11 +7,11 @@
 
 namespace coupler::host {
 
-Poller::Poller(const Map& map, PacedTransport& transport, Clock& clock, Writer& writer,
-               DeviceStatistics& statistics, PointQualities& qualities, Sink& sink)
+Poller::Poller(const Map& map, PacedTransport& transport, Writer& writer, DeviceStatistics& statistics,
+               PointQualities& qualities, Sink& sink)
     : map_(map),
       transport_(transport),
-      clock_(clock),
+      clock_(transport.clock()),
       writer_(writer),
       statistics_(statistics),
       qualities_(qualities),

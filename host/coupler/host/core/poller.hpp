@@ -23,8 +23,8 @@ namespace coupler::host {
 class Poller {
  public:
   /// Everything given by reference must outlive it.
-  Poller(const Map& map, PacedTransport& transport, Clock& clock, Writer& writer,
-         DeviceStatistics& statistics, PointQualities& qualities, Sink& sink);
+  Poller(const Map& map, PacedTransport& transport, Writer& writer, DeviceStatistics& statistics,
+         PointQualities& qualities, Sink& sink);
 
   /// A new connection; `is_node`: to a node of this project; `told`: that tells changes of its bits.
   void start(bool is_node, bool told);

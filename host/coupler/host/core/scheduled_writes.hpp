@@ -41,7 +41,7 @@ class ScheduledWrites {
   void cancel(const std::string& reason);
 
  private:
-  struct Entry : WriteListener {
+  struct Entry final : WriteListener {
     enum class State { waiting, being_written };
     Entry(ScheduledWrites& writes, const AcceptedWrite& accepted) : owner(writes), what(accepted) {}
     void on_result(const WriteResult& result) override { owner.on_result(*this, result); }

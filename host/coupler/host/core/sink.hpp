@@ -26,6 +26,8 @@ class Sink {
   /// When the point's value is wanted once more though it is still the same: `max_interval` after it was
   /// published last. Time::max(): never.
   virtual Time repeat_at(std::uint32_t /*point*/) const { return Time::max(); }
+  /// Whether the device is a node of this project, where that is asked, before it is online.
+  virtual void on_identified(bool /*is_node*/) {}
   /// The device answers (or no longer does). Only changes; it begins offline.
   virtual void on_online(bool online) = 0;
   virtual void on_report(Level level, const std::string& text) = 0;

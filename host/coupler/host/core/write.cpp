@@ -19,7 +19,10 @@ std::string registers_text(Span<const std::uint16_t> registers) {
 }
 
 std::string exception_text(const WriteResult& result) {
-  return to_string(Error(ExceptionReply{result.exception.value_or(modbus::Exception{})}));
+  std::string text =
+      to_string(Error(ExceptionReply{result.exception.value_or(static_cast<modbus::Exception>(0))}));
+  if (!result.why.empty()) text += fmt::format(": {}", result.why);
+  return text;
 }
 
 std::string not_taken_text(const WriteResult& result) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "coupler/base/span.hpp"
+#include "coupler/host/core/clock.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/pdu.hpp"
@@ -26,7 +27,7 @@ struct WriteResult {
     exception,   ///< the device answered with an exception
     not_taken,   ///< acknowledged, but something else (or nothing) reads back
     lost,        ///< sent, but the connection broke before the answer: it may have been carried out or not
-    dropped,     ///< never sent: not connected, or too many writes wait
+    dropped,     ///< never sent: not connected, too many writes wait, or it waited longer than it may
     kept,        ///< not connected: written when the device is back, unless a newer value comes before
     refused      ///< not a value of that point
   };
@@ -34,7 +35,7 @@ struct WriteResult {
 
   Outcome outcome = Outcome::ok;
   std::optional<modbus::Exception> exception{};  ///< of the write, or with not_taken of the read-back
-  std::string_view why{};                        ///< lost, dropped, refused; valid during the call
+  std::string_view why{};                        ///< exception, lost, dropped, refused; valid during the call
   Span<const std::uint16_t> written{};           ///< not_taken, as Point::initial; valid during the call
   Span<const std::uint16_t> found{};  ///< not_taken: what reads back; empty if nothing could be read
 };
@@ -100,6 +101,7 @@ struct Write {
   bool ordered = false;               ///< keeps its place in the queue: its caller waits for its own result
   bool of_deadman = false;            ///< made by the driver because no message came
   bool of_schedule = false;           ///< made by the driver because its time has come
+  Time until = Time::max();           ///< if it still waits then, it is dropped
   WriteListener* listener = nullptr;  ///< gets the result; lives until then
 
   bool bit(std::size_t i) const { return (registers[i / 16] >> i % 16 & 1U) != 0; }

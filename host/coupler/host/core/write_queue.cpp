@@ -47,6 +47,7 @@ WriteQueue::Class& WriteQueue::class_of(const Write& write) {
 
 WriteQueue::Pushed WriteQueue::push(const Write& write) {
   const std::lock_guard lock(mutex_);
+  if (write.until != Time::max()) any_may_be_late_ = true;
   Class& own = class_of(write);
   Waiting& waiting = waiting_[write.point];
   const bool ordered = is_ordered(write);
@@ -93,6 +94,16 @@ std::optional<Write> WriteQueue::take_one_of(const std::vector<bool>& points) {
   const std::lock_guard lock(mutex_);
   for (Index place = first(); place != none; place = next(place))
     if (points[places_[place].write.point]) return remove(place);
+  return std::nullopt;
+}
+
+std::optional<Write> WriteQueue::take_late(Time now) {
+  if (!any_may_be_late_.load(std::memory_order_relaxed)) return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  for (Index place = first(); place != none; place = next(place)) {
+    const Write& write = places_[place].write;
+    if (write.until < now) return remove(place);
+  }
   return std::nullopt;
 }
 

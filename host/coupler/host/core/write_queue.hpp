@@ -44,6 +44,8 @@ class WriteQueue {
   std::optional<Write> take();
   /// Takes the first write to one of the points (by index, as long as the map's).
   std::optional<Write> take_one_of(const std::vector<bool>& points);
+  /// Takes the first write that has waited longer than it may.
+  std::optional<Write> take_late(Time now);
   /// Puts writes that were taken and not sent back to the front of their class, in their order.
   void put_back(const std::vector<Write>& writes);
   /// A write waits that goes before `taken`, which was taken and not sent.
@@ -106,6 +108,7 @@ class WriteQueue {
   std::vector<Waiting> waiting_;  ///< by point
   std::atomic<std::size_t> pending_writes_{0};
   std::atomic<std::size_t> size_now_{0};  ///< without the lock
+  std::atomic<bool> any_may_be_late_{false};
 };
 
 }  // namespace coupler::host

@@ -75,6 +75,7 @@ std::future<Calls::Answer> Writer::ask_safe() {
 
 bool Writer::send_now() {
   if (!batch_.empty() || !transport_.is_ready()) return false;
+  drop_late();
   queue_.take(batch_, merges_);
   if (batch_.empty()) return true;  // the owner was faster
   if (batch_.needs_read() || !transport_.reserve()) return false;
@@ -108,6 +109,7 @@ Result<> Writer::step() {
   if (batch_.empty() && queue_.empty()) return {};
   transport_.await_turn_to_write();  // first, since a write that goes before all others may come meanwhile
   choose_next();
+  if (batch_.empty()) return {};  // they were too late
   return finish(exchange(batch_, map_, transport_));
 }
 
@@ -116,7 +118,13 @@ void Writer::choose_next() {
     queue_.put_back(batch_.writes());
     batch_.clear();
   }
+  drop_late();
   if (batch_.empty()) queue_.take(batch_, merges_);
+}
+
+void Writer::drop_late() {
+  while (const auto write = queue_.take_late(clock_.now()))
+    settle(*write, {Outcome::dropped, std::nullopt, "the device was busy for too long; try again"});
 }
 
 Result<> Writer::finish(const Result<>& answer) {
@@ -150,7 +158,9 @@ Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
     return {};
   }
   if (const ExceptionReply* exception = exception_in(answer.error())) {
-    settle(write, {Outcome::exception, exception->code});
+    const bool is_right = is_node_ && exception->code == modbus::Exception::illegal_function;
+    settle(write, {Outcome::exception, exception->code,
+                   is_right ? "this client has no right to write it" : std::string_view()});
     return {};
   }
   if (!write.of_schedule) remember(write);

@@ -81,6 +81,8 @@ class Writer {
   /// A new connection, or a coupler whose watchdog had switched its outputs off: under
   /// `on_reconnect: restore` they get their last values.
   Result<> reconnected();
+  /// The device is a node of this project, which knows every function: exception 01 is about rights.
+  void talks_to_node(bool is_node) { is_node_ = is_node; }
   /// An output has this value now, by another way than a write: `on_reconnect: restore` brings it back.
   void remember(const Write& write);
   /// There is no connection: all that was sent or queued gets its result.
@@ -113,6 +115,7 @@ class Writer {
   void settle(const Write& write, const WriteResult& result);
   void report(const Write& write, const WriteResult& result);
   void drop(const Write& write);
+  void drop_late();
   bool restores(const Write& write) const {
     return map_.on_reconnect == OnReconnect::restore && !is_pulsed(map_.points[write.point]);
   }
@@ -136,7 +139,8 @@ class Writer {
   WriteBatch done_;                           ///< answered; kept for its memory
   std::optional<modbus::WriteRequest> sent_;  ///< batch_, where send_now() has sent it
   std::optional<Error> send_error_;           ///< it could not be sent
-  bool merges_ = true;                        ///< the device takes several values in one request
+  bool is_node_ = false;
+  bool merges_ = true;  ///< the device takes several values in one request
   std::uint64_t dropped_ = 0;
   std::array<LineLimit, WriteResult::outcomes> lines_;  ///< by outcome
 };

@@ -72,7 +72,8 @@ Result<> ModbusTransport::open(const Event& interrupt) {
   if (tls_) {
     auto link = open_tls(*std::move(opened), host_, *tls_, deadline, interrupt);
     if (!link)
-      return fail(NotConnected{fmt::format("{} port {}: {}", host_, port_, to_string(link.error()))});
+      return fail(NotConnected{fmt::format("{} port {}: {}", host_, port_, to_string(link.error())),
+                               has_remedy(link.error())});
     link_ = *std::move(link);
     opened = link_->take_socket();
   }
@@ -98,7 +99,7 @@ void ModbusTransport::close() {
 tl::unexpected<Error> ModbusTransport::failed(Error error) const {
   if (link_ && std::holds_alternative<TransportFailure>(error))
     if (std::string problem = link_->problem(); !problem.empty())
-      return fail(TransportFailure{std::move(problem)});
+      return fail(TransportFailure{std::move(problem), true});
   return tl::unexpected<Error>(std::move(error));
 }
 
@@ -128,7 +129,8 @@ Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
   reply_[0] = 0;
   const int size = modbus_receive_confirmation(context_.get(), reply_.data());
   if (size < 0 && is_tls_alert(reply_))
-    return fail(BadFrame{"the device speaks TLS at this port; reach it by tls:// (docs/security.md)"});
+    return fail(
+        NotConnected{"the device speaks TLS at this port; reach it by tls:// (docs/security.md)", true});
   if (size < 0) return failed(receive_error(errno, timeout_));
   const Span<const std::uint8_t> adu(reply_.data(), static_cast<std::size_t>(size));
   if (auto ours = check_adu(adu, sent_); !ours) return tl::make_unexpected(ours.error());

@@ -27,7 +27,7 @@ class Link final : public TlsLink {
       : certificates_{std::move(own), {}, false},
         socket_(std::move(socket)),
         verification_(std::move(verification)),
-        session_(context.connection(socket_.get(), verification_), socket_.get(), verification_) {}
+        session_(context.connection(socket_.get(), verification_), verification_) {}
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
   ~Link() override {
@@ -114,7 +114,7 @@ class Link final : public TlsLink {
 
 Result<std::unique_ptr<TlsLink>> open_tls(Descriptor socket, const std::string& host, const TlsTexts& tls,
                                           const Deadline& deadline, const Event& interrupt) {
-  const auto failed = [](std::string why) { return fail(NotConnected{std::move(why)}); };
+  const auto failed = [](std::string why) { return fail(NotConnected{std::move(why), true}); };
   auto credentials = read_credentials({tls.certificate, tls.key, tls.ca, {}, tls.folder});
   if (!credentials) return failed(std::move(credentials).error());
   auto context = tls::Context::make(tls::Side::client, *credentials);

@@ -6,7 +6,7 @@ namespace coupler::host {
 
 Result<std::unique_ptr<TlsLink>> open_tls(Descriptor, const std::string&, const TlsTexts&, const Deadline&,
                                           const Event&) {
-  return fail(NotConnected{"this build has no TLS; build it with OpenSSL 3 (apt install libssl-dev)"});
+  return fail(NotConnected{"this build has no TLS; build it with OpenSSL 3 (apt install libssl-dev)", true});
 }
 
 }  // namespace coupler::host

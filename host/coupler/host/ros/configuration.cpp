@@ -105,13 +105,12 @@ class MapFinder {
       auto served = attempt.get();
       if (served) return std::move(*served);
       if (Shutdown::requested) break;
-      const auto* refused = exception_in(served.error());
-      const bool has_no_right = refused != nullptr && refused->code == modbus::Exception::illegal_function;
-      const std::string waiting = fmt::format(
-          "waiting for the map of {}: {}{}; trying again", where, to_string(served.error()),
-          has_no_right ? ": it gives it only to clients that may read every point; give its map by "
-                         "--map MAP, or a certificate whose role has 'read: all'"
-                       : "");
+      const std::string waiting =
+          fmt::format("waiting for the map of {}: {}{}; trying again", where, to_string(served.error()),
+                      is_no_right(served.error())
+                          ? ": it gives it only to clients that may read every point; give its map by "
+                            "--map MAP, or a certificate whose role has 'read: all'"
+                          : "");
       if (waiting != logged) log_(Level::warning, waiting);
       logged = waiting;
       diagnostics.say(Level::warning, waiting);

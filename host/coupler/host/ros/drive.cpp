@@ -5,6 +5,8 @@
 #include <array>
 #include <future>
 #include <memory>
+#include <optional>
+#include <set>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -14,6 +16,8 @@
 #include "coupler/base/line_limit.hpp"
 #include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/modbus/make_transports.hpp"
+#include "coupler/host/ros/device_panel.hpp"
+#include "coupler/host/ros/device_recording.hpp"
 #include "coupler/host/ros/device_services.hpp"
 #include "coupler/host/ros/diagnostics.hpp"
 #include "coupler/host/ros/program.hpp"
@@ -67,9 +71,15 @@ std::function<void(bool)> advertise_online(Node& node, const Map& map) {
 /// that thread as they are decoded.
 class DeviceDriver : public Sink {
  public:
+  /// What follows it, besides ROS.
+  struct Followed {
+    std::optional<std::string> recording;  ///< the path of one
+    std::optional<unsigned> panel;         ///< the port of one
+  };
+
   /// The map's views must outlive it. Callbacks of the node refer to it: the node must be shut down before it
   /// is destroyed, and publish no more diagnostics.
-  DeviceDriver(Node& node, const Map& map, std::unique_ptr<Transport> transport)
+  DeviceDriver(Node& node, const Map& map, const Followed& followed, std::unique_ptr<Transport> transport)
       : node_(node),
         map_(map),
         subscribers_(map.points.size()),
@@ -80,6 +90,7 @@ class DeviceDriver : public Sink {
         publish_scheduled_(advertise_scheduled(node, map_, wall_)),
         diagnostics_(map, node),
         services_(map, subscribers_),
+        followers_(start_followers(followed)),
         transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport), node)),
         thread_(map, map.verify, load_served_map, *transport_, *this, map.poll),
         writes_{
@@ -99,10 +110,16 @@ class DeviceDriver : public Sink {
   }
   ~DeviceDriver() override { services_.stop(); }
 
+  /// After stop(): its outputs are safe, however long the disk takes.
+  void end_followers() {
+    for (const auto& follower : followers_) follower->end();
+  }
+
   /// Stops the device's thread; what comes from ROS afterwards does nothing. False if an output should have
   /// its safe value and has not.
   bool stop() {
     services_.stop();
+    for (const auto& follower : followers_) follower->end_comes();
     return thread_.end();
   }
 
@@ -112,20 +129,29 @@ class DeviceDriver : public Sink {
 
   void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override {
     std::copy(bits.begin(), bits.end(), bits_.begin());
-    on_registers(span, {bits_.data(), bits.size()}, stamp);
+    publish(span, {bits_.data(), bits.size()}, stamp);
+    for (const auto& follower : followers_) follower->sink().on_bits(span, bits, stamp);
   }
-  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override;
+  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override {
+    publish(span, registers, stamp);
+    for (const auto& follower : followers_) follower->sink().on_registers(span, registers, stamp);
+  }
   Time repeat_at(std::uint32_t point) const override;
+  void on_identified(bool is_node) override;
   void on_online(bool online) override;
   void on_scheduled(const ScheduledOutcome& outcome) override {
     wall_.measure();
     publish_scheduled_(outcome);
   }
   void on_report(Level level, const std::string& text) override {
-    node_.log(level, fmt::format("{}: {}", map_.name, text));
+    log(level, text);
+    for (const auto& follower : followers_) follower->sink().on_report(level, text);
   }
 
  private:
+  void log(Level level, const std::string& text) { node_.log(level, fmt::format("{}: {}", map_.name, text)); }
+  std::vector<std::unique_ptr<Follower>> start_followers(const Followed& followed);
+  void publish(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp);
   void refuse(std::optional<std::uint32_t> point, const std::string& what);
 
   Node& node_;
@@ -140,6 +166,7 @@ class DeviceDriver : public Sink {
   Node::PublishScheduled publish_scheduled_;  ///< empty if no point can be written
   Diagnostics diagnostics_;
   DeviceServices services_;
+  const std::vector<std::unique_ptr<Follower>> followers_;
   std::unique_ptr<TracedTransport> transport_;
   DeviceThread thread_;
   std::uint64_t reported_ = 0;  ///< the thread's revision
@@ -150,6 +177,15 @@ class DeviceDriver : public Sink {
   std::vector<std::shared_ptr<void>> subscriptions_;
 };
 
+std::vector<std::unique_ptr<Follower>> DeviceDriver::start_followers(const Followed& followed) {
+  const auto report = [this](Level level, const std::string& text) { log(level, text); };
+  std::vector<std::unique_ptr<Follower>> followers;
+  if (followed.recording) followers.push_back(DeviceRecording::start(map_, *followed.recording, report));
+  if (followed.panel) followers.push_back(start_panel(map_, *followed.panel, report));
+  followers.erase(std::remove(followers.begin(), followers.end(), nullptr), followers.end());
+  return followers;
+}
+
 bool DeviceDriver::report(Time now, bool force) {
   using State = PointQuality::State;
   const std::uint64_t revision = thread_.revision();
@@ -158,6 +194,7 @@ bool DeviceDriver::report(Time now, bool force) {
   stale_from_ = Time::max();
   const DeviceSnapshot device = thread_.statistics();
   std::vector<PointQuality> points = thread_.qualities();
+  for (const auto& follower : followers_) follower->judge(device, points, revision, now);
   for (const PointQuality& point : points) stale_from_ = std::min(stale_from_, point.stale_from);
   for (std::uint32_t i = 0; i < points.size(); ++i)
     if (const auto state = points[i].state; is_readable(map_.points[i]) && subscribers_.is_unwanted(i) &&
@@ -165,11 +202,11 @@ bool DeviceDriver::report(Time now, bool force) {
       points[i].state = State::not_wanted;
   if (publish_status_(device, points, now)) status_due_ = now + status_interval;
   thread_.report_held_back();
-  if (const auto line = refused_lines_.due(now)) on_report(Level::warning, *line);
+  if (const auto line = refused_lines_.due(now)) log(Level::warning, *line);
   return diagnostics_.update(device, points);
 }
 
-void DeviceDriver::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) {
+void DeviceDriver::publish(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) {
   bool is_measured = false;  // once, so that the stamps of one read are equal
   for (const std::uint32_t index : span.points) {
     const modbus::Range place = read_range(map_.points[index]);
@@ -192,6 +229,10 @@ Time DeviceDriver::repeat_at(std::uint32_t point) const {
   return first;
 }
 
+void DeviceDriver::on_identified(bool is_node) {
+  for (const auto& follower : followers_) follower->sink().on_identified(is_node);
+}
+
 void DeviceDriver::on_online(bool online) {
   if (online)  // values from before the interruption are history
     for (const auto* publishers : {&publishers_, &stamped_})
@@ -199,6 +240,7 @@ void DeviceDriver::on_online(bool online) {
         if (publisher) publisher->renew();
   services_.value_waiter().set_online(online);
   publish_online_(online);
+  for (const auto& follower : followers_) follower->sink().on_online(online);
 }
 
 void DeviceDriver::refuse(std::optional<std::uint32_t> point, const std::string& what) {
@@ -208,8 +250,7 @@ void DeviceDriver::refuse(std::optional<std::uint32_t> point, const std::string&
     thread_.refuse(refused, what);
   }
   const auto now = std::chrono::steady_clock::now();
-  if (const auto line = refused_lines_.say("refused a write to " + what, now))
-    on_report(Level::warning, *line);
+  if (const auto line = refused_lines_.say("refused a write to " + what, now)) log(Level::warning, *line);
 }
 
 using Drivers = std::vector<std::unique_ptr<DeviceDriver>>;
@@ -220,9 +261,14 @@ Drivers start_all(const Devices& devices, Node& node) {
   auto transports = make_transports(maps);
   auto transport = transports.begin();
   Drivers drivers;
+  std::set<unsigned> panels;  // their ports: of devices with the same setting each has the next one
   for (const auto& [settings, source] : devices) {
     if (Shutdown::requested) break;
-    drivers.push_back(std::make_unique<DeviceDriver>(node, source.map, std::move(*transport++)));
+    DeviceDriver::Followed followed{settings.record, settings.panel};
+    if (followed.recording)
+      followed.recording = recording_path(*followed.recording, source.map.name, devices.size() == 1);
+    while (followed.panel && !panels.insert(*followed.panel).second) ++*followed.panel;
+    drivers.push_back(std::make_unique<DeviceDriver>(node, source.map, followed, std::move(*transport++)));
   }
   return drivers;
 }
@@ -254,7 +300,8 @@ int drive(const Devices& devices, Node& node) {
     diagnosed = now;
     node.publish_diagnostics();
   }
-  const bool safe = stop_all(drivers);  // first: a ROS that hangs may hold up what follows
+  const bool safe = stop_all(drivers);  // first: a ROS or a disk that hangs may hold up what follows
+  for (const auto& driver : drivers) driver->end_followers();
   node.shut_down();
   return safe ? 0 : not_safe;
 }

@@ -172,8 +172,8 @@ void fill(Status& status, const DiagnosticEntry& entry) {
 
 /// For Node::advertise_online(): the publisher is one of std_msgs/Bool.
 template <class Message, class Publisher>
-std::function<void(bool)> online_with(Publisher publisher) {
-  return [publisher = std::move(publisher)](bool online) {
+std::function<void(bool)> online_with(const Publisher& publisher) {
+  return [publisher](bool online) {
     Message message;
     message.data = online;
     publisher.publish(message);
@@ -182,8 +182,8 @@ std::function<void(bool)> online_with(Publisher publisher) {
 
 /// For Node::advertise_status(): the publisher is one of coupler_driver/Status, `now()` the time in messages.
 template <class Message, class Publisher, class Clock>
-Node::PublishStatus status_with(Publisher publisher, const Map& map, Clock now) {
-  return [publisher = std::move(publisher), now, status = std::make_shared<Status<Message>>(map)](
+Node::PublishStatus status_with(const Publisher& publisher, const Map& map, Clock now) {
+  return [publisher, now, status = std::make_shared<Status<Message>>(map)](
              const DeviceSnapshot& device, const std::vector<PointQuality>& points, Time at) {
     if (!status->update(device, points, at)) return false;
     status->message().header.stamp = now();
@@ -194,8 +194,8 @@ Node::PublishStatus status_with(Publisher publisher, const Map& map, Clock now) 
 
 /// For Node::advertise_scheduled(): the publisher is one of coupler_driver/Scheduled.
 template <class Message, class Publisher>
-Node::PublishScheduled scheduled_with(Publisher publisher, const Map& map, const WallTime& wall) {
-  return [publisher = std::move(publisher), &map, &wall](const ScheduledOutcome& outcome) {
+Node::PublishScheduled scheduled_with(const Publisher& publisher, const Map& map, const WallTime& wall) {
+  return [publisher, &map, &wall](const ScheduledOutcome& outcome) {
     Message message;
     fill(message, outcome, wall);
     message.point = std::string(map.points[outcome.point].name);
@@ -237,6 +237,9 @@ class TypedServiceThread : public ServiceThread {
   }
 
  private:
+  friend Adapter;
+  TypedServiceThread() = default;
+
   template <class S, class Function>
   void serve(const std::string& name, Function function) {
     static_cast<Adapter&>(*this).template serve<S>(name, std::move(function));

@@ -31,6 +31,7 @@ Options parse_options(std::vector<std::string> arguments, const Dialect& dialect
   app.footer(std::string(dialect.help));
   std::array<std::string, setting_keys.size()> texts;
   std::vector<command_line::Option> options;
+  options.reserve(texts.size());
   for (std::size_t i = 0; i < texts.size(); ++i)
     options.push_back(
         app.add_option(option_names(setting_keys[i]), texts[i], std::string(setting_keys[i].help)));

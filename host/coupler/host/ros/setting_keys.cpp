@@ -18,9 +18,10 @@ std::string nearest_setting(std::string_view name) {
 
 }  // namespace
 
-const std::array<SettingKey, 21> setting_keys{{
+const std::array<SettingKey, 23> setting_keys{{
     {"map", "mapping", Kind::text, 0, 0, "",
-     "the device's map: a YAML or JSON file, or the address of a node, as tcp://HOST[:PORT][/UNIT]"},
+     "the device's map: a YAML or JSON file, or the address of a node, as tcp:// or "
+     "tls://HOST[:PORT][/UNIT]"},
     {"maps", "", Kind::list, 0, 0, "",
      "several devices in one process: their maps, as in --maps a.yaml,b.yaml; with names of their own, as in "
      "--maps left=io.yaml,right=io.yaml"},
@@ -49,6 +50,13 @@ const std::array<SettingKey, 21> setting_keys{{
     {"poll", "", Kind::text, 0, 0, "",
      "which points are read: all (default), or subscribed: those that have subscribers; instead of the "
      "map's"},
+    {"record", "", Kind::text, 0, 0, "",
+     "file of a recording of every change, as `coupler record` makes it; of several devices each has its "
+     "own"},
+    {"panel", "", Kind::integer, 1, 65535, "",
+     "port of a live page, as `coupler panel` shows it, on this machine; of several devices each has the "
+     "next "
+     "port"},
 }};
 
 std::vector<std::string_view> setting_names() {

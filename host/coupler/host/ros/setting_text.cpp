@@ -167,7 +167,8 @@ constexpr std::pair<std::string_view, std::optional<std::string> Settings::*> te
     {"key", &Settings::key},
     {"ca", &Settings::ca},
     {"tls_name", &Settings::tls_name},
-    {"pin", &Settings::pin}};
+    {"pin", &Settings::pin},
+    {"record", &Settings::record}};
 
 }  // namespace
 
@@ -198,6 +199,8 @@ Outcome set(Settings& settings, std::string_view name, const std::string& text) 
   if (key == "rate") return set_number(settings.rate, setting, text);
   if (key == "timeout") return set_timeout(settings, setting, text);
   if (key == "verify") return set_verify(settings, text);
+  if (key == "record") return set_file(settings.record, key, text);
+  if (key == "panel") return set_number(settings.panel, setting, text);
   return set_poll(settings, text);
 }
 
@@ -223,6 +226,7 @@ std::optional<std::string> text_of(const Settings& settings, std::string_view ke
     return fmt::to_string(std::chrono::duration<double>(*settings.timeout).count());
   if (key == "verify") return word(settings.verify);
   if (key == "poll") return word(settings.poll);
+  if (key == "panel") return number(settings.panel);
   return std::nullopt;
 }
 

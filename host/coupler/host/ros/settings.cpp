@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/settings.hpp"
 
+#include <string_view>
+
+#include "coupler/map/tls_texts.hpp"
+
 namespace coupler::host {
 namespace {
 
@@ -10,16 +14,15 @@ void prefer(std::optional<T>& field, const std::optional<T>& strong) {
 }
 
 void apply(const Settings& settings, Tls& tls) {
-  const auto put = [](const std::optional<std::string>& from, std::string_view& to) {
-    if (from) to = *from;
+  const auto text = [](const std::optional<std::string>& setting) {
+    return setting ? std::string_view(*setting) : std::string_view();
   };
-  put(settings.certificate, tls.certificate);
-  put(settings.key, tls.key);
-  put(settings.ca, tls.ca);
-  put(settings.tls_name, tls.name);
-  put(settings.pin, tls.pin);
-  if (settings.pin && !settings.ca) tls.ca = {};
-  if (settings.ca && !settings.pin) tls.pin = {};
+  overlay(tls, {text(settings.certificate),
+                text(settings.key),
+                text(settings.ca),
+                text(settings.tls_name),
+                text(settings.pin),
+                {}});
 }
 
 }  // namespace
@@ -58,6 +61,8 @@ Settings overlay(Settings weak, const Settings& strong) {
   prefer(weak.pin, strong.pin);
   prefer(weak.rate, strong.rate);
   prefer(weak.timeout, strong.timeout);
+  prefer(weak.record, strong.record);
+  prefer(weak.panel, strong.panel);
   prefer(weak.verify, strong.verify);
   prefer(weak.poll, strong.poll);
   return weak;

@@ -36,6 +36,8 @@ struct Settings {
   std::optional<std::chrono::milliseconds> timeout;  ///< above 0; given in seconds
   std::optional<Verify> verify;
   std::optional<Poll> poll;
+  std::optional<std::string> record;   ///< absolute path of a recording
+  std::optional<std::uint16_t> panel;  ///< port of a live page; above 0
 };
 
 /// One setting by its name, as ROS parameter and as argument (`--key VALUE`).
@@ -50,7 +52,7 @@ struct SettingKey {
   std::string_view unit;  ///< follows a number; or empty
   std::string_view help;
 };
-extern const std::array<SettingKey, 21> setting_keys;
+extern const std::array<SettingKey, 23> setting_keys;
 /// Of all of them, with the aliases.
 std::vector<std::string_view> setting_names();
 bool is_setting(std::string_view name);

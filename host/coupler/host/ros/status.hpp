@@ -69,7 +69,8 @@ class Status {
     for (std::size_t i = 0; i < points.size(); ++i) {
       PointStatus& status = message_.points[i];
       const PointQuality& quality = points[i];
-      const auto code = static_cast<std::uint8_t>(quality.last_exception.value_or(modbus::Exception{}));
+      const std::uint8_t code =
+          quality.last_exception ? static_cast<std::uint8_t>(*quality.last_exception) : std::uint8_t{0};
       status.age = quality.last_good ? std::chrono::duration<double>(now - *quality.last_good).count() : -1;
       changed |= assign(status.write_outcome, number_of(quality.last_write));
       changed |= assign(status.write_text, quality.last_write_text);

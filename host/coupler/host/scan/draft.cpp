@@ -84,16 +84,7 @@ class Writer {
   }
 
   void device(const Connection& connection) {
-    text_ += "name: device\n";
-    const Serial& line = connection.serial;
-    if (line.present())
-      text_ +=
-          fmt::format("serial: {{device: \"{}\", baud: {}, parity: {}, stop_bits: {}{}}}\n", line.device,
-                      line.baud, to_string(line.parity), line.stop_bits, line.rs485 ? ", rs485: true" : "");
-    else
-      text_ += fmt::format("address: \"{}\"\nport: {}\n{}", connection.address, connection.port,
-                           connection.is_rtu() ? "framing: rtu\n" : "");
-    text_ += fmt::format("unit: {}\n", connection.unit);
+    text_ += "name: device\n" + connection_text(connection);
     limits();
     if (order_)
       text_ += fmt::format("byteorder_reverse: {}\nwordorder_reverse: {}   # order {}: the known values\n",
@@ -198,6 +189,18 @@ std::string point_text(const Candidate& candidate, bool with_order) {
 std::string value_text(const Candidate& candidate) {
   if (candidate.type == codec::Type::REAL) return fmt::format("{}", static_cast<float>(candidate.value));
   return fmt::format("{}", candidate.value);
+}
+
+std::string connection_text(const Connection& connection) {
+  const Serial& line = connection.serial;
+  const std::string unit = fmt::format("unit: {}\n", connection.unit);
+  if (line.present())
+    return fmt::format("serial: {{device: \"{}\", baud: {}, parity: {}, stop_bits: {}{}}}\n", line.device,
+                       line.baud, to_string(line.parity), line.stop_bits, line.rs485 ? ", rs485: true" : "") +
+           unit;
+  return fmt::format("address: \"{}\"\nport: {}\n{}", connection.address, connection.port,
+                     connection.is_rtu() ? "framing: rtu\n" : "") +
+         unit;
 }
 
 std::string draft_map(const Findings& findings, const Connection& connection,

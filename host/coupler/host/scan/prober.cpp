@@ -74,6 +74,10 @@ Reply Prober::attempt(Request&& request) {
   client_.close();
   connected_ = false;
   if (progress_.wants_end()) return {};
+  if (has_remedy(result.error())) {  // the next request would have the same answer
+    broke_off_ = result.error();
+    return {};
+  }
   ++failures_[host::to_string(result.error())];
   return {Reply::Kind::none, {}, std::holds_alternative<host::Timeout>(result.error())};
 }
@@ -111,6 +115,7 @@ Reply Prober::identify(modbus::ReadDeviceIdentification wanted, IdentificationPa
 
 std::vector<std::string> Prober::failures() const {
   std::vector<std::string> texts;
+  texts.reserve(failures_.size());
   for (const auto& [text, times] : failures_)
     texts.push_back(times == 1 ? text : fmt::format("{} ({} times)", text, times));
   return texts;

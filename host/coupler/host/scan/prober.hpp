@@ -20,8 +20,8 @@ struct Reply {
     over,     ///< not sent: the scan has to end
   };
   Kind kind = Kind::over;
-  modbus::Exception exception{};  ///< if refused
-  bool timed_out = false;         ///< if none
+  std::optional<modbus::Exception> exception{};  ///< if refused
+  bool timed_out = false;                        ///< if none
 
   bool is_given() const { return kind == Kind::given; }
 };

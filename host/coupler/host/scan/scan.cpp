@@ -14,7 +14,7 @@ std::optional<bool> ask_unit(Prober& prober, bool is_only_one) {
     const Reply reply = prober.try_read(table, modbus::Range::of(0, 1), &value);
     if (reply.kind == Reply::Kind::over) return std::nullopt;
     if (reply.is_given()) return true;
-    if (reply.kind == Reply::Kind::refused) return !host::is_unit_away(host::ExceptionReply{reply.exception});
+    if (reply.exception) return !host::is_unit_away(host::ExceptionReply{*reply.exception});
     if (reply.timed_out && !is_only_one) return false;
   }
   return false;
@@ -44,6 +44,11 @@ void look_into_unit(const Task& task, Prober& prober, ScanProgress& progress, Fi
   progress.begins("identification");
   findings.identification = read_identification(prober);
   findings.node = read_node_identity(prober);
+  if (!findings.node) findings.recognition = recognise(prober);
+  if (task.ends_when_known && (findings.node || findings.recognition)) {
+    findings.is_complete = true;
+    return;
+  }
   for (const Table table : tables) {
     findings.tables.emplace_back(table, task.window);
     TableScan scan(prober, progress, findings.largest, task.stride, findings.tables.back());

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "coupler/host/scan/recognition.hpp"
 #include "coupler/host/scan/table_scan.hpp"
 #include "coupler/map/identity.hpp"
 
@@ -18,6 +19,8 @@ struct Task {
   modbus::Range window = modbus::Range::of(0, 10000);  ///< of each table
   std::uint32_t stride = 16;  ///< where blocks are refused, one address in so many is tried; 1: all
   double rate = 20;           ///< requests a second
+  bool ends_when_known =
+      false;  ///< the tables of a node and of a coupler that says what it has are left alone
 };
 
 struct Findings {
@@ -25,6 +28,7 @@ struct Findings {
   std::optional<std::uint8_t> unit;                    ///< the rest is about it
   std::map<std::uint8_t, std::string> identification;  ///< FC 43/14
   std::optional<identity::Head> node;                  ///< a node of this project
+  std::optional<Recognition> recognition;              ///< a coupler that says what it has
   std::vector<TableFindings> tables;                   ///< those that were looked at
   LargestReads largest;
   std::uint64_t requests = 0;

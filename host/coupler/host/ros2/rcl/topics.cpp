@@ -34,7 +34,7 @@ std::shared_ptr<void> follow(Inbox& inbox, const Entity& entity, Type type,
   }
   check(made, failure);
   const auto take = [event, handle = std::move(handle)] {
-    Status status{};
+    Status status{};  // NOLINT(bugprone-invalid-enum-default-initialization): rcl fills it
     if (rcl_take_event(event, &status) == RCL_RET_OK)
       handle(status);
     else

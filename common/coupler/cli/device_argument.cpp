@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/cli/device_argument.hpp"
+
+#include <utility>
+
+#include "coupler/map/diagnostic.hpp"
+
+namespace coupler::cli {
+
+void add_device_options(command_line::Command& command, DeviceArgument& arguments) {
+  if (arguments.may_be_unknown)
+    command.add_option("MAP|HOST", arguments.map, map_or_device_help).required().type_name("");
+  else
+    command.add_option("MAP", arguments.map, map_help).required().type_name("");
+  command
+      .add_option(
+          "--at", arguments.at,
+          "Where the device is, if not where the map says: HOST[:PORT][/UNIT], with tls:// in front or "
+          "not, or a serial port as "
+          "/dev/ttyUSB0[/UNIT]; parts that are not given are the map's")
+      .type_name("PLACE");
+  add_tls_options(command, arguments.tls);
+}
+
+tl::expected<DeviceMap, Exit> get_device(std::string_view command, const DeviceArgument& arguments) {
+  const auto refuse = [&](const std::string& what, const std::string& remedy) {
+    return tl::make_unexpected(complain(command, bad_call, what, remedy));
+  };
+  MapArgument argument = arguments.may_be_unknown ? get_map_or_find(command, arguments.map, arguments.tls)
+                                                  : get_map(arguments.map, arguments.tls);
+  print(argument.loaded.diagnostics);
+  if (!argument.loaded.map) return tl::make_unexpected(argument.exit);
+  Map map = argument.map();
+  if (any_given(arguments.tls)) {
+    if (!map.connection.tls.present() && !map.connection.serial.present() &&
+        map.connection.port == modbus::default_port)
+      map.connection.port = default_tls_port;
+    overlay(map.connection.tls, arguments.tls.view());
+    if (const auto problem = tls_problem(map.connection.tls))
+      return refuse("TLS needs certificates", *problem);
+  }
+  const auto at = std::make_shared<const std::string>(node_argument(arguments.at, map.connection));
+  if (!arguments.at.empty()) {
+    const auto device = parse_node_address(*at, map.connection);
+    if (!device) return refuse("--at: " + device.error().what, device.error().remedy);
+    map = found_at(map, *device);
+    if (device->tls && !map.connection.tls.present())
+      return refuse("tls:// needs certificates", *tls_problem(map.connection.tls));
+  }
+  if (!map.connection.present())
+    return refuse(
+        arguments.map + " does not say where the device is",
+        "give --at HOST[:PORT][/UNIT] or --at /dev/ttyUSB0[/UNIT], or `address:` or `serial:` in the map");
+  return DeviceMap{std::move(argument), at, map};
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <tuple>
+
+#include "coupler/map/point.hpp"
+
+namespace coupler {
+
+/// Whether a value of one means the same in the other, wherever they stand in their tables.
+inline bool same_value(const Point& a, const Point& b) {
+  const auto layout = [](const Point& p) {
+    const codec::Format& f = p.format;
+    return std::tuple(p.table, p.count, f.type, f.order, f.bit, f.half, f.length, f.encoding, p.scale.gain,
+                      p.scale.offset);
+  };
+  return layout(a) == layout(b);
+}
+
+}  // namespace coupler

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The names that a certificate has. Those that cannot be shown, as one with a line break, are left out.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coupler/tls/openssl.hpp"
+
+namespace coupler::tls {
+
+/// Of its subject; "?" if it has none.
+std::string common_name(const X509* certificate);
+
+/// DNS names and IP addresses, as inet_ntop(3) writes them, under which it serves (RFC 5280 4.2.1.6).
+/// nullopt: it has no such extension.
+std::optional<std::vector<std::string>> hosts_of(const X509* certificate);
+
+}  // namespace coupler::tls

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/cli/only_looking.hpp"
+
+namespace coupler::cli {
+
+OnlyLooking::OnlyLooking(const Map& map) : points_(map.points.begin(), map.points.end()), map_(map) {
+  for (Point& point : points_) point.host.deadman = {};
+  map_.points = {points_.data(), points_.size()};
+  map_.coupler_watchdog = {};
+  map_.on_reconnect = OnReconnect::drop;
+  map_.on_shutdown = OnShutdown::hold;
+  map_.poll = Poll::all;
+}
+
+std::string_view watchdog_warning(const Map& map) {
+  if (!map.coupler_watchdog.present() || !map.coupler_watchdog.feed.empty()) return {};
+  return "every request feeds the watchdog of this coupler: while this program reads, it does not expire";
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "coupler/map/map.hpp"
+
+namespace coupler::cli {
+
+/// A map without all that a driver does to a device by itself: watchdog, on_reconnect, on_shutdown, deadman.
+class OnlyLooking {
+ public:
+  /// What `map` views must outlive it.
+  explicit OnlyLooking(const Map& map);
+  OnlyLooking(const OnlyLooking&) = delete;
+  OnlyLooking& operator=(const OnlyLooking&) = delete;
+
+  const Map& map() const { return map_; }
+
+ private:
+  std::vector<Point> points_;
+  Map map_;
+};
+
+/// What is to be said where whoever looks keeps the coupler's own watchdog from expiring; empty: he does not.
+std::string_view watchdog_warning(const Map& map);
+
+}  // namespace coupler::cli

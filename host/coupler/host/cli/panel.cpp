@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coupler/base/utc_text.hpp"
+#include "coupler/cli/live_device.hpp"
+#include "coupler/host/cli/interruption.hpp"
+#include "coupler/host/cli/only_looking.hpp"
+#include "coupler/host/cli/report_line.hpp"
+#include "coupler/host/core/device_thread.hpp"
+#include "coupler/host/core/value_text.hpp"
+#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/panel/panel_points.hpp"
+#include "coupler/host/panel/panel_server.hpp"
+#include "coupler/map/loader/load.hpp"
+#include "coupler/map/printable.hpp"
+
+namespace coupler::cli {
+namespace {
+
+using host::WriteTicket;
+
+/// With the 2 s in which a page's request comes, no click is written that is older than 5 s.
+constexpr std::chrono::seconds longest_wait{3};
+constexpr std::chrono::milliseconds judge_period{100};
+constexpr int judgements_a_told = 10;  ///< so often the head's numbers are new: once a second
+
+/// A terminal that has gone ends no panel.
+void say(host::Level level, const std::string& text) {
+  std::fputs(report_line("panel", level, text).c_str(), stderr);
+}
+
+/// A connection to the device that exists while a page looks.
+class LookedAtDevice final : public host::PanelDevice {
+ public:
+  LookedAtDevice(const Map& map, host::LiveValues& values, bool writes)
+      : map_(map), values_(values), writes_(writes) {}
+
+  void look(bool anybody) override {
+    set(nullptr);  // first: the coupler may take one connection only
+    if (anybody)
+      set(std::make_shared<Connection>(map_, values_));
+    else
+      values_.stopped();
+  }
+  bool writes() const override { return writes_; }
+  WriteTicket::Outcome write(unsigned page, const std::string& point, const std::string& value) override {
+    WriteTicket::Outcome outcome = try_write(point, value);
+    say(outcome.outcome == host::WriteResult::Outcome::ok ? host::Level::info : host::Level::warning,
+        fmt::format("{}: page {}: {} = {}: {}", utc_text(std::chrono::system_clock::now()), page,
+                    printable(point), printable(value), printable(outcome.text)));
+    return outcome;
+  }
+  void writers_left() override {
+    say(host::Level::info,
+        "no page that has written is left: connecting again, so that it feeds no watchdog");
+    look(true);
+  }
+
+  /// To be called some ten times a second.
+  void judge(bool and_tell) {
+    const auto now = connection();
+    if (now == nullptr) return;
+    values_.judge(now->qualities(), std::chrono::steady_clock::now());
+    if (and_tell) values_.tell(now->statistics());
+  }
+
+ private:
+  /// Somebody who waits for the outcome of a write may have it longer than it lasts.
+  class Connection {
+   public:
+    Connection(const Map& map, host::Sink& sink)
+        : transport_(host::make_transport(map.connection)),
+          thread_(map, map.verify, load_served_map, *transport_, sink) {}
+
+    /// False: it has ended. Otherwise the listener hears of it, at the end at the latest.
+    bool write(const host::Write& write) {
+      const std::lock_guard lock(mutex_);
+      if (!has_ended_) thread_.write(write);
+      return !has_ended_;
+    }
+    void end() {
+      {
+        const std::lock_guard lock(mutex_);
+        has_ended_ = true;
+      }
+      thread_.end();
+    }
+    std::vector<host::PointQuality> qualities() const { return thread_.qualities(); }
+    host::DeviceSnapshot statistics() const { return thread_.statistics(); }
+
+   private:
+    std::unique_ptr<host::MultiUnitTransport> transport_;
+    host::DeviceThread thread_;
+    std::mutex mutex_;
+    bool has_ended_ = false;
+  };
+
+  std::shared_ptr<Connection> connection() {
+    const std::lock_guard lock(mutex_);
+    return connection_;
+  }
+  void set(std::shared_ptr<Connection> next) {
+    {
+      const std::lock_guard lock(mutex_);
+      connection_.swap(next);
+    }
+    if (next) next->end();  // the old one
+  }
+
+  WriteTicket::Outcome try_write(const std::string& name, const std::string& text) {
+    const auto refuse = [](const std::string& why) {
+      return WriteTicket::Outcome{host::WriteResult::Outcome::refused, {}, "refused: " + why};
+    };
+    const Point* const point = find(map_, name);
+    if (point == nullptr || !is_writable(*point)) return refuse(name + " is no point that can be written");
+    std::vector<std::uint16_t> registers(range(*point).count());
+    if (const auto parsed = host::parse_value(text, *point, registers.data()); !parsed)
+      return refuse(parsed.error());
+    WriteTicket ticket;
+    host::Write write =
+        host::make_write(map_, static_cast<std::uint32_t>(point - map_.points.begin()), registers);
+    write.listener = &ticket;
+    write.ordered = true;
+    write.until = std::chrono::steady_clock::now() + longest_wait;
+    const auto now = connection();
+    if (now == nullptr || !now->write(write))
+      return {host::WriteResult::Outcome::dropped, {}, "dropped: no page is open"};
+    return ticket.wait();
+  }
+
+  const Map& map_;
+  host::LiveValues& values_;
+  const bool writes_;
+  std::mutex mutex_;
+  std::shared_ptr<Connection> connection_;
+};
+
+}  // namespace
+
+Exit panel(const Map& original, const PanelOptions& options) {
+  const OnlyLooking looking(original);
+  const Map& map = looking.map();
+  host::SteadyClock clock;
+  std::atomic<bool> ended{false};
+  const Interruption interruption([&] {
+    ended = true;
+    clock.stop();
+  });
+  host::LiveValues values(map, say);
+  LookedAtDevice device(map, values, options.write);
+  const std::string warning(watchdog_warning(original));
+  if (!warning.empty()) say(host::Level::warning, warning);
+  std::shared_ptr<const host::PageTls> tls;
+  if (!options.certificate.empty()) {
+    auto read = host::read_page_tls(options.certificate, options.key);
+    if (!read) return complain("panel", bad_call, read.error(), {});
+    tls = *std::move(read);
+  }
+  auto server = host::PanelServer::start({options.listen, options.port, options.name}, tls,
+                                         host::panel_points(map, options.write, warning), values, device);
+  if (!server) return complain("panel", bad_call, server.error(), "give another one with --listen or --port");
+  fmt::print("{}\n", (*server)->url());
+  std::fflush(stdout);
+  say(host::Level::info, "open that address in a browser; Ctrl-C ends it");
+  for (int turn = 0; !ended; ++turn) {
+    clock.sleep_until(clock.now() + judge_period);
+    device.judge(turn % judgements_a_told == 0);
+    (*server)->turn(clock.now());
+  }
+  return ok;
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/cli/live_device.hpp"
+#include "coupler/host/cli/interruption.hpp"
+#include "coupler/host/cli/only_looking.hpp"
+#include "coupler/host/cli/report_line.hpp"
+#include "coupler/host/core/clock.hpp"
+#include "coupler/host/core/device.hpp"
+#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/record/record_thread.hpp"
+#include "coupler/map/loader/load.hpp"
+#include "coupler/map/node_address.hpp"
+
+namespace coupler::cli {
+namespace {
+
+constexpr std::chrono::seconds progress_period{1};
+
+/// A terminal that has gone, or a full disk behind it, ends no recording.
+void show(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
+void say(host::Level level, const std::string& text) {
+  show((::isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "") + report_line("record", level, text));
+}
+
+std::string size_text(std::uint64_t bytes) {
+  constexpr double mega = 1 << 20;
+  return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / mega);
+}
+
+std::string progress_text(const host::Recorder::Counts& counts, std::size_t points,
+                          const host::RecordThread& file, host::Duration since_start) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(since_start).count();
+  return fmt::format("{}:{:02}:{:02}  {}  {} of {} points have a value  {} changes  {}", seconds / 3600,
+                     seconds / 60 % 60, seconds % 60, counts.online ? "online" : "offline", counts.good,
+                     points, counts.changes, size_text(file.written()));
+}
+
+/// In the connection's thread.
+void read_on(host::Device& device, host::Transport& transport, host::Recorder& recorder,
+             const host::Clock& clock, const std::atomic<bool>& stopped) {
+  std::uint64_t judged = 0;
+  while (!stopped) {
+    const host::Time next = device.step();
+    if (const std::uint64_t revision = device.revision(); revision != judged) {
+      recorder.judge(device.qualities(), clock.now());
+      judged = revision;
+    }
+    if (transport.wait_until(next) == host::Transport::Woken::by_bytes) device.arrived();
+  }
+}
+
+tl::expected<host::RecordFile, std::string> open_file(const RecordOptions& options) {
+  if (options.file == "-") return host::RecordFile::standard_output();
+  return host::RecordFile::open(options.file, {options.keep, options.sync});
+}
+
+}  // namespace
+
+Exit record(const Map& original, const RecordOptions& options) {
+  const OnlyLooking looking(original);
+  const Map& map = looking.map();
+  auto file = open_file(options);
+  if (!file) return complain("record", bad_call, file.error(), {});
+  const auto transport = host::make_transport(map.connection);
+  host::SteadyClock clock;
+  host::SteadyClock pause;
+  std::atomic<bool> stopped{false};
+  const auto format = options.csv ? host::csv_format() : host::json_format();
+  const host::Time start = clock.now();
+  host::Recorder recorder(map, node_address_text(map.connection), *format, start,
+                          [&](host::Level level, const std::string& text) {
+                            if (!stopped) say(level, text);
+                          });
+  const Interruption interruption([&] {
+    stopped = true;
+    recorder.end_comes();
+    transport->interrupt();
+    transport->wake();
+    clock.stop();
+    pause.stop();
+  });
+  if (const std::string_view warning = watchdog_warning(original); !warning.empty())
+    say(host::Level::warning, std::string(warning));
+  host::RecordThread writing(recorder, *std::move(file), say);
+  host::Device device(map, map.verify, load_served_map, *transport, clock, recorder);
+  std::thread reading([&] { read_on(device, *transport, recorder, clock, stopped); });
+
+  const auto progress = [&](const host::Recorder::Counts& counts) {
+    return progress_text(counts, map.points.size(), writing, clock.now() - start);
+  };
+  while (!stopped) {
+    pause.sleep_until(clock.now() + progress_period);
+    if (::isatty(STDERR_FILENO) == 1 && !stopped) show("\r\x1b[K" + progress(recorder.counts()));
+  }
+  reading.join();
+  const host::Recorder::Counts counts = recorder.counts();
+  device.end_comes();
+  device.stop();
+  const bool is_whole = writing.end();
+  say(host::Level::info, fmt::format("{}: {}", writing.path().string(), progress(counts)));
+  return counts.was_online && is_whole ? ok : failed;
+}
+
+}  // namespace coupler::cli

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+// The live page. It asks for the points once, then reads the stream of what is new; nothing else is loaded.
+"use strict";
+
+const STEPS = 300; // of two seconds
+const ALIVE_EVERY = 500; // ms, once this page has written
+const ANSWER_WITHIN = 5000; // ms; the stream has something to say each second
+const element = (id) => document.getElementById(id);
+const rows = new Map(); // by point: what its row shows
+
+let token = "";
+let hasWritten = false;
+
+async function ask(path, options = {}) {
+  const signal = options.signal || AbortSignal.timeout(ANSWER_WITHIN);
+  const answer = await fetch(path, { ...options, signal, headers: { Authorization: `Bearer ${token}` } });
+  if (!answer.ok) {
+    const error = new Error((await answer.text()).trim());
+    error.status = answer.status;
+    throw error;
+  }
+  return answer;
+}
+
+// Elements.
+
+function make(kind, className, ...content) {
+  const made = document.createElement(kind);
+  if (className) made.className = className;
+  made.append(...content);
+  return made;
+}
+
+function makeDrawing() {
+  const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  svg.setAttribute("viewBox", `0 0 ${STEPS} 28`);
+  svg.setAttribute("preserveAspectRatio", "none");
+  svg.setAttribute("aria-hidden", "true");
+  svg.append(path);
+  return { svg, path };
+}
+
+function makeButton(text, label, act) {
+  const button = make("button", "", text);
+  button.type = "button";
+  button.setAttribute("aria-label", label);
+  button.addEventListener("click", act);
+  return button;
+}
+
+/// What the point's value is set with, and the answer to the last one.
+function makeControls(entry) {
+  const { point } = entry;
+  const outcome = make("output", "outcome");
+  outcome.setAttribute("aria-live", "polite");
+  entry.outcome = outcome;
+  if (point.write.kind === "switch" && point.write_only)
+    return [makeButton("on", `${point.name} on`, () => write(entry, "true")), " ",
+      makeButton("off", `${point.name} off`, () => write(entry, "false")), outcome];
+  if (point.write.kind === "switch") {
+    entry.control = makeButton("set", point.name, () => write(entry, String(!entry.shown.value)));
+    entry.control.setAttribute("role", "switch");
+    entry.control.disabled = true; // until it is known what the other value is
+    return [entry.control, outcome];
+  }
+  const form = make("form", "");
+  const field = point.values ? make("select", "") : make("input", "");
+  if (point.values) field.append(make("option", "", "")); // so that nothing is written by chance
+  field.required = Boolean(point.values);
+  for (const [, name] of point.values || []) field.append(make("option", "", name));
+  field.setAttribute("aria-label", `New value of ${point.name}`);
+  if (!point.values) {
+    field.autocomplete = "off";
+    field.placeholder = point.write.range || "";
+    field.title = point.write.range || "";
+  }
+  const button = make("button", "", "write");
+  form.append(field, button);
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    write(entry, field.value);
+  });
+  return [form, outcome];
+}
+
+function addRow(point) {
+  const name = make("th", "name", point.name);
+  name.scope = "row";
+  if (point.description) name.append(make("small", "", point.description));
+  const about = make("small", "", "");
+  const text = document.createTextNode("–");
+  const value = make("td", "value", text, about);
+  const seen = make("td", "seen");
+  const { svg, path } = makeDrawing();
+  const row = make("tr", "", name, value, make("td", "curve", svg), seen, make("td", "type", point.type), make("td", "address", point.place.replace("_", " ")));
+  row.dataset.point = point.name;
+  const entry = { point, row, text, about, seen, path, steps: [], changedAt: 0, shown: null, control: null, outcome: null };
+  row.append(make("td", "write", ...(point.write ? makeControls(entry) : [])));
+  element("points").append(row);
+  rows.set(point.name, entry);
+}
+
+// Values.
+
+function ageText(seconds) {
+  if (seconds < 1) return "just now";
+  if (seconds < 60) return `${Math.floor(seconds)} s ago`;
+  if (seconds < 3600) return `${Math.floor(seconds / 60)} min ago`;
+  return `${Math.floor(seconds / 3600)} h ago`;
+}
+
+function qualityText(state) {
+  if (state.exception === undefined) return state.quality;
+  return `${state.quality}: exception ${state.exception.toString(16).toUpperCase().padStart(2, "0")}`;
+}
+
+function valueText(point, shown) {
+  if (shown.text === undefined) return "–";
+  if (point.values && shown.text !== String(shown.value)) return `${shown.text} (${shown.value})`;
+  if (shown.value === true) return "on";
+  if (shown.value === false) return "off";
+  return point.units ? `${shown.text} ${point.units}` : shown.text;
+}
+
+/// "bits 0, 3": those of a word that are set.
+function bitsText(point, shown) {
+  if (!point.bits || typeof shown.value !== "number") return "";
+  const set = [];
+  for (let bit = 0; bit < point.bits; ++bit) if (Math.floor(shown.value / 2 ** bit) % 2 === 1) set.push(bit);
+  return set.length > 0 ? `bits ${set.join(", ")} are 1` : "every bit is 0";
+}
+
+/// Setting it anew would take a selection away.
+function setText(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}
+
+function seenText(shown) {
+  const isBit = typeof shown.value === "boolean";
+  const changes = shown.changes === 1 ? "1 change" : `${shown.changes} changes`;
+  return [isBit && shown.off ? "off" : "", isBit && shown.on ? "on" : "", shown.changes > 0 ? changes : ""].filter(Boolean).join(" · ");
+}
+
+function show(entry) {
+  const { point, row, shown } = entry;
+  const good = shown.quality === "good" || point.write_only === true;
+  row.classList.toggle("bad", !good);
+  row.classList.toggle("away", shown.quality === "offline" || (!good && shown.quality === "never read"));
+  row.classList.toggle("on", good && shown.value === true);
+  const seconds = (performance.now() - entry.changedAt) / 1000;
+  const age = entry.changedAt ? ageText(seconds) : "";
+  row.classList.toggle("changed", good && shown.changes > 0 && seconds < 1);
+  const about = [point.write_only ? "can only be written" : good ? age : qualityText(shown), bitsText(point, shown)].filter(Boolean).join(" · ");
+  setText(entry.text, valueText(point, shown));
+  setText(entry.about, about);
+  setText(entry.seen, seenText(shown));
+  if (entry.control) {
+    entry.control.disabled = !good || typeof shown.value !== "boolean";
+    entry.control.setAttribute("aria-checked", String(shown.value === true));
+    setText(entry.control, shown.value === true ? "switch off" : "switch on");
+  }
+}
+
+/// A screen reader reads what is set, so only news is.
+function say(state, text) {
+  element("device").dataset.state = state;
+  setText(element("device"), text);
+  if (state !== "online") setText(element("numbers"), "");
+}
+
+function showDevice(device) {
+  if (!device.online) return say("offline", `offline: ${device.why || "no answer yet"}`);
+  say("online", "online");
+  if (device.requests === 0) return undefined;
+  const errors = device.errors > 0 ? `, ${device.errors} failed` : "";
+  return setText(element("numbers"), ` · round trip ${device.round_trip_ms.toFixed(1)} ms · ${device.requests} requests${errors}`);
+}
+
+function take(news) {
+  if (news.device) showDevice(news.device);
+  for (const [name, state] of Object.entries(news.points)) {
+    const entry = rows.get(name);
+    if (!entry) continue;
+    entry.shown = state;
+    if (state.age !== undefined) entry.changedAt = performance.now() - 1000 * state.age;
+    show(entry);
+  }
+}
+
+// The last ten minutes.
+
+/// A band from the least to the greatest value of each step; of bits, a bar where they were on.
+function drawing(entry, steps) {
+  const known = steps.filter(Boolean);
+  const isBit = entry.shown !== null && typeof entry.shown.value === "boolean";
+  const low = isBit ? 0 : Math.min(...known.map((step) => step[0]));
+  const high = isBit ? 1 : Math.max(...known.map((step) => step[1]));
+  const scale = high > low ? 22 / (high - low) : 0;
+  const y = (number) => (25 - (number - low) * scale).toFixed(1);
+  return steps.map((step, x) => {
+    if (!step) return "";
+    const from = isBit ? 27 : Number(y(step[0])) + 1;
+    return `M${x} ${from}H${x + 1}V${Number(y(step[1])) - 1}H${x}Z`;
+  }).join("");
+}
+
+let lastStep = -Infinity; // of what is known of the histories
+
+/// Asks for the steps that may be new, and draws what is to be seen.
+async function drawAll() {
+  const wanted = Math.min(STEPS, Math.ceil((performance.now() - drawAll.at) / 2000) + 2);
+  drawAll.at = performance.now();
+  const answer = await ask(`history.json?steps=${wanted}`);
+  const step = Number(answer.headers.get("Step"));
+  const passed = Math.min(STEPS, step - lastStep);
+  for (const [name, news] of Object.entries(await answer.json())) {
+    const entry = rows.get(name);
+    if (!entry) continue;
+    const old = entry.steps.slice(passed, STEPS - (news.length - passed));
+    entry.steps = [...Array(STEPS - old.length - news.length).fill(null), ...old, ...news];
+    if (!entry.row.hidden) entry.path.setAttribute("d", drawing(entry, entry.steps));
+  }
+  lastStep = step;
+}
+drawAll.at = -Infinity;
+
+async function drawOn() {
+  for (;;) {
+    if (!document.hidden) await drawAll().catch(() => { drawAll.at = -Infinity; });
+    await new Promise((done) => { setTimeout(done, 2000); });
+  }
+}
+
+// Writing.
+
+async function write(entry, value) {
+  hasWritten = true;
+  entry.outcome.dataset.outcome = "waiting";
+  entry.outcome.textContent = "…";
+  try {
+    const told = await (await ask("write", { method: "POST", body: JSON.stringify({ point: entry.point.name, value }) })).json();
+    entry.outcome.dataset.outcome = told.outcome;
+    entry.outcome.textContent = told.text;
+  } catch (error) {
+    entry.outcome.dataset.outcome = "lost";
+    entry.outcome.textContent = error.status ? error.message : "lost: no answer of the panel; it may have been carried out";
+  }
+}
+
+// The stream.
+
+/// Server-sent events by fetch: EventSource can show no token.
+async function follow() {
+  const silence = new AbortController();
+  let timer = 0;
+  const heard = () => {
+    clearTimeout(timer);
+    timer = setTimeout(() => silence.abort(new Error("the panel does not answer")), ANSWER_WITHIN);
+  };
+  heard();
+  try {
+    const reader = (await ask("events", { signal: silence.signal })).body.pipeThrough(new TextDecoderStream()).getReader();
+    let rest = "";
+    for (;;) {
+      const { value, done } = await reader.read();
+      if (done) throw new Error("the panel has ended");
+      heard();
+      rest += value;
+      const events = rest.split("\n\n");
+      rest = events.pop();
+      for (const event of events) take(JSON.parse(event.slice("data: ".length)));
+    }
+  } finally {
+    clearTimeout(timer);
+  }
+}
+
+function loseAll(why) {
+  say("offline", why);
+  for (const entry of rows.values()) {
+    if (!entry.shown) continue;
+    entry.shown = { ...entry.shown, quality: "offline" };
+    show(entry);
+  }
+}
+
+function filter() {
+  const wanted = element("filter").value.toLowerCase();
+  for (const { point, row } of rows.values())
+    row.hidden = !`${point.name} ${point.description}`.toLowerCase().includes(wanted);
+}
+
+async function save() {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(await (await ask("seen.csv")).blob());
+  link.download = "seen.csv";
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+function showTable(device) {
+  document.title = `${device.name}: panel`;
+  element("name").textContent = `${device.name} at ${device.place}`;
+  element("warning").textContent = device.warning || "";
+  element("writes").hidden = !device.writes;
+  element("write-head").hidden = !device.writes;
+  device.points.forEach(addRow);
+}
+
+async function begin() {
+  const answer = await fetch("token", { method: "POST", body: location.hash.slice(1) });
+  if (!answer.ok) return say("offline", "Open the address that the terminal shows, with what stands behind #.");
+  token = await answer.text();
+  showTable(await (await ask("points.json")).json());
+  element("filter").addEventListener("input", filter);
+  element("save").addEventListener("click", save);
+  element("print").addEventListener("click", () => window.print());
+  setInterval(() => { for (const entry of rows.values()) if (entry.shown && !entry.row.hidden) show(entry); }, 1000);
+  drawOn();
+  setInterval(() => { if (hasWritten) ask("alive", { method: "POST" }).catch(() => {}); }, ALIVE_EVERY);
+  for (;;) {
+    const error = await follow().catch((why) => why);
+    if (error.status === 401) return loseAll("This page is not known any more: open the address that the terminal shows now.");
+    loseAll(`${error.message}; trying again`);
+    await new Promise((done) => { setTimeout(done, 1000); });
+  }
+}
+
+addEventListener("hashchange", () => location.reload()); // another key
+begin().catch((error) => say("offline", error.message));

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "coupler/base/utc_text.hpp"
+#include "coupler/host/core/value_text.hpp"
+#include "coupler/host/record/record_format.hpp"
+
+namespace coupler::host {
+namespace {
+
+using record::Moment;
+using record::Nanoseconds;
+
+double seconds(Nanoseconds time) { return std::chrono::duration<double>(time).count(); }
+
+/// RFC 4180. A spreadsheet takes what begins so for a formula; a text of the device is none.
+std::string cell(std::string_view text) {
+  char* end = nullptr;
+  const std::string number(text);
+  std::strtod(number.c_str(), &end);
+  const bool is_number = end == number.c_str() + number.size();
+  const bool is_formula = !text.empty() && !is_number && std::string_view("=+-@\t\r").find(text[0]) < 6;
+  if (!is_formula && text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = is_formula ? "\"'" : "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string row(Moment at, std::string_view point, std::string_view value, std::string_view quality,
+                std::string_view uncertainty = {}) {
+  return fmt::format("{:.6f},{},{},{},{},{}\n", seconds(at.since_start), utc_text(at.wall), point,
+                     cell(value), cell(quality), uncertainty);
+}
+
+/// What is not of a point has its words in the column of the quality.
+class CsvFormat final : public RecordFormat {
+ public:
+  std::string head(const record::Head& /*head*/, Moment /*at*/) const override {
+    return "t,utc,point,value,quality,u\n";
+  }
+  std::string value(Moment at, const Point& point, Span<const std::uint16_t> registers,
+                    Nanoseconds uncertainty) const override {
+    return row(at, point.name, format_value(registers.data(), point), "good",
+               fmt::format("{:.6f}", seconds(uncertainty)));
+  }
+  std::string no_value(Moment at, const Point& point, PointQuality::State quality,
+                       unsigned exception) const override {
+    return row(at, point.name, {}, fmt::format("{}: exception {:02X}", to_string(quality), exception));
+  }
+  std::string online(Moment at, std::optional<bool>) const override { return row(at, {}, {}, "online"); }
+  std::string lost(Moment at, std::string_view why) const override {
+    return row(at, {}, {}, fmt::format("lost: {}", why));
+  }
+  std::string clock(Moment at, Nanoseconds set_by) const override {
+    return row(at, {}, {}, fmt::format("the clock was set by {:.3f} s", seconds(set_by)));
+  }
+  std::string missing(Moment at, Nanoseconds since, std::string_view why) const override {
+    return row(at, {}, {}, fmt::format("missing since {:.6f}: {}", seconds(since), why));
+  }
+  std::string end(Moment at) const override { return row(at, {}, {}, "end"); }
+};
+
+}  // namespace
+
+std::unique_ptr<RecordFormat> csv_format() { return std::make_unique<CsvFormat>(); }
+
+}  // namespace coupler::host

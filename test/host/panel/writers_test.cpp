@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/panel/writers.hpp"
+
+#include <gtest/gtest.h>
+
+namespace coupler::host {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Time begin{seconds(1000)};
+
+TEST(Writers, Nobody_is_gone_before_anybody_has_written) {
+  Writers writers;
+  writers.alive("a", begin);
+  writers.left("a");
+  EXPECT_FALSE(writers.are_gone(begin));
+  EXPECT_FALSE(writers.are_gone(begin + seconds(100)));
+}
+
+TEST(Writers, Who_is_silent_for_two_seconds_is_gone) {
+  Writers writers;
+  writers.wrote("a", begin);
+  EXPECT_FALSE(writers.are_gone(begin));
+  EXPECT_FALSE(writers.are_gone(begin + seconds(2)));
+  EXPECT_TRUE(writers.are_gone(begin + milliseconds(2001)));
+}
+
+TEST(Writers, Who_is_gone_is_told_once) {
+  Writers writers;
+  writers.wrote("a", begin);
+  EXPECT_TRUE(writers.are_gone(begin + seconds(3)));
+  EXPECT_FALSE(writers.are_gone(begin + seconds(4)));
+  writers.alive("a", begin + seconds(4));  // a phone that wakes up
+  EXPECT_FALSE(writers.are_gone(begin + seconds(10)));
+  writers.wrote("a", begin + seconds(10));
+  EXPECT_TRUE(writers.are_gone(begin + seconds(13)));
+}
+
+TEST(Writers, Who_says_that_he_is_there_is_not_gone) {
+  Writers writers;
+  writers.wrote("a", begin);
+  for (int second = 1; second < 10; ++second) {
+    writers.alive("a", begin + seconds(second));
+    EXPECT_FALSE(writers.are_gone(begin + seconds(second) + milliseconds(999)));
+  }
+}
+
+TEST(Writers, Who_writes_again_is_not_gone) {
+  Writers writers;
+  writers.wrote("a", begin);
+  writers.wrote("a", begin + seconds(2));
+  EXPECT_FALSE(writers.are_gone(begin + seconds(4)));
+}
+
+TEST(Writers, Who_leaves_is_gone_at_once) {
+  Writers writers;
+  writers.wrote("a", begin);
+  writers.left("a");
+  EXPECT_TRUE(writers.are_gone(begin));
+}
+
+TEST(Writers, As_long_as_one_is_there_they_are_not_gone) {
+  Writers writers;
+  writers.wrote("a", begin);
+  writers.wrote("b", begin + seconds(1));
+  writers.left("a");
+  EXPECT_FALSE(writers.are_gone(begin + seconds(1)));
+  EXPECT_FALSE(writers.are_gone(begin + seconds(3)));
+  EXPECT_TRUE(writers.are_gone(begin + seconds(4)));
+}
+
+TEST(Writers, Who_only_looks_counts_for_nothing) {
+  Writers writers;
+  writers.wrote("a", begin);
+  for (int second = 0; second < 3; ++second) writers.alive("looks", begin + seconds(second));
+  writers.left("looks");
+  EXPECT_TRUE(writers.are_gone(begin + seconds(3)));
+}
+
+}  // namespace
+}  // namespace coupler::host

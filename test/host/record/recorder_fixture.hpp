@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "coupler/host/record/recorder.hpp"
+#include "test/fakes/map_builder.hpp"
+
+namespace coupler::host::test {
+
+using Words = std::vector<std::uint16_t>;
+
+/// Lines that are easily compared.
+class ShortFormat : public RecordFormat {
+ public:
+  std::string head(const record::Head& head, record::Moment /*at*/) const override {
+    return "head of " + head.name + '\n';
+  }
+  std::string value(record::Moment at, const Point& point, Span<const std::uint16_t> registers,
+                    record::Nanoseconds uncertainty) const override {
+    return fmt::format("{}: {} {}={}±{}\n", in_ms(at.since_start), holds_bits(point.table) ? "bit" : "word",
+                       point.name, fmt::join(registers, ","), in_ms(uncertainty));
+  }
+  std::string no_value(record::Moment at, const Point& point, PointQuality::State quality,
+                       unsigned exception) const override {
+    return fmt::format("{}: {} {} {}\n", in_ms(at.since_start), point.name, to_string(quality), exception);
+  }
+  // The recorder's own clock tells when these were.
+  std::string online(record::Moment /*at*/, std::optional<bool> is_node) const override {
+    return is_node ? fmt::format("online, {}\n", *is_node ? "a node" : "foreign") : "online\n";
+  }
+  std::string lost(record::Moment /*at*/, std::string_view why) const override {
+    return fmt::format("lost: {}\n", why);
+  }
+  std::string clock(record::Moment /*at*/, record::Nanoseconds /*set_by*/) const override {
+    return "clock\n";
+  }
+  std::string missing(record::Moment at, record::Nanoseconds since, std::string_view why) const override {
+    return fmt::format("{}: missing since {}: {}\n", in_ms(at.since_start), in_ms(since), why);
+  }
+  std::string end(record::Moment at) const override {
+    return fmt::format("{}: end\n", in_ms(at.since_start));
+  }
+
+ private:
+  static long in_ms(record::Nanoseconds time) {
+    return static_cast<long>(std::chrono::duration_cast<std::chrono::milliseconds>(time).count());
+  }
+};
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+class RecorderTest : public testing::Test {
+ protected:
+  void record(const fakes::MapBuilder& map,
+              std::unique_ptr<RecordFormat> format = std::make_unique<ShortFormat>()) {
+    record(map.build(), std::move(format));
+  }
+  void record(MapPtr map, std::unique_ptr<RecordFormat> format = std::make_unique<ShortFormat>()) {
+    owned_ = std::move(map);
+    format_ = std::move(format);
+    recorder_.emplace(owned_->map(), "10.0.0.1:502", *format_, start_,
+                      [&](Level, const std::string& text) { reports_.push_back(text); });
+  }
+
+  /// The device is lost, and the reason is reported.
+  void lose(const std::string& why) {
+    recorder_->on_online(false);
+    recorder_->on_report(Level::error, why);
+  }
+
+  std::uint32_t index_of(std::string_view name) const {
+    return static_cast<std::uint32_t>(find(owned_->map(), name) - owned_->map().points.begin());
+  }
+  /// A reply of these points, whose first register or bit is `start`.
+  ReadSpan span(Table table, std::uint32_t start, std::size_t count,
+                const std::vector<std::string>& points) const {
+    ReadSpan span{table, modbus::Range::of(start, static_cast<std::uint32_t>(count)), {}};
+    for (const std::string& name : points) span.points.push_back(index_of(name));
+    return span;
+  }
+  void read_registers(const std::vector<std::string>& points, std::uint32_t start, const Words& words,
+                      std::chrono::milliseconds at = std::chrono::seconds(1), Duration uncertainty = {}) {
+    recorder_->on_registers(span(Table::holding_registers, start, words.size(), points), words,
+                            {start_ + at, uncertainty});
+  }
+  void read_bits(const std::vector<std::string>& points, std::uint32_t start,
+                 const std::vector<std::uint8_t>& bits) {
+    recorder_->on_bits(span(Table::coils, start, bits.size(), points), bits,
+                       {start_ + std::chrono::seconds(1), {}});
+  }
+  /// All points but these are good.
+  void judge(const std::vector<
+                 std::tuple<std::string, PointQuality::State, std::optional<modbus::Exception>>>& others,
+             std::chrono::milliseconds at = std::chrono::seconds(1)) {
+    std::vector<PointQuality> qualities(owned_->map().points.size());
+    for (PointQuality& quality : qualities) quality.state = PointQuality::State::good;
+    for (const auto& [name, state, exception] : others) {
+      qualities[index_of(name)].state = state;
+      qualities[index_of(name)].last_exception = exception;
+    }
+    recorder_->judge(qualities, start_ + at);
+  }
+  Recorder::Taken take() { return recorder_->take(start_ + std::chrono::seconds(1)); }
+  std::vector<std::string> taken() {
+    const Recorder::Taken taken = take();
+    EXPECT_FALSE(taken.lost);
+    return lines_of(taken.lines);
+  }
+
+  using State = PointQuality::State;
+  const Time start_ = std::chrono::steady_clock::now() - std::chrono::hours(1);
+  MapPtr owned_;
+  std::unique_ptr<RecordFormat> format_;
+  std::vector<std::string> reports_;
+  std::optional<Recorder> recorder_;
+};
+
+}  // namespace coupler::host::test

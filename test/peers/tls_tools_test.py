@@ -1,0 +1,180 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""The tools and TLS: at a node, at OpenSSL's s_server (which servers they believe), and what `coupler check` says of
+certificates.
+
+    tls_tools_test.py NODE COUPLER MAP
+"""
+import contextlib
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import peer
+from tls_node import Node, make_certificates
+
+NODE, COUPLER, MAP = sys.argv[1:4]
+if shutil.which("openssl") is None:
+    peer.skip("the program openssl is missing; apt install openssl")
+
+
+def the_tools(node, checks):
+    def coupler(*arguments, name="operator"):
+        options = ["--certificate", f"{name}.pem", "--key", f"{name}.key"]
+        return subprocess.run([COUPLER, *arguments, *options], cwd=node.folder, capture_output=True, text=True,
+                              timeout=peer.PATIENCE)
+
+    place = f"tls://127.0.0.1:{node.tls_port}"
+    told = coupler("dump", place, "--ca", "ca.pem")
+    checks.equal(f"dump with a role that reads all: {told.stderr}", told.returncode, 0)
+    told = coupler("status", place, "--ca", "ca.pem").stdout
+    checks.equal(f"status names both certificates: {told}",
+                 [bool(re.search(each, told)) for each in (r"this side +'operator', until \d{4}-.*, role operator",
+                                                           r"the node +'node', until \d{4}-")], [True, True])
+    shown = json.loads(coupler("status", place, "--ca", "ca.pem", "--json", name="no_role").stdout)["certificates"]
+    checks.equal("and as JSON", [shown["own"]["name"], shown["own"]["role"], shown["device"]["name"]], ["no_role", None, "node"])
+    told = coupler("dump", "cell.yaml", "--at", place, "--ca", "ca.pem", name="viewer")
+    checks.equal("dump with another shows what it may", (told.returncode, "this client has no right to read it" in told.stdout),
+                 (3, True))
+    told = coupler("dump", "cell.yaml", "--at", place, "--ca", "ca.pem", name="expired")
+    checks.equal(f"the alert is named: {told.stderr}", "certificate_expired" in told.stderr, True)
+    told = coupler("dump", "cell.yaml", "--at", place, "--ca", "ca.pem", "--tls-name", "press")
+    checks.equal("and so is a wrong name", "another name or address (it has " in told.stderr, True)
+    checks.equal("with one remedy", told.stderr.count("check that"), 0)
+    pins = [subprocess.run([COUPLER, "pin", where], cwd=node.folder, capture_output=True, text=True).stdout
+            for where in (place, "node.pem", "ca.pem")]
+    checks.equal("a pin is the same from the node and from the file", (pins[0], pins[0] != pins[2]), (pins[1], True))
+    told = coupler("dump", "cell.yaml", "--at", place, "--pin", pins[0].strip())
+    checks.equal("it stands for the authority", told.returncode, 0)
+    told = coupler("dump", "cell.yaml", "--at", place, "--pin", pins[2].strip())
+    checks.equal("another one does not", "has the pin" in told.stderr, True)
+    told = coupler("dump", "cell.yaml", "--at", f"tls://127.0.0.1:{node.port}", "--ca", "ca.pem")
+    checks.equal("TLS at the port without", told.returncode, 3)
+    told = subprocess.run([COUPLER, "dump", "cell.yaml", "--at", f"tcp://127.0.0.1:{node.tls_port}"], cwd=node.folder,
+                          capture_output=True, text=True, timeout=peer.PATIENCE)
+    checks.equal(f"and plain Modbus at the port with it: {told.stderr}", "speaks TLS at this port" in told.stderr, True)
+    told = subprocess.run([COUPLER, "probe", f"127.0.0.1:{node.tls_port}"], capture_output=True, text=True,
+                          timeout=peer.PATIENCE)
+    checks.equal(f"which probe finds out, too: {told.stderr}", (told.returncode, "speaks TLS at this port" in told.stderr),
+                 (3, True))
+    told = subprocess.run([COUPLER, "probe", f"127.0.0.1:{node.port}", "--ca", "ca.pem"], cwd=node.folder,
+                          capture_output=True, text=True, timeout=peer.PATIENCE)
+    checks.equal(f"certificates without tls://: {told.stderr}", "are for a place with TLS" in told.stderr, True)
+
+
+def what_check_says(folder, checks):
+    """Of the files that the map names, where they are and where not."""
+    def check(*options):
+        told = subprocess.run([COUPLER, "check", *options, "cell.yaml"], cwd=folder, capture_output=True, text=True)
+        return told.returncode, told.stdout + told.stderr
+
+    whole = (folder / "cell.yaml").read_text()
+    status, text = check()
+    checks.equal(f"good files: {text}", (status, "fits its key; good until 20" in text), (0, True))
+    (folder / "node.key").rename(folder / "away.key")
+    status, text = check()
+    checks.equal(f"the key is elsewhere: {text}", (status, "are not checked here: node.key: No such file" in text), (0, True))
+    shutil.copy(folder / "operator.key", folder / "node.key")
+    status, text = check()
+    checks.equal(f"another key: {text}", (status, "'security': the key does not belong to the certificate" in text), (1, True))
+    checks.equal("for programs, too", json.loads(check("--json")[1])["ok"], False)
+    (folder / "away.key").rename(folder / "node.key")
+    (folder / "node.key").chmod(0o644)
+    status, text = check()
+    checks.equal(f"everybody's key: {text}", (status, "everybody may read it; 'chmod 600 " in text), (1, True))
+    (folder / "node.key").chmod(0o600)
+    (folder / "cell.yaml").write_text(whole.replace("node.pem", "future_node.pem").replace("node.key", "future_node.key"))
+    status, text = check()
+    checks.equal(f"one that is not good yet: {text}", (status, "fits its key; begins on 2090-01-01" in text), (0, True))
+    (folder / "cell.yaml").write_text(whole)
+
+
+def what_certificates_makes(folder, checks):
+    """For peers without ECDSA all of it is RSA. The authority of a folder stays the same."""
+    def certificates(*options):
+        told = subprocess.run([COUPLER, "certificates", "plant", *options], cwd=folder, capture_output=True, text=True)
+        return told.returncode, told.stdout + told.stderr
+
+    def shown(name, *options):
+        return subprocess.run(["openssl", "x509", "-in", f"plant/{name}.pem", "-noout", *options], cwd=folder,
+                              capture_output=True, text=True).stdout
+
+    status, text = certificates("--rsa", "--node", "press:[fd00::7],127.0.0.1", "--client", "cell:operator")
+    checks.equal(f"certificates with RSA: {text}", status, 0)
+    checks.equal("the authority's key, and the signatures, are RSA",
+                 ["Signature Algorithm: sha256WithRSA" in shown(name, "-text")
+                  for name in ("authority/authority", "press/press-rsa", "cell/cell-rsa")], [True] * 3)
+    names = shown("press/press-rsa", "-ext", "subjectAltName")
+    checks.equal(f"an address in brackets is one: {names}", "IP Address:FD00:0:0:0:0:0:0:7" in names, True)
+    (folder / "plant" / "authority").rename(folder / "drawer")
+    status, text = certificates("--rsa", "--node", "press:fd00::7,127.0.0.1")
+    checks.equal(f"another authority: {text}", (status, "bring back plant/authority" in text), (1, True))
+    checks.equal("none is made", (folder / "plant" / "authority").exists(), False)
+    certificates("--node", "other")
+    status, text = certificates("--rsa", "--node", "press:fd00::7,127.0.0.1")
+    checks.equal(f"nor used: {text}", (status, "is of another authority" in text), (1, True))
+    shutil.rmtree(folder / "plant")
+
+
+@contextlib.contextmanager
+def s_server(folder, name, *options):
+    """Its port; it asks clients for a certificate."""
+    with subprocess.Popen(["openssl", "s_server", "-accept", "127.0.0.1:0", "-cert", f"{name}.pem", "-key", f"{name}.key",
+                           "-CAfile", "ca.pem", "-Verify", "1", "-verify_return_error", *options], cwd=folder, text=True,
+                          stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as server:
+        try:
+            for line in server.stdout:
+                if line.startswith("ACCEPT"):
+                    yield int(line.split(":")[-1])
+                    break
+        finally:
+            server.kill()
+
+
+def which_servers_are_believed(folder, checks):
+    def dump(port):
+        return subprocess.run([COUPLER, "dump", "cell.yaml", "--at", f"tls://127.0.0.1:{port}", "--certificate", "operator.pem",
+                               "--key", "operator.key", "--ca", "ca.pem"], cwd=folder, capture_output=True, text=True,
+                              timeout=peer.PATIENCE).stderr
+
+    old = "-cipher", "DEFAULT@SECLEVEL=0"
+    for name, options, says in (
+            ("other_name", (), "another name or address"), ("expired_node", (), "its certificate has expired on 2020-02-01"),
+            ("strange_node", (), "from another authority"), ("operator", (), "for another purpose"),
+            ("weak_node", old, "weak key"), ("node", ("-tls1_1", *old), "protocol_version"),
+            ("node", (), "no reply within"), ("node", ("-tls1_2",), "no reply within")):
+        with s_server(folder, name, *options) as port:
+            told = dump(port)
+            checks.equal(f"a server with {name} {' '.join(options)}: {told}", says in told, True)
+    with s_server(folder, "node") as port:
+        pin = subprocess.run([COUPLER, "pin", f"tls://127.0.0.1:{port}"], cwd=folder, capture_output=True, text=True).stdout
+        own = subprocess.run(["openssl", "x509", "-in", "node.pem", "-noout", "-fingerprint", "-sha256"], cwd=folder,
+                             capture_output=True, text=True).stdout
+        checks.equal("its pin is OpenSSL's fingerprint", pin.strip(),
+                     "sha256:" + own.strip().split("=")[-1].replace(":", "").lower())
+
+
+def main():
+    checks = peer.Checks()
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        make_certificates(folder)
+        shutil.copy(MAP, folder / "cell.yaml")
+        what_check_says(folder, checks)
+        what_certificates_makes(folder, checks)
+        node = Node(folder, NODE, "cell.yaml")
+        try:
+            the_tools(node, checks)
+            which_servers_are_believed(folder, checks)
+        finally:
+            node.end()
+        if checks.failed:
+            print(node.text())
+    checks.done("tools and TLS: at a node, at OpenSSL's s_server, what check says of certificates, and which it makes")
+
+
+main()
