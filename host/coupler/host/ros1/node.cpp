@@ -20,6 +20,7 @@
 
 #include "coupler/host/ros/node_templates.hpp"
 #include "coupler/host/ros/topic_depth.hpp"
+#include "coupler/host/ros1/in_place_queue.hpp"
 #include "coupler/host/ros1/logger_service.hpp"
 #include "coupler/host/ros1/messages.hpp"
 #include "coupler/host/ros1/topics.hpp"
@@ -27,22 +28,6 @@
 
 namespace coupler::host {
 namespace {
-
-/// Runs a callback where it arises, in ROS's network thread, instead of waking another thread for it: a third
-/// of the time from message to Modbus request. The callbacks must not wait for anything.
-class InPlaceQueue : public ros::CallbackQueueInterface {
- public:
-  void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t /*owner*/) override {
-    callback->call();
-  }
-  void removeByID(std::uint64_t /*owner*/) override {}  // nothing is ever kept
-
-  /// It keeps nothing, so that one is enough for all.
-  static InPlaceQueue& instance() {
-    static InPlaceQueue queue;
-    return queue;
-  }
-};
 
 struct Ros1Services {
   using Write = coupler_driver::Write;
@@ -100,9 +85,15 @@ void count_subscribers(ros::AdvertiseOptions& options, CountingPublisher& publis
   options.callback_queue = &InPlaceQueue::instance();
 }
 
-}  // namespace
+template <class Message>
+TopicPublisher advertise_latched(ros::NodeHandle& handle, const std::string& topic) {
+  ros::AdvertiseOptions options;
+  options.init<Message>(topic, 1);
+  options.latch = true;
+  return {handle, options};
+}
 
-void TopicPublisher::publish_any(const OutgoingMessage& message) const { publisher_.publish(message); }
+}  // namespace
 
 Ros1Node::Ros1Node() : loggers_(advertise_loggers(InPlaceQueue::instance())) {
   diagnostics_.setHardwareID("coupler_driver");  // each device has its own
@@ -115,7 +106,7 @@ std::unique_ptr<PointPublisher> Ros1Node::advertise_as(const std::string& topic,
   options.init<typename Publisher::Message>(topic, topic_depth(point));
   options.latch = point.host.latch;
   count_subscribers(options, *publisher);
-  publisher->set_publisher(TopicPublisher(handle_.advertise(options)));
+  publisher->set_publisher(TopicPublisher(handle_, options));
   return publisher;
 }
 
@@ -155,12 +146,12 @@ std::shared_ptr<void> Ros1Node::subscribe(const std::string& topic, const Map& m
 }
 
 std::function<void(bool)> Ros1Node::advertise_online(const std::string& topic) {
-  return online_with<std_msgs::Bool>(handle_.advertise<std_msgs::Bool>(topic, 1, true));
+  return online_with<std_msgs::Bool>(advertise_latched<std_msgs::Bool>(handle_, topic));
 }
 
 Node::PublishStatus Ros1Node::advertise_status(const std::string& topic, const Map& map) {
   using Message = coupler_driver::Status;
-  return status_with<Message>(handle_.advertise<Message>(topic, 1, true), map, ros::Time::now);
+  return status_with<Message>(advertise_latched<Message>(handle_, topic), map, ros::Time::now);
 }
 
 Node::PublishScheduled Ros1Node::advertise_scheduled(const std::string& topic, const Map& map,

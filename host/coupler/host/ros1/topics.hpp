@@ -3,7 +3,9 @@
 // what depends on the type is a template.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -21,11 +23,12 @@ struct OutgoingMessage {
   void (*write)(ros::serialization::OStream& stream, const void* message);
 };
 
-/// A ros::Publisher for messages of one type.
+/// A ros::Publisher for messages of one type. If the topic is latched, each subscriber has its last message.
 class TopicPublisher {
  public:
   TopicPublisher() = default;
-  explicit TopicPublisher(const ros::Publisher& publisher) : publisher_(publisher) {}
+  /// Advertises the topic. A latched one's callbacks are called in ROS's network thread.
+  TopicPublisher(ros::NodeHandle& handle, ros::AdvertiseOptions options);
 
   template <class Message>
   void publish(const Message& message) const {
@@ -39,8 +42,9 @@ class TopicPublisher {
   }
 
  private:
-  void publish_any(const OutgoingMessage& message) const;  // in node.cpp: once, not inlined for each type
+  void publish_any(const OutgoingMessage& message) const;  // in topics.cpp: once, not inlined for each type
 
+  std::shared_ptr<std::atomic<std::uint32_t>> subscribed_;  ///< how often somebody has; null if not latched
   ros::Publisher publisher_;
 };
 
