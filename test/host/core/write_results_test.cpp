@@ -116,6 +116,26 @@ TEST_F(WriteResultsTest, What_was_sent_when_the_link_broke_is_lost_and_what_wait
   EXPECT_THAT(results.outcomes, ElementsAre(Outcome::lost, Outcome::dropped));
 }
 
+TEST_F(WriteResultsTest, Who_is_not_connected_hears_of_the_setting_that_would_help) {
+  start_online();
+  device.refuse_connect = NotConnected{"refused"};
+  device.next_errors.push_back(TransportFailure{"reset"});
+  run_for(milliseconds(99));
+  push("r0", 1, &results);
+  engine->step();
+  EXPECT_THAT(results.text,
+              testing::HasSubstr("with 'on_reconnect: restore' in the map it would be written"));
+  Write click;
+  click.point = static_cast<std::uint32_t>(find(owned->map(), "r0") - owned->map().points.data());
+  click.until = clock.now() + milliseconds(3000);
+  click.listener = &results;
+  engine->push(click);
+  engine->step();
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::dropped, Outcome::dropped));
+  EXPECT_THAT(results.text, testing::HasSubstr("not connected"));
+  EXPECT_THAT(results.text, testing::Not(testing::HasSubstr("restore"))) << "it would be too late";
+}
+
 TEST_F(WriteResultsTest, What_ends_by_itself_is_not_restored) {
   start_online([](Map& map) { map.on_reconnect = OnReconnect::restore; },
                [](Point& point) {

@@ -24,6 +24,13 @@ std::string deadman_value(const Point& point) {
   return ' ' + format_value(point.host.deadman.value.data(), point);
 }
 
+/// What becomes of a write that waits while there is no connection.
+std::string_view unconnected_text(const Point& point, const Write& write) {
+  if (write.until != Time::max()) return "not connected";
+  if (is_pulsed(point)) return "not connected; a pulse is not written when the device is back";
+  return "not connected; with 'on_reconnect: restore' in the map it would be written when the device is back";
+}
+
 }  // namespace
 
 Writer::Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
@@ -278,11 +285,8 @@ void Writer::drop(const Write& write) {
   const bool keeps = restores(write) && !write.of_schedule;  // that has a time of its own
   if (keeps) remember(write);
   if (write.of_deadman) deadmen_.put_back(write.point);
-  const std::string_view why = is_pulsed(map_.points[write.point])
-                                   ? "not connected; a pulse is not written when the device is back"
-                                   : "not connected; with 'on_reconnect: restore' in the map it would be "
-                                     "written when the device is back";
-  const WriteResult result = {keeps ? Outcome::kept : Outcome::dropped, std::nullopt, why};
+  const WriteResult result = {keeps ? Outcome::kept : Outcome::dropped, std::nullopt,
+                              unconnected_text(map_.points[write.point], write)};
   queue_.settled(write.point);
   tell(write, result);
   if (keeps || dropped_++ > 0) return;
