@@ -8,6 +8,7 @@ often, or without ever reading.
 import contextlib
 import gzip
 import pathlib
+import select
 import signal
 import socket
 import sys
@@ -46,7 +47,7 @@ def too_much_is_refused(panel, page, checks):
     checks.equal("a length of 2^62", answer_to(panel, post(panel, "/token", 1 << 62, b"", "A: b")) in (400, 413), True)
     chunks = b"%x\r\n%s\r\n" % (1 << 16, b"x" * (1 << 16)) * 64 + b"0\r\n\r\n"
     checks.equal("a body in pieces", answer_to(panel, post(panel, "/token", None, chunks, "Transfer-Encoding: chunked")) in
-                 (400, 401, 413, None), True)
+                 (411, None), True)
     get = f"GET /points.json HTTP/1.1\r\nHost: 127.0.0.1:{panel.port}\r\n{token}\r\n".encode()
     for what, text in (("a line of 1 MB", get + b"A: " + b"x" * (1 << 20) + b"\r\n\r\n"),
                        ("an address of 1 MB", b"GET /" + b"x" * (1 << 20) + b" HTTP/1.1\r\n\r\n"),
@@ -124,6 +125,30 @@ def slow_requests(panel, number):
         thread.join()
         for each in sockets:
             each.close()
+
+
+def silence_holds_up_nobody(panel, page, checks):
+    """Whoever says nothing is not in the way of those who come after: they are answered before it is given up."""
+    def is_answered_first():
+        with contextlib.ExitStack() as sockets:
+            silent = [sockets.enter_context(raw(panel, begin)) for begin in (b"", b"GET / HTTP/1.1\r\nHost: ") * 100]
+            if panel.status("POST", "/alive", token=page.token) != 200:
+                return False
+            return not select.select(silent, [], [], 0)[0]  # one that is closed would be readable
+    peer.await_true("a request is answered before 200 that came earlier", is_answered_first, checks)
+
+
+def far_too_many_leave_room(panel, page, checks):
+    """More connections than it waits for: the oldest go, and a request that is there at once is answered."""
+    def do_the_oldest_go():
+        with contextlib.ExitStack() as sockets:
+            silent = [sockets.enter_context(raw(panel)) for _ in range(600)]
+            if panel.status("POST", "/alive", token=page.token) != 200:
+                return False
+            closed = select.select(silent, [], [], 0)[0]
+            return [each in closed for each in (*silent[:200], *silent[-200:])] == [True] * 200 + [False] * 200
+    peer.await_true("of 600 the oldest go, and one that says something is answered", do_the_oldest_go, checks)
+    page.await_event("events go on after that", checks)
 
 
 def slow_requests_stop_nobody(panel, page, checks):
@@ -205,6 +230,8 @@ def main():
             little_that_becomes_much_is_refused(panel, page, checks)
             headers_without_end(panel, page, checks)
             idle_sockets_stop_nobody(panel, page, checks)
+            silence_holds_up_nobody(panel, page, checks)
+            far_too_many_leave_room(panel, page, checks)
             slow_requests_stop_nobody(panel, page, checks)
             nine_pages(panel, checks)
             page.await_event("the first page sees events", checks)

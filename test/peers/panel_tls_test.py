@@ -6,7 +6,9 @@ speak TLS, or stops in the middle of it, stops nobody.
     panel_tls_test.py NODE COUPLER MAP
 """
 import contextlib
+import http.client
 import pathlib
+import select
 import signal
 import socket
 import ssl
@@ -68,9 +70,8 @@ def who_is_not_believed_is_not_asked(panel, checks):
 
 
 def what_is_no_tls_stops_nobody(panel, checks):
-    get = f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{panel.port}\r\n\r\n".encode()
     with Page(panel) as page:
-        for what, text in (("HTTP", get), ("nothing of it", bytes(2000)), ("an alert", b"\x15\x03\x01\x00\x02\x02\x28"),
+        for what, text in (("nothing of it", bytes(2000)), ("an alert", b"\x15\x03\x01\x00\x02\x02\x28"),
                            ("a record that is too long", b"\x16\x03\x01\xff\xff" + bytes(100))):
             checks.equal(f"{what} is answered with", answer_to(panel, text), None)
         hello = b"\x16\x03\x01\x00\xf8\x01\x00\x00\xf4\x03\x03"  # of a ClientHello whose rest never comes
@@ -79,6 +80,43 @@ def what_is_no_tls_stops_nobody(panel, checks):
                 sockets.enter_context(raw(panel, begin))
             page.await_event("events go on beside 100 that have begun", checks)
             checks.equal("a request is answered", panel.status("GET", "/points.json", token=page.token), 200)
+
+
+def http_is_told_of_https(panel, page, checks):
+    """A browser in which only name and port are typed asks by HTTP; it keeps what stands behind #."""
+    host = f"127.0.0.1:{panel.port}"
+    plain = http.client.HTTPConnection(host, timeout=peer.PATIENCE)
+    plain.request("GET", "/panel.js")
+    answer = plain.getresponse()
+    checks.equal("HTTP is sent to", (answer.status, answer.headers["Location"]), (302, f"https://{host}/"))
+    answer.read()
+    plain.close()
+    for path, header, wanted in (("/token", f"Host: {host}", 400), ("/write", f"Host: {host}", 400),
+                                 ("/write", "Host: evil.example", 403)):
+        text = f"POST {path} HTTP/1.1\r\n{header}\r\nAuthorization: Bearer {page.token}\r\nContent-Length: 2\r\n\r\n{{}}"
+        checks.equal(f"{path} by HTTP, {header}", answer_to(panel, text.encode()), wanted)
+
+
+def what_browsers_object_to_is_told(coupler, map_file, folder, checks):
+    cell = folder / "cell"
+    for options, certificate, words in (([], "page", None), (["--name", "bench.local"], "page", None),
+                                        (["--name", "press.local"], "page", "press.local (it has 127.0.0.1, bench.local)"),
+                                        ([], "cell1", "not for a server")):
+        with Panel(coupler, map_file, 1, *options, "--page-certificate", cell / certificate / f"{certificate}.pem",
+                   "--page-key", cell / certificate / f"{certificate}.key") as panel:
+            peer.await_true("it has begun", lambda: "Ctrl-C" in panel.text(), checks)  # pylint: disable=cell-var-from-loop
+            said = panel.text()
+        checks.equal(f"{options} with {certificate}: {said}", ("warning: the page's certificate: it" in said, (words or "") in said),
+                     (words is not None, True))
+
+
+def the_certificate_is_looked_at_first(coupler, folder, checks):
+    """Before a device is asked, which may take minutes."""
+    with socket.create_server(("127.0.0.1", 0)) as device:
+        done = subprocess.run([coupler, "panel", f"127.0.0.1:{device.getsockname()[1]}", "--page-certificate", folder / "none.pem",
+                               "--page-key", folder / "none.key"], capture_output=True, text=True, timeout=peer.PATIENCE, check=False)
+        checks.equal(f"without its certificate: {done.stderr}", (done.returncode, "none.pem" in done.stderr), (2, True))
+        checks.equal("the device was not asked", select.select([device], [], [], 0)[0], [])
 
 
 def who_has_left_makes_room(panel, checks):
@@ -126,12 +164,15 @@ def main():
     checks = peer.Checks()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        made = subprocess.run([coupler, "certificates", folder / "cell", "--node", "page:127.0.0.1,bench.local", "--node", "other"],
+        made = subprocess.run([coupler, "certificates", folder / "cell", "--node", "page:127.0.0.1,bench.local", "--node", "other",
+                               "--client", "cell1:operator"],
                               capture_output=True, text=True, check=False)
         if "OpenSSL" in made.stderr:
             peer.skip("coupler was built without OpenSSL; run scripts/install-packages build")
         page, authority = folder / "cell" / "page", folder / "cell" / "authority" / "authority.pem"
         what_cannot_be_is_told(coupler, map_file, folder, checks)
+        what_browsers_object_to_is_told(coupler, map_file, folder, checks)
+        the_certificate_is_looked_at_first(coupler, folder, checks)
         with Node(node, map_file) as device, \
                 Panel(coupler, map_file, device.port, "--write", "--listen", "0.0.0.0", "--name", "bench.local",
                       "--page-certificate", page / "page.pem", "--page-key", page / "page.key", trust=trust(authority)) as panel:
@@ -139,6 +180,8 @@ def main():
             each_version_from_1_2_on_is_spoken(panel, authority, checks)
             who_is_not_believed_is_not_asked(panel, checks)
             what_is_no_tls_stops_nobody(panel, checks)
+            with Page(panel) as opened:
+                http_is_told_of_https(panel, opened, checks)
             who_has_left_makes_room(panel, checks)
             with Page(panel), raw(panel):
                 checks.equal("status after SIGINT beside a page", panel.end(signal.SIGINT), 0)

@@ -31,11 +31,8 @@ std::optional<std::string> why_not_here(const CredentialFiles& files) {
 }
 
 std::string life_text(const Validity& validity) {
-  const auto now = std::chrono::system_clock::now();
-  if (now < validity.begin)
-    return fmt::format("begins on {}, and it is {} here; compare the clocks", minute_text(validity.begin),
-                       minute_text(now));
-  return expiry_text(validity, now).value_or("good until " + minute_text(validity.end));
+  return time_problem(validity, std::chrono::system_clock::now())
+      .value_or("good until " + minute_text(validity.end));
 }
 
 void check(std::string_view key, tls::Side side, const CredentialFiles& files,

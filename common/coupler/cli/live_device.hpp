@@ -19,6 +19,8 @@
 
 namespace coupler::cli {
 
+struct DeviceArgument;
+
 /// Why there is no map, for people: what, then what to do.
 struct NoLiveMap {
   Exit exit;
@@ -74,8 +76,8 @@ struct PanelOptions {
   bool write = false;                ///< pages may write
 };
 
-/// Serves a live page of the device at `map.connection` until SIGINT or SIGTERM. Writes what pages ask for
-/// only. bad_call: it cannot listen there, or not with that certificate.
-Exit panel(const Map& map, const PanelOptions& options);
+/// Serves a live page of a device until SIGINT or SIGTERM. Writes what pages ask for only. bad_call: it
+/// cannot listen there, or not with that certificate, which it looks at first. Otherwise as get_device().
+Exit panel(const DeviceArgument& argument, const PanelOptions& options);
 
 }  // namespace coupler::cli

@@ -42,9 +42,7 @@ Exit run(const Arguments& arguments) {
                     "give --page-certificate FILE and --page-key FILE; or leave --listen out, give --port "
                     "8502, and on the other machine run `ssh -L 8502:127.0.0.1:8502 USER@THIS_MACHINE` and "
                     "open the address there");
-  const auto device = get_device("panel", arguments.device);
-  if (!device) return device.error();
-  return panel(device->map, options);
+  return panel(arguments.device, options);
 }
 
 }  // namespace

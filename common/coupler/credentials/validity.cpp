@@ -21,6 +21,12 @@ std::optional<std::string> expiry_text(const Validity& validity, system_clock::t
                      now < validity.end ? "expires" : "has expired", minute_text(validity.end));
 }
 
+std::optional<std::string> time_problem(const Validity& validity, system_clock::time_point now) {
+  if (now >= validity.begin) return expiry_text(validity, now);
+  return fmt::format("begins on {}, and it is {} here; compare the clocks", minute_text(validity.begin),
+                     minute_text(now));
+}
+
 std::string minute_text(system_clock::time_point time) {
   return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(system_clock::to_time_t(time)));
 }

@@ -7,6 +7,8 @@
 #include <array>
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "coupler/codec/text.hpp"
 
 namespace coupler::tls {
@@ -52,6 +54,17 @@ std::optional<std::vector<std::string>> hosts_of(const X509* certificate) {
     if (auto host = host_of(*sk_GENERAL_NAME_value(names.get(), i)); host && codec::is_plain_text(*host))
       hosts.push_back(*std::move(host));
   return hosts;
+}
+
+std::string names_text(const X509* certificate) {
+  constexpr std::size_t most = 8;
+  std::vector<std::string> names = hosts_of(certificate).value_or(std::vector<std::string>{});
+  if (names.empty()) return {};
+  if (names.size() > most) {
+    names.resize(most);
+    names.emplace_back("more");
+  }
+  return fmt::format(" (it has {})", fmt::join(names, ", "));
 }
 
 }  // namespace coupler::tls

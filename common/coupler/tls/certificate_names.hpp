@@ -17,4 +17,7 @@ std::string common_name(const X509* certificate);
 /// nullopt: it has no such extension.
 std::optional<std::vector<std::string>> hosts_of(const X509* certificate);
 
+/// " (it has press, 10.0.0.7)"; empty: it has none.
+std::string names_text(const X509* certificate);
+
 }  // namespace coupler::tls

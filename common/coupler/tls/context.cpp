@@ -3,8 +3,10 @@
 
 #include <openssl/err.h>
 #include <openssl/pem.h>
+#include <openssl/x509v3.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <new>
 #include <utility>
@@ -12,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/tls/certificate_names.hpp"
 #include "coupler/tls/socket_bio.hpp"
 
 namespace coupler::tls {
@@ -190,6 +193,19 @@ Validity Context::validity() const {
     if (!first || each.end < first->end) first = each;
   }
   return first.value_or(Validity{});
+}
+
+std::optional<std::string> Context::objection(const std::string& host) const {
+  X509* const own = SSL_CTX_get0_certificate(context_.get());
+  if (auto problem = time_problem(validity(), std::chrono::system_clock::now())) return "it " + *problem;
+  if (X509_check_purpose(own, X509_PURPOSE_SSL_SERVER, 0) != 1)
+    return "it is not for a server; have one issued that is ('coupler certificates --node')";
+  const unsigned flags = X509_CHECK_FLAG_NO_PARTIAL_WILDCARDS | X509_CHECK_FLAG_NEVER_CHECK_SUBJECT;
+  if (X509_check_ip_asc(own, host.c_str(), 0) != 1 &&
+      X509_check_host(own, host.c_str(), host.size(), flags, nullptr) != 1)
+    return fmt::format("it is not for {}{}; have one issued that is, or give a name that it has with --name",
+                       host, names_text(own));
+  return std::nullopt;
 }
 
 }  // namespace coupler::tls

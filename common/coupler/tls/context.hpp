@@ -34,6 +34,9 @@ class Context {
 
   /// Of its own certificate; of several the one that ends first.
   Validity validity() const;
+  /// Why who asks for `host`, a name or an IP address, does not believe its own certificate, or soon will
+  /// not, whoever issued it; and what to do. nullopt: nothing is wrong.
+  std::optional<std::string> objection(const std::string& host) const;
 
   /// Whether it would still believe a certificate that another context believed; its time does not count.
   std::optional<std::string> why_refused(X509* certificate, STACK_OF(X509) * chain) const {

@@ -25,8 +25,6 @@ class Stream {
   Progress read(char* to, std::size_t size);
   Progress write(const char* from, std::size_t size);
 
-  /// Bytes have come that nobody has read.
-  bool has_pending() const { return SSL_has_pending(ssl_.get()) == 1; }
   /// The other side has not ended it, as far as can be told without waiting.
   bool is_there();
 

@@ -47,18 +47,6 @@ bool only_role_is_unknown(const X509* certificate) {
   return true;
 }
 
-/// " (it has press, 10.0.0.7)"; empty: it has none.
-std::string names_text(const X509* certificate) {
-  constexpr std::size_t most = 8;
-  std::vector<std::string> names = hosts_of(certificate).value_or(std::vector<std::string>{});
-  if (names.empty()) return {};
-  if (names.size() > most) {
-    names.resize(most);
-    names.emplace_back("more");
-  }
-  return fmt::format(" (it has {})", fmt::join(names, ", "));
-}
-
 std::string key_kind(const X509* certificate) {
   const EVP_PKEY* const key = X509_get0_pubkey(certificate);
   const char* const name = key == nullptr ? nullptr : EVP_PKEY_get0_type_name(key);
@@ -213,9 +201,9 @@ std::string problem_text(int error, const X509* certificate, const X509* own) {
                        "the clock of this machine is not set: it says {}, and its own certificate "
                        "begins on {}; set it, by NTP for instance",
                        minute_text(std::chrono::system_clock::now()), minute_text(validity_of(own).begin))
-                 : fmt::format("its certificate begins on {}, and it is {} here; compare the clocks",
-                               minute_text(validity_of(certificate).begin),
-                               minute_text(std::chrono::system_clock::now()));
+                 : "its certificate " +
+                       time_problem(validity_of(certificate), std::chrono::system_clock::now())
+                           .value_or("is not valid yet");
     }
     case X509_V_ERR_UNABLE_TO_GET_ISSUER_CERT:
     case X509_V_ERR_UNABLE_TO_GET_ISSUER_CERT_LOCALLY:

@@ -33,5 +33,15 @@ TEST(Validity, At_its_end_it_has_expired) {
       Optional(std::string("has expired on 2026-11-27 00:00 UTC; renew it ('coupler certificates')")));
 }
 
+TEST(Validity, Before_its_beginning_the_clocks_are_to_be_compared) {
+  const Validity a_day{start, start + day};
+  EXPECT_THAT(
+      time_problem(a_day, start - hours(1)),
+      Optional(std::string("begins on 2026-11-26 00:00 UTC, and it is 2026-11-25 23:00 UTC here; compare the "
+                           "clocks")));
+  EXPECT_EQ(time_problem(a_day, start), std::nullopt);
+  EXPECT_EQ(time_problem(a_day, start + day), expiry_text(a_day, start + day));
+}
+
 }  // namespace
 }  // namespace coupler

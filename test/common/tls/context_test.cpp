@@ -62,5 +62,17 @@ TEST(Context, Knows_how_long_its_own_certificate_is_good) {
   EXPECT_EQ(expiry_text(validity, std::chrono::system_clock::now()), std::nullopt);
 }
 
+std::string objection(const Subject& subject, const std::string& host) {
+  return Context::for_strangers(credentials_of(subject))->objection(host).value_or("");
+}
+
+TEST(Context, Tells_what_a_browser_would_object_to) {
+  for (const char* const host : {"press", "10.0.0.7"}) EXPECT_EQ(objection(test_node(), host), "");
+  for (const char* const host : {"10.0.0.8", "pres", "press.local", "::1"})
+    EXPECT_THAT(objection(test_node(), host),
+                HasSubstr(std::string("not for ") + host + " (it has press, 10.0.0.7)"));
+  EXPECT_THAT(objection(test_client(), "cell1"), HasSubstr("not for a server"));
+}
+
 }  // namespace
 }  // namespace coupler::tls

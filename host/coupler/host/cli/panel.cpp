@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "coupler/base/utc_text.hpp"
+#include "coupler/cli/device_argument.hpp"
 #include "coupler/cli/live_device.hpp"
 #include "coupler/host/cli/interruption.hpp"
 #include "coupler/host/cli/only_looking.hpp"
@@ -146,7 +147,16 @@ class LookedAtDevice final : public host::PanelDevice {
 
 }  // namespace
 
-Exit panel(const Map& original, const PanelOptions& options) {
+Exit panel(const DeviceArgument& argument, const PanelOptions& options) {
+  std::shared_ptr<const host::PageTls> tls;
+  if (!options.certificate.empty()) {
+    auto read = host::read_page_tls(options.certificate, options.key);
+    if (!read) return complain("panel", bad_call, read.error(), {});
+    tls = *std::move(read);
+  }
+  const auto found = get_device("panel", argument);
+  if (!found) return found.error();
+  const Map& original = found->map;
   const OnlyLooking looking(original);
   const Map& map = looking.map();
   host::SteadyClock clock;
@@ -159,17 +169,13 @@ Exit panel(const Map& original, const PanelOptions& options) {
   LookedAtDevice device(map, values, options.write);
   const std::string warning(watchdog_warning(original));
   if (!warning.empty()) say(host::Level::warning, warning);
-  std::shared_ptr<const host::PageTls> tls;
-  if (!options.certificate.empty()) {
-    auto read = host::read_page_tls(options.certificate, options.key);
-    if (!read) return complain("panel", bad_call, read.error(), {});
-    tls = *std::move(read);
-  }
   auto server = host::PanelServer::start({options.listen, options.port, options.name}, tls,
                                          host::panel_points(map, options.write, warning), values, device);
   if (!server) return complain("panel", bad_call, server.error(), "give another one with --listen or --port");
   fmt::print("{}\n", (*server)->url());
   std::fflush(stdout);
+  if (const auto objection = (*server)->objection())
+    say(host::Level::warning, "the page's certificate: " + *objection);
   say(host::Level::info, "open that address in a browser; Ctrl-C ends it");
   for (int turn = 0; !ended; ++turn) {
     clock.sleep_until(clock.now() + judge_period);

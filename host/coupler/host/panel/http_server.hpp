@@ -3,16 +3,16 @@
 
 #include <httplib.h>
 
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <netinet/tcp.h>
+#include <sys/socket.h>
 
 #include <atomic>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "coupler/host/panel/incoming_requests.hpp"
 #include "coupler/host/panel/page_tls.hpp"
 #include "coupler/host/panel/request_stream.hpp"
 
@@ -22,29 +22,44 @@ namespace coupler::host {
 /// without.
 class HttpServer final : public httplib::Server {
  public:
-  /// Both outlive it; `tls` is null for HTTP.
-  HttpServer(const std::atomic<bool>& ending, const PageTls* tls) : ending_(ending), tls_(tls) {}
+  /// `workers`: requests that are answered at a time. The others outlive it; `tls` is null for HTTP.
+  HttpServer(std::size_t workers, const std::atomic<bool>& ending, const PageTls* tls)
+      : ending_(ending), tls_(tls), workers_(workers) {
+    // All it does is to hand the connections on.
+    new_task_queue = [] { return new httplib::ThreadPool(1); };
+  }
+
+  /// Once it is bound: so many connections may wait until they are accepted. Of httplib's five some would be
+  /// lost, and made again a second later.
+  void set_backlog(int connections) { ::listen(svr_sock_, connections); }
 
   /// While a request is answered, in its thread: whoever has sent it still waits.
   static bool is_asker_there() { return stream_ != nullptr && stream_->is_writable(); }
+  /// As above: it came without TLS.
+  static bool is_plain() { return stream_ == nullptr || stream_->is_plain(); }
 
  private:
   /// ms; a phone that has gone without a word is not taken for a page much longer.
   static constexpr unsigned unheard = 10'000;
 
+  struct Workers {
+    explicit Workers(std::size_t number) : pool(number) {}
+    Workers(const Workers&) = delete;
+    Workers& operator=(const Workers&) = delete;
+    ~Workers() { pool.shutdown(); }
+    httplib::ThreadPool pool;
+  };
+
   bool process_and_close_socket(socket_t socket) override {
     ::setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &unheard, sizeof unheard);
-    const auto stream = stream_of(socket);
-    stream_ = stream.get();
-    const bool is_answered = process(*stream, 0);
-    stream_ = nullptr;
-    ::shutdown(socket, SHUT_RDWR);
-    ::close(socket);
-    return is_answered;
+    incoming_.add(tls_ ? tls_->stream(socket, ending_) : std::make_unique<RequestStream>(socket, ending_));
+    return true;
   }
 
-  std::unique_ptr<RequestStream> stream_of(socket_t socket) const {
-    return tls_ ? tls_->stream(socket, ending_) : std::make_unique<RequestStream>(socket, ending_);
+  void answer(RequestStream& stream) {
+    stream_ = &stream;
+    process(stream, 0);
+    stream_ = nullptr;
   }
 
   /// Thousands of ranges would be copied; a browser needs none.
@@ -74,6 +89,10 @@ class HttpServer final : public httplib::Server {
 
   const std::atomic<bool>& ending_;
   const PageTls* tls_;
+  Workers workers_;
+  IncomingRequests incoming_{[this](std::unique_ptr<RequestStream> stream) {
+    workers_.pool.enqueue([this, shared = std::shared_ptr(std::move(stream))] { answer(*shared); });
+  }};
 };
 
 }  // namespace coupler::host

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/panel/page_tls.hpp"
 
+#include <sys/socket.h>
+
+#include <optional>
 #include <utility>
 
 #include "coupler/credentials/credentials.hpp"
@@ -10,31 +13,32 @@
 namespace coupler::host {
 namespace {
 
+/// Who does not speak TLS is spoken to without it, to be told so.
 class TlsStream final : public RequestStream {
  public:
   TlsStream(socket_t socket, const std::atomic<bool>& ending, const tls::Context& context)
       : RequestStream(socket, ending), stream_(context, socket) {}
 
+  bool is_plain() const override { return is_plain_.value_or(false); }
+
  private:
-  bool has_more(Time until) const override { return stream_.has_pending() || RequestStream::has_more(until); }
-  ssize_t receive(char* to, std::size_t size, Time until) override {
-    return once_it_can([&] { return stream_.read(to, size); }, until);
-  }
-  ssize_t give(const char* from, std::size_t size, Time until) override {
-    return once_it_can([&] { return stream_.write(from, size); }, until);
-  }
-  bool is_there() const override { return RequestStream::is_there() && stream_.is_there(); }
-
-  template <class Call>
-  ssize_t once_it_can(const Call& call, Time until) {
-    for (;;) {
-      const tls::Stream::Progress done = call();
-      if (done.bytes > 0) return done.bytes;
-      if (done.wants == 0 || !wait(done.wants, until)) return -1;
+  Progress receive(char* to, std::size_t size) override {
+    if (!is_plain_) {
+      char first = 0;
+      const ssize_t came = ::recv(socket(), &first, 1, MSG_PEEK | MSG_DONTWAIT);
+      if (came > 0) is_plain_ = 'A' <= first && first <= 'Z';  // of GET or POST
     }
+    return is_plain() ? RequestStream::receive(to, size) : of(stream_.read(to, size));
   }
+  Progress give(const char* from, std::size_t size) override {
+    return is_plain() ? RequestStream::give(from, size) : of(stream_.write(from, size));
+  }
+  bool is_there() const override { return RequestStream::is_there() && (is_plain() || stream_.is_there()); }
 
-  mutable tls::Stream stream_;  ///< to look takes what has come from the socket
+  static Progress of(tls::Stream::Progress progress) { return {progress.bytes, progress.wants}; }
+
+  mutable tls::Stream stream_;    ///< to look takes what has come from the socket
+  std::optional<bool> is_plain_;  ///< once its first byte has come
 };
 
 class Files final : public PageTls {
@@ -42,6 +46,9 @@ class Files final : public PageTls {
   explicit Files(tls::Context context) : context_(std::move(context)) {}
   std::unique_ptr<RequestStream> stream(socket_t socket, const std::atomic<bool>& ending) const override {
     return std::make_unique<TlsStream>(socket, ending, context_);
+  }
+  std::optional<std::string> objection(const std::string& host) const override {
+    return context_.objection(host);
   }
 
  private:

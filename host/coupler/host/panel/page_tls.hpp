@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "coupler/host/panel/request_stream.hpp"
 
@@ -15,6 +17,8 @@ class PageTls {
 
   /// Of a connection that a browser has just made. In any thread.
   virtual std::unique_ptr<RequestStream> stream(socket_t socket, const std::atomic<bool>& ending) const = 0;
+  /// As PanelServer::objection(), where browsers call it by this name or address.
+  virtual std::optional<std::string> objection(const std::string& host) const = 0;
 };
 
 }  // namespace coupler::host

@@ -34,8 +34,8 @@ constexpr int most_pages = 8;
 constexpr std::size_t more_workers = 16;
 constexpr std::chrono::seconds heartbeat{1};
 constexpr std::chrono::milliseconds shortest_pause{50};  ///< between two events of a page
-constexpr std::size_t largest_body = 4096;
 constexpr int most_unread = 64 * 1024;
+constexpr int backlog = 128;
 
 void answer(Response& response, int status, const std::string& text) {
   response.status = status;
@@ -48,10 +48,10 @@ class Server final : public PanelServer {
          LiveValues& values, PanelDevice& device)
       : address_(address),
         tls_(std::move(tls)),
+        objection_(tls_ ? tls_->objection(shown_host()) : std::nullopt),
         points_(std::move(points)),
         values_(values),
         device_(device) {
-    http_.new_task_queue = [] { return new httplib::ThreadPool(most_pages + more_workers); };
     http_.set_socket_options([](socket_t socket) {
       // Not SO_REUSEPORT, as httplib has it: two panels would share a port and its browsers.
       constexpr int on = 1;
@@ -59,7 +59,7 @@ class Server final : public PanelServer {
       // What a slow page has not read is old by the time it does: there shall be little of it.
       ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &most_unread, sizeof most_unread);
     });
-    http_.set_payload_max_length(largest_body);
+    http_.set_payload_max_length(RequestStream::largest_body);
     http_.set_tcp_nodelay(true);
     http_.set_default_headers(
         {{"Content-Security-Policy",
@@ -89,6 +89,7 @@ class Server final : public PanelServer {
               ? fmt::format("cannot listen on {}: is it one of this machine's addresses?", address_.listen)
               : fmt::format("cannot listen on {} port {}: is it in use, or no address of this machine?",
                             address_.listen, address_.port));
+    http_.set_backlog(backlog);
     thread_ = std::thread([this] {
       http_.listen_after_bind();
       has_ended_ = true;
@@ -99,11 +100,12 @@ class Server final : public PanelServer {
   }
 
   std::string url() const override {
-    const std::string host = address_.name.empty() ? shown_address(address_.listen) : address_.name;
+    const std::string host = shown_host();
     const bool is_v6 = host.find(':') != std::string::npos;
     return fmt::format("{}://{}{}{}:{}/#{}", tls_ ? "https" : "http", is_v6 ? "[" : "", host,
                        is_v6 ? "]" : "", port_, access_.key());
   }
+  std::optional<std::string> objection() const override { return objection_; }
   int pages() const override { return pages_; }
 
   void turn(Time now) override {
@@ -112,6 +114,10 @@ class Server final : public PanelServer {
   }
 
  private:
+  std::string shown_host() const {
+    return address_.name.empty() ? shown_address(address_.listen) : address_.name;
+  }
+
   using Handled = httplib::Server::HandlerResponse;
 
   /// Before anything else: who asks, and from where.
@@ -120,6 +126,17 @@ class Server final : public PanelServer {
                      port_, address_.name, tls_ != nullptr)) {
       answer(response, 403,
              "this name or page is not the panel's own; open the address that the terminal shows");
+      return Handled::Handled;
+    }
+    if (tls_ && HttpServer::is_plain()) {  // as browsers do where only the name and the port are typed
+      if (request.method == "GET")
+        response.set_redirect("https://" + request.get_header_value("Host") + "/");
+      else
+        answer(response, 400, "this page is served by HTTPS");
+      return Handled::Handled;
+    }
+    if (request.has_header("Transfer-Encoding")) {
+      answer(response, 411, "send it as a whole, with its length");
       return Handled::Handled;
     }
     // Four kilobytes may be gigabytes when they are unpacked.
@@ -235,6 +252,7 @@ class Server final : public PanelServer {
 
   const PanelAddress address_;
   const std::shared_ptr<const PageTls> tls_;
+  const std::optional<std::string> objection_;  ///< looked for before connections come, which use the same
   const std::string points_;
   LiveValues& values_;
   PanelDevice& device_;
@@ -245,7 +263,7 @@ class Server final : public PanelServer {
   Writers writers_;
   std::atomic<int> pages_{0};
   int port_ = 0;
-  HttpServer http_{ending_, tls_.get()};
+  HttpServer http_{most_pages + more_workers, ending_, tls_.get()};
   std::thread thread_;
 };
 

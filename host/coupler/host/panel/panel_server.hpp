@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <tl/expected.hpp>
@@ -53,6 +54,9 @@ class PanelServer {
 
   /// What is to be opened in a browser, with the key.
   virtual std::string url() const = 0;
+  /// What browsers will say against the page's certificate, whoever issued it, and what to do; nullopt:
+  /// nothing.
+  virtual std::optional<std::string> objection() const = 0;
   /// Pages that look at this moment.
   virtual int pages() const = 0;
   /// To be called some ten times a second: sees who of those that have written is still there.

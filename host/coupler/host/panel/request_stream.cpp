@@ -3,8 +3,10 @@
 
 #include <arpa/inet.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -12,8 +14,12 @@
 namespace coupler::host {
 namespace {
 
-constexpr std::chrono::milliseconds slice{100};    ///< after which `ending` is looked at
-constexpr std::chrono::seconds longest_write{30};  ///< of one that goes on
+constexpr std::chrono::milliseconds slice{100};          ///< after which `ending` is looked at
+constexpr std::chrono::seconds longest_write{30};        ///< of one that goes on
+constexpr std::size_t largest = std::size_t{20} * 1024;  ///< bytes of a request, with its body
+
+/// Of the call that has just failed.
+bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
 using NameOf = int (*)(int, sockaddr*, socklen_t*);
 
@@ -43,6 +49,51 @@ void address_of(NameOf name_of, socket_t socket, std::string& ip, int& port) {
 RequestStream::RequestStream(socket_t socket, const std::atomic<bool>& ending)
     : socket_(socket), ending_(ending) {}
 
+RequestStream::~RequestStream() {
+  ::shutdown(socket_, SHUT_RDWR);
+  ::close(socket_);
+}
+
+void RequestStream::gather() {
+  std::array<char, 4096> piece{};
+  while (wants_ != 0 && !has_request_) {
+    const Progress got = receive(piece.data(), piece.size());
+    wants_ = got.bytes > 0 ? POLLIN : got.wants;
+    if (got.bytes <= 0) return;
+    const std::size_t before = request_.size();
+    request_.append(piece.data(), static_cast<std::size_t>(got.bytes));
+    if (size_ == unknown_size) size_ = request_size(request_, before, largest_body);
+    has_request_ = request_.size() >= std::min(size_, largest);
+  }
+}
+
+ssize_t RequestStream::read(char* to, std::size_t size) {
+  const std::size_t count = request_.copy(to, size, taken_);
+  taken_ += count;
+  return static_cast<ssize_t>(count);
+}
+
+RequestStream::Progress RequestStream::receive(char* to, std::size_t size) {
+  const ssize_t got = ::recv(socket_, to, size, MSG_DONTWAIT);
+  if (got >= 0) return {got, 0};
+  return {0, would_block() ? short{POLLIN} : short{0}};
+}
+
+RequestStream::Progress RequestStream::give(const char* from, std::size_t size) {
+  const ssize_t given = ::send(socket_, from, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (given >= 0) return {given, 0};
+  return {0, would_block() ? short{POLLOUT} : short{0}};
+}
+
+bool RequestStream::is_there() const {
+  pollfd one{socket_, POLLRDHUP, 0};  // also behind bytes that nobody has read
+  return ::poll(&one, 1, 0) == 0;
+}
+
+bool RequestStream::is_writable() const {
+  return is_there() && wait(POLLOUT, std::chrono::steady_clock::now() + timeout);
+}
+
 bool RequestStream::wait(short events, Time until) const {
   pollfd one{socket_, events, 0};
   while (!ending_) {
@@ -55,52 +106,20 @@ bool RequestStream::wait(short events, Time until) const {
   return false;
 }
 
-bool RequestStream::is_there() const {
-  pollfd one{socket_, POLLRDHUP, 0};  // also behind bytes that nobody has read
-  return ::poll(&one, 1, 0) == 0;
-}
-
-bool RequestStream::is_writable() const {
-  return is_there() && wait(POLLOUT, std::chrono::steady_clock::now() + timeout);
-}
-
-ssize_t RequestStream::receive(char* to, std::size_t size, Time until) {
-  return wait(POLLIN, until) ? ::recv(socket_, to, size, 0) : -1;
-}
-
-ssize_t RequestStream::give(const char* from, std::size_t size, Time until) {
-  for (;;) {
-    if (!wait(POLLOUT, until)) return -1;
-    const ssize_t given = ::send(socket_, from, size, MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (given >= 0 || (errno != EAGAIN && errno != EINTR)) return given;
-  }
-}
-
-ssize_t RequestStream::read(char* to, std::size_t size) {
-  if (begin_ == end_) {
-    if (received_ >= largest || std::chrono::steady_clock::now() > until_) return -1;
-    const ssize_t got = receive(buffer_.data(), buffer_.size(), until_);
-    if (got <= 0) return got;
-    begin_ = 0;
-    end_ = static_cast<std::size_t>(got);
-    received_ += end_;
-  }
-  const std::size_t taken = std::min(size, end_ - begin_);
-  std::copy_n(buffer_.data() + begin_, taken, to);
-  begin_ += taken;
-  return static_cast<ssize_t>(taken);
-}
-
 ssize_t RequestStream::write(const char* from, std::size_t size) {
   const Time last = std::chrono::steady_clock::now() + longest_write;
-  std::size_t sent = 0;
-  while (sent < size) {
-    const ssize_t given =
-        give(from + sent, size - sent, std::min(last, std::chrono::steady_clock::now() + timeout));
-    if (given <= 0) return -1;
-    sent += static_cast<std::size_t>(given);
+  Time until = std::chrono::steady_clock::now() + timeout;
+  for (std::size_t sent = 0; sent < size;) {
+    if (ending_) return -1;
+    const Progress given = give(from + sent, size - sent);
+    if (given.bytes > 0) {
+      sent += static_cast<std::size_t>(given.bytes);
+      until = std::min(last, std::chrono::steady_clock::now() + timeout);
+    } else if (given.wants == 0 || !wait(given.wants, until)) {
+      return -1;
+    }
   }
-  return static_cast<ssize_t>(sent);
+  return static_cast<ssize_t>(size);
 }
 
 void RequestStream::get_remote_ip_and_port(std::string& ip, int& port) const {
