@@ -135,7 +135,7 @@ def who_has_given_up_writes_nothing(panel, page, client, checks):
     request = (f"POST /write HTTP/1.1\r\nHost: 127.0.0.1:{panel.port}\r\nAuthorization: Bearer {page.token}\r\n"
                f"Content-Length: {len(body)}\r\n\r\n").encode() + body
     before = client.read_holding_registers(0, 1, 1).registers
-    panel.process.send_signal(signal.SIGSTOP)
+    peer.freeze(panel.process)
     with raw(panel, request):
         pass
     panel.process.send_signal(signal.SIGCONT)
@@ -234,7 +234,7 @@ def the_end_waits_for_no_device(node, coupler, folder, checks):
     map_file.write_text("name: patient\nrate: 10\ntimeout: 100s\nmapping: {coils: {lamp: 0}}\n", encoding="utf-8")
     with Node(node, map_file) as device, Panel(coupler, map_file, device.port, "--write") as panel, Page(panel) as page:
         page.await_value("lamp", False, checks)
-        device.process.send_signal(signal.SIGSTOP)
+        peer.freeze(device.process)
         told = []
         writing = threading.Thread(target=lambda: told.append(panel.write(page.token, "lamp", "true")), daemon=True)
         writing.start()

@@ -29,6 +29,12 @@ def is_sanitized():
     return re.search(r"^COUPLER_SANITIZE:\w+=.+$", cache, re.M) is not None
 
 
+def freeze(process):
+    """SIGSTOP to a child, until none of its threads runs: on a busy machine some run on for a while."""
+    process.send_signal(signal.SIGSTOP)
+    os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+
+
 class Checks:
     """Collects comparisons, so that one run tells everything."""
 

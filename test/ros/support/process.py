@@ -21,6 +21,12 @@ NAME = "__name:="  # gives the node its name
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
+def freeze(child):
+    """SIGSTOP to a child, until none of its threads runs: on a busy machine some run on for a while."""
+    child.send_signal(signal.SIGSTOP)
+    os.waitid(os.P_PID, child.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+
+
 class Process:
     """A program of the build, and everything it prints."""
 
@@ -47,7 +53,7 @@ class Process:
     @contextlib.contextmanager
     def frozen(self):
         """Stopped, as a machine that hangs: its connections stay, and it asks nothing."""
-        self._child.send_signal(signal.SIGSTOP)
+        freeze(self._child)
         try:
             yield
         finally:

@@ -7,6 +7,7 @@ import sys
 import time
 
 from support.patience import PATIENCE
+from support.process import freeze
 
 LEVEL = 41  # in holding register 4
 
@@ -27,7 +28,7 @@ class Server:
         raise AssertionError("pymodbus did not start")
 
     def freeze(self):
-        self._child.send_signal(signal.SIGSTOP)
+        freeze(self._child)
 
     def thaw(self):
         self._child.send_signal(signal.SIGCONT)
