@@ -5,6 +5,8 @@ import json
 import pathlib
 import re
 import subprocess
+import tempfile
+import unittest
 
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
@@ -84,3 +86,15 @@ class Browser:
     def screenshot(self, path):
         picture = self.command("Page.captureScreenshot", format="png")
         pathlib.Path(path).write_bytes(base64.b64decode(picture["data"]))
+
+
+class BrowserCase(unittest.TestCase):
+    """One browser and one folder for all tests of a class."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)

@@ -3,14 +3,13 @@
 import os
 import pathlib
 import subprocess
-import tempfile
 import time
 import unittest
 
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-from browser import DESKTOP, PHONE, Browser
+from browser import DESKTOP, PHONE, BrowserCase
 
 SOURCE = pathlib.Path(os.environ["SOURCE_DIR"])
 MAPS = [SOURCE / "config/example-node.yaml", SOURCE / "config/foreign-coupler.yaml", SOURCE / "test/generate/manners.yaml"]
@@ -36,14 +35,10 @@ def big_map():
     return "\n".join(lines) + "\n"
 
 
-class Page(unittest.TestCase):
+class Page(BrowserCase):
     @classmethod
     def setUpClass(cls):
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         for path in MAPS:
             cls.document(path)
 

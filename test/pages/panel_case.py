@@ -7,11 +7,10 @@ import struct
 import subprocess
 import sys
 import tempfile
-import unittest
 
 from selenium.webdriver.common.by import By
 
-from browser import PATIENCE, Browser
+from browser import PATIENCE, BrowserCase
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "support"))
 from raw_client import RawClient  # noqa: E402
@@ -64,14 +63,10 @@ class Program:
         self.said.close()
 
 
-class PanelCase(unittest.TestCase):
+class PanelCase(BrowserCase):
     @classmethod
     def setUpClass(cls):
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         cls.map_file = cls.folder / "press.yaml"
         cls.map_file.write_text(MAP, "utf-8")
 
