@@ -106,10 +106,19 @@ class Handler {
   Answer carry_out(const modbus::ScheduleOutput& wanted, const Call& call);
   Answer carry_out(const modbus::CancelOutput& wanted, const Call& call);
 
+  Answer hardware_failed();
+  void drive_due(TimePoint now);
+  void expire_watchdog(TimePoint now);
+  bool drive_safe(TimePoint now);
+  void show_outputs();
+  bool read_hardware(Table table, modbus::Range range, Span<std::uint16_t> cells, TimePoint now);
+  /// Though no request asks for them now.
+  bool wants_news(TimePoint now) const;
+
+  // Requests that write: handler_writes.cpp.
   /// Whether every output that the watchdog guards may be written.
   bool may_reset_watchdog(const Rights& rights);
   Answer reset_watchdog(const modbus::WriteRegisters& write, const Call& call);
-  Answer hardware_failed();
   /// Empty if one is not mapped, not writable, or holds in part a value that is only written as a whole: a
   /// counter's, or that of an analogue output.
   Span<std::uint16_t> writable_registers(modbus::Range range) const;
@@ -122,8 +131,6 @@ class Handler {
   /// cancels what is scheduled there.
   tl::expected<void, modbus::Exception> store(Table table, modbus::Range range, Span<std::uint16_t> cells,
                                               TimePoint now);
-  void drive_due(TimePoint now);
-  void expire_watchdog(TimePoint now);
   tl::expected<void, modbus::Exception> drive_and_store(Table table, modbus::Range range,
                                                         Span<std::uint16_t> cells, TimePoint now);
   /// Pulses of the range that begin with what next_ says, before it is driven: they end all the same if this
@@ -135,11 +142,6 @@ class Handler {
                      std::chrono::milliseconds longest = std::chrono::milliseconds::max());
   /// A coil that was 1 when this process, or this map, came into force ends, too.
   void begin_pulses_that_are_missing();
-  bool drive_safe(TimePoint now);
-  void show_outputs();
-  bool read_hardware(Table table, modbus::Range range, Span<std::uint16_t> cells, TimePoint now);
-  /// Though no request asks for them now.
-  bool wants_news(TimePoint now) const;
 
   // Outputs at a time: handler_schedule.cpp.
   bool can_schedule() const;

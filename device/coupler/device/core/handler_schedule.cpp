@@ -31,8 +31,7 @@ Span<std::uint16_t> Handler::writable(Table table, modbus::Range range) const {
 tl::expected<void, Exception> Handler::check(const modbus::ScheduleOutput& wanted, Table table,
                                              const ClientSession& session) {
   if (writable(table, wanted.range).empty()) return tl::unexpected(Exception::illegal_data_address);
-  if (!rights_of(session).may(Right::write, table, wanted.range))
-    return tl::unexpected(Exception::illegal_function);
+  if (!rights_of(session).may(Right::write, table, wanted.range)) return tl::unexpected(no_right);
   const auto next = Span<std::uint16_t>(next_).first(wanted.range.count());
   if (table == Table::coils)
     put_next(modbus::WriteBits{wanted.range, wanted.values});

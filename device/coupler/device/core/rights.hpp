@@ -5,8 +5,12 @@
 
 #include "coupler/device/core/client_session.hpp"
 #include "coupler/map/map.hpp"
+#include "coupler/modbus/pdu.hpp"
 
 namespace coupler::device {
+
+/// What a request without the right for it is answered.
+constexpr modbus::Exception no_right = modbus::Exception::illegal_function;
 
 /// What a client may do by its role. Without `security` in the map it may do everything. A right is asked for
 /// after the address was found to be mapped, and before a value is looked at (docs/security.md).
