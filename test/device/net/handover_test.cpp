@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clients that one server lets go and another one goes on with.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,6 +35,18 @@ TEST_F(HandedOver, A_client_notices_nothing) {
   other.settle();
   EXPECT_THAT(client.received(), ElementsAreArray(answer_to(2)));
   EXPECT_EQ(other.tcp.size(), 1U);
+}
+
+TEST_F(HandedOver, One_whose_socket_would_wait_holds_up_nobody) {
+  Client silent = one.connect();
+  std::vector<OpenConnection> clients = one.tcp.release();
+  ASSERT_EQ(clients.size(), 1U);
+  ASSERT_EQ(::fcntl(clients[0].socket.get(), F_SETFL, 0), 0);
+  other.tcp.take_over(std::move(clients), TimePoint::clock::now());
+  Client client = other.connect();
+  client.send(question(1));
+  other.settle();
+  EXPECT_THAT(client.received(), ElementsAreArray(answer_to(1)));
 }
 
 TEST_F(HandedOver, Half_a_request_is_completed_by_the_other_half) {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstring>
 #include <string>
 
 #include "coupler/device/net/open_connection.hpp"
@@ -36,6 +37,27 @@ class OpenConnectionTest : public testing::Test {
     bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
     return bytes;
   }
+  /// A byte and two descriptors, as no node sends them.
+  void send_both(const std::array<int, 2>& descriptors) {
+    std::uint8_t byte = 0;
+    iovec part{&byte, 1};
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof descriptors)> control{};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    cmsghdr* rights = CMSG_FIRSTHDR(&message);
+    rights->cmsg_level = SOL_SOCKET;
+    rights->cmsg_type = SCM_RIGHTS;
+    rights->cmsg_len = CMSG_LEN(sizeof descriptors);
+    std::memcpy(CMSG_DATA(rights), descriptors.data(), sizeof descriptors);
+    EXPECT_EQ(::sendmsg(channel_->one.get(), &message, 0), 1);
+  }
+  static bool is_closed(const Descriptor& end) {
+    char byte = 0;
+    return ::recv(end.get(), &byte, 1, MSG_DONTWAIT) == 0;
+  }
   Descriptor a_socket() { return Descriptor(::dup(clients_end_.get())); }
 
   std::optional<Channel> channel_ = open_channel();
@@ -62,6 +84,23 @@ TEST_F(OpenConnectionTest, Comes_with_its_socket_and_all_that_is_known_of_it) {
 }
 
 TEST_F(OpenConnectionTest, Is_none_without_a_socket) { EXPECT_FALSE(parse_client(sent(), {})); }
+
+TEST_F(OpenConnectionTest, Of_two_sockets_in_a_message_only_one_comes) {
+  std::array<int, 2> first{};
+  std::array<int, 2> second{};
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, first.data()), 0);
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, second.data()), 0);
+  const Descriptor end_of_first(first[0]);
+  const Descriptor end_of_second(second[0]);
+  send_both({first[1], second[1]});
+  ::close(first[1]);
+  ::close(second[1]);
+  std::vector<std::uint8_t> bytes(longest_client_message);
+  EXPECT_EQ(receive_message(channel_->other.get(), bytes, came_), 1);
+  EXPECT_TRUE(came_.is_open());
+  EXPECT_TRUE(is_closed(end_of_second)) << "the other one stays open, and nobody knows it";
+  EXPECT_FALSE(is_closed(end_of_first));
+}
 
 TEST_F(OpenConnectionTest, Is_none_of_another_length_than_it_says) {
   auto bytes = sent();

@@ -97,10 +97,10 @@ void Connection::close() {
   server_.end_session(session_, TimePoint::clock::now());
 }
 
-void Connection::ready(TimePoint now) {
+void Connection::have_turn(TimePoint now, Receives receives) {
   const bool was_sending = has_output();
   const TimePoint before = last_active_;
-  if (!take_turn(now)) return close();
+  if (!take_turn(now, receives)) return close();
   if (has_output() != was_sending)
     loop_.change(socket_.get(), has_output() ? Interest::write : Interest::read, *this);
   list();
@@ -123,10 +123,11 @@ void Connection::unlist() {
 }
 
 /// False: the connection is to be closed.
-bool Connection::take_turn(TimePoint now) {
+bool Connection::take_turn(TimePoint now, Receives receives) {
   // First what an earlier turn left: replies, and requests behind them.
   if (!send() || !answer(now)) return false;
   if (has_output()) return true;
+  if (receives == Receives::no) return !ended_;
   if (!ended_ && !receive()) return false;
   // What has just been received came after `now`, and clients measure time by that.
   return answer(TimePoint::clock::now()) && (!ended_ || has_output());
@@ -134,7 +135,8 @@ bool Connection::take_turn(TimePoint now) {
 
 bool Connection::receive() {
   const auto room = framer_.room();
-  const ssize_t size = ::recv(socket_.get(), room.data(), room.size(), 0);
+  // Another process can make a socket wait that it has handed over.
+  const ssize_t size = ::recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
   if (size < 0) return would_block();
   if (size == 0) ended_ = true;
   framer_.filled(static_cast<std::size_t>(size));

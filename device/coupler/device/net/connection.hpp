@@ -43,7 +43,9 @@ class Connection final : public EventHandler {
   bool is_open() const { return socket_.is_open(); }
   void close();
 
-  void ready(TimePoint now) override;
+  void ready(TimePoint now) override { have_turn(now, Receives::yes); }
+  /// What it waits for may be due. The socket is not looked at: the loop tells when something has come.
+  void answer_wait(TimePoint now) { have_turn(now, Receives::no); }
 
   /// When it is closed unless something happens; nullopt: never.
   std::optional<TimePoint> deadline() const { return deadline_; }
@@ -61,8 +63,10 @@ class Connection final : public EventHandler {
  private:
   static constexpr std::size_t output_size = longest_unsent;
   enum class Waiting { for_request, for_rest_of_frame, for_client_to_read };
+  enum class Receives { no, yes };
 
-  bool take_turn(TimePoint now);
+  void have_turn(TimePoint now, Receives receives);
+  bool take_turn(TimePoint now, Receives receives);
   bool receive();
   bool answer(TimePoint now);
   modbus::Framer::Outcome fill_output(TimePoint now);

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "coupler/device/net/connection.hpp"
+
 namespace coupler::device {
 
-void Waiters::remove(const EventHandler& connection) {
+void Waiters::remove(const Connection& connection) {
   const auto found = std::find_if(all_.begin(), all_.end(),
                                   [&](const Waiter& waiter) { return waiter.connection == &connection; });
   if (found == all_.end()) return;
@@ -28,7 +30,7 @@ void Waiters::answer(TimePoint now) {
   if (!due || *due > now) return;
   // From the end: who is answered leaves its place to the last one, and whoever waits again comes behind it.
   for (std::size_t i = all_.size(); i-- > 0;)
-    if (is_news || all_[i].until <= now) all_[i].connection->ready(now);
+    if (is_news || all_[i].until <= now) all_[i].connection->answer_wait(now);
 }
 
 }  // namespace coupler::device

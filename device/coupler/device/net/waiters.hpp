@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "coupler/device/core/server.hpp"
-#include "coupler/device/net/loop.hpp"
 
 namespace coupler::device {
+
+class Connection;
 
 /// The connections that wait for changes. Allocates at the start only.
 class Waiters {
@@ -17,9 +18,9 @@ class Waiters {
   /// Room for so many. The server outlives it.
   Waiters(const Server& server, std::size_t capacity) : server_(server) { all_.reserve(capacity); }
 
-  /// The connection waits, until then at the latest. ready() makes it answer if that is due.
-  void add(EventHandler& connection, TimePoint until) { all_.push_back({&connection, until}); }
-  void remove(const EventHandler& connection);
+  /// The connection waits, until then at the latest.
+  void add(Connection& connection, TimePoint until) { all_.push_back({&connection, until}); }
+  void remove(const Connection& connection);
 
   /// When answer() has something to do; nullopt: when there is a change.
   std::optional<TimePoint> due() const;
@@ -28,7 +29,7 @@ class Waiters {
 
  private:
   struct Waiter {
-    EventHandler* connection;
+    Connection* connection;
     TimePoint until;
   };
   bool is_news() const { return server_.changes().ring().newest() != told_; }
