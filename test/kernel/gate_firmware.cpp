@@ -25,6 +25,11 @@ class Gate : public coupler::maps::gate::NodeHooks {
     return !on || speed_ != 0;
   }
 
+  bool on_horn(bool on) override {
+    tell("horn", on ? 1 : 0);
+    return true;
+  }
+
   bool on_speed(std::int16_t speed) override {
     tell("speed", speed);
     speed_ = speed;

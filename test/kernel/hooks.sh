@@ -42,6 +42,13 @@ check "another process begins" wait_until says gate '^began 0 in' 2
 check "what its thread sets is read" wait_until input_is 0 1
 expect "the brake has stayed" 1 "$(sim_value plant 0)"
 
+echo "# the process that serves dies during a pulse"
+check "the horn sounds" set_coil 2 1
+kill -KILL "$(worker gate)"
+check "another process begins" wait_until says gate '^began 0 in' 3
+check "which ends the pulse" wait_until says gate "^horn 0 in $(worker gate)$"
+expect "once, and no other process did" 1 "$(grep -c '^horn 0 in' "$(log gate)")"
+
 echo "# a line that cannot be driven"
 check "the firmware is told a speed" answered client -t 4 -r 0 127.0.0.1 -- 6
 check "both are written" set_coils 1 1
@@ -56,4 +63,4 @@ echo "# it ends"
 before=$(worker gate)
 stop gate TERM || true
 check "the firmware is made safe, once, by the process that served" says gate "^safe 0 in $before$" 1
-expect "and by no other" 2 "$(grep -c '^safe 0 in' "$(log gate)")"
+expect "and by no other" 3 "$(grep -c '^safe 0 in' "$(log gate)")"

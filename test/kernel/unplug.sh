@@ -63,10 +63,21 @@ for round in 1 2; do
   refuse "the chip has another number" test "$chip" = "$(sim_chip plant)"
 done
 
+echo "# plugged in again, and the map is read again at once"
+sim_unplug plant
+check "the node notices" wait_until says node "$lost" $((3 * requests))
+sim_plug plant
+sim_pull plant 0 down
+kill -s HUP "$(pid node)"
+check "the map is read again" wait_until says node 'read the map again'
+check "outputs are as they were, and not as they begin" wait_until level_is 0 1
+expect "the node says so" 1 "$(coil 0)"
+refuse "no line is held by the node itself" says node "held by 'coupler-node'"
+
 echo "# somebody else takes a line before the node does"
 before=$(times 'is busy')
 sim_unplug plant
-check "the node notices" wait_until says node "$lost" $((3 * requests))
+check "the node notices" wait_until says node "$lost" $((4 * requests))
 sim_hog plant 0 output-low thief
 sim_plug plant
 check "who holds it is told" wait_until says node "held by 'thief'"

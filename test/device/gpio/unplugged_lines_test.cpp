@@ -2,7 +2,10 @@
 // Lines whose chip is unplugged, and comes back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <vector>
 
 #include "test/device/gpio/wires.hpp"
@@ -14,6 +17,7 @@ using fakes::MapBuilder;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 TEST_F(Wires, A_chip_that_comes_back_has_its_outputs_driven_as_before_wherever_it_is) {
   EXPECT_EQ(change_to(two_lamps().add(Table::discrete_inputs, "x", 0, codec::Type::BOOL, at(4))), "");
@@ -74,6 +78,35 @@ TEST_F(Wires, A_safe_state_that_an_unplugged_chip_missed_is_what_it_comes_back_w
   news();
   EXPECT_TRUE(wiring_->reconnect(false)) << "the watchdog may be idle, or fed again, by now";
   EXPECT_THAT(news(), ElementsAre("take 0 0", "take 1 1"));
+}
+
+TEST_F(Wires, What_another_process_wants_while_the_chip_comes_back_is_driven_when_that_has_ended) {
+  EXPECT_EQ(change_to(two_lamps()), "");
+  EXPECT_TRUE(write(0, 1));
+  const std::vector<Chip> chips = unplug();
+  EXPECT_TRUE(wiring_->reconnect(false));
+  std::array<int, 2> is_back{};
+  ASSERT_EQ(::pipe(is_back.data()), 0);
+  const pid_t serves = ::fork();
+  if (serves == 0) {
+    char byte = 0;
+    std::uint16_t off = 0;
+    const bool told = ::read(is_back[0], &byte, 1) == 1;
+    ::_exit(told && wiring_->lines().drive_each(modbus::Range::of(0, 1), {&off, 1}) ? 0 : 1);
+  }
+  plug(chips);
+  EXPECT_TRUE(wiring_->reconnect(false));
+  EXPECT_EQ(machine.levels[0], 1);
+  EXPECT_EQ(::write(is_back[1], "x", 1), 1);
+  int status = -1;
+  ASSERT_EQ(::waitpid(serves, &status, 0), serves);
+  EXPECT_EQ(status, 0);
+  wiring_->settle();
+  EXPECT_EQ(machine.levels[0], 0);
+  news();
+  wiring_->settle();
+  EXPECT_THAT(news(), IsEmpty()) << "once";
+  for (const int end : is_back) ::close(end);
 }
 
 TEST_F(Wires, Outputs_that_are_to_be_held_are_safe_on_an_unplugged_chip_too) {

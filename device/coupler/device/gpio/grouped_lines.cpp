@@ -43,7 +43,10 @@ GroupedLines::GroupedLines(std::vector<WiredOutputs> outputs, std::vector<WiredI
   for (WiredInputs& wired : inputs) add(std::move(wired));
 }
 
-void GroupedLines::add(WiredOutputs wired) { outputs_.push_back(output(std::move(wired))); }
+void GroupedLines::add(WiredOutputs wired) {
+  Shared levels = levels_of(wired);
+  outputs_.push_back(output(std::move(wired), std::move(levels)));
+}
 void GroupedLines::add(WiredInputs wired) { inputs_.push_back(input(std::move(wired))); }
 
 void GroupedLines::release() {
@@ -51,12 +54,14 @@ void GroupedLines::release() {
   inputs_.clear();
 }
 
-GroupedLines::Output GroupedLines::output(WiredOutputs wired) {
-  std::vector<int> next;
-  next.reserve(wired.lines.size());
-  for (const WiredOutputs::Line& line : wired.lines) next.push_back(line.level);
-  auto shared = std::make_unique<SharedArray<int>>(next.size() + 1);
-  copy(next, shared->all().first(next.size()));
+GroupedLines::Shared GroupedLines::levels_of(const WiredOutputs& wired) {
+  auto shared = std::make_unique<SharedArray<int>>(wired.lines.size() + 1);
+  for (std::size_t line = 0; line < wired.lines.size(); ++line) (*shared)[line] = wired.lines[line].level;
+  return shared;
+}
+
+GroupedLines::Output GroupedLines::output(WiredOutputs wired, Shared shared) {
+  std::vector<int> next(wired.lines.size());
   Fault fault(wired.group->name(), (*shared)[next.size()], log_);
   return {std::move(wired), std::move(shared), std::move(next), std::move(fault)};
 }
@@ -255,10 +260,23 @@ void GroupedLines::lose_inputs(std::size_t group) {
 }
 
 void GroupedLines::renew_outputs(std::size_t group, WiredOutputs again) {
-  Output renewed = output(std::move(again));
+  Output& old = outputs_[group];
+  // A process that drives still, to no chip, may change the levels yet: those that it knows stay.
+  const bool same = again.lines.size() == old.wired.lines.size();
+  Shared levels = same ? std::move(old.shared) : levels_of(again);
+  Output renewed = output(std::move(again), std::move(levels));
   (*renewed.shared)[renewed.next.size()] = ENODEV;
   renewed.fault.note(0);
-  outputs_[group] = std::move(renewed);
+  renewed.is_renewed = true;
+  old = std::move(renewed);
+}
+
+void GroupedLines::settle() {
+  for (Output& output : outputs_) {
+    if (!std::exchange(output.is_renewed, false)) continue;
+    copy(output.levels(), output.next);
+    (void)drive_alone(output);  // what fails is logged
+  }
 }
 
 void GroupedLines::renew_inputs(std::size_t group, WiredInputs again) {

@@ -95,6 +95,9 @@ class GroupedLines : public Lines {
   /// It is plugged in again, and its lines have been requested again.
   void renew_outputs(std::size_t group, WiredOutputs again);
   void renew_inputs(std::size_t group, WiredInputs again);
+  /// No other process drives any more: outputs that were renewed since the last call have the levels that it
+  /// has left.
+  void settle();
 
   /// Replaces `before`: lines that only `before` drives go to their safe state, and groups of both stay
   /// driven as they are.
@@ -108,7 +111,8 @@ class GroupedLines : public Lines {
     Shared shared;
     std::vector<int> next;  ///< what a write asks for
     Fault fault;
-    bool driven = false;  ///< by the write in progress
+    bool driven = false;      ///< by the write in progress
+    bool is_renewed = false;  ///< settle() is to follow
 
     Span<int> levels() const { return shared->all().first(next.size()); }
   };
@@ -122,7 +126,8 @@ class GroupedLines : public Lines {
     LostEdges lost;
   };
 
-  Output output(WiredOutputs wired);
+  static Shared levels_of(const WiredOutputs& wired);
+  Output output(WiredOutputs wired, Shared shared);
   Input input(WiredInputs wired);
   class Teller;
   static int drive(Output& output, Span<int> scratch);

@@ -34,6 +34,7 @@ class LineRequests : public Wiring {
   Lines& lines() override { return lines_; }
   std::vector<InputGroup*> event_sources() const override { return lines_.event_sources(); }
   bool reconnect(bool safe) override;
+  void settle() override { lines_.settle(); }
   Prepared prepare_next(const Map& map, bool safe, Log& log) override;
 
   GroupedLines& groups() { return lines_; }

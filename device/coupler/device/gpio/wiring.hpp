@@ -31,6 +31,9 @@ class Wiring {
   /// outputs driven as before, or safe if `safe`. True: something changed, so processes that were forked
   /// before have lines that are gone.
   virtual bool reconnect([[maybe_unused]] bool safe) { return false; }
+  /// None of those processes serves any more: outputs that reconnect() has requested again have the levels
+  /// that the last one has left, be it meanwhile.
+  virtual void settle() {}
 };
 
 /// What is to become the wiring of a map, after another one or as the first. Its lines that nobody held are

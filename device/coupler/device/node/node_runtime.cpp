@@ -13,6 +13,7 @@
 
 #include "coupler/device/analogue/sampler.hpp"
 #include "coupler/device/core/duration_end.hpp"
+#include "coupler/device/core/each_point.hpp"
 #include "coupler/device/node/realtime.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/rights_text.hpp"
@@ -33,6 +34,14 @@ struct Ending {
   DurationEnd end;
   TimePoint now = TimePoint::clock::now();
 };
+
+/// Whether only a firmware's code is behind it, which hears of the end of a pulse. That is called in the
+/// worker process only: the next one ends it.
+bool is_for_code(const ServingContext& context, const ScheduledOutput& begun) {
+  const auto points = touched_points(*context.map, begun.table, begun.range);
+  return context.hooked && std::none_of(points.begin(), points.end(), has_hardware) &&
+         std::any_of(points.begin(), points.end(), is_pulsed);
+}
 
 }  // namespace
 
@@ -89,9 +98,9 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
   for (TlsProcess* process : {tls_.get(), next_tls_.get()})
     if (process != nullptr) process->leave();
   if (reading_ != nullptr) reading_->leave();
-  // It takes time to free a large map, and clients wait: only its ports are given up.
+  // It takes time to free a large map, and clients wait: only what others may want is given up.
   for (ServingContext* other : {former_.get(), next_.get()})
-    if (other != nullptr) other->stop_listening();
+    if (other != nullptr) other->leave();
   Loop loop;
   if (!loop.is_open()) {
     log_errors(log_, {ServeError::device_failed, std::strerror(errno)});
@@ -185,9 +194,17 @@ void NodeRuntime::begin_reading(TimePoint now) {
 bool NodeRuntime::look_after(TimePoint now) {
   former_ = nullptr;
   if (tls_) tls_->look_after(now);
-  const bool taken = reading_ != nullptr && reading_->is_over(now) && take_map();
+  const bool is_read = reading_ != nullptr && reading_->is_over(now);
+  if (is_read) next_look_ = now;  // lines that are back are kept, and not begun with
+  const bool reconnected = reconnect(now);
+  if (reconnected && next_) {
+    log_.write("lines have come or gone since the new map was read: it is read once more");
+    begin_reading(now);
+    return true;
+  }
+  const bool taken = is_read && take_map();
   const bool is_ready = (taken && !awaits_tls_) || tls_is_ready(now);
-  return reconnect(now) || is_ready;
+  return reconnected || is_ready;
 }
 
 bool NodeRuntime::take_map() {
@@ -269,6 +286,7 @@ bool NodeRuntime::reconnect(TimePoint now) {
 }
 
 void NodeRuntime::change(std::vector<OpenConnection>& clients) {
+  context_->wiring->settle();
   if (!next_ || awaits_tls_) return;  // what was read may still be refused
   const bool same = next_->looks_like(*context_);
   end_durations_that_do_not_fit();
@@ -299,13 +317,17 @@ bool NodeRuntime::drive_safe() {
   // priority already.
   if (options_.realtime) (void)take_priority(RealtimePriority::supervisor);
   Ending ending(*context_);
+  bool ended = true;
   // If this process is killed while they are driven, the next worker process brings none of them back.
   ending.schedule.outputs_went_safe(false, ending.now);
   const bool safe = Hardware(context_->wiring->lines(), context_->analogue.get()).drive_safe();
   context_->state->watchdog().disarm();
   ending.schedule.outputs_went_safe(safe, ending.now);
   // The next worker process may be long in coming.
-  return ending.end.of_all(ending.now) && safe;
+  ending.schedule.each_begun([&](ScheduledOutput& begun) {
+    if (!is_for_code(*context_, begun)) ended &= ending.end.of(begun, ending.now);
+  });
+  return ended && safe;
 }
 
 /// The new map has its points elsewhere, or has them no longer.

@@ -60,10 +60,11 @@ struct ServingContext {
   bool reconnect_channels(bool safe);
 
   /// In a process that was forked while another context is in force, or may still be refused: otherwise its
-  /// ports would stay taken for as long as that process lives.
-  void stop_listening() {
+  /// ports, and lines that only it has requested, would stay taken for as long as that process lives.
+  void leave() {
     listener.socket.close();
     if (tls_listener) tls_listener->socket.close();
+    prepared = nullptr;
   }
 
   /// Whether clients need not notice when one is replaced by the other.
