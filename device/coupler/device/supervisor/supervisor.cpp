@@ -22,41 +22,57 @@ namespace {
 constexpr std::chrono::milliseconds turn{100};
 /// Ten in the time after which a worker process takes its supervisor for dead.
 constexpr std::chrono::milliseconds beat_period = std::chrono::milliseconds(SupervisorLink::timeout) / 10;
-/// How long outputs may take to be driven to their safe state before the process that drives them is killed.
-constexpr std::chrono::seconds safety_timeout{1};
 
-/// A process that also ends by itself, in case nobody is left to kill it.
-std::optional<Child> start_safety(const std::function<bool()>& work) {
-  auto child = Child::start([&] {
-    ::prctl(PR_SET_NAME, "coupler-safety");
-    ::alarm(2 * static_cast<unsigned>(safety_timeout.count()));
-    return work() ? 0 : 1;
-  });
-  return child ? std::optional(*std::move(child)) : std::nullopt;
-}
+/// A process that drives outputs to their safe state. It may take as long as a worker process may be silent.
+class SafetyProcess {
+ public:
+  /// nullopt: it cannot be started.
+  static std::optional<SafetyProcess> start(const std::function<bool()>& work) {
+    auto child = Child::start([&] {
+      ::prctl(PR_SET_NAME, "coupler-safety");
+      // In case nobody is left to kill it.
+      ::alarm(2 * static_cast<unsigned>(Silence::limit_in_any_case.count()));
+      return work() ? 0 : 1;
+    });
+    return child ? std::optional(SafetyProcess(*std::move(child))) : std::nullopt;
+  }
 
-bool finish_safety(Child child, TimePoint deadline, std::vector<Child>& lost) {
-  using std::chrono::milliseconds;
-  const auto left = std::chrono::ceil<milliseconds>(deadline - TimePoint::clock::now());
-  if (const auto status = child.wait(std::max(left, milliseconds(0)))) return ended_well(*status);
-  if (!child.kill()) lost.push_back(std::move(child));
-  return false;
-}
+  /// Waits for its end. False: an output could not be driven, or it took too long and is killed. If it cannot
+  /// be killed it is added to `lost`.
+  bool finish(std::vector<Child>& lost) {
+    while (!silence_.is_too_long()) {
+      if (const auto status = child_.wait(turn)) return ended_well(*status);
+      const TimePoint now = TimePoint::clock::now();
+      silence_.sample(now, false, cpu_wait_.sample(now));
+    }
+    if (!child_.kill()) lost.push_back(std::move(child_));
+    return false;
+  }
+
+ private:
+  explicit SafetyProcess(Child child)
+      : child_(std::move(child)),
+        cpu_wait_(child_.pid()),
+        silence_(TimePoint::clock::now(), turn, cpu_wait_.sample(TimePoint::clock::now())) {}
+
+  Child child_;
+  CpuWait cpu_wait_;
+  Silence silence_;
+};
 
 /// Drives the outputs of the workload to their safe state while nobody else does: the hardware, and at the
 /// same time what its firmware is behind if that is wanted, each in a process of its own. False: one could
 /// not be driven, or took too long. A process that cannot be killed is added to `lost`.
 bool make_safe(Workload& workload, bool firmware_too, std::vector<Child>& lost) {
-  auto hardware = start_safety([&] { return workload.drive_safe(); });
+  auto hardware = SafetyProcess::start([&] { return workload.drive_safe(); });
   bool safe = hardware || workload.drive_safe();
-  std::optional<Child> firmware;
+  std::optional<SafetyProcess> firmware;
   if (firmware_too && workload.has_firmware()) {
-    firmware = start_safety([&] { return workload.make_firmware_safe(); });
+    firmware = SafetyProcess::start([&] { return workload.make_firmware_safe(); });
     safe &= firmware.has_value();
   }
-  const TimePoint deadline = TimePoint::clock::now() + safety_timeout;
-  if (hardware) safe &= finish_safety(*std::move(hardware), deadline, lost);
-  if (firmware) safe &= finish_safety(*std::move(firmware), deadline, lost);
+  if (hardware) safe &= hardware->finish(lost);
+  if (firmware) safe &= firmware->finish(lost);
   return safe;
 }
 

@@ -80,7 +80,7 @@ void SupervisorLink::ready(TimePoint) {
   heard_ |= std::holds_alternative<Beat>(message);
   if (std::holds_alternative<MakeRoom>(message)) wants_room_ = true;
   // The kernel sends SIGTERM when the supervisor dies.
-  if (std::holds_alternative<Ended>(message)) loop_->change(channel_.get(), Interest::nothing, *this);
+  if (std::holds_alternative<Ended>(message)) loop_->forget(channel_.get(), *this);
 }
 
 tl::expected<std::unique_ptr<Worker>, int> Worker::start(Loop& loop, const Work& work,
@@ -114,7 +114,7 @@ void Worker::ready(TimePoint now) {
   Message message = receive(channel_.get());
   if (std::holds_alternative<Ended>(message)) {
     ended_ = true;
-    loop_.change(channel_.get(), Interest::nothing, *this);
+    loop_.forget(channel_.get(), *this);
   } else if (auto* client = std::get_if<OpenConnection>(&message)) {
     clients_.push_back(std::move(*client));
   } else if (std::holds_alternative<Beat>(message)) {
