@@ -56,6 +56,14 @@ TEST_F(BadNodeTest, A_node_with_a_watchdog_is_asked_as_often_as_that_needs) {
   EXPECT_THAT(longest_pause(), Le(milliseconds(110)));
 }
 
+TEST_F(BadNodeTest, A_watchdog_that_no_map_can_have_does_not_end_the_pauses) {
+  watch();
+  device.begins_epochs = true;
+  begin(cell(), 1);
+  run_for(seconds(2));
+  EXPECT_LE(asked.size(), 700U) << "one in three milliseconds";
+}
+
 TEST_F(BadNodeTest, Losses_without_end_do_not_mean_reading_without_end) {
   watch();
   begin(cell());

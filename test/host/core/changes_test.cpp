@@ -232,6 +232,16 @@ TEST_F(ChangesTest, A_told_point_does_not_become_stale) {
   EXPECT_LE(clock.now() - *engine->quality(barrier()).last_good, seconds(2));
 }
 
+TEST_F(ChangesTest, When_the_node_is_gone_a_value_is_as_old_as_what_was_heard_last) {
+  begin(cell());
+  run_for(seconds(60));
+  device.ignores_waits = true;
+  device.refuse_connect = NotConnected{"unplugged"};
+  run_for(seconds(10));
+  EXPECT_EQ(engine->quality(barrier()).state, PointQuality::State::offline);
+  EXPECT_LE(clock.now() - *engine->quality(barrier()).last_good, seconds(12));
+}
+
 TEST_F(ChangesTest, When_a_point_is_told_no_more_its_value_is_as_old_as_what_was_heard_last) {
   begin(cell());
   run_for(seconds(60));

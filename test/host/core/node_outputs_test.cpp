@@ -96,6 +96,13 @@ TEST_F(NodeOutputsTest, A_node_that_cannot_after_all_has_it_done_by_the_driver) 
   EXPECT_EQ(lamp(), 1);
 }
 
+TEST_F(NodeOutputsTest, Where_the_wait_is_refused_with_the_same_answer_the_outcome_is_unknown) {
+  begin_node(press());
+  device.refuses_waits = modbus::Exception::illegal_function;  // by a gateway that has waited for long enough
+  EXPECT_NE(schedule("lamp", 1, seconds(5)).number, 0U);
+  EXPECT_EQ(outcome().result, Became::unknown);
+}
+
 TEST_F(NodeOutputsTest, With_changes_off_the_driver_does_it) {
   auto builder = press();
   builder.head().changes = false;

@@ -98,6 +98,22 @@ TEST_F(ChangesTest, An_array_of_which_a_change_was_left_out_is_not_shown_before_
   EXPECT_THAT(sink->values["lights"], ElementsAre(0, 1)) << "the first of four";
 }
 
+TEST_F(ChangesTest, An_array_whose_change_was_not_shown_yet_is_not_shown_before_a_write_that_came_meanwhile) {
+  MapBuilder builder = cell();
+  builder.add(Table::coils, "lights", 20, codec::Type::BOOL, [](Point& point) {
+    point.count = 4;
+    point.host.publish = Publish::on_change;
+  });
+  begin(builder);
+  for (int i = 0; i < 17; ++i) device.change(Table::discrete_inputs, 3, i % 2 == 0);
+  device.change(Table::coils, 20, true);  // the eighteenth: another bit of it might follow
+  device.change(Table::discrete_inputs, 3, false);
+  engine->arrived();
+  push("lights", 0);
+  run_for(milliseconds(200));
+  EXPECT_THAT(sink->values["lights"], Each(0)) << "the first of four";
+}
+
 TEST_F(ChangesTest, An_answer_that_comes_too_late_is_followed_by_a_wait_before_anything_is_polled) {
   begin(fakes::MapBuilder().input("barrier", 3));
   clock.advance(seconds(20));  // the process was stopped

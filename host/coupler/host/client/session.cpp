@@ -125,12 +125,14 @@ Session::Session(const Map& map, Options options)
 Session::~Session() { disconnect(); }
 
 void Session::connect() {
+  const std::lock_guard whole(connecting_);
   const std::unique_lock lock(engine_mutex_);
   host::Sink& news = *this;
   if (!engine_) engine_ = std::make_unique<Engine>(map_, options_.verify.value_or(map_.verify), news);
 }
 
 void Session::disconnect() {
+  const std::lock_guard whole(connecting_);
   std::unique_ptr<Engine> engine;
   {
     const std::unique_lock lock(engine_mutex_);
@@ -156,8 +158,8 @@ tl::expected<Session::Sample, NoValue> Session::judge(std::uint32_t point,
   // A value is here a moment before its quality is.
   const Quality state = known.state == Quality::never_read ? Quality::good : known.state;
   // Where a node tells changes, a value is known to be true for longer than since the change.
-  const host::Time at =
-      state == Quality::good && known.last_good ? std::max(value->at, *known.last_good) : value->at;
+  const bool was_true_then = (state == Quality::good || state == Quality::offline) && known.last_good;
+  const host::Time at = was_true_then ? std::max(value->at, *known.last_good) : value->at;
   return Sample{std::move(value->registers), state, std::chrono::steady_clock::now() - at};
 }
 

@@ -70,14 +70,15 @@ PendingWrite refused(std::string_view why);
 /// and identity check.
 ///
 /// All may be called from any thread. Callbacks come in the connection's thread: they may read and set
-/// points, but must neither wait nor disconnect.
+/// points, but must neither wait nor connect nor disconnect.
 class Session : private host::Sink {
  public:
   ~Session() override;
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Connects in the background, again and again until disconnect(). Returns at once.
+  /// Connects in the background, again and again until disconnect(). Returns at once, or when another
+  /// thread's disconnect() has.
   void connect();
   /// Ends the connection, outputs as the map's `on_shutdown` says. The last values stay, as offline.
   void disconnect();
@@ -121,6 +122,7 @@ class Session : private host::Sink {
   mutable std::mutex online_mutex_;
   mutable std::condition_variable came_online_;
   bool online_ = false;
+  std::mutex connecting_;                   ///< held by connect() and disconnect(): one engine at a time
   mutable std::shared_mutex engine_mutex_;  ///< engine_ is not replaced while it is used
   std::unique_ptr<Engine> engine_;          ///< null: disconnected
 };

@@ -14,6 +14,9 @@ using std::chrono::milliseconds;
 constexpr milliseconds longest(1000);
 /// The wait while the node's watchdog is not known, and the pause after an answer that should not have come.
 constexpr milliseconds shortest(10);
+/// A third of the shortest watchdog that a map can have. A node that claims another one is not asked without
+/// end.
+constexpr milliseconds least_longest(3);
 /// A gap so long after the last one costs no pause.
 constexpr std::chrono::seconds forgiven(10);
 
@@ -33,7 +36,8 @@ ChangeListener::ChangeListener(milliseconds timeout, PacedTransport& transport, 
 void ChangeListener::set_watchdog(milliseconds watchdog) {
   asks_for_watchdog_ = false;
   longest_wait_ = std::min(longest, timeout_);
-  if (watchdog > milliseconds::zero()) longest_wait_ = std::min(longest_wait_, watchdog / 3);
+  if (watchdog > milliseconds::zero())
+    longest_wait_ = std::min(longest_wait_, std::max(watchdog / 3, least_longest));
   resume_at_ = std::min<Time>(resume_at_, clock_.now() + longest_wait_);
 }
 

@@ -108,7 +108,7 @@ void NodeOutputs::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
 
 void NodeOutputs::on_end() {
   bits_.on_end();
-  lose("the node tells changes no more");
+  lose(told_no_more);
 }
 
 }  // namespace coupler::host

@@ -12,6 +12,9 @@
 
 namespace coupler::host {
 
+/// Why an outcome is not heard.
+inline constexpr const char* told_no_more = "the node tells changes no more";
+
 /// What a node has accepted to drive at a time, until it tells what became of that. Changes of bits are
 /// handed on.
 class NodeOutputs : public ChangeSink {

@@ -119,6 +119,8 @@ Result<std::optional<ScheduleAnswer>> OutputScheduler::give_to_node(const Schedu
   const auto reply = transport_.schedule(request(what, listener));
   if (reply) {
     by_node_.add(reply->number, {++last_number_, what});
+    // The answer to the wait has come before that to this request, and was the last one.
+    if (!listener.is_active()) by_node_.lose(told_no_more);
     return std::optional(ScheduleAnswer{last_number_, "accepted: the node does it"});
   }
   const ExceptionReply* exception = exception_in(reply.error());

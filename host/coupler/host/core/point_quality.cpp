@@ -103,8 +103,9 @@ PointQuality PointQualities::quality_of(const Entry& entry, Time now) const {
   const State state = state_of(entry, now);
   const bool becomes_stale = state == State::good && !entry.told;
   const Time stale_from = becomes_stale ? *entry.last_good + entry.stale_after : Time::max();
-  const bool is_true_still = state == State::good && entry.told;
-  const auto last_good = is_true_still ? std::max(*entry.last_good, heard_) : entry.last_good;
+  const bool was_true_then =
+      entry.told && (state == State::good || (state == State::offline && entry.last_good));
+  const auto last_good = was_true_then ? std::max(*entry.last_good, heard_) : entry.last_good;
   return {state, stale_from, last_good, entry.last_exception, entry.last_write, entry.last_write_text};
 }
 

@@ -130,19 +130,24 @@ void ToldBits::change(Told& told, const modbus::Change& change, std::uint64_t nu
   if (told.pending && change.at != told.pending_at) show_pending(told);
   const std::size_t bit = change.address - read_range(point_of(told)).start();
   bits_[told.first + bit] = change.kind == modbus::Change::Kind::on ? 1 : 0;
-  if (writer_.hides(told.point)) {
-    told.pending.reset();
-    cycle_.rest(told.point, false);  // should the write fail, this is the value
-  } else if (point_of(told).count > 1) {
+  if (point_of(told).count > 1 && !writer_.hides(told.point)) {
     told.pending = stamp;
     told.pending_at = change.at;
   } else {
-    show(told, stamp);
+    told.pending.reset();
+    show_unless_hidden(told, stamp);
   }
 }
 
 void ToldBits::show_pending(Told& told) {
-  if (told.pending) show(told, *std::exchange(told.pending, std::nullopt));
+  if (told.pending) show_unless_hidden(told, *std::exchange(told.pending, std::nullopt));
+}
+
+void ToldBits::show_unless_hidden(Told& told, Stamp stamp) {
+  if (writer_.hides(told.point))
+    cycle_.rest(told.point, false);  // should the write fail, this is the value
+  else
+    show(told, stamp);
 }
 
 void ToldBits::show(Told& told, Stamp stamp) {

@@ -74,6 +74,7 @@ class ToldBits : public ChangeSink {
   void leave_out_older_than_writes();
   void change(Told& told, const modbus::Change& change, std::uint64_t number, Stamp stamp);
   void show_pending(Told& told);
+  void show_unless_hidden(Told& told, Stamp stamp);
   void show(Told& told, Stamp stamp);
 
   const Map& map_;
