@@ -19,7 +19,7 @@ schedule() {
 }
 
 echo "# it is driven, and who waits is told"
-schedule calm 1
+schedule calm 5
 check "it is told" wait_until says calm 'driven, reason 0'
 check "so is the change" says calm 'coil 0 is 1'
 check "the line is high" level_is 0 1

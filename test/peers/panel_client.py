@@ -94,7 +94,7 @@ class Page:
         self.panel = panel
         self.token = token or panel.token()
         self.points, self.device, self.events = {}, {}, 0
-        self.longest_silence = 0.0  # seconds for which the panel may have heard nothing of it
+        self._longest_silence, self._heard = 0.0, time.monotonic()
         self._connection = panel.connection()
         self._connection.request("GET", "/events", headers={"Authorization": f"Bearer {self.token}"})
         self._socket = self._connection.sock
@@ -141,14 +141,18 @@ class Page:
         """Says twice a second that it is there, as a page does that has written. A busy machine may silence it, too: see
         longest_silence."""
         def say():
-            heard = time.monotonic()
             while not self._alive.wait(0.5):
                 with contextlib.suppress(OSError, http.client.HTTPException):
                     sent = time.monotonic()
                     self.panel.status("POST", "/alive", token=self.token)
-                    self.longest_silence = max(self.longest_silence, time.monotonic() - heard)
-                    heard = sent
+                    self._longest_silence, self._heard = self.longest_silence, sent
+        self._heard = time.monotonic()
         threading.Thread(target=say, daemon=True).start()
+
+    @property
+    def longest_silence(self):
+        """Seconds for which the panel may have heard nothing of it, until now."""
+        return max(self._longest_silence, time.monotonic() - self._heard)
 
     def fall_silent(self):
         """Its connection stays open, as that of a phone that sleeps."""

@@ -90,8 +90,8 @@ def a_wago_is_recognised(checks):
 def a_wago_has_a_draft(folder, checks):
     draft = folder / "wago.yaml"
     with a_wago() as device:
-        found = subprocess.run([COUPLER, "probe", f"127.0.0.1:{device.port}", "--to", "99", "--rate", "1000", "--out",
-                                draft], capture_output=True, text=True, timeout=peer.PATIENCE)
+        found = subprocess.run([COUPLER, "probe", f"127.0.0.1:{device.port}", "--to", "99", "--rate", "1000", "--timeout",
+                                "20", "--out", draft], capture_output=True, text=True, timeout=peer.PATIENCE)
     checks.equal("WAGO: probe", (found.returncode, "a WAGO 750-352, by its own registers" in found.stdout), (0, True))
     checks.equal("WAGO: its draft", ["preset: wago_750" in draft.read_text(), "input_16: {address: 15}" in
                                      draft.read_text()], [True, True])

@@ -125,8 +125,9 @@ def no_click_is_carried_out_late(coupler, folder, checks):
             told = list(pool.map(lambda value: panel.write(page.token, "force", str(value)), range(6)))
     late = [each for each in told if each["outcome"] == "dropped" and "busy" in each["text"]]
     checks.equal(f"some are dropped: {told}", len(late) > 0, True)
-    checks.equal("what is told to be written is written, and nothing else",
-                 len(device.written), len([each for each in told if each["outcome"] == "ok"]))
+    ok, lost = (len([each for each in told if each["outcome"] == outcome]) for outcome in ("ok", "lost"))
+    # Lost are those of a page that a busy machine silenced: of these nobody knows.
+    checks.equal("what is told to be written is written, and nothing else", ok <= len(device.written) <= ok + lost, True)
 
 
 def who_has_given_up_writes_nothing(panel, page, client, checks):
@@ -222,7 +223,7 @@ def one_of_two_writers_goes(node, coupler, map_file, checks):
         peer.await_true("the other one goes on", lambda: second.events > 20, checks)
         again = panel.text().count("no page that has written")
         checks.equal("and the connection, unless this machine was silent", again == 0 or second.longest_silence > 1.5, True)
-        checks.equal("it writes", panel.write(second.token, "setpoint", "2")["outcome"], "ok")
+        peer.await_true("it writes", lambda: panel.write(second.token, "setpoint", "2")["outcome"] == "ok", checks)
         again = panel.text().count("no page that has written")
         second.fall_silent()
         peer.await_true("until it is silent, too", lambda: panel.text().count("no page that has written") > again, checks)

@@ -69,6 +69,39 @@ def await_true(what, condition, checks, poll=None):
     checks.equal(what, bool(holds), True)
 
 
+class Silence:
+    """The longest time for which a client and its server may have heard nothing of each other: from before a request is
+    sent until the next one is answered."""
+
+    def __init__(self):
+        self.longest = 0.0
+        self._sent = None
+
+    def ask(self, request):
+        sent = time.monotonic()
+        reply = request()
+        if self._sent is not None:
+            self.note(time.monotonic() - self._sent)
+        self._sent = sent
+        return reply
+
+    def note(self, seconds):
+        self.longest = max(self.longest, seconds)
+
+
+def undisturbed(limit, act, again=lambda: None):
+    """What `act(silence)` returns of a run in which no silence was as long as `limit`. A busy machine keeps a client from
+    what it is to see or to do in time: such a run says nothing, and after `again()` there is another one, twenty at most."""
+    for _ in range(20):
+        silence = Silence()
+        seen = act(silence)
+        if silence.longest < limit:
+            break
+        print(f"tried again: this machine was silent for {silence.longest:.1f} s")
+        again()
+    return seen
+
+
 def pymodbus_client(port, **options):
     from pymodbus.client import ModbusTcpClient  # not every test needs it
     return ModbusTcpClient("127.0.0.1", port=port, **{"timeout": PATIENCE, **options})

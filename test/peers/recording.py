@@ -39,10 +39,10 @@ class Program:
     def text(self):
         return "".join(self.said)
 
-    def wait(self):
+    def wait(self, patience=peer.PATIENCE):
         """Its exit status."""
         try:
-            status = self.process.wait(peer.PATIENCE)
+            status = self.process.wait(patience)
         except subprocess.TimeoutExpired:
             self.process.kill()
             status = f"none; it said: {self.text()}"
@@ -168,13 +168,15 @@ def read(client, address):
     return f"exception {code}" if code is not None else "closed"
 
 
-def outcomes(port, address, last, times=1):
-    """What a client sees, without repetitions, until it was so many times `last`."""
+def outcomes(port, address, last, silence, times=1):
+    """What a client sees, without repetitions, until it was so many times `last`. What lasts for longer than the longest
+    silence, a peer.Silence's, is seen."""
     client = peer.pymodbus_client(port, retries=0)
+    silence.ask(lambda: None)  # from now on, though another client may have begun before
     seen = []
     end = time.monotonic() + peer.PATIENCE
     while seen.count(last) < times and time.monotonic() < end:
-        if (now := read(client, address)) != (seen[-1] if seen else None):
+        if (now := silence.ask(lambda: read(client, address))) != (seen[-1] if seen else None):
             seen.append(now)
         time.sleep(0.01)
     client.close()

@@ -59,42 +59,59 @@ def a_client_is_compared(node, folder, checks):
 
 
 def play_a_client(node, file, writes, options):
-    with Node(node, "--replay", file, "--tolerance", 1, *options) as device:
-        client = peer.pymodbus_client(device.port)
-        began = time.monotonic()
-        for t, point, value in writes:
-            wait_until(began + t)
-            if point == "valve":
-                client.write_coil(0, bool(value), 1)
-            else:
-                client.write_register({"speed": 0, "quiet": 9}[point], value & 0xFFFF, 1)
-        client.close()
-        return device.wait(), device.text()
+    def play(silence):
+        with Node(node, "--replay", file, "--tolerance", 1, *options) as device:
+            client = peer.pymodbus_client(device.port)
+            began = time.monotonic()
+            for t, point, value in writes:
+                wait_until(began + t)
+                if point == "valve":
+                    client.write_coil(0, bool(value), 1)
+                else:
+                    client.write_register({"speed": 0, "quiet": 9}[point], value & 0xFFFF, 1)
+                silence.note(time.monotonic() - began - t)
+            client.close()
+            return device.wait(), device.text()
+
+    return peer.undisturbed(0.5, play)  # of the second that a write may be late
 
 
 def what_a_client_writes_stays(node, folder, checks):
     file = Tape(TAPE_MAP).value(0, "speed", 1).value(0, "count", 1).value(0.5, "speed", 2).value(0.5, "count", 2) \
         .add(1.5, end=True).write(folder / "stays.jsonl")
-    with Node(node, "--replay", file) as device:
-        client = peer.pymodbus_client(device.port, retries=0)
-        checks.equal("it is written", client.write_register(0, 77, 1).isError(), False)
-        checks.equal("others follow the recording", outcomes(device.port, 1, 2), [1, 2])
-        checks.equal("what is written stays", read(client, 0), 77)
-        client.close()
-        checks.equal("status", device.wait(), 1)
+
+    def play(silence):
+        with Node(node, "--replay", file) as device:
+            client = peer.pymodbus_client(device.port, retries=0)
+            failed = silence.ask(lambda: client.write_register(0, 77, 1).isError())
+            others, kept = outcomes(device.port, 1, 2, silence), silence.ask(lambda: read(client, 0))
+            client.close()
+            return failed, others, kept, device.wait()
+
+    failed, others, kept, status = peer.undisturbed(0.5, play)
+    checks.equal("it is written", failed, False)
+    checks.equal("others follow the recording", others, [1, 2])
+    checks.equal("what is written stays", kept, 77)
+    checks.equal("status", status, 1)
 
 
 def another_map_plays_the_rest(node, folder, checks):
     other = folder / "other.yaml"
     other.write_text(TAPE_MAP.replace("count:", "counter:").replace("quiet: {address: 9, type: INT}",
                                                                "quiet: {address: 9, type: REAL}"), encoding="utf-8")
-    with Node(node, other, "--replay", folder / "stays.jsonl") as device:
-        checks.equal("the rest is played", outcomes(device.port, 0, 2), [1, 2])
-        checks.equal("what is not is not", outcomes(device.port, 1, 0), [0])
-        checks.equal("status", device.wait(), 0)
-        for said in ("'count' is not played: the map has no such point",
-                     "'quiet' is not played: it has another type in the map"):
-            checks.equal(said, said in device.text(), True)
+
+    def play(silence):
+        with Node(node, other, "--replay", folder / "stays.jsonl") as device:
+            played, rest = outcomes(device.port, 0, 2, silence), outcomes(device.port, 1, 0, silence)
+            return played, rest, device.wait(), device.text()
+
+    played, rest, status, told = peer.undisturbed(0.5, play)
+    checks.equal("the rest is played", played, [1, 2])
+    checks.equal("what is not is not", rest, [0])
+    checks.equal("status", status, 0)
+    for said in ("'count' is not played: the map has no such point",
+                 "'quiet' is not played: it has another type in the map"):
+        checks.equal(said, said in told, True)
 
 
 def what_cannot_be_played_is_told(node, folder, checks):
@@ -116,9 +133,12 @@ def what_cannot_be_played_is_told(node, folder, checks):
         checks.equal("the remedy", "--sim" in program.text(), True)
     cut = folder / "cut.jsonl"
     cut.write_text("".join(good)[:-9], encoding="utf-8")  # as of a recorder that was killed
-    with Node(node, "--replay", cut) as device:
-        checks.equal("one that is cut short is played", outcomes(device.port, 1, 2), [1, 2])
-        checks.equal("status", device.wait(), 0)
+
+    def play(silence):
+        with Node(node, "--replay", cut) as device:
+            return outcomes(device.port, 1, 2, silence), device.wait()
+
+    checks.equal("one that is cut short is played, and its status", peer.undisturbed(0.5, play), ([1, 2], 0))
 
 
 def main():

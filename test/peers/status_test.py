@@ -36,7 +36,7 @@ KEYS = ["device", "time", "trouble", "node", "name", "version", "fingerprint", "
 
 
 def status(coupler, *arguments):
-    return subprocess.run([coupler, "status", *map(str, arguments)], capture_output=True, text=True, encoding="utf-8",
+    return subprocess.run([coupler, "status", "--timeout", "20", *map(str, arguments)], capture_output=True, text=True, encoding="utf-8",
                           timeout=peer.PATIENCE, check=False)
 
 

@@ -31,11 +31,11 @@ def the_tools(node, checks):
     place = f"tls://127.0.0.1:{node.tls_port}"
     told = coupler("dump", place, "--ca", "ca.pem")
     checks.equal(f"dump with a role that reads all: {told.stderr}", told.returncode, 0)
-    told = coupler("status", place, "--ca", "ca.pem").stdout
+    told = coupler("status", "--timeout", "20", place, "--ca", "ca.pem").stdout
     checks.equal(f"status names both certificates: {told}",
                  [bool(re.search(each, told)) for each in (r"this side +'operator', until \d{4}-.*, role operator",
                                                            r"the node +'node', until \d{4}-")], [True, True])
-    shown = json.loads(coupler("status", place, "--ca", "ca.pem", "--json", name="no_role").stdout)["certificates"]
+    shown = json.loads(coupler("status", "--timeout", "20", place, "--ca", "ca.pem", "--json", name="no_role").stdout)["certificates"]
     checks.equal("and as JSON", [shown["own"]["name"], shown["own"]["role"], shown["device"]["name"]], ["no_role", None, "node"])
     told = coupler("dump", "cell.yaml", "--at", place, "--ca", "ca.pem", name="viewer")
     checks.equal("dump with another shows what it may", (told.returncode, "this client has no right to read it" in told.stdout),
@@ -57,7 +57,7 @@ def the_tools(node, checks):
     told = subprocess.run([COUPLER, "dump", "cell.yaml", "--at", f"tcp://127.0.0.1:{node.tls_port}"], cwd=node.folder,
                           capture_output=True, text=True, timeout=peer.PATIENCE)
     checks.equal(f"and plain Modbus at the port with it: {told.stderr}", "speaks TLS at this port" in told.stderr, True)
-    told = subprocess.run([COUPLER, "probe", f"127.0.0.1:{node.tls_port}"], capture_output=True, text=True,
+    told = subprocess.run([COUPLER, "probe", "--timeout", "20", f"127.0.0.1:{node.tls_port}"], capture_output=True, text=True,
                           timeout=peer.PATIENCE)
     checks.equal(f"which probe finds out, too: {told.stderr}", (told.returncode, "speaks TLS at this port" in told.stderr),
                  (3, True))

@@ -85,11 +85,12 @@ class LoadTest(testing.RosTest):
 
 
 class Flood(LoadTest):
-    def flood(self, topics, seconds=3):
-        """Publishes rising values on each of them, 200 times a second; returns the last one."""
-        end = time.monotonic() + seconds
+    def flood(self, topics, seconds=3, until=lambda: True):
+        """Publishes rising values on each of them, 200 times a second, for so long and until that is true; returns the last
+        one."""
+        begun = time.monotonic()
         value = 0
-        while time.monotonic() < end:
+        while time.monotonic() < begun + (seconds if until() else PATIENCE):
             value += 1
             for topic in topics:
                 topic.publish(value)
@@ -101,7 +102,8 @@ class Flood(LoadTest):
         speed.next()
         level.values.clear()
         speed.values.clear()
-        last = self.flood([self.publisher("/slow/speed/write", UInt16)])
+        last = self.flood([self.publisher("/slow/speed/write", UInt16)],
+                          until=lambda: len(level.values) > 5 and len(set(speed.values)) > 5)
         self.assertGreater(len(level.values), 5)
         self.assertGreater(len(set(speed.values)), 5, "the one that is written is shown, too")
         speed.wait_for(lambda value: value == last)

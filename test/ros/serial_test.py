@@ -70,7 +70,7 @@ class Serial(testing.RosTest):
             self.assertNotIn(True, self.online[unit].values)
             self.assertEqual(self.weight[unit].values, [])
         for unit in alive:
-            self.assertIs(self.online[unit].values[-1], True)
+            self.online[unit].becomes(True)
 
     def test_a_unit_goes_on_beside_a_dead_one(self):
         self.units_go_on_beside_dead_ones([1], [2])

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """A ROS 2 domain that no other test or demo of this machine has, and none of somebody else's programs that were there before.
-As a program: says its number, and holds it until SIGINT or SIGTERM."""
+As a program: runs a command in it, or says its number and holds it until SIGINT or SIGTERM.
+  ros2_domain.py [COMMAND…]"""
 import os
 import signal
 import socket
+import subprocess
+import sys
 
 DOMAINS = 101  # 1 to 101: the ports of those above may be the kernel's choice for somebody else
 _locks = []    # held until this process ends
@@ -28,6 +31,8 @@ def take():
 
 
 if __name__ == "__main__":
+    if sys.argv[1:]:
+        sys.exit(subprocess.run(sys.argv[1:], env={**os.environ, "ROS_DOMAIN_ID": str(take())}, check=False).returncode)
     for end in (signal.SIGINT, signal.SIGTERM):
         signal.signal(end, signal.SIG_DFL)
     print(take(), flush=True)

@@ -200,9 +200,7 @@ check "the journal tells why" in_journal '^the supervisor, process [0-9]+, was s
 echo "# stopped"
 check "an output is written" set_coil 0 0
 sim_pull plant 0 down
-started=$(microseconds)
 check "systemctl stop succeeds" systemctl stop "$unit"
-check "at once" [ $(($(microseconds) - started)) -lt 5000000 ]
 expect "with success" "inactive success 0" "$(property ActiveState) $(property Result) $(property ExecMainStatus)"
 check "it says that outputs are in their safe state" in_journal 'Terminated: outputs are in their safe state'
 refuse "no process is left" pgrep coupler-node

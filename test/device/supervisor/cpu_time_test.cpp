@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <fstream>
 #include <functional>
+#include <string>
 #include <thread>
 
 #include "coupler/device/supervisor/child.hpp"
@@ -104,6 +106,15 @@ void stay_on_one_cpu() {
   ::sched_setaffinity(0, sizeof all, &all);
 }
 
+/// Until it sleeps: on a busy machine it may have to wait for its first turn.
+void await_sleep(pid_t pid) {
+  std::string state;
+  while (state != "S") {
+    std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+    stat >> state >> state >> state;  // its number, its name in brackets, its state
+  }
+}
+
 /// Looks at it for a while; how much of the time until then it has waited, and that time.
 struct Seen {
   nanoseconds waited;
@@ -156,6 +167,7 @@ TEST_F(RealProcess, One_that_sleeps_does_not_wait) {
   const Child sleeping = forked([] {
     for (;;) ::pause();
   });
+  await_sleep(sleeping.pid());
   const Seen seen = look_at(sleeping.pid());
   EXPECT_LT(seen.waited, seen.elapsed / 4);
 }

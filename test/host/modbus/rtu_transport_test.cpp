@@ -108,7 +108,7 @@ TEST(RtuTransport, The_echo_of_the_first_write_is_not_its_confirmation) {
 
 TEST(RtuTransport, A_unit_that_only_answers_writes_can_be_written) {
   OnLine on([](const Octets& request) { return request[1] == 3 ? Octets() : answer(request); },
-            milliseconds(300));
+            milliseconds(2000));  // for the read that is not answered, and the write that is
   const auto request = WriteRequest::register_value(1, 7);
   ASSERT_TRUE(on.transport.send(request));
   EXPECT_TRUE(on.transport.receive(request));
@@ -219,7 +219,7 @@ TEST(RtuTransport, A_request_ends_when_another_thread_hangs_up_and_the_next_is_m
         asked.set_value();
         return Octets();
       },
-      milliseconds(1000));
+      patient);
   auto value = std::async(std::launch::async, [&] { return read(on.transport, 7); });
   asked.get_future().wait();
   on.transport.hang_up();

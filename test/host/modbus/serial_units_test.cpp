@@ -20,9 +20,9 @@ using ::testing::IsEmpty;
 /// Each answers with its number.
 class SerialUnits : public ::testing::Test {
  protected:
-  void make(const std::vector<std::uint8_t>& units, milliseconds timeout = milliseconds(20000)) {
+  void make(const std::vector<std::uint8_t>& units) {
     std::vector<Map> maps;
-    for (const std::uint8_t unit : units) maps.push_back(map_of(unit, timeout));
+    for (const std::uint8_t unit : units) maps.push_back(map_of(unit));
     transports = make_transports(maps);
   }
   Map map_of(std::uint8_t unit, milliseconds timeout = milliseconds(20000)) const {
@@ -55,7 +55,7 @@ TEST_F(SerialUnits, Share_the_one_port_in_turn) {
 }
 
 TEST_F(SerialUnits, Go_on_without_a_new_connection_when_one_is_silent) {
-  make({1, 2}, milliseconds(100));
+  transports = make_transports({map_of(1), map_of(2, milliseconds(100))});
   for (auto& transport : transports) ASSERT_TRUE(transport->connect());
   silent = 2;
   const auto answer = read(*transports[1]);
@@ -63,8 +63,12 @@ TEST_F(SerialUnits, Go_on_without_a_new_connection_when_one_is_silent) {
   EXPECT_TRUE(std::holds_alternative<Timeout>(answer.error()));
   EXPECT_EQ(read(*transports[0]), 1);
   silent = 0;
-  ASSERT_TRUE(transports[1]->connect());
-  EXPECT_EQ(read(*transports[1]), 2);
+  Result<std::uint16_t> again = fail(Timeout{milliseconds(100)});
+  while (!again && std::holds_alternative<Timeout>(again.error())) {  // a busy machine may be late
+    ASSERT_TRUE(transports[1]->connect());
+    again = read(*transports[1]);
+  }
+  EXPECT_EQ(again, 2);
 }
 
 TEST_F(SerialUnits, Are_all_lost_when_the_port_goes) {
