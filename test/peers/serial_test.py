@@ -58,6 +58,10 @@ def run(*arguments):
                           timeout=peer.PATIENCE, check=False)
 
 
+def status(*arguments):
+    return run("status", "--timeout", "20", *arguments)
+
+
 def dumped(*arguments):
     done = run("dump", *arguments, "--json")
     if not done.stdout:
@@ -79,7 +83,7 @@ def libmodbus_is_read(path):
                 "--rate", "1000", "--timeout", "5")
     checks.equal("libmodbus: probe finds the unit", f"units that answer at 115200 8N1: {UNIT}\n" in found.stdout, True)
     checks.equal("libmodbus: and where its tables end", found.stdout.count("readable: 0 … 99\n"), 4)
-    said = run("status", "--timeout", "20", at)
+    said = status(at)
     checks.equal("libmodbus: status", (said.returncode, "is a foreign coupler" in said.stderr), (1, True))
     server.end()
     line.end()
@@ -94,8 +98,8 @@ def a_node_says_what_it_is():
         client = peer.pymodbus_client(port)
         server.set(UNIT, 4, IDENTITY, client.read_input_registers(IDENTITY, IDENTITY_SIZE, 1).registers)
         client.close()
-        there = json.loads(run("status", "--timeout", "20", f"127.0.0.1:{port}", "--json").stdout)
-    done = run("status", "--timeout", "20", f"rtu:{line.port}/{UNIT}{SETTINGS}", "--json")
+        there = json.loads(status(f"127.0.0.1:{port}", "--json").stdout)
+    done = status(f"rtu:{line.port}/{UNIT}{SETTINGS}", "--json")
     checks.equal("status of a node: exit status", (done.returncode, done.stderr), (0, ""))
     here = json.loads(done.stdout)
     checks.equal("status of a node: the device", here["device"].startswith(f"rtu:{line.port}/{UNIT}"), True)
@@ -131,7 +135,7 @@ with tempfile.TemporaryDirectory() as folder:
     checks.equal("the unit of the map", dumped(path), VALUES)
     checks.equal("the same by --at", dumped(path, "--at", f"rtu:{line.port}/{UNIT}{SETTINGS}"), VALUES)
 
-    said = run("status", "--timeout", "20", f"rtu:{line.port}/{UNIT}{SETTINGS}")
+    said = status(f"rtu:{line.port}/{UNIT}{SETTINGS}")
     checks.equal("status of a foreign unit", (said.returncode, "is a foreign coupler" in said.stderr), (1, True))
     libmodbus_is_read(path)
     a_node_says_what_it_is()

@@ -36,8 +36,8 @@ KEYS = ["device", "time", "trouble", "node", "name", "version", "fingerprint", "
 
 
 def status(coupler, *arguments):
-    return subprocess.run([coupler, "status", "--timeout", "20", *map(str, arguments)], capture_output=True, text=True, encoding="utf-8",
-                          timeout=peer.PATIENCE, check=False)
+    return subprocess.run([coupler, "status", "--timeout", "20", *map(str, arguments)], capture_output=True, text=True,
+                          encoding="utf-8", timeout=peer.PATIENCE, check=False)
 
 
 def area(port, start=0, count=SIZE):

@@ -112,6 +112,7 @@ void await_sleep(pid_t pid) {
   while (state != "S") {
     std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
     stat >> state >> state >> state;  // its number, its name in brackets, its state
+    std::this_thread::sleep_for(milliseconds(1));
   }
 }
 

@@ -30,6 +30,16 @@ MapBuilder row() {
   return builder;
 }
 
+/// With four lights, an array.
+MapBuilder cell_with_lights() {
+  MapBuilder builder = cell();
+  builder.add(Table::coils, "lights", 20, codec::Type::BOOL, [](Point& point) {
+    point.count = 4;
+    point.host.publish = Publish::on_change;
+  });
+  return builder;
+}
+
 TEST_F(ChangesTest, An_array_whose_bits_change_in_one_step_is_shown_once) {
   begin(row());
   device.change(Table::discrete_inputs, 10, true);
@@ -82,12 +92,7 @@ TEST_F(ChangesTest, What_was_left_out_for_a_write_that_fails_is_read) {
 }
 
 TEST_F(ChangesTest, An_array_of_which_a_change_was_left_out_is_not_shown_before_it_is_read) {
-  MapBuilder builder = cell();
-  builder.add(Table::coils, "lights", 20, codec::Type::BOOL, [](Point& point) {
-    point.count = 4;
-    point.host.publish = Publish::on_change;
-  });
-  begin(builder);
+  begin(cell_with_lights());
   for (int i = 0; i < 18; ++i) device.change(Table::discrete_inputs, 3, i % 2 == 0);
   device.change(Table::coils, 20, true);  // the nineteenth
   device.next_errors.emplace_back(ExceptionReply{modbus::Exception::server_device_failure});
@@ -99,12 +104,7 @@ TEST_F(ChangesTest, An_array_of_which_a_change_was_left_out_is_not_shown_before_
 }
 
 TEST_F(ChangesTest, An_array_whose_change_was_not_shown_yet_is_not_shown_before_a_write_that_came_meanwhile) {
-  MapBuilder builder = cell();
-  builder.add(Table::coils, "lights", 20, codec::Type::BOOL, [](Point& point) {
-    point.count = 4;
-    point.host.publish = Publish::on_change;
-  });
-  begin(builder);
+  begin(cell_with_lights());
   for (int i = 0; i < 17; ++i) device.change(Table::discrete_inputs, 3, i % 2 == 0);
   device.change(Table::coils, 20, true);  // the eighteenth: another bit of it might follow
   device.change(Table::discrete_inputs, 3, false);

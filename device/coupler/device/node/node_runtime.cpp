@@ -317,13 +317,13 @@ bool NodeRuntime::drive_safe() {
   // priority already.
   if (options_.realtime) (void)take_priority(RealtimePriority::supervisor);
   Ending ending(*context_);
-  bool ended = true;
   // If this process is killed while they are driven, the next worker process brings none of them back.
   ending.schedule.outputs_went_safe(false, ending.now);
   const bool safe = Hardware(context_->wiring->lines(), context_->analogue.get()).drive_safe();
   context_->state->watchdog().disarm();
   ending.schedule.outputs_went_safe(safe, ending.now);
   // The next worker process may be long in coming.
+  bool ended = true;
   ending.schedule.each_begun([&](ScheduledOutput& begun) {
     if (!is_for_code(*context_, begun)) ended &= ending.end.of(begun, ending.now);
   });

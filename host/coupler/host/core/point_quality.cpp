@@ -104,7 +104,7 @@ PointQuality PointQualities::quality_of(const Entry& entry, Time now) const {
   const bool becomes_stale = state == State::good && !entry.told;
   const Time stale_from = becomes_stale ? *entry.last_good + entry.stale_after : Time::max();
   const bool was_true_then =
-      entry.told && (state == State::good || (state == State::offline && entry.last_good));
+      entry.told && entry.last_good && (state == State::good || state == State::offline);
   const auto last_good = was_true_then ? std::max(*entry.last_good, heard_) : entry.last_good;
   return {state, stale_from, last_good, entry.last_exception, entry.last_write, entry.last_write_text};
 }
