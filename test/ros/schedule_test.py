@@ -62,6 +62,16 @@ class ScheduleTest(testing.RosTest):
         self.assertEqual((answer.success, answer.message), (True, by))
         return answer.number
 
+    def same_time_in_order(self, by):
+        """What is asked for at the same time is done in the order in which it was asked for, each time."""
+        for _ in range(10):
+            first = self.accepted(by, "lamp", "true", LATER)
+            answer = self.call("lamp", "false", self.at, ros_duration(0))
+            if answer.success:  # not too late on a busy machine
+                self.done(answer.number)
+                told = [message.number for message in self.scheduled.values]
+                self.assertLess(told.index(first), told.index(answer.number))
+
     def outcome(self, number):
         return self.scheduled.wait_for(lambda message: message.number == number)
 
@@ -99,6 +109,9 @@ class ByTheDriver(ScheduleTest):
             self.assertGreaterEqual(outcome.lateness, 0)
             self.assertGreaterEqual(seconds(outcome.header.stamp), seconds(outcome.due) - outcome.uncertainty - ROUNDING)
         self.assertEqual((self.get("coils", 4), self.get("holding_registers", 2), self.get("holding_registers", 9)), (1, 7, 8))
+
+    def test_the_same_time_is_in_the_order_of_the_calls(self):
+        self.same_time_in_order(BY_DRIVER)
 
     def test_the_due_time_is_told_as_it_was_asked_for(self):
         number = self.accepted(BY_DRIVER, "lamp", "true")
@@ -181,6 +194,10 @@ class ByTheNode(ScheduleTest):
         self.lamp.becomes(True)
         told = [message for message in self.scheduled.values if message.number in numbers]
         self.assertEqual(told, sorted(told, key=lambda message: seconds(message.due)))
+
+    def test_the_same_time_is_in_the_order_of_the_calls(self):
+        self.begin()
+        self.same_time_in_order(BY_NODE)
 
     def test_after_a_duration_the_value_from_before_is_there_again(self):
         self.begin()

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/core/wall_time.hpp"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 namespace coupler::host {
@@ -74,6 +76,20 @@ TEST_F(WallTimeTest, It_measures_the_machines_clocks) {
   const Time after = std::chrono::steady_clock::now();
   EXPECT_GE(said, wall.of(before) - wall.error());
   EXPECT_LE(said, wall.of(after) + wall.error());
+}
+
+TEST_F(WallTimeTest, Two_agree_unless_somebody_has_set_the_wall_clock_in_between) {
+  measure(nanoseconds(40));
+  const WallTime before = std::exchange(wall, WallTime());
+  EXPECT_FALSE(before.agrees_with(wall));  // it knows nothing
+  ahead += nanoseconds(15);
+  measure(nanoseconds(60));
+  EXPECT_TRUE(before.agrees_with(wall));
+  EXPECT_TRUE(wall.agrees_with(before));
+  ahead += nanoseconds(100);
+  wall = {};
+  measure(nanoseconds(60));
+  EXPECT_FALSE(before.agrees_with(wall));
 }
 
 }  // namespace

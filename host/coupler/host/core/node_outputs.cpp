@@ -32,10 +32,24 @@ std::optional<Kind> result_of(Change::Kind kind) {
 
 }  // namespace
 
-void NodeOutputs::add(std::uint16_t number, const AcceptedWrite& what) {
+std::optional<modbus::NodeTime> NodeOutputs::node_due(Time due, const ClockMapping& mapping) const {
+  std::optional<modbus::NodeTime> at = mapping.node_time(due);
+  if (!at) return at;
+  for (const Waiting& one : waiting_) {
+    const Time other = one.what.what.due;
+    const auto other_at = mapping.node_time(other);
+    const bool has_jumped = !other_at || std::chrono::abs(*other_at - one.node_due) > told_within;
+    if (has_jumped) continue;
+    if (due <= other) at = std::min(*at, one.node_due);
+    if (due >= other) at = std::max(*at, one.node_due);
+  }
+  return at;
+}
+
+void NodeOutputs::add(std::uint16_t number, modbus::NodeTime node_due, const AcceptedWrite& what) {
   settle(number, Kind::unknown, not_told);  // an older one is over, or the number would not be given again
   const Time due = what.what.due;
-  waiting_.push_back({number, what, due + told_within + (due - clock_.now()) / drift_part});
+  waiting_.push_back({number, node_due, what, due + told_within + (due - clock_.now()) / drift_part});
 }
 
 std::vector<std::uint16_t> NodeOutputs::numbers() const {

@@ -23,8 +23,11 @@ class NodeOutputs : public ChangeSink {
   NodeOutputs(ChangeSink& bits, Clock& clock, ScheduledListener& outcomes)
       : bits_(bits), clock_(clock), outcomes_(outcomes) {}
 
-  /// `number`: ScheduleReply's.
-  void add(std::uint16_t number, const AcceptedWrite& what);
+  /// The node's time for `due`, in the order with those that wait that it has here, and the same if it is the
+  /// same here: the mapping moves with each exchange. nullopt: the mapping does not know.
+  std::optional<modbus::NodeTime> node_due(Time due, const ClockMapping& mapping) const;
+  /// `number`: ScheduleReply's; `node_due`: ScheduleOutput's.
+  void add(std::uint16_t number, modbus::NodeTime node_due, const AcceptedWrite& what);
   std::size_t size() const { return waiting_.size(); }
   /// The numbers of those that wait.
   std::vector<std::uint16_t> numbers() const;
@@ -45,6 +48,7 @@ class NodeOutputs : public ChangeSink {
  private:
   struct Waiting {
     std::uint16_t number;
+    modbus::NodeTime node_due;
     AcceptedWrite what;
     Time told_by;  ///< what has not been told by then was among the changes that were lost
   };

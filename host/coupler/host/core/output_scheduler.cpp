@@ -99,11 +99,11 @@ bool OutputScheduler::can_node(const ScheduledWrite& what, const ChangeListener&
          range(point(what)).count() <= (bits ? modbus::max_scheduled_bits : modbus::max_scheduled_registers);
 }
 
-modbus::ScheduleRequest OutputScheduler::request(const ScheduledWrite& what,
+modbus::ScheduleRequest OutputScheduler::request(const ScheduledWrite& what, modbus::NodeTime due,
                                                  const ChangeListener& listener) const {
   modbus::ScheduleOutput when;
   when.epoch = listener.epoch().value_or(0);
-  when.due = listener.mapping().node_time(what.due).value_or(modbus::NodeTime{});
+  when.due = due;
   when.duration = what.duration;
   when.range = range(point(what));
   const std::size_t count = when.range.count();
@@ -116,9 +116,10 @@ modbus::ScheduleRequest OutputScheduler::request(const ScheduledWrite& what,
 
 Result<std::optional<ScheduleAnswer>> OutputScheduler::give_to_node(const ScheduledWrite& what,
                                                                     const ChangeListener& listener) {
-  const auto reply = transport_.schedule(request(what, listener));
+  const modbus::NodeTime due = by_node_.node_due(what.due, listener.mapping()).value_or(modbus::NodeTime{});
+  const auto reply = transport_.schedule(request(what, due, listener));
   if (reply) {
-    by_node_.add(reply->number, {++last_number_, what});
+    by_node_.add(reply->number, due, {++last_number_, what});
     // The answer to the wait has come before that to this request, and was the last one.
     if (!listener.is_active()) by_node_.lose(told_no_more);
     return std::optional(ScheduleAnswer{last_number_, "accepted: the node does it"});

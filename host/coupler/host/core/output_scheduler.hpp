@@ -84,7 +84,8 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
                                                      const ChangeListener& listener);
   ScheduleAnswer keep(const ScheduledWrite& what);
   void cancel_at_node(const ChangeListener& listener);
-  modbus::ScheduleRequest request(const ScheduledWrite& what, const ChangeListener& listener) const;
+  modbus::ScheduleRequest request(const ScheduledWrite& what, modbus::NodeTime due,
+                                  const ChangeListener& listener) const;
   const Point& point(const ScheduledWrite& what) const { return map_.points[what.write.point]; }
   void note() { busy_ = by_node_.size() + by_driver_.size() > 0; }
 

@@ -35,6 +35,11 @@ class WallTime {
   Wall of(Time time) const { return time.time_since_epoch() + difference_; }
   /// When the wall clock says `wall`, unless somebody sets it.
   Time at(Wall wall) const { return Time(std::chrono::duration_cast<Duration>(wall - difference_)); }
+  /// They may say the same: nobody has set the wall clock between their measurements.
+  bool agrees_with(const WallTime& other) const {
+    return measured_ && other.measured_ &&
+           std::chrono::abs(difference_ - other.difference_) <= error_ + other.error_;
+  }
   /// How far of() and at() may be wrong.
   Duration error() const { return error_; }
 

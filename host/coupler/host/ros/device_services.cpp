@@ -121,10 +121,12 @@ ScheduleAnswer DeviceServices::answer_schedule(const ServiceThread::ScheduleRequ
   using std::chrono::milliseconds;
   const auto value = value_for(request.point, request.value);
   if (!value) return {0, value.error()};
-  WallTime wall;
-  for (int i = 0; i < 5; ++i) wall.measure();  // the best counts: a measurement may be interrupted
+  WallTime now;
+  for (int i = 0; i < 5; ++i) now.measure();  // the best counts: a measurement may be interrupted
+  // Another measurement would map the same time to another instant, and so to another order.
+  if (!wall_.agrees_with(now) || now.error() < wall_.error() / 10) wall_ = now;
   ScheduledWrite what{
-      make_write(map_, index_of(*find(map_, request.point)), *value), wall.at(request.at), {}, request.at};
+      make_write(map_, index_of(*find(map_, request.point)), *value), wall_.at(request.at), {}, request.at};
   what.duration = request.how_long.count() < 0 ? std::chrono::floor<milliseconds>(request.how_long)
                                                : std::chrono::ceil<milliseconds>(request.how_long);
   std::future<ScheduleAnswer> asked;

@@ -11,6 +11,7 @@
 
 #include <tl/expected.hpp>
 
+#include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/ros/node.hpp"
 #include "coupler/host/ros/value_waiter.hpp"
 
@@ -70,6 +71,7 @@ class DeviceServices {
   std::mutex mutex_;
   std::optional<Device> device_;  ///< none after stop()
   ValueWaiter value_waiter_;
+  WallTime wall_;                         ///< for the thread of timed_calls_
   std::unique_ptr<ServiceThread> calls_;  // last: they use the others
   std::unique_ptr<ServiceThread> urgent_calls_;
   std::unique_ptr<ServiceThread> timed_calls_;
