@@ -67,6 +67,8 @@ TRAFFIC = [
      ["cancels a scheduled output", STAMPS[0], "Number: 513"], ["cancelled as number 513", *STAMPS[1:]]),
     # Cut off, and another version's: the dissector leaves them alone.
     (wait(0, 0)[:9], b"\xc1\x03", None, None),
+    (b"\x41\x02" + wait(0, 0)[2:], b"\xc1\x03", None, None),
+    (b"\x42\x00" + schedule(1, 0, 2, b"\x01", 200)[2:], b"\xc2\x03", None, None),
     (schedule(1, 0, 2, b"\x01", 200)[:20], b"\xc2\x03", None, None),
     (wait(0, 0), changes(0, 0)[:20], ["waits for changes", "Longest wait: 0 ms", STAMPS[0], "Changes seen: 0"], None),
 ]

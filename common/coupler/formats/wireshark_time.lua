@@ -10,18 +10,19 @@ local reasons = {
 
 -- Nanoseconds, 8 bytes, as seconds of the node's clock.
 local function node_time(tvb, at)
-  local digits = tostring(tvb(at, 8):int64())
+  local digits = tostring(tvb(at, 8):uint64())
   digits = string.rep("0", 10 - #digits) .. digits
   return digits:sub(1, -10) .. "." .. digits:sub(-9) .. " s"
 end
 
 local function whole(tvb, at) return tostring(tvb(at, 8):uint64()) end
 
--- As request_of(): of these two function codes.
+-- As request_of(): of these two function codes, in their version 1.
 local function time_request_of(tvb)
   local code, size = tvb(7, 1):uint(), tvb:len()
+  if size < 16 or tvb(8, 1):uint() ~= 1 then return { code = code } end
   if code == wait_code and size == 23 then return { code = code, show = "waits for changes" } end
-  if code ~= schedule_code or size < 16 then return { code = code } end
+  if code ~= schedule_code then return { code = code } end
   if tvb(9, 1):uint() == 2 then return { code = code, show = "cancels a scheduled output" } end
   local name = size > 32 and time_tables[tvb(26, 1):uint()]
   if not name then return { code = code } end
