@@ -2,7 +2,7 @@
 # One library and one test program a module.
 #
 # A cold build reads the same headers hundreds of times, so they are translated once (precompiled headers), and the files
-# of a test program or of a large module four at a time. Neither may hide a missing include: scripts/lint compiles each file
+# of a test program or of a large module several at a time. Neither may hide a missing include: scripts/lint compiles each file
 # by itself. -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON and -DCOUPLER_UNITY=1 build each file by itself, too.
 include(GNUInstallDirs)
 include(GoogleTest)
@@ -18,8 +18,9 @@ add_library(coupler_flags INTERFACE)
 target_compile_options(coupler_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow
   -ffp-contract=off  # no fused multiply-add: a scaled value has the same last bit on every machine
-  # To follow each variable through every optimisation is a sixth of the time of a build with debug information.
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:RelWithDebInfo>>:-fno-var-tracking-assignments>
+  # Functions and lines, as a backtrace needs them. Variables, of which an optimised program has few, are a sixth of the time
+  # to build and a third of what is written; -DCMAKE_BUILD_TYPE=Debug has them all.
+  $<$<CONFIG:RelWithDebInfo>:-g1>
   $<$<BOOL:${COUPLER_WERROR}>:-Werror>)
 # Not of all targets of the project: ROS 2's messages are loaded by Python, which has no sanitizer.
 if(COUPLER_SANITIZE)
@@ -33,9 +34,9 @@ if(COUPLER_COVERAGE)
   target_link_options(coupler_flags INTERFACE --coverage)
 endif()
 # A test runs once: to optimise it as what it tests costs more than half of its time to compile. What it links is as it is
-# installed. -g1 shows functions and lines; -DCMAKE_BUILD_TYPE=Debug has variables, too.
+# installed.
 add_library(coupler_test_flags INTERFACE)
-target_compile_options(coupler_test_flags INTERFACE "$<$<CONFIG:RelWithDebInfo>:-Og;-g1>")
+target_compile_options(coupler_test_flags INTERFACE $<$<CONFIG:RelWithDebInfo>:-Og>)
 target_link_libraries(coupler_test_flags INTERFACE coupler_flags)
 
 # Their macros and flags must be those of the files that use them: one for libraries, one for test programs.
@@ -85,11 +86,11 @@ function(coupler_export target name)
   coupler_install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT dev)
 endfunction()
 
-# coupler_unite(NAME a.cpp …): sets NAME to files that include these, several each. CMake's own UNITY_BUILD writes absolute
+# coupler_unite(NAME COUNT a.cpp …): sets NAME to files that include these, COUNT each. CMake's own UNITY_BUILD writes absolute
 # paths, with which no two clones could share the compiler's cache. Files that are written while this is configured stay by
 # themselves.
-set(COUPLER_UNITY 4 CACHE STRING "How many files of a test program, or of a large module, are compiled as one")
-function(coupler_unite out)
+set(COUPLER_UNITY 4 CACHE STRING "How many files of a large module are compiled as one; of a test program twice as many")
+function(coupler_unite out count)
   if(NOT COUPLER_UNITY GREATER 1)
     set(${out} ${ARGN} PARENT_SCOPE)
     return()
@@ -100,7 +101,7 @@ function(coupler_unite out)
   list(FILTER united INCLUDE REGEX "^/")
   set(i 0)
   while(files)
-    list(SUBLIST files 0 ${COUPLER_UNITY} batch)
+    list(SUBLIST files 0 ${count} batch)
     list(REMOVE_ITEM files ${batch})
     set(text)
     foreach(file IN LISTS batch)
@@ -116,15 +117,16 @@ function(coupler_unite out)
   set(${out} ${united} PARENT_SCOPE)
 endfunction()
 
-# coupler_module(NAME SOURCES a.cpp … LINKS lib … [EXPORT name] [HEADERS <h> …] [UNITE]): the library of one module. LINKS are
-# public. EXPORT: as coupler_export(). UNITE: several files are compiled as one. HEADERS are precompiled for it alone, in place
+# coupler_module(NAME SOURCES a.cpp … LINKS lib … [EXPORT name] [HEADERS <h> …] [UNITE [APART b.cpp …]]): the library of one
+# module. LINKS are public. EXPORT: as coupler_export(). UNITE: several files are compiled as one, but for those of APART: large
+# ones, those with names of others, and those that not every program links. HEADERS are precompiled for it alone, in place
 # of those that most modules share: where they cost more, or where fmt is not linked. COUPLER_INCLUDE is the folder in which
 # #include finds its headers. Who links it gets no flags of ours but C++17.
 function(coupler_module name)
-  cmake_parse_arguments(module "UNITE" "EXPORT" "SOURCES;LINKS;HEADERS" ${ARGN})
+  cmake_parse_arguments(module "UNITE" "EXPORT" "SOURCES;LINKS;HEADERS;APART" ${ARGN})
   if(module_UNITE)
-    coupler_unite(${name} ${module_SOURCES})
-    set(module_SOURCES ${${name}})
+    coupler_unite(${name} ${COUPLER_UNITY} ${module_SOURCES})
+    set(module_SOURCES ${${name}} ${module_APART})
   endif()
   add_library(${name} STATIC ${module_SOURCES})
   target_compile_features(${name} PUBLIC cxx_std_17)
@@ -148,7 +150,8 @@ endfunction()
 # that hangs from one that works on a slow machine under ThreadSanitizer.
 function(coupler_test name)
   cmake_parse_arguments(test "" "" "SOURCES;LINKS" ${ARGN})
-  coupler_unite(${name} ${test_SOURCES})
+  math(EXPR count "2 * ${COUPLER_UNITY}")  # small ones, but for gmock
+  coupler_unite(${name} ${count} ${test_SOURCES})
   add_executable(${name} ${${name}})
   target_link_libraries(${name} PRIVATE coupler_test_flags ${test_LINKS} coupler_test_paths GTest::gmock GTest::gtest_main)
   target_precompile_headers(${name} REUSE_FROM coupler_test_headers)

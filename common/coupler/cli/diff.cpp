@@ -12,6 +12,7 @@
 #include "coupler/changes/changes.hpp"
 #include "coupler/cli/commands.hpp"
 #include "coupler/cli/map_argument.hpp"
+#include "coupler/json/json_text.hpp"
 #include "coupler/map/diagnostic.hpp"
 #include "coupler/map/printable.hpp"
 
@@ -99,8 +100,7 @@ std::string diff_json(const Versions& versions, const std::vector<Change>& chang
     entry["new"] = change.newer;
     json["changes"].push_back(std::move(entry));
   }
-  // A map may have bytes in its texts that are not UTF-8.
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 /// A table for each severity that there is, for reviews.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "coupler/json/json_text.hpp"
 #include "coupler/plan/cost.hpp"
 #include "coupler/plan/explain.hpp"
 #include "coupler/plan/read_span.hpp"
@@ -202,8 +203,7 @@ std::string plan_json(const std::string& file, const Map& map, const plan::Netwo
       json["not_read"].push_back({{"point", point.name}, {"reason", plan::to_string(*reason)}});
   for (const plan::Strategy& strategy : plan::compare_strategies(map, timing))
     json["strategies"].push_back(strategy_json(strategy));
-  // A file's name may have bytes that are not UTF-8.
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace coupler::cli

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "coupler/json/json_text.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/printable.hpp"
 #include "coupler/map/rights_text.hpp"
@@ -132,8 +133,7 @@ std::string json_report(const std::string& file, const LoadResult& loaded) {
     report["lock"] = {{"file", lock.path}, {"allocated", lock.allocated}, {"retired", lock.retired}};
   for (const Diagnostic& diagnostic : loaded.diagnostics)
     report["diagnostics"].push_back(to_json(diagnostic));
-  // A diagnostic may quote bytes that are not UTF-8.
-  return report.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_text(report);
 }
 
 }  // namespace coupler::cli

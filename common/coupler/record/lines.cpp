@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "coupler/base/utc_text.hpp"
+#include "coupler/json/json_text.hpp"
 
 namespace coupler::record {
 namespace {
@@ -12,11 +13,6 @@ namespace {
 using nlohmann::ordered_json;
 
 double seconds(Nanoseconds time) { return std::chrono::duration<double>(time).count(); }
-
-/// A text of the device need not be UTF-8.
-std::string text_of(const ordered_json& json) {
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
 
 /// `rest`: members of the object.
 std::string line(Moment at, std::string_view rest) {
@@ -46,7 +42,7 @@ std::string head_line(const Head& head, Moment at) {
                           {"not_recorded", object_of(head.not_recorded)},
                           {"may_miss", object_of(head.may_miss)},
                           {"map", head.map}};
-  return text_of(json) + '\n';
+  return json_text(json) + '\n';
 }
 
 std::string value_line(Moment at, std::string_view point, std::string_view value, Nanoseconds uncertainty,
@@ -68,7 +64,7 @@ std::string online_line(Moment at, std::optional<bool> is_node) {
 }
 
 std::string lost_line(Moment at, std::string_view why) {
-  return line(at, fmt::format(R"("device":"lost","why":{})", text_of(ordered_json(std::string(why)))));
+  return line(at, fmt::format(R"("device":"lost","why":{})", json_text(ordered_json(std::string(why)))));
 }
 
 std::string clock_line(Moment at, Nanoseconds set_by) {
@@ -77,7 +73,7 @@ std::string clock_line(Moment at, Nanoseconds set_by) {
 
 std::string missing_line(Moment at, Nanoseconds since, std::string_view why) {
   return line(at, fmt::format("\"missing_since\":{:.6f},\"why\":{}", seconds(since),
-                              text_of(ordered_json(std::string(why)))));
+                              json_text(ordered_json(std::string(why)))));
 }
 
 std::string end_line(Moment at) { return line(at, R"("end":true)"); }

@@ -14,9 +14,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-const Provenance python_provenance{"cell", "cell.yaml", "1.2.3"};
-
-std::string python_file() { return python_client(testing::sample()->map(), python_provenance); }
+std::string python_file() { return python_client(testing::sample()->map(), testing::provenance); }
 
 TEST(Python, The_class_is_named_after_the_map) {
   EXPECT_EQ(python_class("press"), "PressClient");
@@ -49,7 +47,7 @@ TEST(Python, On_a_serial_line_the_port_and_its_settings_are_the_maps) {
   const auto owned = testing::sample();
   Map map = owned->map();
   map.connection.serial = {"/dev/ttyUSB0", 9600, Serial::Parity::none, 2, true};
-  const std::string text = python_client(map, python_provenance);
+  const std::string text = python_client(map, testing::provenance);
   EXPECT_THAT(text, AllOf(HasSubstr("class CellClient(SerialClient):"),
                           HasSubstr("device: str = \"/dev/ttyUSB0\", *, baud: int = 9600, parity: str = "
                                     "\"none\", stop_bits: int = 2, unit: int = 7"),
@@ -61,7 +59,7 @@ TEST(Python, RTU_over_TCP_has_an_address) {
   const auto owned = testing::sample();
   Map map = owned->map();
   map.connection.framing = Framing::rtu;
-  EXPECT_THAT(python_client(map, python_provenance),
+  EXPECT_THAT(python_client(map, testing::provenance),
               AllOf(HasSubstr("class CellClient(RtuClient):"), HasSubstr("address: str = \"cell.local\"")));
   EXPECT_THAT(python_file(), Not(HasSubstr("RtuClient"))) << "nobody else needs it";
 }
@@ -80,17 +78,17 @@ TEST(Python, A_point_has_its_kind_its_type_and_a_comment) {
 TEST(Python, A_map_without_an_address_has_none_by_default) {
   OwnedMap empty;
   empty.finish({}, {}, {});
-  EXPECT_THAT(python_client(empty.map(), python_provenance),
+  EXPECT_THAT(python_client(empty.map(), testing::provenance),
               HasSubstr("self, address: str, port: int = 502"));
 }
 
 TEST(Python, Keys_that_need_a_thread_are_named_as_left_out) {
   const auto owned = testing::sample();
   Map map = owned->map();
-  EXPECT_THAT(python_client(map, python_provenance), Not(HasSubstr("does not carry out")));
+  EXPECT_THAT(python_client(map, testing::provenance), Not(HasSubstr("does not carry out")));
   map.on_shutdown = OnShutdown::safe;
   map.on_reconnect = OnReconnect::restore;
-  EXPECT_THAT(python_client(map, python_provenance), HasSubstr(": on_reconnect, on_shutdown.\n"));
+  EXPECT_THAT(python_client(map, testing::provenance), HasSubstr(": on_reconnect, on_shutdown.\n"));
 }
 
 TEST(Python, The_file_is_UTF_8_whatever_the_name_of_the_map_file) {

@@ -3,11 +3,15 @@
 
 #include <memory>
 
+#include "coupler/generate/generate.hpp"
 #include "coupler/map/owned_map.hpp"
 
 namespace coupler::testing {
 
 using namespace std::chrono_literals;
+
+/// Where its generated files come from.
+inline const generate::Provenance provenance{"cell", "cell.yaml", "1.2.3"};
 
 /// A small map with something in every field that the generator writes.
 inline std::shared_ptr<const OwnedMap> sample() {

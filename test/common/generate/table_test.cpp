@@ -13,9 +13,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const Provenance provenance{"cell", "cell.yaml", "1.2.3"};
-
-std::string source() { return table_source(testing::sample()->map(), provenance); }
+std::string source() { return table_source(testing::sample()->map(), testing::provenance); }
 
 TEST(Table, A_coil_is_written_with_its_line_and_initial_state) {
   EXPECT_THAT(source(), HasSubstr(R"(
@@ -79,14 +77,14 @@ TEST(Table, The_text_is_one_literal_a_line) {
 TEST(Table, A_map_without_points_has_no_empty_arrays) {
   OwnedMap empty;
   empty.finish({}, {}, {});
-  EXPECT_THAT(table_source(empty.map(), provenance),
+  EXPECT_THAT(table_source(empty.map(), testing::provenance),
               AllOf(Not(HasSubstr("points[]")), Not(HasSubstr("sim[]")), Not(HasSubstr("allow[]")),
                     HasSubstr("    {},\n    {},\n    fingerprint,\n")));
 }
 
 TEST(Table, The_header_carries_fingerprint_and_model_version) {
   const auto map = testing::sample();
-  const std::string header = table_header(map->map(), provenance);
+  const std::string header = table_header(map->map(), testing::provenance);
   EXPECT_THAT(header, AllOf(HasSubstr(fmt::format("fingerprint = 0x{:016x};", map->map().fingerprint)),
                             HasSubstr(fmt::format("model_version == {}", model_version)),
                             HasSubstr("namespace coupler::maps::cell {"),

@@ -24,7 +24,7 @@ Pdu request(std::vector<FileRecord> groups) {
   return pdu;
 }
 
-Exception refusal(const Pdu& pdu) {
+Exception file_refusal(const Pdu& pdu) {
   const auto parsed = parse_file_request(pdu);
   return parsed ? Exception{} : parsed.error();
 }
@@ -81,25 +81,25 @@ TEST(FileRecord, A_client_tells_an_exception_from_a_reply_that_does_not_answer) 
 TEST(FileRecord, A_byte_count_that_does_not_fit_the_request_is_an_illegal_value) {
   for (const Pdu& pdu : {Pdu{0x14}, Pdu{0x14, 0}, Pdu{0x14, 7}, Pdu{0x14, 6, 6, 0, 1, 0, 0, 0},
                          Pdu{0x14, 8, 6, 0, 1, 0, 0, 0, 1, 0}})
-    EXPECT_EQ(refusal(pdu), Exception::illegal_data_value);
+    EXPECT_EQ(file_refusal(pdu), Exception::illegal_data_value);
 }
 
 TEST(FileRecord, Records_that_no_file_holds_are_an_illegal_address) {
-  EXPECT_EQ(refusal(request({{0, 0, 1}})), Exception::illegal_data_address);
-  EXPECT_EQ(refusal(request({{1, 9999, 2}})), Exception::illegal_data_address);
-  EXPECT_EQ(refusal(request({{1, 10000, 1}})), Exception::illegal_data_address);
-  EXPECT_EQ(refusal(request({{1, 0xFFFF, 0xFFFF}})), Exception::illegal_data_address);
+  EXPECT_EQ(file_refusal(request({{0, 0, 1}})), Exception::illegal_data_address);
+  EXPECT_EQ(file_refusal(request({{1, 9999, 2}})), Exception::illegal_data_address);
+  EXPECT_EQ(file_refusal(request({{1, 10000, 1}})), Exception::illegal_data_address);
+  EXPECT_EQ(file_refusal(request({{1, 0xFFFF, 0xFFFF}})), Exception::illegal_data_address);
   Pdu other_reference = request({{1, 0, 1}});
   other_reference[2] = 5;
-  EXPECT_EQ(refusal(other_reference), Exception::illegal_data_address);
+  EXPECT_EQ(file_refusal(other_reference), Exception::illegal_data_address);
   EXPECT_TRUE(parse_file_request(request({{0xFFFF, 9999, 1}})).has_value());
 }
 
 TEST(FileRecord, A_request_whose_reply_would_not_fit_is_an_illegal_value) {
   EXPECT_TRUE(parse_file_request(request({{1, 0, max_file_registers}})).has_value());
-  EXPECT_EQ(refusal(request({{1, 0, max_file_registers + 1}})), Exception::illegal_data_value);
-  EXPECT_EQ(refusal(request({{1, 0, 100}, {1, 0, 100}})), Exception::illegal_data_value);
-  EXPECT_EQ(refusal(request({{1, 0, 0}})), Exception::illegal_data_value);
+  EXPECT_EQ(file_refusal(request({{1, 0, max_file_registers + 1}})), Exception::illegal_data_value);
+  EXPECT_EQ(file_refusal(request({{1, 0, 100}, {1, 0, 100}})), Exception::illegal_data_value);
+  EXPECT_EQ(file_refusal(request({{1, 0, 0}})), Exception::illegal_data_value);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 using testing::ElementsAre;
 
 constexpr milliseconds length{200};
-constexpr std::uint32_t epoch = 7;
+constexpr std::uint32_t pulse_epoch = 7;
 
 auto pulsed(Safe safe) {
   return [safe](Point& point) {
@@ -33,7 +33,7 @@ struct Pulse : testing::Test {
                  .build()) {
     node.lines.outputs = {{0, {0, 0}}, {2, {0, 0}}};
     node.now = TimePoint(std::chrono::hours(5));
-    node.handler.tell_changes(epoch, node.now);
+    node.handler.tell_changes(pulse_epoch, node.now);
   }
   void write(int coil, bool on) { node.ask(pdu(5, {coil, on ? 0xFF00 : 0})); }
   void pass(milliseconds time) {
@@ -43,7 +43,7 @@ struct Pulse : testing::Test {
   std::uint16_t schedule(milliseconds in, bool on, milliseconds duration = {}) {
     const std::vector<std::uint16_t> bits{on};
     const modbus::ScheduleOutput wanted{
-        epoch, node_time(node.now + in), duration, modbus::Function::read_coils, Range::of(0, 1), {}};
+        pulse_epoch, node_time(node.now + in), duration, modbus::Function::read_coils, Range::of(0, 1), {}};
     const auto request = modbus::ScheduleRequest::coils(wanted, bits);
     const auto reply =
         modbus::parse_schedule_reply(node.ask(Pdu(request.pdu().begin(), request.pdu().end())));

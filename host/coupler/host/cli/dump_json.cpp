@@ -8,6 +8,7 @@
 #include "coupler/host/core/health.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/host/record/value_json.hpp"
+#include "coupler/json/json_text.hpp"
 #include "coupler/map/node_address.hpp"
 
 namespace coupler::cli {
@@ -49,8 +50,7 @@ std::string dump_json(const Map& map, const Snapshot& now) {
                     {"notes", now.notes},       {"points", ordered_json::array()}};
   if (now.error) json["trouble"] = host::to_string(*now.error);
   for (const Reading& reading : now.readings) json["points"].push_back(reading_json(map, reading));
-  // A text of the device need not be UTF-8.
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace coupler::cli

@@ -8,6 +8,7 @@
 #include "coupler/host/cli/snapshot.hpp"
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/host/scan/identification.hpp"
+#include "coupler/json/json_text.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
@@ -235,8 +236,7 @@ std::string status_json(const NodeStatus& status, const Connection& where) {
       json["statistics"] = statistics_json(report);
     }
   }
-  // A text of the device need not be UTF-8.
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace coupler::cli

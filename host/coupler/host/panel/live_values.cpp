@@ -16,16 +16,13 @@
 #include "coupler/host/core/own_registers.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/host/record/value_json.hpp"
+#include "coupler/json/json_text.hpp"
 
 namespace coupler::host {
 namespace {
 
 using nlohmann::ordered_json;
 using Quality = PointQuality::State;
-
-std::string text_of(const ordered_json& json) {
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
 
 template <class T>
 double as_number(const T& value) {
@@ -193,7 +190,7 @@ std::string LiveValues::news(std::uint64_t& seen, Time earliest, Time until) {
                       {"round_trip_ms", std::chrono::duration<double, std::milli>(round_trip_).count()}};
   seen = revision_;
   lock.unlock();
-  return text_of(json);
+  return json_text(json);
 }
 
 std::string LiveValues::histories(Time now, std::size_t steps) {

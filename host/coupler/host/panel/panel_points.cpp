@@ -8,6 +8,7 @@
 
 #include "coupler/codec/bit_string.hpp"
 #include "coupler/docs/point_description.hpp"
+#include "coupler/json/json_text.hpp"
 #include "coupler/map/node_address.hpp"
 
 namespace coupler::host {
@@ -64,7 +65,7 @@ std::string panel_points(const Map& map, bool writes, std::string_view warning) 
   ordered_json json{{"name", map.name}, {"place", node_address_text(map.connection)}, {"writes", writes}};
   if (!warning.empty()) json["warning"] = warning;
   json["points"] = std::move(points);
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace coupler::host

@@ -22,6 +22,7 @@
 #include "coupler/host/panel/page_tls.hpp"
 #include "coupler/host/panel/shown_address.hpp"
 #include "coupler/host/panel/writers.hpp"
+#include "coupler/json/json_text.hpp"
 
 namespace coupler::host {
 namespace {
@@ -214,8 +215,7 @@ class Server final : public PanelServer {
       writers_.wrote(page.token, std::chrono::steady_clock::now());
     }
     const nlohmann::ordered_json told{{"outcome", to_string(outcome.outcome)}, {"text", outcome.text}};
-    response.set_content(told.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
-                         "application/json");
+    response.set_content(json_text(told), "application/json");
   }
 
   /// Server-sent events: what is new, and a heartbeat each second. A page that does not read loses what was

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/record/record_format.hpp"
 #include "coupler/host/record/value_json.hpp"
+#include "coupler/json/json_text.hpp"
 
 namespace coupler::host {
 namespace {
@@ -13,10 +14,7 @@ class JsonFormat final : public RecordFormat {
   std::string head(const record::Head& head, Moment at) const override { return record::head_line(head, at); }
   std::string value(Moment at, const Point& point, Span<const std::uint16_t> registers,
                     Nanoseconds uncertainty) const override {
-    // A text of the device need not be UTF-8.
-    const std::string value = value_json(registers.data(), point)
-                                  .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-    return record::value_line(at, point.name, value, uncertainty,
+    return record::value_line(at, point.name, json_text(value_json(registers.data(), point)), uncertainty,
                               holds_bits(point.table) ? Span<const std::uint16_t>() : registers);
   }
   std::string no_value(Moment at, const Point& point, PointQuality::State quality,
