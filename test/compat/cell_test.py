@@ -28,7 +28,7 @@ class Cell(testing.RosTest):
     def begin(self, *arguments):
         self.map = process.write_map(MAP)
         self.port = free_port()
-        self.node = process.Node(self.map, self.port)
+        self.node = process.Node(self.map, port=self.port)
         self.addCleanup(lambda: self.node.end())  # pylint: disable=unnecessary-lambda
         self.assertEqual(self.node.port, self.port)
         self.driver(*arguments, f"_port:={self.port}").wait_for("connected")
@@ -61,7 +61,7 @@ class Cell(testing.RosTest):
         online = self.topic("/cell/online", Bool, latched=True)
         self.node.end()
         online.becomes(False)
-        self.node = process.Node(self.map, self.port)
+        self.node = process.Node(self.map, port=self.port)
         online.becomes(True)
         self.lamp.becomes(False)
         self.switch(True)

@@ -42,7 +42,7 @@ class Tls(testing.RosTest):
         self.certificates(self.folder)
         self.node_map = self.folder / "node.yaml"
         self.node_map.write_text(NODE + POINTS)
-        self.node = process.Node(str(self.node_map))
+        self.node = process.Node(str(self.node_map), "--tls-port", 0)
         self.addCleanup(self.node.end)
 
     @staticmethod

@@ -135,8 +135,7 @@ class Node(Process):
 
     def __init__(self, *arguments, port=0):
         """The path of a map, or what plays a recording."""
-        super().__init__("coupler-node", *arguments, "--sim", "--listen", "127.0.0.1", "--port", port,
-                         "--tls-port", 0)
+        super().__init__("coupler-node", *arguments, "--sim", "--listen", "127.0.0.1", "--port", port)
 
     @property
     def port(self):
