@@ -89,7 +89,8 @@ class Services(ServicesTest):
             self.assertEqual(self.device.tables["coils"][3], on)
 
     def test_what_cannot_be_written_is_told_with_what_can(self):
-        for point, value, expected in (("nothing", "1", "there is no point 'nothing'"),
+        for point, value, expected in (("nothing", "1", "there is no point 'nothing' in the map of served; the map has their names"),
+                                       ("presure", "1", "there is no point 'presure' in the map of served; did you mean 'pressure'?"),
                                        ("pressure", "1", "pressure cannot be written"),
                                        ("level", "70000", "-32768 to 32767"), ("level", "full", "is not a number"),
                                        ("speeds", "[1]", "give 3")):

@@ -192,6 +192,7 @@ TEST_F(PumpClient, Disconnected_it_drives_nothing_any_more) {
   const auto result = pending.wait(soon);
   ASSERT_TRUE(result);
   EXPECT_EQ(result->outcome, ScheduleResult::Outcome::cancelled);
+  EXPECT_EQ(result->lateness, host::Duration(0)) << "only of what was carried out";
 }
 
 TEST_F(PumpClient, A_change_may_be_answered_by_setting_a_point) {

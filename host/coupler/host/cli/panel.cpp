@@ -17,7 +17,7 @@
 #include "coupler/host/cli/only_looking.hpp"
 #include "coupler/host/cli/report_line.hpp"
 #include "coupler/host/core/device_thread.hpp"
-#include "coupler/host/core/value_text.hpp"
+#include "coupler/host/core/named_write.hpp"
 #include "coupler/host/modbus/multi_unit_transport.hpp"
 #include "coupler/host/panel/panel_points.hpp"
 #include "coupler/host/panel/panel_server.hpp"
@@ -118,22 +118,14 @@ class LookedAtDevice final : public host::PanelDevice {
   }
 
   WriteTicket::Outcome try_write(const std::string& name, const std::string& text) {
-    const auto refuse = [](const std::string& why) {
-      return WriteTicket::Outcome{host::WriteResult::Outcome::refused, {}, "refused: " + why};
-    };
-    const Point* const point = find(map_, name);
-    if (point == nullptr || !is_writable(*point)) return refuse(name + " is no point that can be written");
-    std::vector<std::uint16_t> registers(range(*point).count());
-    if (const auto parsed = host::parse_value(text, *point, registers.data()); !parsed)
-      return refuse(parsed.error());
+    auto write = host::write_named(map_, name, text);
+    if (!write) return {host::WriteResult::Outcome::refused, {}, "refused: " + write.error()};
     WriteTicket ticket;
-    host::Write write =
-        host::make_write(map_, static_cast<std::uint32_t>(point - map_.points.begin()), registers);
-    write.listener = &ticket;
-    write.ordered = true;
-    write.until = std::chrono::steady_clock::now() + longest_wait;
+    write->listener = &ticket;
+    write->ordered = true;
+    write->until = std::chrono::steady_clock::now() + longest_wait;
     const auto now = connection();
-    if (now == nullptr || !now->write(write))
+    if (now == nullptr || !now->write(*write))
       return {host::WriteResult::Outcome::dropped, {}, "dropped: no page is open"};
     return ticket.wait();
   }

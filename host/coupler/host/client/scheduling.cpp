@@ -33,7 +33,7 @@ void ScheduleResults::tell(const host::ScheduledOutcome& outcome) {
   }
   if (!state) return;
   const std::lock_guard lock(state->mutex);
-  state->result = {outcome.result, outcome.reason, outcome.at, outcome.at.at - outcome.due};
+  state->result = {outcome.result, outcome.reason, outcome.at, outcome.lateness()};
   state->came.notify_all();
 }
 

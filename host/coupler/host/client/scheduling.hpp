@@ -22,7 +22,7 @@ struct ScheduleResult {
   Outcome outcome = Outcome::done;
   std::string reason{};       ///< empty when done
   host::Stamp at{};           ///< when it was carried out; otherwise when that was known
-  host::Duration lateness{};  ///< from the time that was asked for to `at`
+  host::Duration lateness{};  ///< ScheduledOutcome::lateness()
 
   /// It was carried out.
   explicit operator bool() const { return outcome == Outcome::done; }

@@ -46,6 +46,9 @@ struct ScheduledOutcome {
   std::chrono::nanoseconds asked{};  ///< ScheduledWrite's
   Time due{};
   Stamp at{};  ///< when it was carried out; otherwise when that was known
+
+  /// When done, from the time that was asked for to `at`; otherwise 0.
+  Duration lateness() const { return result == Result::done ? at.at - due : Duration::zero(); }
 };
 
 /// A write that was accepted.

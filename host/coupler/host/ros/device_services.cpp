@@ -9,6 +9,7 @@
 
 #include "coupler/codec/number.hpp"
 #include "coupler/host/core/health.hpp"
+#include "coupler/host/core/named_write.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/plan/planner.hpp"
 
@@ -69,15 +70,8 @@ void DeviceServices::stop() {
 
 DeviceServices::~DeviceServices() { stop(); }
 
-const Point* DeviceServices::find_point(const std::string& name, std::string& message) const {
-  const Point* point = find(map_, name);
-  if (point == nullptr) message = fmt::format("there is no point '{}' in the map of {}", name, map_.name);
-  return point;
-}
-
-WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::uint16_t> value) {
+WriteTicket::Outcome DeviceServices::write(Write write) {
   WriteTicket ticket;
-  Write write = make_write(map_, index, value);
   write.listener = &ticket;
   write.ordered = true;
   {
@@ -88,8 +82,8 @@ WriteTicket::Outcome DeviceServices::write(std::uint32_t index, Span<const std::
   return ticket.wait();
 }
 
-WriteTicket::Outcome DeviceServices::refuse(const std::string& name, const Point* point,
-                                            const std::string& why) {
+WriteTicket::Outcome DeviceServices::refuse(const std::string& name, const std::string& why) {
+  const Point* point = find(map_, name);
   const std::lock_guard lock(mutex_);
   if (device_)
     device_->writes.refuse(point != nullptr ? std::optional(index_of(*point)) : std::nullopt,
@@ -97,36 +91,21 @@ WriteTicket::Outcome DeviceServices::refuse(const std::string& name, const Point
   return {Outcome::refused, {}, "refused: " + why};
 }
 
-/// The value in that text for that point, or why it cannot be written.
-tl::expected<std::vector<std::uint16_t>, std::string> DeviceServices::value_for(
-    const std::string& name, const std::string& text) const {
-  std::string why;
-  const Point* point = find_point(name, why);
-  if (point == nullptr) return tl::unexpected(why);
-  if (!is_writable(*point)) return tl::unexpected(fmt::format("{} cannot be written", point->name));
-  std::vector<std::uint16_t> value(range(*point).count());
-  if (const auto parsed = parse_value(text, *point, value.data()); !parsed)
-    return tl::unexpected(parsed.error());
-  return value;
-}
-
 WriteTicket::Outcome DeviceServices::answer_write(const std::string& name, const std::string& text) {
-  const auto value = value_for(name, text);
-  const Point* point = find(map_, name);
-  return value ? write(index_of(*point), *value) : refuse(name, point, value.error());
+  const auto asked = write_named(map_, name, text);
+  return asked ? write(*asked) : refuse(name, asked.error());
 }
 
 /// A duration is in whole milliseconds, as long as was asked for at least.
 ScheduleAnswer DeviceServices::answer_schedule(const ServiceThread::ScheduleRequest& request) {
   using std::chrono::milliseconds;
-  const auto value = value_for(request.point, request.value);
-  if (!value) return {0, value.error()};
+  const auto write = write_named(map_, request.point, request.value);
+  if (!write) return {0, write.error()};
   WallTime now;
   for (int i = 0; i < 5; ++i) now.measure();  // the best counts: a measurement may be interrupted
   // Another measurement would map the same time to another instant, and so to another order.
   if (!wall_.agrees_with(now) || now.error() < wall_.error() / 10) wall_ = now;
-  ScheduledWrite what{
-      make_write(map_, index_of(*find(map_, request.point)), *value), wall_.at(request.at), {}, request.at};
+  ScheduledWrite what{*write, wall_.at(request.at), {}, request.at};
   what.duration = request.how_long.count() < 0 ? std::chrono::floor<milliseconds>(request.how_long)
                                                : std::chrono::ceil<milliseconds>(request.how_long);
   std::future<ScheduleAnswer> asked;
@@ -141,7 +120,7 @@ Calls::Answer DeviceServices::answer_set(std::uint32_t index, bool on) {
   const Point& point = map_.points[index];
   const std::uint16_t value =
       holds_bits(point.table) ? std::uint16_t{on} : codec::encode_part(on ? 1 : 0, point.format);
-  const auto outcome = write(index, {&value, 1});
+  const auto outcome = write(make_write(map_, index, {&value, 1}));
   return {outcome.outcome == Outcome::ok, outcome.text};
 }
 
@@ -156,21 +135,25 @@ Calls::Answer DeviceServices::answer_call(std::function<std::future<Calls::Answe
 
 ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
   ServiceThread::ReadAnswer answer;
-  const Point* point = find_point(name, answer.message);
-  if (point == nullptr) return answer;
-  if (plan::why_not_read(map_, *point)) {
-    answer.message = fmt::format("{} is never read", point->name);
+  const auto named = point_named(map_, name);
+  if (!named) {
+    answer.message = named.error();
     return answer;
   }
-  const std::uint32_t index = index_of(*point);
-  const auto deadline = std::chrono::steady_clock::now() + answer_timeout(map_, *point);
+  const Point& point = **named;
+  if (plan::why_not_read(map_, point)) {
+    answer.message = fmt::format("{} is never read", point.name);
+    return answer;
+  }
+  const std::uint32_t index = index_of(point);
+  const auto deadline = std::chrono::steady_clock::now() + answer_timeout(map_, point);
   const auto value = value_waiter_.wait(index, deadline, [this, index] { subscribers_.add(index); });
   subscribers_.remove(index);
   answer.success = value.has_value();
   if (value)
-    answer.value = format_value(value->data(), *point);
+    answer.value = format_value(value->data(), point);
   else
-    answer.message = why_no_value(*point);
+    answer.message = why_no_value(point);
   return answer;
 }
 

@@ -7,9 +7,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
-
-#include <tl/expected.hpp>
 
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/ros/node.hpp"
@@ -51,19 +48,16 @@ class DeviceServices {
   ValueWaiter& value_waiter() { return value_waiter_; }
 
  private:
-  WriteTicket::Outcome write(std::uint32_t index, Span<const std::uint16_t> value);
-  WriteTicket::Outcome refuse(const std::string& name, const Point* point, const std::string& why);
+  WriteTicket::Outcome write(Write write);
+  WriteTicket::Outcome refuse(const std::string& name, const std::string& why);
   WriteTicket::Outcome answer_write(const std::string& name, const std::string& text);
   ScheduleAnswer answer_schedule(const ServiceThread::ScheduleRequest& request);
-  tl::expected<std::vector<std::uint16_t>, std::string> value_for(const std::string& name,
-                                                                  const std::string& text) const;
   ServiceThread::ReadAnswer answer_read(const std::string& name);
   Calls::Answer answer_set(std::uint32_t index, bool on);
   Calls::Answer answer_call(std::function<std::future<Calls::Answer>()> Device::*call);
   std::uint32_t index_of(const Point& point) const {
     return static_cast<std::uint32_t>(&point - map_.points.data());
   }
-  const Point* find_point(const std::string& name, std::string& message) const;
   std::string why_no_value(const Point& point);
 
   Map map_;

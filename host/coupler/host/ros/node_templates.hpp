@@ -143,8 +143,7 @@ void fill(Message& message, const ScheduledOutcome& outcome, const WallTime& wal
   message.result = static_cast<std::uint8_t>(outcome.result);
   message.reason = outcome.reason;
   put_time(message.due, outcome.asked);
-  message.lateness =
-      outcome.result == Result::done ? std::chrono::duration<double>(outcome.at.at - outcome.due).count() : 0;
+  message.lateness = std::chrono::duration<double>(outcome.lateness()).count();
   message.uncertainty = std::chrono::duration<double>(outcome.at.uncertainty + wall.error()).count();
 }
 
