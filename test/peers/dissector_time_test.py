@@ -6,6 +6,7 @@ here, so that all that a node may answer is among them; the bytes are packed by 
     dissector_time_test.py COUPLER MAP
 """
 import pathlib
+import re
 import shutil
 import socket
 import struct
@@ -59,18 +60,36 @@ TRAFFIC = [
     (schedule(1, 0, 2, b"\x01", 200), scheduled(513),
      ["schedules", STAMPS[0], f"Due: {TIME}", "Duration: 200 ms", f"lamp: true [at {TIME}] (above the door)",
       f"gate: false [at {TIME}]"],
-     ["scheduled as number 513", *STAMPS[1:]]),
+     ["scheduled as number 513", "Number: 513", *STAMPS[1:]]),
     (schedule(3, 0, 1, struct.pack(">h", -100), 0), b"\xc2\x06",
      ["schedules", STAMPS[0], f"Due: {TIME}", "Duration: for good", f"speed: -100 rpm [at {TIME}]"],
      ["refused", "speed [exception 06]"]),
     (struct.pack(">BBBIH", 66, 1, 2, EPOCH, 513), scheduled(513),
-     ["cancels a scheduled output", STAMPS[0], "Number: 513"], ["cancelled as number 513", *STAMPS[1:]]),
+     ["cancels a scheduled output", STAMPS[0], "Number: 513"], ["cancelled as number 513", "Number: 513", *STAMPS[1:]]),
     # Cut off, and another version's: the dissector leaves them alone.
     (wait(0, 0)[:9], b"\xc1\x03", None, None),
     (b"\x41\x02" + wait(0, 0)[2:], b"\xc1\x03", None, None),
     (b"\x42\x00" + schedule(1, 0, 2, b"\x01", 200)[2:], b"\xc2\x03", None, None),
     (schedule(1, 0, 2, b"\x01", 200)[:20], b"\xc2\x03", None, None),
     (wait(0, 0), changes(0, 0)[:20], ["waits for changes", "Longest wait: 0 ms", STAMPS[0], "Changes seen: 0"], None),
+]
+
+
+OUTCOMES = (f"Scheduled output 7: driven [at {SOON}], "
+            f"Scheduled output 8: cancelled, another write to the same point [at {SOON}], "
+            f"Scheduled output 9: not driven, the line or channel could not be driven [at {SOON}], "
+            f"Scheduled output 10: kind 77, reason 99 [at {SOON}]")
+# A filter, and the information columns of what it finds, from the dissector's first words on.
+FILTERS = [
+    ("longest_wait == 1000", ["waits for changes"]),
+    ("newest > 9000000000000000000", ["no changes"]),
+    ("lost == 9", [f"lamp: true [at {TIME}], door: false [at {SOON}], row: [2] true [at {SOON}], "
+                   f"discrete_inputs 900: true [at {SOON}]"]),
+    ('outcome == "cancelled"', [OUTCOMES]),
+    ("number == 9", [OUTCOMES]),
+    ("number == 513", ["scheduled as number 513", "cancels a scheduled output: 513", "cancelled as number 513"]),
+    ("duration == 200", [f"lamp: true [at {TIME}], gate: false [at {TIME}]"]),
+    (f"epoch == {EPOCH} && longest_wait == 30001", ["waits for changes"]),
 ]
 
 
@@ -114,6 +133,14 @@ def shown(port, file, script):
     return messages, [line for line in (done.stderr + done.stdout).splitlines() if "lua" in line.lower()]
 
 
+def found(port, file, script, condition):
+    """The information columns, behind what Wireshark itself says."""
+    done = tshark_test.read(port, file, "-X", f"lua_script:{script}", "-o", f"coupler_cell_north.port:{port}",
+                            "-Y", re.sub(r"\b([a-z_]+) (?=[=>])", r"coupler_cell_north.\1 ", condition),
+                            "-T", "fields", "-e", "_ws.col.Info")
+    return [line.partition(" | ")[2] for line in done.stdout.splitlines()]
+
+
 def main():
     if not shutil.which("tshark"):
         peer.skip("tshark is missing; run scripts/install-packages test")
@@ -132,6 +159,8 @@ def main():
         for index, (pdu, _, asked, answered) in enumerate(TRAFFIC):
             checks.equal(f"request {index} ({pdu.hex()})", messages.get((0x4000 + index, True)), asked)
             checks.equal(f"reply {index} ({pdu.hex()})", messages.get((0x4000 + index, False)), answered)
+        for condition, columns in FILTERS:
+            checks.equal(f"what the filter {condition} finds", found(port, file, script, condition), columns)
     checks.done("tshark with the exported dissector shows changes and scheduled outputs")
 
 

@@ -4,6 +4,15 @@ local proto = Proto(map.proto, "Points of " .. map.name)
 local fields = {
   point = ProtoField.string(map.proto .. ".point", "Point"),
   value = ProtoField.string(map.proto .. ".value", "Value"),
+  -- Of function codes 65 and 66.
+  longest_wait = ProtoField.uint16(map.proto .. ".longest_wait", "Longest wait"),
+  epoch = ProtoField.uint32(map.proto .. ".epoch", "Epoch", base.HEX),
+  seen = ProtoField.uint64(map.proto .. ".seen", "Changes seen"),
+  newest = ProtoField.uint64(map.proto .. ".newest", "Newest change"),
+  lost = ProtoField.uint32(map.proto .. ".lost", "Changes lost"),
+  number = ProtoField.uint16(map.proto .. ".number", "Number"),
+  duration = ProtoField.uint32(map.proto .. ".duration", "Duration"),
+  outcome = ProtoField.string(map.proto .. ".outcome", "Outcome"),
 }
 proto.fields = fields
 proto.prefs.port = Pref.uint("TCP port", map.port, "Where the device listens")
@@ -45,11 +54,17 @@ local function new_report(tvb, pinfo, tree, what)
   return setmetatable({ item = item, tvb = tvb, pinfo = pinfo, names = {} }, Report)
 end
 
+-- What is no point: text for people, value for filters. Returns its item.
+function Report:tell(field, range, value, text) return self.item:add(field, range, value):set_text(text) end
+
+-- In the information column.
+function Report:name(text) self.names[#self.names + 1] = text end
+
 function Report:add(point, range, value, remark)
   local text = point.name .. (value and ": " .. value or "")
   if value and point.units then text = text .. " " .. point.units end
   if remark then text = text .. " [" .. remark .. "]" end
-  self.names[#self.names + 1] = text
+  self:name(text)
   if point.description then text = text .. " (" .. point.description .. ")" end
   local item = self.item:add(fields.point, range, point.name)
   item:set_text(text)

@@ -30,23 +30,30 @@ local function time_request_of(tvb)
            write = { table = name, start = tvb(27, 2):uint(), count = tvb(29, 2):uint() } }
 end
 
+local function show_epoch(report, tvb, at)
+  report:tell(fields.epoch, tvb(at, 4), tvb(at, 4):uint(), string.format("Epoch: 0x%08X", tvb(at, 4):uint()))
+end
+
+local function show_number(item, tvb, at) item:add(fields.number, tvb(at, 2)) end
+
 local function show_time_request(tvb, pinfo, tree, request)
   local report = new_report(tvb, pinfo, tree, request.show)
-  local item = report.item
   if request.code == wait_code then
-    item:add(tvb(9, 2), string.format("Longest wait: %d ms", tvb(9, 2):uint()))
-    item:add(tvb(11, 4), string.format("Epoch: 0x%08X", tvb(11, 4):uint()))
-    item:add(tvb(15, 8), "Changes seen: " .. whole(tvb, 15))
-    return
+    report:tell(fields.longest_wait, tvb(9, 2), tvb(9, 2):uint(), string.format("Longest wait: %d ms", tvb(9, 2):uint()))
+    show_epoch(report, tvb, 11)
+    report:tell(fields.seen, tvb(15, 8), tvb(15, 8):uint64(), "Changes seen: " .. whole(tvb, 15))
+    report:name(request.show)
+    return report:close()
   end
-  item:add(tvb(10, 4), string.format("Epoch: 0x%08X", tvb(10, 4):uint()))
+  show_epoch(report, tvb, 10)
   if not request.write then
-    item:add(tvb(14, 2), "Number: " .. tvb(14, 2):uint())
-    return
+    show_number(report.item, tvb, 14)
+    report:name(request.show .. ": " .. tvb(14, 2):uint())
+    return report:close()
   end
-  item:add(tvb(14, 8), "Due: " .. node_time(tvb, 14))
+  report.item:add(tvb(14, 8), "Due: " .. node_time(tvb, 14))
   local duration = tvb(22, 4):uint()
-  item:add(tvb(22, 4), "Duration: " .. (duration == 0 and "for good" or duration .. " ms"))
+  report:tell(fields.duration, tvb(22, 4), duration, "Duration: " .. (duration == 0 and "for good" or duration .. " ms"))
   if holds(tvb, request.data, request.write) then
     report:range("write", request.write, message_at(tvb, request.data, request.write), "at " .. node_time(tvb, 14))
   end
@@ -62,25 +69,28 @@ local function show_bit(report, tvb, at)
     report:add(covered.point, tvb(at, 12), value_there, "at " .. node_time(tvb, at + 4))
   end
   if not found then
-    report.item:add(tvb(at, 12), string.format("%s %d: %s [at %s]", name or "table ?", address, value, node_time(tvb, at + 4)))
+    local text = string.format("%s %d: %s [at %s]", name or "table ?", address, value, node_time(tvb, at + 4))
+    report.item:add(tvb(at, 12), text)
+    report:name(text)
   end
 end
 
 local function show_outcome(report, tvb, at)
   local kind, reason = tvb(at + 1, 1):uint(), tvb(at, 1):uint()
-  local outcomes = { [3] = "driven", [4] = "cancelled", [5] = "not driven" }
-  local text = string.format("Scheduled output %d: %s", tvb(at + 2, 2):uint(), outcomes[kind] or "kind " .. kind)
+  local outcome = ({ [3] = "driven", [4] = "cancelled", [5] = "not driven" })[kind] or "kind " .. kind
+  local text = string.format("Scheduled output %d: %s", tvb(at + 2, 2):uint(), outcome)
   if reason > 0 then text = text .. ", " .. (reasons[reason] or "reason " .. reason) end
-  report.item:add(tvb(at, 12), text .. " [at " .. node_time(tvb, at + 4) .. "]")
+  text = text .. " [at " .. node_time(tvb, at + 4) .. "]"
+  show_number(report:tell(fields.outcome, tvb(at, 12), outcome, text), tvb, at + 2)
+  report:name(text)
 end
 
 local function show_changes(report, tvb)
-  local item = report.item
-  item:add(tvb(9, 4), string.format("Epoch: 0x%08X", tvb(9, 4):uint()))
-  item:add(tvb(13, 8), "Request arrived: " .. node_time(tvb, 13))
-  item:add(tvb(21, 8), "Replied: " .. node_time(tvb, 21))
-  item:add(tvb(29, 8), "Newest change: " .. whole(tvb, 29))
-  item:add(tvb(37, 4), "Changes lost: " .. tvb(37, 4):uint())
+  show_epoch(report, tvb, 9)
+  report.item:add(tvb(13, 8), "Request arrived: " .. node_time(tvb, 13))
+  report.item:add(tvb(21, 8), "Replied: " .. node_time(tvb, 21))
+  report:tell(fields.newest, tvb(29, 8), tvb(29, 8):uint64(), "Newest change: " .. whole(tvb, 29))
+  report:tell(fields.lost, tvb(37, 4), tvb(37, 4):uint(), "Changes lost: " .. tvb(37, 4):uint())
   for i = 0, tvb(41, 1):uint() - 1 do
     local at = 42 + 12 * i
     if at + 12 > tvb:len() then return end
@@ -98,14 +108,21 @@ local function show_time_reply(tvb, pinfo, tree, request)
       return report:close()
     end
     report.item:append_text(" [" .. remark .. "]")
+    report:name("refused [" .. remark .. "]")
+    report:close()
   elseif code == wait_code and tvb:len() >= 42 then
     local report = new_report(tvb, pinfo, tree, "changes")
     show_changes(report, tvb)
-    if #report.names > 0 then report:close() end
+    if #report.names == 0 then report:name("no changes") end
+    report:close()
   elseif code == schedule_code and tvb:len() >= 27 then
     local what = request.write and "scheduled" or "cancelled"
-    local report = new_report(tvb, pinfo, tree, what .. " as number " .. tvb(9, 2):uint())
+    local text = what .. " as number " .. tvb(9, 2):uint()
+    local report = new_report(tvb, pinfo, tree, text)
+    show_number(report.item, tvb, 9)
     report.item:add(tvb(11, 8), "Request arrived: " .. node_time(tvb, 11))
     report.item:add(tvb(19, 8), "Replied: " .. node_time(tvb, 19))
+    report:name(text)
+    report:close()
   end
 end
