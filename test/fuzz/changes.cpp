@@ -133,7 +133,7 @@ class Connection {
       listener_.start(std::chrono::milliseconds(schedules));
     }
     if (listener_.asks_for_watchdog()) listener_.set_watchdog(std::chrono::milliseconds(schedules));
-    require_pause();
+    require(listener_.due() - clock_.now() <= std::chrono::seconds(1), "a pause ends");
     if (schedules > 0) schedule(std::chrono::milliseconds(20) * schedules);
     impostor_.will_answer(reply);
     bool lives = listener_.step().has_value();
@@ -151,12 +151,6 @@ class Connection {
   }
 
  private:
-  /// A node that answers at once, each time with something new, is not asked without end.
-  void require_pause() {
-    if (listener_.is_active() && !listener_.is_waiting() && listener_.due() > clock_.now())
-      require(listener_.due() - clock_.now() <= std::chrono::seconds(1), "a pause ends");
-  }
-
   void schedule(host::Duration in) {
     const Time due = clock_.now() + in;
     const auto node_due = outputs_.node_due(due, listener_.mapping());

@@ -20,6 +20,7 @@ import tshark_test
 
 EPOCH, NOW = 0xA1B2C3D4, 1234_567890123
 TIME, SOON = "1234.567890123 s", "0.000000005 s"
+HEADERS = 66  # of Ethernet, IP and TCP with time stamps
 STAMPS = [f"Epoch: 0x{EPOCH:08X}", f"Request arrived: {TIME}", f"Replied: {TIME}"]
 
 
@@ -66,11 +67,17 @@ TRAFFIC = [
      ["refused", "speed [exception 06]"]),
     (struct.pack(">BBBIH", 66, 1, 2, EPOCH, 513), scheduled(513),
      ["cancels a scheduled output", STAMPS[0], "Number: 513"], ["cancelled as number 513", "Number: 513", *STAMPS[1:]]),
-    # Cut off, and another version's: the dissector leaves them alone.
+    (wait(0, 304), changes(400, 96),
+     ["waits for changes", "Longest wait: 0 ms", STAMPS[0], "Changes seen: 304"],
+     ["changes", *STAMPS, "Newest change: 400", "Changes lost: 96"]),
+    (schedule(1, 77, 1, b"\x01", 5), scheduled(514), ["schedules (no point of the map)", STAMPS[0], f"Due: {TIME}", "Duration: 5 ms"],
+     ["scheduled as number 514", "Number: 514", *STAMPS[1:]]),
+    # Cut off, another version's, and an action that is not known: the dissector leaves them alone.
     (wait(0, 0)[:9], b"\xc1\x03", None, None),
     (b"\x41\x02" + wait(0, 0)[2:], b"\xc1\x03", None, None),
     (b"\x42\x00" + schedule(1, 0, 2, b"\x01", 200)[2:], b"\xc2\x03", None, None),
     (schedule(1, 0, 2, b"\x01", 200)[:20], b"\xc2\x03", None, None),
+    (b"\x42\x01\x09" + schedule(1, 0, 2, b"\x01", 200)[3:], scheduled(7), None, None),
     (wait(0, 0), changes(0, 0)[:20], ["waits for changes", "Longest wait: 0 ms", STAMPS[0], "Changes seen: 0"], None),
 ]
 
@@ -83,8 +90,9 @@ OUTCOMES = (f"Scheduled output 7: driven [at {SOON}], "
 FILTERS = [
     ("longest_wait == 1000", ["waits for changes"]),
     ("newest > 9000000000000000000", ["no changes"]),
-    ("lost == 9", [f"lamp: true [at {TIME}], door: false [at {SOON}], row: [2] true [at {SOON}], "
-                   f"discrete_inputs 900: true [at {SOON}]"]),
+    ("lost == 9", [f"9 changes lost, lamp: true [at {TIME}], door: false [at {SOON}], row: [2] true [at {SOON}], …"]),
+    ("lost == 96", ["96 changes lost"]),
+    ("duration == 5", ["schedules"]),
     ('outcome == "cancelled"', [OUTCOMES]),
     ("number == 9", [OUTCOMES]),
     ("number == 513", ["scheduled as number 513", "cancels a scheduled output: 513", "cancelled as number 513"]),
@@ -161,6 +169,14 @@ def main():
             checks.equal(f"reply {index} ({pdu.hex()})", messages.get((0x4000 + index, False)), answered)
         for condition, columns in FILTERS:
             checks.equal(f"what the filter {condition} finds", found(port, file, script, condition), columns)
+        # A capture may end each packet early.
+        for size in (*range(HEADERS + 6, HEADERS + 24), HEADERS + 45):
+            cut = pathlib.Path(folder) / "cut.pcapng"
+            subprocess.run(["editcap", "-s", str(size), str(file), str(cut)], check=True)
+            done = subprocess.run(["tshark", "-r", str(cut), "-X", f"lua_script:{script}", "-o", f"coupler_cell_north.port:{port}"],
+                                  capture_output=True, text=True, encoding="utf-8", check=False)
+            checks.equal(f"tshark's status, of packets cut to {size} bytes", done.returncode, 0)
+            checks.equal(f"errors in the script, of packets cut to {size} bytes", "Lua Error" in done.stdout + done.stderr, False)
     checks.done("tshark with the exported dissector shows changes and scheduled outputs")
 
 

@@ -7,6 +7,11 @@ local function connection(client, client_port, server, server_port)
 end
 
 local function dissect_one(tvb, pinfo, tree)
+  -- A capture may end each packet early. Wireshark's dissector then gives up in a way that does not come back through Lua.
+  if tvb:len() < tvb:reported_len() then
+    Dissector.get("data"):call(tvb, pinfo, tree)
+    return tvb:len()
+  end
   Dissector.get("mbtcp"):call(tvb, pinfo, tree)
   if tvb:len() < 9 then return tvb:len() end
   local unit = tvb(6, 1):uint()

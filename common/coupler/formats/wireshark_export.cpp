@@ -65,7 +65,9 @@ Export write_wireshark(const Map& map) {
       "-- or copy it into the folder for plugins (Help, About Wireshark, Folders). The device listens on "
       "port {1};\n"
       "-- another one: -o {2}.port:N -o mbtcp.tcp.port:N. Filters: {2}.point == \"NAME\", {2}.value == "
-      "\"…\".\n\n"
+      "\"…\",\n"
+      "-- of a node's function codes 65 and 66 {2}.longest_wait, epoch, seen, newest, lost, number,\n"
+      "-- duration, outcome.\n\n"
       "local map = {{\n"
       "  name = {3}, proto = \"{2}\", unit = {4}, port = {1},\n"
       "  points = {{\n",

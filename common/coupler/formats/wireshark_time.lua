@@ -23,7 +23,9 @@ local function time_request_of(tvb)
   if size < 16 or tvb(8, 1):uint() ~= 1 then return { code = code } end
   if code == wait_code and size == 23 then return { code = code, show = "waits for changes" } end
   if code ~= schedule_code then return { code = code } end
-  if tvb(9, 1):uint() == 2 then return { code = code, show = "cancels a scheduled output" } end
+  local action = tvb(9, 1):uint()
+  if action == 2 then return { code = code, show = "cancels a scheduled output" } end
+  if action ~= 1 then return { code = code } end
   local name = size > 32 and time_tables[tvb(26, 1):uint()]
   if not name then return { code = code } end
   return { code = code, show = "schedules", data = 32,
@@ -57,6 +59,7 @@ local function show_time_request(tvb, pinfo, tree, request)
   if holds(tvb, request.data, request.write) then
     report:range("write", request.write, message_at(tvb, request.data, request.write), "at " .. node_time(tvb, 14))
   end
+  if #report.names == 0 then pinfo.cols.info:append(" | " .. request.show) end
   report:close()
 end
 
@@ -91,6 +94,7 @@ local function show_changes(report, tvb)
   report.item:add(tvb(21, 8), "Replied: " .. node_time(tvb, 21))
   report:tell(fields.newest, tvb(29, 8), tvb(29, 8):uint64(), "Newest change: " .. whole(tvb, 29))
   report:tell(fields.lost, tvb(37, 4), tvb(37, 4):uint(), "Changes lost: " .. tvb(37, 4):uint())
+  if tvb(37, 4):uint() > 0 then report:name(tvb(37, 4):uint() .. " changes lost") end
   for i = 0, tvb(41, 1):uint() - 1 do
     local at = 42 + 12 * i
     if at + 12 > tvb:len() then return end
@@ -113,7 +117,7 @@ local function show_time_reply(tvb, pinfo, tree, request)
   elseif code == wait_code and tvb:len() >= 42 then
     local report = new_report(tvb, pinfo, tree, "changes")
     show_changes(report, tvb)
-    if #report.names == 0 then report:name("no changes") end
+    if #report.names == 0 and tvb(41, 1):uint() == 0 then report:name("no changes") end
     report:close()
   elseif code == schedule_code and tvb:len() >= 27 then
     local what = request.write and "scheduled" or "cancelled"

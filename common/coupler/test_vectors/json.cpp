@@ -9,13 +9,14 @@
 
 #include "coupler/codec/text.hpp"
 #include "coupler/codec/value.hpp"
+#include "coupler/json/json_text.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/test_vectors/cases.hpp"
 
 namespace coupler::test_vectors {
 namespace {
 
-std::string json_text(std::string_view text) { return nlohmann::json(text).dump(); }
+std::string json_string(std::string_view text) { return json_text(nlohmann::ordered_json(text)); }
 
 /// ", "key": value" with a value that is JSON already.
 std::string field(std::string_view key, std::string_view value) {
@@ -25,30 +26,30 @@ std::string field(std::string_view key, std::string_view value) {
 /// Name, table, address, size and access.
 std::string place(const Point& point) {
   std::string text = fmt::format("\"name\": {}, \"table\": \"{}\", \"address\": {}, \"{}\": {}",
-                                 json_text(point.name), to_string(point.table), point.address,
+                                 json_string(point.name), to_string(point.table), point.address,
                                  holds_bits(point.table) ? "bits" : "registers", range(point).count());
   if (point.count > 1) text += field("count", std::to_string(point.count));
   if (point.read_address) text += field("read_address", std::to_string(*point.read_address));
-  return text + field("access", json_text(to_string(point.access)));
+  return text + field("access", json_string(to_string(point.access)));
 }
 
 std::string format(const Point& point) {
   using codec::Type;
   const codec::Format& format = point.format;
-  std::string text = field("type", json_text(codec::to_string(format.type)));
+  std::string text = field("type", json_string(codec::to_string(format.type)));
   if (holds_bits(point.table)) return text;
-  text += field("order", json_text(codec::order_text(format)));
+  text += field("order", json_string(codec::order_text(format)));
   if (format.type == Type::BOOL) text += field("bit", std::to_string(format.bit));
   if (codec::width(format.type) == 8)
     text += field("offset", format.half == codec::Half::high ? "\"high\"" : "\"low\"");
   if (codec::is_partial(format)) text += field("mask", fmt::format("\"{:04X}\"", codec::mask(format)));
   if (format.type == Type::STRING)
     text += field("length", std::to_string(format.length)) +
-            field("encoding", json_text(codec::to_string(format.encoding)));
+            field("encoding", json_string(codec::to_string(format.encoding)));
   if (point.scale.present())
     text += field("scale", fmt::format(R"({{"gain": {}, "offset": {}}})", json(point.scale.gain, Type::LREAL),
                                        json(point.scale.offset, Type::LREAL)));
-  if (!point.units.empty()) text += field("units", json_text(point.units));
+  if (!point.units.empty()) text += field("units", json_string(point.units));
   return text;
 }
 
@@ -98,7 +99,7 @@ std::string json(const Map& map, std::string_view source, std::string_view versi
       "{{\n  \"format\": 1,\n  \"made_by\": {},\n  \"source\": {},\n  \"map\": {},\n  \"fingerprint\": "
       "\"{}\",\n"
       "  \"points\": [{}{}]\n}}\n",
-      json_text(fmt::format("coupler {}", version)), json_text(source), json_text(map.name),
+      json_string(fmt::format("coupler {}", version)), json_string(source), json_string(map.name),
       fingerprint_text(map.fingerprint), points.empty() ? "" : "\n", points);
 }
 
@@ -107,7 +108,7 @@ std::string json(const codec::Value& value, codec::Type type) {
       [&](const auto& v) -> std::string {
         using T = std::decay_t<decltype(v)>;
         if constexpr (std::is_same_v<T, std::string>)
-          return nlohmann::json(v).dump();
+          return json_string(v);
         else if constexpr (std::is_floating_point_v<T>)
           return number(v);
         else

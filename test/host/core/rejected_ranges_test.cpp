@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr Table hr = Table::holding_registers;
+constexpr Table holding = Table::holding_registers;
 
 using RejectedRangesTest = test::PollCycleTest;
 
@@ -65,7 +65,7 @@ TEST_F(RejectedRangesTest, All_bits_of_a_refused_register_are_given_up_with_one_
   missing = {0};
   MapBuilder builder;
   for (std::uint8_t bit = 0; bit < 3; ++bit)
-    builder.add(hr, std::string("bit") + char('a' + bit), 0, codec::Type::BOOL,
+    builder.add(holding, std::string("bit") + char('a' + bit), 0, codec::Type::BOOL,
                 [bit](Point& point) { point.format.bit = bit; });
   plan(builder);
   EXPECT_THAT(run(), ElementsAre("0+1!"));
@@ -75,7 +75,7 @@ TEST_F(RejectedRangesTest, All_bits_of_a_refused_register_are_given_up_with_one_
 
 TEST_F(RejectedRangesTest, A_device_that_takes_fewer_than_the_map_says_is_asked_for_less) {
   longest = 40;
-  plan(MapBuilder().many(hr, 0, 100));
+  plan(MapBuilder().many(holding, 0, 100));
   EXPECT_THAT(run(), ElementsAre("0+100!", "0+50!", "0+25", "25+25", "50+50!", "50+25", "75+25"));
   EXPECT_THAT(run(), ElementsAre("0+25", "25+25", "50+25", "75+25"));
   const auto refusals = cycle->take_rejected_ranges();
@@ -110,7 +110,7 @@ struct RandomDeviceTest : RejectedRangesTest {
                                      codec::Type::SINT};
     const unsigned points = 1 + below(40);
     for (unsigned i = 0; i < points; ++i)
-      builder.add(hr, "p" + std::to_string(i), static_cast<std::uint16_t>(below(150)), types[below(4)],
+      builder.add(holding, "p" + std::to_string(i), static_cast<std::uint16_t>(below(150)), types[below(4)],
                   [&](Point& point) { point.host.rate = below(3) == 0 ? 1 : 0; });
     missing.clear();
     for (unsigned i = below(6); i > 0; --i) missing.insert(below(150));
