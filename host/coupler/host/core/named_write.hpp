@@ -15,8 +15,8 @@ namespace coupler::host {
 /// The point of that name. The error says that there is none, and which was meant.
 tl::expected<const Point*, std::string> point_named(const Map& map, std::string_view name);
 
-/// A write of the value that the text says, as parse_value() takes it, to the point of that name. The error says
-/// why there can be none.
+/// A write of the value that the text says, as parse_value() takes it, to the point of that name. The error
+/// says why there can be none.
 tl::expected<Write, std::string> write_named(const Map& map, std::string_view name, std::string_view text);
 
 }  // namespace coupler::host
