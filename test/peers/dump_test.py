@@ -314,6 +314,11 @@ def changes_of_a_node_are_told_as_they_come(coupler, node, checks):
         for point in ("motor", "motor_runs", "ejector"):
             checks.equal(f"{point}: each change, a pulse's end too", [line for line in told if line.startswith(point + " ")],
                          [f"{point} true", f"{point} false"])
+        os.kill(peer.the_worker(), signal.SIGKILL)  # another one serves after 100 ms
+        gone = watch.await_line(lambda line: " offline: " in line, last or 0)
+        back = watch.await_line(lambda line: line.endswith(" online again"), gone or 0)
+        checks.equal("the short loss is told, then everything anew", watch.await_line(
+            lambda line: line.endswith(" ejector false"), back or len(watch.lines)) is not None, True)
         checks.equal("status after SIGINT", watch.end(), 0)
 
 

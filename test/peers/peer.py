@@ -117,6 +117,26 @@ def silent_port():
         yield place.getsockname()[1]
 
 
+def children_of(process):
+    return [int(child) for task in pathlib.Path(f"/proc/{process}/task").iterdir()
+            for child in (task / "children").read_text(encoding="ascii").split()]
+
+
+def the_node():
+    """The one that this test has started."""
+    return next(child for child in children_of(os.getpid())
+                if pathlib.Path(f"/proc/{child}/comm").read_text(encoding="ascii") == "coupler-node\n")
+
+
+def the_worker():
+    """The process that answers for it; None while there is none."""
+    for child in children_of(the_node()):
+        with contextlib.suppress(OSError):
+            if pathlib.Path(f"/proc/{child}/comm").read_text(encoding="ascii") == "coupler-node-io\n":
+                return child
+    return None
+
+
 @contextlib.contextmanager
 def running_node(command):
     """Runs a node on a free loopback port; yields the port. It must end well on SIGTERM."""

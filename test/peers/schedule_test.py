@@ -190,24 +190,6 @@ def sixty_four_places_for_all_clients(port, checks):
         watcher.cancel(number_of(again))
 
 
-def children_of(process):
-    return [int(child) for task in pathlib.Path(f"/proc/{process}/task").iterdir()
-            for child in (task / "children").read_text(encoding="ascii").split()]
-
-
-def the_node():
-    return next(child for child in children_of(os.getpid())
-                if pathlib.Path(f"/proc/{child}/comm").read_text(encoding="ascii") == "coupler-node\n")
-
-
-def the_worker():
-    for child in children_of(the_node()):
-        with contextlib.suppress(OSError):
-            if pathlib.Path(f"/proc/{child}/comm").read_text(encoding="ascii") == "coupler-node-io\n":
-                return child
-    return None
-
-
 def a_reload_cancels_and_durations_go_on(port, checks):
     with clients(port, 2) as (client, other):
         before = client.epoch
@@ -218,7 +200,7 @@ def a_reload_cancels_and_durations_go_on(port, checks):
         checks.equal("it has begun", {change[:3] for change in told}, it_burns)
         number = number_of(client.later(MOTOR, [1]))
         wait(client, other)  # who asks only afterwards asks the next process, which does not know
-        os.kill(the_node(), signal.SIGHUP)
+        os.kill(peer.the_node(), signal.SIGHUP)
         checks.equal("told before the reload", [change[:3] for change in client.take(client.receive()).changes],
                      [(RELOAD, CANCELLED, number)])
         peer.await_true("a new epoch", lambda: client.changes() is not None and client.epoch != before, checks)
@@ -233,9 +215,9 @@ def a_killed_worker_process_leaves_nothing_on(port, checks):
         _, begun = client.ahead(MOTOR, [1, 0, 1], LONGEST)
         checks.equal("it has begun", [o[0] for o in client.outcomes(number_of(begun))], [DONE])
         due, _ = client.ahead(BRAKE, [1])
-        killed = the_worker()
+        killed = peer.the_worker()
         os.kill(killed, signal.SIGKILL)
-    peer.await_true("another one serves", lambda: the_worker() not in (None, killed), checks)
+    peer.await_true("another one serves", lambda: peer.the_worker() not in (None, killed), checks)
     with clients(port) as client:
         checks.equal("safe, and the lamp as it was before", client.inputs(), [0, 0, 0])
         while time.monotonic_ns() < due:
@@ -251,11 +233,11 @@ def another_map_ends_what_it_has_elsewhere(port, checks, served):
         begun = [client.ahead(coil, [1], LONGEST)[1] for coil in (MOTOR, LAMP)]
         client.outcomes(*map(number_of, begun))
         checks.equal("both are on", client.inputs(), [1, 0, 1])
-    before = the_worker()
+    before = peer.the_worker()
     moved = served.read_text(encoding="utf-8").replace("lamp:  {address: 2", "lamp:  {address: 7")
     served.write_text(moved, encoding="utf-8")
-    os.kill(the_node(), signal.SIGHUP)
-    peer.await_true("another process serves", lambda: the_worker() not in (None, before), checks)
+    os.kill(peer.the_node(), signal.SIGHUP)
+    peer.await_true("another process serves", lambda: peer.the_worker() not in (None, before), checks)
     with clients(port) as client:
         checks.equal("what has moved is as it was before, the other goes on", client.inputs(), [1, 0, 0])
 

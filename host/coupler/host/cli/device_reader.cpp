@@ -110,24 +110,28 @@ Snapshot DeviceReader::look() {
   const Result<> done = connected_ ? Result<>{} : connect();
   if (done) now_ = known_;
   const Result<> read = done ? read_all() : done;
-  if (!read) {
-    now_.error = read.error();
-    for (Reading& reading : now_.readings)
-      if (reading.state == State::failed && reading.why.empty()) reading.why = to_string(*now_.error);
-    lose_connection();
-  }
+  if (!read) lost(read.error());
   now_.at = std::chrono::system_clock::now();
   return now_;
 }
 
-void DeviceReader::wait_until(host::Time time) {
-  if (!connected_ || !changes_.is_active()) return clock_.sleep_until(time);
-  if (changes_.wait_until(time)) return;
-  lose_connection();
-  clock_.sleep_until(std::min<host::Time>(time, clock_.now() + std::chrono::seconds(1)));  // not without end
+std::optional<Snapshot> DeviceReader::wait_until(host::Time time) {
+  if (!connected_ || !changes_.is_active()) {
+    clock_.sleep_until(time);
+    return std::nullopt;
+  }
+  const Result<> waited = changes_.wait_until(time);
+  if (waited) return std::nullopt;
+  now_ = known_;
+  lost(waited.error());
+  now_.at = std::chrono::system_clock::now();
+  return now_;
 }
 
-void DeviceReader::lose_connection() {
+void DeviceReader::lost(const host::Error& error) {
+  now_.error = error;
+  for (Reading& reading : now_.readings)
+    if (reading.state == State::failed && reading.why.empty()) reading.why = to_string(error);
   changes_.lost();
   transport_.close();
   connected_ = false;

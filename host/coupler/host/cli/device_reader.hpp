@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "coupler/host/cli/change_watch.hpp"
@@ -29,14 +30,16 @@ class DeviceReader {
   /// the snapshot says so and has the readings until then.
   Snapshot look();
 
-  /// Returns then, or before if everything should be looked at anew.
-  void wait_until(host::Time time);
+  /// Returns then, or before if everything should be looked at anew; a snapshot if the connection has ended
+  /// meanwhile.
+  std::optional<Snapshot> wait_until(host::Time time);
 
  private:
   using ReadSpan = plan::ReadSpan;
 
   host::Result<> connect();
-  void lose_connection();
+  /// Into `now_`, and ends the connection.
+  void lost(const host::Error& error);
   host::Result<> identify();
   void judge(const host::Identity& identity);
   void plan();

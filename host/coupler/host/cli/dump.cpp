@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -26,6 +28,9 @@
 
 namespace coupler::cli {
 namespace {
+
+/// A device that ends each connection is not asked without end.
+constexpr std::chrono::seconds pause_after_loss(1);
 
 void put(const std::string& line) {
   std::puts(line.c_str());
@@ -120,7 +125,11 @@ Exit again_and_again(const Map& map, const DumpOptions& options) {
     }
     show(map, first ? nullptr : &before, now);
     before = std::move(now);
-    reader.wait_until(next);
+    auto lost = reader.wait_until(next);
+    if (!lost || stopped) continue;
+    show(map, &before, *lost);
+    before = *std::move(lost);
+    clock.sleep_until(std::min<host::Time>(next, clock.now() + pause_after_loss));
   }
   if (terminal) put(end_frames);
   return ok;
