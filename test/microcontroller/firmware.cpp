@@ -96,9 +96,9 @@ class Firmware final : public maps::example::NodeCore {
 
 std::uint8_t reply[2 * modbus::max_adu_size];
 
-/// The replies to a client's first requests, one after the other.
+/// The replies to a client's first requests, one after the other, and what it hears a millisecond later.
 void answer_all() {
-  constexpr std::uint8_t requests[][23] = {
+  constexpr std::uint8_t requests[][33] = {
       {0, 1, 0, 0, 0, 6, 1, 2, 0, 0, 0, 3},        // the three inputs
       {0, 2, 0, 0, 0, 6, 1, 5, 0, 0, 0xFF, 0},     // relay on
       {0, 3, 0, 0, 0, 6, 1, 1, 0, 0, 0, 4},        // the coils
@@ -115,7 +115,16 @@ void answer_all() {
       {0, 13, 0, 0, 0, 17, 1, 65, 1, 0x75, 0x30, 0,
        0, 0,  7, 0, 0, 0,  0, 0,  0, 0,    1},  // and since then: waits …
       {0, 14, 0, 0, 0, 6, 1, 5, 0, 0, 0, 0},  // … for relay off, but is answered before what comes behind it
+      {0, 15, 0,    0,    0,    27, 1, 66, 1, 1, 0, 0, 0, 7, 0, 0, 0,
+       0, 0,  0x0F, 0x42, 0x40, 0,  0, 0,  0, 1, 0, 0, 0, 1, 1, 1},  // the relay, to be on after 1,000,000 ns
+      {0, 16, 0,    0,    0,    27, 1, 66, 1, 1, 0, 0, 0, 7, 0, 0, 0,
+       0, 0,  0x1E, 0x84, 0x80, 0,  0, 0,  0, 1, 0, 0, 0, 1, 1, 0},  // and off after 2,000,000 …
+      {0, 17, 0, 0, 0, 10, 1, 66, 1, 2, 0, 0, 0, 7, 0, 2},           // … which is cancelled
+      {0, 18, 0, 0, 0, 17, 1, 65, 1, 0x75, 0x30, 0, 0, 0, 7, 0, 0, 0, 0, 0, 0, 0, 2},  // relay off is known
+      {0, 19, 0, 0, 0, 17, 1, 65, 1, 0x75, 0x30, 0,
+       0, 0,  7, 0, 0, 0,  0, 0,  0, 0,    3},  // the cancelled one too
   };
+  constexpr TimePoint later{std::chrono::milliseconds(1)};
   Ports ports;
   static Firmware node(ports);
   // Of a chip: its unique number, hashed, and a name that somebody gave it.
@@ -131,6 +140,8 @@ void answer_all() {
     print_hex({reply, node.server().answer(framer.frame(), client, TimePoint{}, reply)});
     print_hex({reply, node.server().answer_waiting(client, TimePoint{}, reply)});
   }
+  node.handler().tick(later);
+  print_hex({reply, node.server().answer_waiting(client, later, reply)});
 }
 
 }  // namespace

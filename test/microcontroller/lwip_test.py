@@ -107,6 +107,41 @@ class Lwip(unittest.TestCase):
         for transaction in (7, 8):
             waiting.receive(transaction)
 
+    def test_an_output_is_driven_at_its_time_or_cancelled(self):
+        client = self.client()
+
+        def schedule(ahead):
+            """The relay's number, and the node's time at which it is due."""
+            now = read_changes(client.ask(wait_for_changes(0, 0)))
+            due = now.replied + ahead
+            reply = client.ask(struct.pack(">BBBIQIBHHBB", 66, 1, 1, now.epoch, due, 0, 1, 0, 1, 1, 1))
+            self.assertEqual(reply[:2], b"\x42\x01", reply.hex(" "))
+            return now, int.from_bytes(reply[2:4], "big"), due
+
+        def outcome(now, number):
+            changes = []
+            while not (told := [change for change in changes if change[1] >= 3 and change[2] == number]):
+                changes += read_changes(client.ask(wait_for_changes(now.epoch, now.newest + len(changes)))).changes
+            return told[0], [change[:3] for change in changes]
+
+        end = time.monotonic() + PATIENCE
+        while True:
+            now, number, due = schedule(50_000_000)
+            (reason, kind, _, at), changes = outcome(now, number)
+            if kind == 3:
+                break
+            self.assertEqual((kind, reason), (4, 3))  # the watchdog: the node has had no processor for a second
+            self.assertLess(time.monotonic(), end)
+        self.assertEqual(reason, 0)
+        self.assertGreaterEqual(at, due)
+        self.assertIn((1, 1, 0), changes)
+
+        now, number, _ = schedule(3_000_000_000_000)
+        client.ask(struct.pack(">BBBIH", 66, 1, 2, now.epoch, number))
+        (reason, kind, *_), changes = outcome(now, number)
+        self.assertEqual(kind, 4)
+        self.assertIn(reason, (1, 3))
+
     def test_an_address_that_is_not_mapped_is_exception_02(self):
         self.assertIn("Illegal data address", mbpoll("-t", 4, "-r", 100))
 
