@@ -50,5 +50,12 @@ TEST_F(Finding, What_is_not_there_is_answered_with_what_is) {
               HasSubstr("gpiochip0 has no line 3; it has lines 0 to 2"));
 }
 
+TEST_F(Finding, Where_no_line_has_a_name_the_other_way_is_told) {
+  const Inventory nameless{{Chip{"/dev/gpiochip0", "gpiochip0", "board", {"", ""}}}};
+  EXPECT_THAT(
+      nameless.find(named("board/1")).error(),
+      HasSubstr("'board' (2 lines); none of their lines has a name: write 'line: {chip: board, offset: 0}'"));
+}
+
 }  // namespace
 }  // namespace coupler::device
