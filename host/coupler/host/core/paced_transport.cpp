@@ -15,19 +15,22 @@ void PacedTransport::pause() {
   begun_ = clock_.now();
 }
 
+void PacedTransport::answered_at(Time time, Duration pause) {
+  answered_ = time;
+  ready_ = pause > Duration::zero() ? time + pause : Time::min();
+}
+
 Result<> PacedTransport::answered(Result<> result) {
-  answered_ = clock_.now();
-  ready_ = gap_ > Duration::zero() ? answered_ + gap_ : Time::min();
+  answered_at(clock_.now(), gap_);
   if (const ExceptionReply* exception = result ? nullptr : exception_in(result.error()))
     seen_.set(static_cast<std::size_t>(exception->code));
   statistics_.answered(answered_ - begun_, result);
   if (result || exception_in(result.error()) != nullptr) ++replies_;
-  give_wait_answer();
+  give(transport_.take_wait_answer());
   return result;
 }
 
-void PacedTransport::give_wait_answer() {
-  const auto answer = transport_.take_wait_answer();
+void PacedTransport::give(const std::optional<WaitAnswer>& answer) {
   if (!answer || listener_ == nullptr) return;
   ++replies_;
   listener_->on_wait_answer(*answer);
@@ -35,8 +38,7 @@ void PacedTransport::give_wait_answer() {
 
 Result<> PacedTransport::connect() {
   Result<> result = transport_.connect();
-  answered_ = clock_.now();
-  ready_ = delay_ > Duration::zero() ? answered_ + delay_ : Time::min();
+  answered_at(clock_.now(), delay_);
   return result;
 }
 
@@ -75,9 +77,9 @@ Result<> PacedTransport::send_wait(const modbus::ChangesRequest& request) {
 }
 Result<> PacedTransport::receive_wait() {
   if (Result<> received = transport_.receive_wait(); !received) return answered(received);
-  answered_ = clock_.now();
-  ready_ = gap_ > Duration::zero() ? answered_ + gap_ : Time::min();
-  give_wait_answer();
+  const auto answer = transport_.take_wait_answer();
+  if (answer) answered_at(answer->received, gap_);
+  give(answer);
   return {};
 }
 

@@ -81,8 +81,10 @@ class PacedTransport : public Transport {
 
  private:
   void pause();
+  /// The next request is made no sooner than `pause` later.
+  void answered_at(Time time, Duration pause);
   Result<> answered(Result<> result);
-  void give_wait_answer();
+  void give(const std::optional<WaitAnswer>& answer);
   template <class Request>
   Result<> paced(Request&& request) {
     pause();
