@@ -106,7 +106,7 @@ def talk(port, first):
 
 def shown(port, file, script):
     """By transaction id: what the request shows, what the reply shows."""
-    done = tshark_test.read(port, file, "-X", f"lua_script:{script}", "-o", f"coupler_cell_north.port:{port}", "-V")
+    done = tshark_test.read(port, file, *tshark_test.with_dissector(port, script), "-V")
     messages, points = {}, None
     for line in done.stdout.splitlines():
         text = line.strip()

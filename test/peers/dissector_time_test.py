@@ -124,7 +124,7 @@ def talk(port):
 
 def shown(port, file, script):
     """By transaction id: what the request shows, what the reply shows; and what tshark complains of."""
-    done = tshark_test.read(port, file, "-X", f"lua_script:{script}", "-o", f"coupler_cell_north.port:{port}", "-V")
+    done = tshark_test.read(port, file, *tshark_test.with_dissector(port, script), "-V")
     messages, lines, is_request = {}, None, False
     for line in done.stdout.splitlines():
         if line.startswith("Transmission Control Protocol"):
@@ -143,7 +143,7 @@ def shown(port, file, script):
 
 def found(port, file, script, condition):
     """The information columns, behind what Wireshark itself says."""
-    done = tshark_test.read(port, file, "-X", f"lua_script:{script}", "-o", f"coupler_cell_north.port:{port}",
+    done = tshark_test.read(port, file, *tshark_test.with_dissector(port, script),
                             "-Y", re.sub(r"\b([a-z_]+) (?=[=>])", r"coupler_cell_north.\1 ", condition),
                             "-T", "fields", "-e", "_ws.col.Info")
     return [line.partition(" | ")[2] for line in done.stdout.splitlines()]
@@ -173,7 +173,7 @@ def main():
         for size in (*range(HEADERS + 6, HEADERS + 24), HEADERS + 45):
             cut = pathlib.Path(folder) / "cut.pcapng"
             subprocess.run(["editcap", "-s", str(size), str(file), str(cut)], check=True)
-            done = subprocess.run(["tshark", "-r", str(cut), "-X", f"lua_script:{script}", "-o", f"coupler_cell_north.port:{port}"],
+            done = subprocess.run(["tshark", "-r", str(cut), *tshark_test.with_dissector(port, script)],
                                   capture_output=True, text=True, encoding="utf-8", check=False)
             checks.equal(f"tshark's status, of packets cut to {size} bytes", done.returncode, 0)
             checks.equal(f"errors in the script, of packets cut to {size} bytes", "Lua Error" in done.stdout + done.stderr, False)

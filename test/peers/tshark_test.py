@@ -88,6 +88,11 @@ def read(port, file, *options):
                           capture_output=True, text=True, encoding="utf-8", check=True)
 
 
+def with_dissector(port, script):
+    """The options for a script of `coupler export --to wireshark` for the map "cell/north"."""
+    return "-X", f"lua_script:{script}", "-o", f"coupler_cell_north.port:{port}"
+
+
 def dissect(port, file, *options):
     return [line for line in read(port, file, *options).stdout.splitlines() if line.strip()]
 
