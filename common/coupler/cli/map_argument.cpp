@@ -97,6 +97,15 @@ MapArgument from_file(LoadResult loaded) {
   return {std::move(loaded), exit};
 }
 
+/// Of a file that is missing and has the name of a host, the error says how a node is named.
+MapArgument from_file_or_hint(const std::string& argument, LoadResult loaded) {
+  MapArgument file = from_file(std::move(loaded));
+  const std::string node = node_argument(argument);
+  if (file.exit != ok && can_be_a_device(argument) && parse_node_address(node))
+    file.loaded.diagnostics.back().remedy += fmt::format("; for the map of a node write {}", node);
+  return file;
+}
+
 constexpr int could_not_run = 127;  ///< what posix_spawn()'s child, like a shell, ends with
 
 /// A file without a name, and not a pipe: git may write more than a pipe holds before it is read.
@@ -190,7 +199,8 @@ Map MapArgument::map() const {
 
 MapArgument get_map(const std::string& argument, const TlsTexts& tls, LockUse use) {
   if (names_a_node(argument)) return from_node(argument, tls);
-  return from_file(use == LockUse::renew ? load_and_renew_lock(argument) : load_map_file(argument, use));
+  return from_file_or_hint(
+      argument, use == LockUse::renew ? load_and_renew_lock(argument) : load_map_file(argument, use));
 }
 
 MapArgument get_map_or_find(std::string_view command, const std::string& argument, const TlsTexts& tls) {

@@ -34,6 +34,14 @@ class Dump(unittest.TestCase):
     def test_a_map_without_address_needs_at(self):
         self.refused(2, "cell.yaml does not say where the device is; give --at HOST[:PORT][/UNIT]", "cell.yaml")
 
+    def test_a_host_in_place_of_a_file_is_told_how_a_node_is_named(self):
+        missing = "error: the file cannot be read: No such file or directory; give the path of a map"
+        for place, node in (("127.0.0.1:1502", "tcp://127.0.0.1:1502"), ("press.local", "tcp://press.local"),
+                            ("/dev/ttyUSB77", "rtu:/dev/ttyUSB77")):
+            self.refused(1, f"{place}: {missing}; for the map of a node write {node}\n", place)
+        for file in ("press.yaml", "./press", "a b"):
+            self.refused(1, f"{file}: {missing}\n", file)
+
     def test_a_wrong_place_is_said(self):
         self.refused(2, "--at: the port '0' is not 1 to 65535; write tcp://HOST", "cell.yaml", "--at", "cell:0")
         self.refused(2, "--at: the unit id '256'", "cell.yaml", "--at", "tcp://cell/256")
