@@ -2,9 +2,9 @@
 // From an edge to the message that tells of it, through a node and a driver and through a bare chain, in
 // turn. Each line of its output is a sample: the side and ns. ROUNDS is even.
 //   coupler_bench_edges wire CHIP WIRES ROUNDS
-// In the test kernel, from the kernel's stamps of lines 1 and 2. Also "stamp" with three figures: the
-// kernel's stamp of an edge, which is between the first two, less the driver's; and the uncertainty of that.
-// If one was not within it, the exit status is 1.
+// In the test kernel, from the kernel's stamps of lines 1 and 2, and of line 4, whose point is stamped. Of
+// that also "stamp" with three figures: the kernel's stamp of an edge, which is between the first two, less
+// the driver's; and the uncertainty of that. If one was not within it, the exit status is 1.
 //   coupler_bench_edges coil NODE_PORT BARE_PORT ROUNDS
 // A node with --sim, whose input follows its coil, from the request that writes it.
 #include <coupler_driver/BoolStamped.h>
@@ -13,6 +13,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -48,32 +49,34 @@ class Sides {
  public:
   Sides() : spinner_(1) { spinner_.start(); }
 
-  void measure_in_turn(int rounds, const MakeEdge& for_node, const MakeEdge& for_bare) {
+  void measure_in_turn(int rounds, const MakeEdge& for_node, const MakeEdge& for_bare,
+                       const std::function<void(Sides&)>& measure_more = {}) {
     node_.wait_for([](const Bool& message) { return message.data == 0; });
     bare_.connect();
     for (int run = 0; run < repetitions; ++run) {
       measure("node", rounds, for_node, node_);
       measure("bare", rounds, for_bare, bare_);
+      if (measure_more) measure_more(*this);
     }
   }
 
-  /// Whether all were right.
-  bool check_stamps(int rounds, const KnownEdges& edges, const Wire& wire) {
+  /// Whether all stamps were right.
+  bool measure_stamped(int rounds, const KnownEdges& edges, const Wire& wire) {
     bool good = true;
     int checked = 0;
-    Heard<BoolStamped> stamped(handle_, "plant/input/stamped");
-    stamped.connect();
+    stamped_.connect();
     for (int i = 0; i < rounds; ++i) {
       const bool level = i % 2 == 0;
       std::this_thread::sleep_for(pause);
       edges.pull(wire, level);
-      const auto told = stamped.wait_for([&](const BoolStamped& one) { return (one.value != 0) == level; });
+      const auto told = stamped_.wait_for([&](const BoolStamped& one) { return (one.value != 0) == level; });
       const WallOffset wall = wall_offset();
       const auto stamp = static_cast<std::int64_t>(told.message->header.stamp.toNSec()) - wall.offset;
       const auto uncertainty = static_cast<std::int64_t>(told.message->uncertainty * 1e9) + wall.error;
       const auto edge = edges.stamp();
       if (!edge) continue;
       ++checked;
+      std::printf("stamped %lld\n", static_cast<long long>(told.at - edge->earliest));
       good &= edge->earliest <= stamp + uncertainty && edge->latest >= stamp - uncertainty;
       std::printf("stamp %lld %lld %lld\n", static_cast<long long>(edge->earliest - stamp),
                   static_cast<long long>(edge->latest - stamp), static_cast<long long>(uncertainty));
@@ -85,12 +88,14 @@ class Sides {
   ros::NodeHandle handle_;
   Heard<Bool> node_{handle_, "plant/input"};
   Heard<Bool> bare_{handle_, "bare/input"};
+  Heard<BoolStamped> stamped_{handle_, "plant/stamped_input/stamped"};
   ros::AsyncSpinner spinner_;
 };
 
 bool on_wires(const char* chip, const std::string& wires, int rounds) {
   const Wire of_node(wires + "/sim_gpio1");
   const Wire of_bare(wires + "/sim_gpio2");
+  const Wire of_stamped(wires + "/sim_gpio4");
   const KnownEdges edges(chip, wires);
   const auto pull = [&](const Wire& wire) -> MakeEdge {
     return [&](bool level) {
@@ -101,9 +106,10 @@ bool on_wires(const char* chip, const std::string& wires, int rounds) {
       };
     };
   };
-  Sides sides;
-  sides.measure_in_turn(rounds, pull(of_node), pull(of_bare));
-  return sides.check_stamps(rounds, edges, of_node);
+  bool good = true;
+  Sides().measure_in_turn(rounds, pull(of_node), pull(of_bare),
+                          [&](Sides& sides) { good &= sides.measure_stamped(rounds, edges, of_stamped); });
+  return good;
 }
 
 void of_a_coil(std::uint16_t node_port, std::uint16_t bare_port, int rounds) {

@@ -13,7 +13,7 @@ set +u
 # shellcheck disable=SC1091
 . "$build/devel/setup.bash"
 set -u
-sim_create plant 7
+sim_create plant 8
 plant_node "$here/plant.yaml"
 start core "$here/../../support/ros-master" 11311
 check "a ROS master answers" wait_until says core http://
@@ -24,7 +24,7 @@ start publisher "$bench/coupler_bench_bare" publisher 1503
 check "the bare chain publishes" wait_until says publisher publishing
 start sender "$bench/coupler_bench_bare" sender "$chip" 2 1503
 check "and hears of edges" wait_until says sender sending
-start reaction "$bench/coupler_bench_bare" reaction "$chip" 3 6 "$4"
+start reaction "$bench/coupler_bench_bare" reaction "$chip" 3 7 "$4"
 check "the bare timer waits" wait_until says reaction reacting
 wires=$(dirname "$(sim_wire plant 0)")
 check "edges are told, each with a stamp that is right" "$bench/coupler_bench_edges" wire "$chip" "$wires" "$2"

@@ -11,9 +11,9 @@ constexpr std::int64_t one_tick = 1'000'000;
 
 KnownEdges::KnownEdges(const char* chip, const std::string& wires)
     : before_(wires + "/sim_gpio0"),
-      behind_(wires + "/sim_gpio4"),
+      behind_(wires + "/sim_gpio5"),
       first_(chip, 0, both_edges),
-      last_(chip, 4, both_edges) {}
+      last_(chip, 5, both_edges) {}
 
 void KnownEdges::pull(const Wire& wire, bool level) const {
   before_.pull(level);

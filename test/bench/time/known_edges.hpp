@@ -15,7 +15,7 @@ namespace coupler::bench {
 /// lines. So a line of our own before it and one behind it are pulled along.
 class KnownEdges {
  public:
-  /// `wires` is the folder of the chip's simulated lines. Its lines 0 and 4 are ours.
+  /// `wires` is the folder of the chip's simulated lines. Its lines 0 and 5 are ours.
   KnownEdges(const char* chip, const std::string& wires);
 
   /// In ns, CLOCK_MONOTONIC.
@@ -23,7 +23,7 @@ class KnownEdges {
     std::int64_t earliest;
     std::int64_t latest;
   };
-  /// Pulls the wire of line 1, 2 or 3.
+  /// Pulls the wire of a line between them.
   void pull(const Wire& wire, bool level) const;
   /// Of the last pull; waits for it. nullopt: a tick came between the lines, so it is not known.
   std::optional<Stamp> stamp() const;

@@ -68,7 +68,7 @@ class Changes {
 void compare(const char* chip, const std::string& wires, int rounds, std::int64_t delay) {
   const KnownEdges edges(chip, wires);
   ros::NodeHandle handle;
-  Heard<BoolStamped> input(handle, "plant/input/stamped");
+  Heard<BoolStamped> input(handle, "plant/stamped_input/stamped");
   ros::AsyncSpinner spinner(1);
   spinner.start();
   input.wait_for([](const BoolStamped& message) { return message.value == 0; });
@@ -83,7 +83,7 @@ void compare(const char* chip, const std::string& wires, int rounds, std::int64_
     call.request.at = told.message->header.stamp + ros::Duration(static_cast<double>(delay) / 1e9);
     if (!schedule.call(call) || !call.response.success) give_up(call.response.message.c_str());
   };
-  const Wire of_driver(wires + "/sim_gpio1");
+  const Wire of_driver(wires + "/sim_gpio4");
   const Wire of_timer(wires + "/sim_gpio3");
   Changes changes;
   bool level = false;
