@@ -42,7 +42,7 @@ class Changes final : public ScheduleSink {
   bool differs(Table table, modbus::Range range) const;
   /// Something else that is told to whoever waits.
   void add_outcome(const modbus::Change& outcome, const ClientSession* owner) override;
-  /// At least so many changes of inputs were not seen.
+  /// At least so many changes of bits were not seen.
   void lose(std::uint32_t count);
 
   /// Whether what the session waits for is to be answered now: there is something that it may hear, or its

@@ -63,7 +63,8 @@ class PointHooks : public Hooks {
   void replace_registers(std::uint32_t point, const std::uint16_t* registers);
 
   /// From any thread of the process that serves: clients read the value from their next request on, and hear
-  /// of each value of a bit, one behind the other, if they wait for changes. The error says what is wrong
+  /// of each value of a bit, one behind the other, if they wait for changes: of sixteen before the node looks
+  /// at them; what is between the last two of more counts as lost. The error says what is wrong
   /// with it, or that this is another process.
   template <class T>
   tl::expected<void, std::string> set(std::uint32_t point, const T& value) {
@@ -84,9 +85,13 @@ class PointHooks : public Hooks {
   pid_t process_ = 0;       ///< the one that serves
   Waker* waker_ = nullptr;  ///< in it
   UrgentMutex mutex_;
-  /// By point, what was set since it was put into the image: the last value, of bits, whose changes are told,
-  /// the ones before as well.
-  std::vector<std::vector<std::uint16_t>> set_;
+  /// What was set since it was put into the image: the last value, of bits, whose changes are told, the ones
+  /// before as well, as far as there is room.
+  struct Values {
+    std::vector<std::uint16_t> registers;
+    std::uint32_t lost = 0;  ///< changes of bits before the last value for which there was no room
+  };
+  std::vector<Values> set_;            ///< by point
   std::vector<std::uint32_t> points_;  ///< those that are not empty
 };
 
