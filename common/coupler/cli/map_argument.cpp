@@ -92,18 +92,15 @@ LoadResult load_and_renew_lock(const std::string& path) {
   return {nullptr, std::move(loaded.diagnostics)};
 }
 
-MapArgument from_file(LoadResult loaded) {
+/// If there is no such file and it has the name of a host, the error says how a node is named.
+MapArgument from_file(const std::string& argument, const TlsTexts& tls, LoadResult loaded) {
   const Exit exit = loaded.map ? ok : bad_input;
+  const std::string node = any_given(tls) ? "tls://" + argument : node_argument(argument);
+  std::error_code ignored;
+  if (exit != ok && !std::filesystem::exists(argument, ignored) && can_be_a_device(argument) &&
+      parse_node_address(node))
+    loaded.diagnostics.back().remedy += fmt::format("; for the map of a node write {}", node);
   return {std::move(loaded), exit};
-}
-
-/// Of a file that is missing and has the name of a host, the error says how a node is named.
-MapArgument from_file_or_hint(const std::string& argument, LoadResult loaded) {
-  MapArgument file = from_file(std::move(loaded));
-  const std::string node = node_argument(argument);
-  if (file.exit != ok && can_be_a_device(argument) && parse_node_address(node))
-    file.loaded.diagnostics.back().remedy += fmt::format("; for the map of a node write {}", node);
-  return file;
 }
 
 constexpr int could_not_run = 127;  ///< what posix_spawn()'s child, like a shell, ends with
@@ -199,8 +196,8 @@ Map MapArgument::map() const {
 
 MapArgument get_map(const std::string& argument, const TlsTexts& tls, LockUse use) {
   if (names_a_node(argument)) return from_node(argument, tls);
-  return from_file_or_hint(
-      argument, use == LockUse::renew ? load_and_renew_lock(argument) : load_map_file(argument, use));
+  return from_file(argument, tls,
+                   use == LockUse::renew ? load_and_renew_lock(argument) : load_map_file(argument, use));
 }
 
 MapArgument get_map_or_find(std::string_view command, const std::string& argument, const TlsTexts& tls) {
@@ -209,7 +206,7 @@ MapArgument get_map_or_find(std::string_view command, const std::string& argumen
 
 MapArgument get_version(const std::string& argument, const TlsTexts& tls) {
   if (names_a_node(argument) || !names_a_revision(argument)) return get_map(argument, tls);
-  return from_file(load_revision(argument));
+  return from_file(argument, tls, load_revision(argument));
 }
 
 }  // namespace coupler::cli

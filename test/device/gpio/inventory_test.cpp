@@ -54,7 +54,8 @@ TEST_F(Finding, Where_no_line_has_a_name_the_other_way_is_told) {
   const Inventory nameless{{Chip{"/dev/gpiochip0", "gpiochip0", "board", {"", ""}}}};
   EXPECT_THAT(
       nameless.find(named("board/1")).error(),
-      HasSubstr("'board' (2 lines); none of their lines has a name: write 'line: {chip: board, offset: 0}'"));
+      HasSubstr(
+          "'board' (2 lines); none of their lines has a name: write 'line: {chip: \"board\", offset: 0}'"));
 }
 
 }  // namespace

@@ -90,10 +90,10 @@ tl::expected<FoundLine, std::string> Inventory::find_by_name(std::string_view na
   for (const Chip& chip : chips_)
     if (const std::string names = names_of_lines(chip); !names.empty())
       named += fmt::format("; named on {}: {}", chip.name, names);
-  if (named.empty() && !chips_.empty())
+  if (named.empty() && !chips_.empty() && unopened_.empty())
     named = fmt::format(
-        "; none of their lines has a name: write 'line: {{chip: {}, offset: 0}}' for the first one",
-        chips_.front().label);
+        "; none of their lines has a name: write 'line: {{chip: \"{}\", offset: 0}}' for the first one",
+        chips_.front().label.empty() ? chips_.front().name : chips_.front().label);
   return tl::unexpected(fmt::format("no GPIO line is named '{}'{}{}", name, contents(), named));
 }
 
