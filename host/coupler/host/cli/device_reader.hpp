@@ -31,7 +31,7 @@ class DeviceReader {
   Snapshot look();
 
   /// Returns then, or before if everything should be looked at anew; a snapshot if the connection has ended
-  /// meanwhile.
+  /// meanwhile: the next look makes another one, which a caller puts off.
   std::optional<Snapshot> wait_until(host::Time time);
 
  private:

@@ -112,21 +112,25 @@ Exit again_and_again(const Map& map, const DumpOptions& options) {
         online = before;
         show(map, &before, before);
       });
+  bool was_told = false;  // the device told its changes, until the connection ended
   for (bool first = true; !stopped; first = false) {
     host::Time next = clock.now() + *options.every;
     Snapshot now = reader.look();
     if (stopped) break;
     if (now.online()) {
       backoff.reset();
+      was_told = false;
       if (online.online() && !online.readings.empty()) mark_changes(online, now);
       online = now;
     } else {
-      next = std::max(next, clock.now() + backoff.next());
+      const host::Time again = clock.now() + backoff.next();
+      next = was_told ? again : std::max(next, again);  // what comes between two looks is not told meanwhile
     }
     show(map, first ? nullptr : &before, now);
     before = std::move(now);
     auto lost = reader.wait_until(next);
     if (!lost || stopped) continue;
+    was_told = true;
     show(map, &before, *lost);
     before = *std::move(lost);
     clock.sleep_until(std::min<host::Time>(next, clock.now() + pause_after_loss));
