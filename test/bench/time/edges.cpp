@@ -50,47 +50,48 @@ class Sides {
   Sides() : spinner_(1) { spinner_.start(); }
 
   void measure_in_turn(int rounds, const MakeEdge& for_node, const MakeEdge& for_bare,
-                       const std::function<void(Sides&)>& measure_more = {}) {
+                       const std::function<void()>& measure_more = {}) {
     node_.wait_for([](const Bool& message) { return message.data == 0; });
     bare_.connect();
     for (int run = 0; run < repetitions; ++run) {
       measure("node", rounds, for_node, node_);
       measure("bare", rounds, for_bare, bare_);
-      if (measure_more) measure_more(*this);
+      if (measure_more) measure_more();
     }
-  }
-
-  /// Whether all stamps were right.
-  bool measure_stamped(int rounds, const KnownEdges& edges, const Wire& wire) {
-    bool good = true;
-    int checked = 0;
-    stamped_.connect();
-    for (int i = 0; i < rounds; ++i) {
-      const bool level = i % 2 == 0;
-      std::this_thread::sleep_for(pause);
-      edges.pull(wire, level);
-      const auto told = stamped_.wait_for([&](const BoolStamped& one) { return (one.value != 0) == level; });
-      const WallOffset wall = wall_offset();
-      const auto stamp = static_cast<std::int64_t>(told.message->header.stamp.toNSec()) - wall.offset;
-      const auto uncertainty = static_cast<std::int64_t>(told.message->uncertainty * 1e9) + wall.error;
-      const auto edge = edges.stamp();
-      if (!edge) continue;
-      ++checked;
-      std::printf("stamped %lld\n", static_cast<long long>(told.at - edge->earliest));
-      good &= edge->earliest <= stamp + uncertainty && edge->latest >= stamp - uncertainty;
-      std::printf("stamp %lld %lld %lld\n", static_cast<long long>(edge->earliest - stamp),
-                  static_cast<long long>(edge->latest - stamp), static_cast<long long>(uncertainty));
-    }
-    return good && checked > 0;
   }
 
  private:
   ros::NodeHandle handle_;
   Heard<Bool> node_{handle_, "plant/input"};
   Heard<Bool> bare_{handle_, "bare/input"};
-  Heard<BoolStamped> stamped_{handle_, "plant/stamped_input/stamped"};
   ros::AsyncSpinner spinner_;
 };
+
+struct Stamps {
+  int right = 0;
+  int wrong = 0;
+};
+
+void measure_stamped(int rounds, const KnownEdges& edges, const Wire& wire, Heard<BoolStamped>& heard,
+                     Stamps& stamps) {
+  heard.connect();
+  for (int i = 0; i < rounds; ++i) {
+    const bool level = i % 2 == 0;
+    std::this_thread::sleep_for(pause);
+    edges.pull(wire, level);
+    const auto told = heard.wait_for([&](const BoolStamped& one) { return (one.value != 0) == level; });
+    const WallOffset wall = wall_offset();
+    const auto stamp = static_cast<std::int64_t>(told.message->header.stamp.toNSec()) - wall.offset;
+    const auto uncertainty = static_cast<std::int64_t>(told.message->uncertainty * 1e9) + wall.error;
+    const auto edge = edges.stamp();
+    if (!edge) continue;
+    std::printf("stamped %lld\n", static_cast<long long>(told.at - edge->earliest));
+    const bool is_right = edge->earliest <= stamp + uncertainty && edge->latest >= stamp - uncertainty;
+    ++(is_right ? stamps.right : stamps.wrong);
+    std::printf("stamp %lld %lld %lld\n", static_cast<long long>(edge->earliest - stamp),
+                static_cast<long long>(edge->latest - stamp), static_cast<long long>(uncertainty));
+  }
+}
 
 bool on_wires(const char* chip, const std::string& wires, int rounds) {
   const Wire of_node(wires + "/sim_gpio1");
@@ -106,10 +107,13 @@ bool on_wires(const char* chip, const std::string& wires, int rounds) {
       };
     };
   };
-  bool good = true;
-  Sides().measure_in_turn(rounds, pull(of_node), pull(of_bare),
-                          [&](Sides& sides) { good &= sides.measure_stamped(rounds, edges, of_stamped); });
-  return good;
+  Sides sides;
+  ros::NodeHandle handle;
+  Heard<BoolStamped> stamped(handle, "plant/stamped_input/stamped");
+  Stamps stamps;
+  sides.measure_in_turn(rounds, pull(of_node), pull(of_bare),
+                        [&] { measure_stamped(rounds, edges, of_stamped, stamped, stamps); });
+  return stamps.right > 0 && stamps.wrong == 0;
 }
 
 void of_a_coil(std::uint16_t node_port, std::uint16_t bare_port, int rounds) {

@@ -4,7 +4,7 @@
 // kernel's stamp of the input's edge to when the node had driven its output, as it tells a client that waits
 // for changes: a program that looked at the wire would run behind all that ROS does then, with one processor.
 // The timer prints its own.
-//   coupler_bench_reaction CHIP WIRES ROUNDS NS       in the test kernel: line 1 → 5 (driver), 3 → 6 (timer)
+//   coupler_bench_reaction CHIP WIRES ROUNDS NS       in the test kernel: line 4 → 6 (driver), 3 → 7 (timer)
 #include <coupler_driver/BoolStamped.h>
 #include <coupler_driver/Schedule.h>
 #include <sys/socket.h>
