@@ -125,6 +125,8 @@ expect "nothing was lost by that" 0 "$(lost)"
 
 echo "# a reader that is stopped"
 before=$(counter 3 2)
+start heard python3 heard_changes.py 1
+check "a client waits for changes" wait_until says heard listening
 id=$(worker)
 kill -STOP "$(pid node)" # the supervisor, which would end a worker process that is silent for so long
 kill -STOP "$id"
@@ -138,5 +140,11 @@ check "what the kernel could not keep is missing" test "$counted" -lt 1400
 check "is reported as lost" test "$lost" -gt 0
 check "and told in the log, once" says node 'gpiochip.* lost'
 refuse "not twice" says node 'gpiochip.* lost' 2
+check "the client that waits ends" stop heard INT
+told=$(sed -nE 's/^told ([0-9]+), lost .*/\1/p' "$(log heard)")
+unheard=$(sed -nE 's/^told [0-9]+, lost ([0-9]+)$/\1/p' "$(log heard)")
+echo "# it was told $told edges, and that $unheard were lost"
+check "it was not told all" test "$told" -lt 1400
+check "and knows" test "$unheard" -gt 0
 check "it ends well on SIGTERM" stop node TERM
 cat "$(log node)"

@@ -109,38 +109,48 @@ class Lwip(unittest.TestCase):
 
     def test_an_output_is_driven_at_its_time_or_cancelled(self):
         client = self.client()
+        end = time.monotonic() + PATIENCE
 
         def schedule(ahead):
-            """The relay's number, and the node's time at which it is due."""
-            now = read_changes(client.ask(wait_for_changes(0, 0)))
-            due = now.replied + ahead
-            reply = client.ask(struct.pack(">BBBIQIBHHBB", 66, 1, 1, now.epoch, due, 0, 1, 0, 1, 1, 1))
-            self.assertEqual(reply[:2], b"\x42\x01", reply.hex(" "))
-            return now, int.from_bytes(reply[2:4], "big"), due
+            """What was told before, the relay's number, and the node's time at which it is due."""
+            while True:
+                self.assertLess(time.monotonic(), end)
+                now = read_changes(client.ask(wait_for_changes(0, 0)))
+                due = now.replied + ahead
+                reply = client.ask(struct.pack(">BBBIQIBHHBB", 66, 1, 1, now.epoch, due, 0, 1, 0, 1, 1, 1))
+                if reply != b"\xC2\x03":  # it was past when it came
+                    self.assertEqual(reply[:2], b"\x42\x01", reply.hex(" "))
+                    return now, reply[2:4], due
+                ahead *= 2
 
         def outcome(now, number):
             changes = []
-            while not (told := [change for change in changes if change[1] >= 3 and change[2] == number]):
+            while not (told := [change for change in changes if change[1] >= 3 and change[2] == int.from_bytes(number, "big")]):
+                self.assertLess(time.monotonic(), end)
                 changes += read_changes(client.ask(wait_for_changes(now.epoch, now.newest + len(changes)))).changes
             return told[0], [change[:3] for change in changes]
 
-        end = time.monotonic() + PATIENCE
+        def is_undisturbed(reason, kind):
+            """False: the node or this test had no processor for a second, and the watchdog has expired."""
+            return (reason, kind) != (3, 4)
+
         while True:
             now, number, due = schedule(50_000_000)
             (reason, kind, _, at), changes = outcome(now, number)
-            if kind == 3:
+            if is_undisturbed(reason, kind):
                 break
-            self.assertEqual((kind, reason), (4, 3))  # the watchdog: the node has had no processor for a second
-            self.assertLess(time.monotonic(), end)
-        self.assertEqual(reason, 0)
+        self.assertEqual((reason, kind), (0, 3))
         self.assertGreaterEqual(at, due)
         self.assertIn((1, 1, 0), changes)
 
-        now, number, _ = schedule(3_000_000_000_000)
-        client.ask(struct.pack(">BBBIH", 66, 1, 2, now.epoch, number))
-        (reason, kind, *_), changes = outcome(now, number)
-        self.assertEqual(kind, 4)
-        self.assertIn(reason, (1, 3))
+        while True:
+            now, number, _ = schedule(3_000_000_000_000)
+            reply = client.ask(struct.pack(">BBBI", 66, 1, 2, now.epoch) + number)
+            (reason, kind, *_), _ = outcome(now, number)
+            if is_undisturbed(reason, kind):
+                break
+        self.assertEqual(reply[:4], b"\x42\x01" + number)
+        self.assertEqual((reason, kind), (1, 4))
 
     def test_an_address_that_is_not_mapped_is_exception_02(self):
         self.assertIn("Illegal data address", mbpoll("-t", 4, "-r", 100))

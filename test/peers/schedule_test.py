@@ -190,6 +190,21 @@ def sixty_four_places_for_all_clients(port, checks):
         watcher.cancel(number_of(again))
 
 
+def two_clients_schedule_the_same_output(port, checks):
+    with clients(port, 2) as (first, second):
+        lead = SOON
+        while True:
+            due = time.monotonic_ns() + lead
+            replies = first.schedule(due + SOON, MOTOR, [0]), second.schedule(due, MOTOR, [1])
+            if NOT_ALLOWED not in replies:
+                break
+            first.cancel(number_of(replies[0]) or 0)
+            lead *= 2
+        off, on = map(number_of, replies)
+        checks.equal("neither cancels the other's", [o[:3] for o in first.outcomes(off, on)], [(DONE, 0, on), (DONE, 0, off)])
+        checks.equal("the output follows both", [level for level, _ in second.coil_changes(MOTOR, 2)], [1, 0])
+
+
 def a_reload_cancels_and_durations_go_on(port, checks):
     with clients(port, 2) as (client, other):
         before = client.epoch
@@ -262,7 +277,8 @@ def without_watchdog(node, served, checks):
     with peer.running_node([node, str(served), "--sim"]) as port:
         for test in (they_are_driven_at_their_times_in_their_order, a_duration_ends_though_its_client_is_gone,
                      a_pulse_ends_by_itself,
-                     what_cancels, what_is_refused, sixty_four_places_for_all_clients, a_reload_cancels_and_durations_go_on,
+                     what_cancels, what_is_refused, sixty_four_places_for_all_clients,
+                     two_clients_schedule_the_same_output, a_reload_cancels_and_durations_go_on,
                      a_killed_worker_process_leaves_nothing_on):
             test(port, checks)
         another_map_ends_what_it_has_elsewhere(port, checks, served)

@@ -72,9 +72,12 @@ struct HookedNode : ::testing::Test {
   TimePoint now{};
   OutputWatchdog watchdog{map.service.watchdog};
   std::vector<EdgePoints::Link> links{node_memory(map).links};
-  Changes changes;
+  std::vector<ChangeRing::Entry> ring{4};
+  std::vector<std::uint16_t> told = std::vector<std::uint16_t>(memory.image.bits().size());
+  Changes changes{memory.image, ring, told};
   std::vector<ScheduledOutput> scheduled{4};
-  OutputSchedule schedule{scheduled};
+  FakeScheduleSink outcomes;
+  OutputSchedule schedule{scheduled, &outcomes};
   Handler handler{
       map, Hardware(lines, nullptr, &hooked), {memory.image, statistics, watchdog, links, changes, schedule}};
 };
@@ -90,6 +93,24 @@ TEST_F(HookedNode, A_write_is_acknowledged_after_the_code_accepted_it) {
 TEST_F(HookedNode, A_refused_value_is_exception_04_and_changes_nothing) {
   hooks.refused = {1, 7};
   EXPECT_EQ(write(0, {7}), failure);
+  EXPECT_EQ(ask(pdu(3, {0, 1})), (Pdu{3, 2, 0, 0}));
+}
+
+TEST_F(HookedNode, What_the_code_refuses_when_it_is_due_is_told_as_failed_and_changes_nothing) {
+  handler.tell_changes(7, now);
+  const auto due = now + std::chrono::milliseconds(5);
+  const auto request = modbus::ScheduleRequest::registers(
+      {7, node_time(due), {}, modbus::Function::read_holding_registers, modbus::Range::of(0, 1), {}},
+      std::vector<std::uint16_t>{42});
+  const auto bytes = request.pdu();
+  EXPECT_EQ(ask(Pdu(bytes.begin(), bytes.end()))[0], 66) << "the code is asked when it is due";
+  EXPECT_THAT(hooks.calls, IsEmpty());
+  hooks.refused = {1, 42};
+  now = due;
+  handler.tick(now);
+  ASSERT_EQ(outcomes.told.size(), 1U);
+  EXPECT_EQ(outcomes.told[0].kind, modbus::Change::Kind::failed);
+  EXPECT_EQ(outcomes.told[0].table, static_cast<std::uint8_t>(modbus::Reason::hardware));
   EXPECT_EQ(ask(pdu(3, {0, 1})), (Pdu{3, 2, 0, 0}));
 }
 

@@ -18,6 +18,15 @@ Pdu wait_for_changes(std::uint32_t of) {
   return bytes;
 }
 
+Pdu schedule_coil() {
+  const auto due = node_time(TimePoint::clock::now() + std::chrono::minutes(10));
+  const auto request = modbus::ScheduleRequest::coils(
+      {epoch, due, {}, modbus::Function::read_coils, modbus::Range::of(0, 1), {}},
+      std::vector<std::uint16_t>{1});
+  const auto bytes = request.pdu();
+  return Pdu(bytes.begin(), bytes.end());
+}
+
 const std::vector<Pdu>& every_kind_of_request() {
   static const std::vector<Pdu> requests{
       pdu(1, {0, 2000}),
@@ -37,6 +46,8 @@ const std::vector<Pdu>& every_kind_of_request() {
       wait_for_changes(0),      // answered at once
       wait_for_changes(epoch),  // waits, until …
       pdu(5, {1, 0xFF00}),      // … that
+      schedule_coil(),
+      {66, 1, 2, 0, 0, 0, epoch, 0, 1},  // and cancels it
   };
   return requests;
 }
