@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -85,56 +86,90 @@ Exit once(const Map& map, const DumpOptions& options) {
   return now.online() && now.failed() == 0 ? ok : failed;
 }
 
-Exit again_and_again(const Map& map, const DumpOptions& options) {
-  const auto transport = host::make_transport(map.connection);
-  host::SteadyClock clock;
-  std::atomic<bool> stopped{false};
-  const Interruption interruption([&] {
-    stopped = true;
-    transport->interrupt();
-    transport->wake();
-    clock.stop();
-  });
-  host::Backoff backoff;
-  const bool terminal = !options.json && is_screen();
-  const auto show = options.json ? show_json : terminal ? show_frame : show_changes;
-  if (terminal) std::fputs(begin_frames, stdout);
-  Snapshot before;
-  Snapshot online;  // the last that was
-  host::WallTime wall;
-  DeviceReader reader(
-      map, options.chosen, *transport, clock, load_served_map,
-      [&](const modbus::Change& bit, host::Stamp stamp) {
-        if (!before.online() || !take_change(map, bit, before)) return;
-        wall.measure();
-        before.at = std::chrono::system_clock::time_point(
-            std::chrono::duration_cast<std::chrono::system_clock::duration>(wall.of(stamp.at)));
-        online = before;
-        show(map, &before, before);
-      });
-  bool was_told = false;  // the device told its changes, until the connection ended
-  for (bool first = true; !stopped; first = false) {
-    host::Time next = clock.now() + *options.every;
-    Snapshot now = reader.look();
-    if (stopped) break;
-    if (now.online()) {
-      backoff.reset();
-      was_told = false;
-      if (online.online() && !online.readings.empty()) mark_changes(online, now);
-      online = now;
-    } else {
-      const host::Time again = clock.now() + backoff.next();
-      next = was_told ? again : std::max(next, again);  // what comes between two looks is not told meanwhile
-    }
-    show(map, first ? nullptr : &before, now);
-    before = std::move(now);
-    auto lost = reader.wait_until(next);
-    if (!lost || stopped) continue;
-    was_told = true;
-    show(map, &before, *lost);
-    before = *std::move(lost);
-    clock.sleep_until(std::min<host::Time>(next, clock.now() + pause_after_loss));
+using Show = void (*)(const Map& map, const Snapshot* before, const Snapshot& now);
+
+/// Looks again and again, and hears in between of what the device announces.
+class Watch {
+ public:
+  Watch(const Map& map, const DumpOptions& options, Show show)
+      : map_(map),
+        every_(*options.every),
+        show_(show),
+        transport_(host::make_transport(map.connection)),
+        interruption_([this] {
+          stopped_ = true;
+          transport_->interrupt();
+          transport_->wake();
+          clock_.stop();
+        }),
+        reader_(map, options.chosen, *transport_, clock_, load_served_map,
+                [this](const modbus::Change& bit, host::Stamp stamp) { take(bit, stamp); }) {}
+
+  /// Until it is interrupted.
+  void run() {
+    while (!stopped_) wait_until(look());
   }
+
+ private:
+  /// Returns when to look again.
+  host::Time look() {
+    const host::Time next = clock_.now() + every_;
+    Snapshot now = reader_.look();
+    if (stopped_) return next;
+    const bool is_online = now.online();
+    if (is_online) {
+      backoff_.reset();
+      if (online_.online() && !online_.readings.empty()) mark_changes(online_, now);
+      online_ = now;
+    }
+    show_(map_, std::exchange(is_first_, false) ? nullptr : &before_, now);
+    before_ = std::move(now);
+    if (is_online) {
+      was_told_ = false;
+      return next;
+    }
+    const host::Time again = clock_.now() + backoff_.next();
+    return was_told_ ? again : std::max(next, again);  // what comes between two looks is not told meanwhile
+  }
+
+  void wait_until(host::Time next) {
+    auto lost = reader_.wait_until(next);
+    if (!lost || stopped_) return;
+    was_told_ = true;
+    show_(map_, &before_, *lost);
+    before_ = *std::move(lost);
+    clock_.sleep_until(std::min<host::Time>(next, clock_.now() + pause_after_loss));
+  }
+
+  void take(const modbus::Change& bit, host::Stamp stamp) {
+    if (!before_.online() || !take_change(map_, bit, before_)) return;
+    wall_.measure();
+    before_.at = std::chrono::system_clock::time_point(
+        std::chrono::duration_cast<std::chrono::system_clock::duration>(wall_.of(stamp.at)));
+    online_ = before_;
+    show_(map_, &before_, before_);
+  }
+
+  const Map& map_;
+  const host::Duration every_;
+  const Show show_;
+  const std::unique_ptr<host::Transport> transport_;
+  host::SteadyClock clock_;
+  std::atomic<bool> stopped_{false};
+  const Interruption interruption_;
+  host::Backoff backoff_;
+  host::WallTime wall_;
+  Snapshot before_;
+  Snapshot online_;        ///< the last that was
+  bool is_first_ = true;   ///< nothing has been shown
+  bool was_told_ = false;  ///< the device told its changes, until the connection ended
+  DeviceReader reader_;    // last: it uses the others
+};
+
+Exit again_and_again(const Map& map, const DumpOptions& options) {
+  const bool terminal = !options.json && is_screen();
+  if (terminal) std::fputs(begin_frames, stdout);
+  Watch(map, options, options.json ? show_json : terminal ? show_frame : show_changes).run();
   if (terminal) put(end_frames);
   return ok;
 }
