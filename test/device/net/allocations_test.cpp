@@ -61,6 +61,7 @@ TEST(Allocations, They_are_counted_here) {
 TEST(Allocations, From_the_socket_to_the_reply_there_is_none) {
   TcpUnderTest node;
   node.node.lines.remembers = false;
+  node.node.outcomes.told.reserve(1);
   node.node.handler.tell_changes(epoch, TimePoint::clock::now());
   Client client = node.connect();
   for (const Pdu& request : every_kind_of_request()) {
