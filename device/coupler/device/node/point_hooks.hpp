@@ -39,6 +39,14 @@ class UrgentMutex {
   pthread_mutex_t mutex_;
 };
 
+/// What was set of a point since it was put into the image: the last value, of bits, whose changes are told,
+/// the ones before as well, as far as there is room. It is no member of PointHooks, whose names hide those of
+/// firmware.
+struct NewValues {
+  std::vector<std::uint16_t> registers;
+  std::uint32_t lost = 0;  ///< changes of bits before the last value for which there was no room
+};
+
 /// What the generated hooks of every map have in common: values <-> registers, and values that any thread
 /// sets.
 class PointHooks : public Hooks {
@@ -85,13 +93,7 @@ class PointHooks : public Hooks {
   pid_t process_ = 0;       ///< the one that serves
   Waker* waker_ = nullptr;  ///< in it
   UrgentMutex mutex_;
-  /// What was set since it was put into the image: the last value, of bits, whose changes are told, the ones
-  /// before as well, as far as there is room.
-  struct Values {
-    std::vector<std::uint16_t> registers;
-    std::uint32_t lost = 0;  ///< changes of bits before the last value for which there was no room
-  };
-  std::vector<Values> set_;            ///< by point
+  std::vector<NewValues> set_;         ///< by point
   std::vector<std::uint32_t> points_;  ///< those that are not empty
 };
 
