@@ -179,8 +179,7 @@ Result<> ModbusTransport::send_wait(const modbus::ChangesRequest& request) {
 Result<> ModbusTransport::receive_wait() {
   if (!wait_) return fail(NotConnected{"nothing was asked for"});
   modbus::Framer framer;
-  const Deadline deadline = std::min(wait_->answer_by, Deadline(timeout_));
-  return take_wait_reply(receive_reply(socket_, wait_->header, timeout_, deadline, framer, true));
+  return take_wait_reply(receive_reply(socket_, wait_->header, timeout_, wait_->answer_by, framer, true));
 }
 
 Result<> ModbusTransport::receive_wait_before(const Deadline& deadline) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,19 +25,21 @@ std::size_t missing(modbus::Bytes bytes) {
 
 enum class Take { all, one_frame };
 
-/// `may_be_there`: bytes have come, so it is tried to receive them before it is waited.
-Result<> receive_frame(int socket, std::chrono::milliseconds timeout, const Deadline& deadline,
-                       modbus::Framer& framer, Take take, bool may_be_there = false) {
-  for (;;) {
+/// `has_begun`: bytes have come, so it is tried to receive them before it is waited, and the clock is read
+/// only if there are not all of them: the rest comes within `timeout`.
+Result<> receive_frame(int socket, std::chrono::milliseconds timeout, Deadline deadline,
+                       modbus::Framer& framer, Take take, bool has_begun = false) {
+  for (bool waits = !has_begun;;) {
     const auto outcome = framer.next();
     if (outcome == modbus::Framer::Outcome::frame) return {};
     if (outcome == modbus::Framer::Outcome::bad) return fail(BadFrame{"not Modbus/TCP"});
+    if (waits && std::exchange(has_begun, false)) deadline = std::min(deadline, Deadline(timeout));
     pollfd wanted{socket, POLLIN, 0};
-    if (!may_be_there && ::poll(&wanted, 1, deadline.left()) == 0) return fail(Timeout{timeout});
+    if (waits && ::poll(&wanted, 1, deadline.left()) == 0) return fail(Timeout{timeout});
     const auto room = framer.room();
     const std::size_t most = take == Take::all ? room.size() : std::min(room.size(), missing(framer.rest()));
     const auto got = ::recv(socket, room.data(), most, 0);
-    may_be_there = got > 0;
+    waits = got <= 0;
     if (got == 0) return fail(TransportFailure{"the device closed the connection"});
     if (got > 0)
       framer.filled(static_cast<std::size_t>(got));
@@ -68,8 +71,8 @@ Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu) {
 }
 
 Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::chrono::milliseconds timeout,
-                                    const Deadline& deadline, modbus::Framer& framer, bool may_be_there) {
-  if (auto received = receive_frame(socket, timeout, deadline, framer, Take::all, may_be_there); !received)
+                                    const Deadline& deadline, modbus::Framer& framer, bool has_begun) {
+  if (auto received = receive_frame(socket, timeout, deadline, framer, Take::all, has_begun); !received)
     return tl::make_unexpected(received.error());
   const modbus::Frame& reply = framer.frame();
   if (auto answers = check_header(reply, to); !answers) return tl::make_unexpected(answers.error());

@@ -19,10 +19,10 @@ Result<> check_header(const modbus::Frame& reply, const modbus::Frame& request);
 Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu);
 
 /// Waits for the reply with this transaction and unit. Its PDU is valid as long as the framer.
-/// `may_be_there`: it has come, or a part of it.
+/// `has_begun`: it has come, or a part of it, the rest of which comes within `timeout` from now.
 Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::chrono::milliseconds timeout,
                                     const Deadline& deadline, modbus::Framer& framer,
-                                    bool may_be_there = false);
+                                    bool has_begun = false);
 
 /// The same where the reply to a later request may follow: takes no byte of that one.
 Result<modbus::Bytes> receive_first_reply(int socket, const modbus::Frame& to,
