@@ -38,6 +38,15 @@ sim_pull plant 0 up
 check "another message" rostopic pub --once /plant/lamp/write std_msgs/Bool 'data: false'
 check "the line is low, against its pull" wait_until level_is 0 0
 
+echo "# somebody sets the clock: stamps follow it, and it is told"
+is_stamped_from() { [ "$(tail -n 1 "$(log stamped)" | cut -d, -f3 | cut -c -10)" -ge "$1" ]; }
+start stamped rostopic echo -p /plant/closed/stamped
+check "a stamp is now" wait_until is_stamped_from "$(date +%s)"
+later=$(($(date +%s) + 3600))
+check "the clock is set an hour ahead" date -s "@$later"
+check "the driver tells it" wait_until says driver "clock was set 3[56].*s ahead"
+check "stamps are an hour later" wait_until is_stamped_from "$later"
+
 echo "# unplugging the chip is told, and crashes nobody"
 sim_unplug plant
 check "the driver tells of exception 04" wait_until says driver 'device failure'

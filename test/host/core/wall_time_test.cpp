@@ -11,13 +11,15 @@ namespace {
 using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
+using std::chrono::seconds;
 
 /// Both clocks, at instants that the test says.
 struct WallTimeTest : testing::Test {
   /// The wall clock is read in the middle of `takes`.
-  void measure(Duration takes) {
-    wall.measure(now, now.time_since_epoch() + takes / 2 + ahead, now + takes);
+  Duration measure(Duration takes) {
+    const Duration set_by = wall.measure(now, now.time_since_epoch() + takes / 2 + ahead, now + takes);
     now += takes;
+    return set_by;
   }
 
   Time now = Time{} + hours(5);
@@ -39,6 +41,22 @@ TEST_F(WallTimeTest, A_step_of_the_wall_clock_is_followed) {
     measure(nanoseconds(60));
     EXPECT_EQ(wall.of(now), now.time_since_epoch() + ahead);
   }
+}
+
+TEST_F(WallTimeTest, Who_sets_the_clock_is_told_and_who_corrects_it_is_not) {
+  EXPECT_EQ(measure(nanoseconds(40)), Duration::zero());
+  for (const nanoseconds step : {nanoseconds(hours(1)), nanoseconds(milliseconds(-60))}) {
+    ahead += step;
+    EXPECT_EQ(measure(nanoseconds(40)), step);
+    EXPECT_EQ(measure(nanoseconds(40)), Duration::zero()) << "once";
+  }
+  now += seconds(1);
+  ahead += milliseconds(80);
+  EXPECT_EQ(measure(nanoseconds(40)), Duration::zero());
+  now += hours(1);
+  ahead -= milliseconds(900);
+  EXPECT_EQ(measure(nanoseconds(40)), Duration::zero());
+  EXPECT_EQ(wall.of(now), now.time_since_epoch() + ahead) << "it is followed";
 }
 
 TEST_F(WallTimeTest, It_does_not_tremble_with_each_measurement) {

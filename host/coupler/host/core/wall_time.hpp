@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "coupler/host/core/clock.hpp"
 
@@ -13,23 +15,28 @@ class WallTime {
  public:
   using Wall = std::chrono::nanoseconds;  ///< since 1970
 
-  /// The wall clock said `wall` between `before` and `after`.
-  void measure(Time before, Wall wall, Time after) {
+  /// The wall clock said `wall` between `before` and `after`. Returns how far somebody has set it since the
+  /// last measurement, 0 if nobody has: what a daemon corrects bit by bit is not told.
+  Duration measure(Time before, Wall wall, Time after) {
     const Duration half = (after - before) / 2;
     const Wall difference = wall - (before + half).time_since_epoch();
     const Duration error = after - before - half;
     // A measurement that was interrupted says nothing against a better one.
-    const bool was_set = !measured_ || std::chrono::abs(difference - difference_) > error + error_;
-    if (!was_set && error >= error_) return;
+    const Duration moved = measured_ ? difference - difference_ : Duration::zero();
+    const Duration corrected = std::min(
+        least_step + (after - std::exchange(measured_at_, after)) / fastest_correction, most_corrected);
+    const bool differs = !measured_ || std::chrono::abs(moved) > error + error_;
+    if (!differs && error >= error_) return Duration::zero();
     measured_ = true;
     difference_ = difference;
     error_ = error;
+    return std::chrono::abs(moved) > corrected + error ? moved : Duration::zero();
   }
   /// Now.
-  void measure() {
+  Duration measure() {
     const Time before = std::chrono::steady_clock::now();
     const Wall wall = std::chrono::system_clock::now().time_since_epoch();
-    measure(before, wall, std::chrono::steady_clock::now());
+    return measure(before, wall, std::chrono::steady_clock::now());
   }
 
   Wall of(Time time) const { return time.time_since_epoch() + difference_; }
@@ -44,7 +51,14 @@ class WallTime {
   Duration error() const { return error_; }
 
  private:
+  static constexpr Duration least_step = std::chrono::milliseconds(50);
+  /// A daemon corrects the clock by a twelfth of the time at most (chrony, `maxslewrate`); what is more than
+  /// a second it sets, or it is told as if.
+  static constexpr int fastest_correction = 12;
+  static constexpr Duration most_corrected = std::chrono::seconds(1);
+
   bool measured_ = false;
+  Time measured_at_{};
   Wall difference_{};
   Duration error_{};
 };

@@ -20,7 +20,6 @@ using record::Moment;
 using record::Nanoseconds;
 
 /// What is less is a clock that is slowed down or sped up to be right (NTP).
-constexpr Nanoseconds least_set{std::chrono::milliseconds(50)};
 
 record::Head head_of(const Map& map, std::string device) {
   record::Head head{std::string(map.name), std::move(device), fingerprint_text(map.fingerprint),
@@ -158,10 +157,8 @@ Recorder::Taken Recorder::take(Time now) {
 }
 
 Recorder::Taken Recorder::take_now(Time now) {
-  const Nanoseconds before = wall_.of(now);
-  wall_.measure();
-  const Nanoseconds set_by = wall_.of(now) - before;
-  if (std::chrono::abs(set_by) > least_set) queue(format_.clock(moment(now), set_by));
+  if (const Nanoseconds set_by = wall_.measure(); set_by != set_by.zero())
+    queue(format_.clock(moment(now), set_by));
   Taken taken{std::move(queued_), std::exchange(lost_, false)};
   queued_.clear();
   return taken;

@@ -140,7 +140,7 @@ class DeviceDriver : public Sink {
   void on_identified(bool is_node) override;
   void on_online(bool online) override;
   void on_scheduled(const ScheduledOutcome& outcome) override {
-    wall_.measure();
+    measure_wall();
     publish_scheduled_(outcome);
   }
   void on_report(Level level, const std::string& text) override {
@@ -152,6 +152,7 @@ class DeviceDriver : public Sink {
   void log(Level level, const std::string& text) { node_.log(level, fmt::format("{}: {}", map_.name, text)); }
   std::vector<std::unique_ptr<Follower>> start_followers(const Followed& followed);
   void publish(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp);
+  void measure_wall();
   void refuse(std::optional<std::uint32_t> point, const std::string& what);
 
   Node& node_;
@@ -174,6 +175,7 @@ class DeviceDriver : public Sink {
   Time status_due_{};
   WriteHandler writes_;
   LineLimit refused_lines_;
+  LineLimit wall_lines_;
   std::vector<std::shared_ptr<void>> subscriptions_;
 };
 
@@ -202,7 +204,8 @@ bool DeviceDriver::report(Time now, bool force) {
       points[i].state = State::not_wanted;
   if (publish_status_(device, points, now)) status_due_ = now + status_interval;
   thread_.report_held_back();
-  if (const auto line = refused_lines_.due(now)) log(Level::warning, *line);
+  for (LineLimit* const lines : {&refused_lines_, &wall_lines_})
+    if (const auto line = lines->due(now)) log(Level::warning, *line);
   return diagnostics_.update(device, points);
 }
 
@@ -214,12 +217,23 @@ void DeviceDriver::publish(const ReadSpan& span, Span<const std::uint16_t> regis
     if (!publishers_[index]) continue;  // the driver ends before it has begun
     publishers_[index]->publish(value, stamp);
     if (stamped_[index]) {
-      if (!std::exchange(is_measured, true)) wall_.measure();
+      if (!std::exchange(is_measured, true)) measure_wall();
       stamped_[index]->publish(value, stamp);
     }
     if (services_.value_waiter().waits_for(index))
       services_.value_waiter().deliver(value, place.count(), std::min(transport_->read_sent_at(), stamp.at));
   }
+}
+
+void DeviceDriver::measure_wall() {
+  const Duration set_by = wall_.measure();
+  if (set_by == Duration::zero()) return;
+  const double seconds = std::chrono::duration<double>(std::chrono::abs(set_by)).count();
+  const auto line =
+      wall_lines_.say(fmt::format("this machine's clock was set {:.3f} s {}; time stamps follow it", seconds,
+                                  set_by > Duration::zero() ? "ahead" : "back"),
+                      std::chrono::steady_clock::now());
+  if (line) log(Level::warning, *line);
 }
 
 Time DeviceDriver::repeat_at(std::uint32_t point) const {
