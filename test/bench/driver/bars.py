@@ -2,7 +2,7 @@
 """A bar chart as SVG: groups of bars, one colour a side."""
 from xml.sax.saxutils import escape
 
-COLOURS = ("#3465a4", "#bbbbbb", "#c17d11")
+COLOURS = ("#3465a4", "#bbbbbb", "#c17d11", "#555753")
 BAR, GAP, LEFT, WIDTH = 16, 14, 230, 420
 
 
