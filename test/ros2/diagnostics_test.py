@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """/diagnostics as robot monitors read it, and the stamps of what the driver says: of the system's clock, or of /clock where
-use_sim_time says so. Values go by neither."""
+use_sim_time says so. Values go by neither; their stamps, and the times at which something is to be written, are wall time."""
 import socket
 import threading
 import time
 
 from builtin_interfaces.msg import Time
-from coupler_driver.msg import PointStatus, Status
+from coupler_driver.msg import PointStatus, Status, UInt64Stamped
+from coupler_driver.srv import Schedule
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Bool, UInt16
@@ -16,6 +17,7 @@ from support.device import Device
 from support.parameters import BOOL, Parameters, parameter
 from support.patience import NO_TIMEOUT
 from support.ports import free_port
+from support.times import ROUNDING, ros_duration, ros_time, seconds
 from support.topics import Publisher, Subscription, qos
 
 MAP = """
@@ -25,8 +27,9 @@ port: {port}
 rate: 20
 timeout: {timeout}s
 mapping:
-  holding_registers: {{level: {{address: 4, type: UINT}}}}
+  holding_registers: {{level: {{address: 4, type: UINT, stamped: true}}}}
 """
+LATER = 3000  # seconds
 PARTS = ("connection", "polling", "writes")
 
 
@@ -134,10 +137,16 @@ class Stamps(DiagnosticsTest):
         for second in (5000, 6000, 100):  # a simulation may begin anew
             tell(second)
             self.both(lambda stamp, wanted=second: (stamp.sec, stamp.nanosec) == (wanted, 250000000))
+        stamped, before = self.topic("/plant/level/stamped", UInt64Stamped), time.time()
         self.device.tables["holding_registers"][4] = 7
         level.wait_for(lambda value: value == 7)
+        message = stamped.wait_for(lambda one: one.value == 7)
+        self.assertGreaterEqual(seconds(message.header.stamp), before - message.uncertainty - ROUNDING)
+        self.assertLessEqual(seconds(message.header.stamp), time.time() + ROUNDING)
         status = self.status.wait_for(lambda one: one.points[0].quality == PointStatus.GOOD)
         self.assertGreaterEqual(status.points[0].age, 0)
+        answer = self.service("/plant/schedule", Schedule)("level", "9", ros_time(time.time() + LATER), ros_duration(0))
+        self.assertTrue(answer.success, answer.message)
 
     def test_it_can_be_switched_while_the_driver_runs(self):
         self.start()
