@@ -44,7 +44,7 @@ start stamped rostopic echo -p /plant/closed/stamped
 check "a stamp is now" wait_until is_stamped_from "$(date +%s)"
 later=$(($(date +%s) + 3600))
 check "the clock is set an hour ahead" date -s "@$later"
-check "the driver tells it" wait_until says driver "clock was set 3[56].*s ahead"
+check "the driver tells it" wait_until says driver "clock was set 3[56].* s ahead"
 check "stamps are an hour later" wait_until is_stamped_from "$later"
 
 echo "# unplugging the chip is told, and crashes nobody"

@@ -74,6 +74,17 @@ TEST_F(StamperTest, The_uncertainty_is_in_seconds_and_holds_the_error_between_th
   EXPECT_DOUBLE_EQ(message.uncertainty, 0.0050001);
 }
 
+TEST_F(StamperTest, A_stamp_does_not_go_back_with_a_better_measurement) {
+  wall = {};
+  wall.measure(Time{}, seconds(100) + milliseconds(4), Time{} + milliseconds(8));
+  put(message, {Time{} + seconds(1), {}});
+  const auto before = message.header.stamp;
+  wall.measure(Time{}, seconds(100), Time{});  // the clock was read at the end of the first
+  put(message, {Time{} + seconds(1), milliseconds(1)});
+  EXPECT_EQ(message.header.stamp, before);
+  EXPECT_DOUBLE_EQ(message.uncertainty, 0.001) << "both say the same";
+}
+
 TEST_F(StamperTest, Messages_are_counted_from_1) {
   put(message, {});
   EXPECT_EQ(message.sequence, 1U);

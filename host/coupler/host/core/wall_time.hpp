@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <chrono>
-#include <utility>
+#include <cstdint>
 
 #include "coupler/host/core/clock.hpp"
 
@@ -16,21 +15,21 @@ class WallTime {
   using Wall = std::chrono::nanoseconds;  ///< since 1970
 
   /// The wall clock said `wall` between `before` and `after`. Returns how far somebody has set it since the
-  /// last measurement, 0 if nobody has: what a daemon corrects bit by bit is not told.
+  /// last measurement, or it has gone on while the machine slept; 0 for less than 50 ms.
   Duration measure(Time before, Wall wall, Time after) {
     const Duration half = (after - before) / 2;
     const Wall difference = wall - (before + half).time_since_epoch();
     const Duration error = after - before - half;
-    // A measurement that was interrupted says nothing against a better one.
     const Duration moved = measured_ ? difference - difference_ : Duration::zero();
-    const Duration corrected = std::min(
-        least_step + (after - std::exchange(measured_at_, after)) / fastest_correction, most_corrected);
-    const bool differs = !measured_ || std::chrono::abs(moved) > error + error_;
-    if (!differs && error >= error_) return Duration::zero();
+    const Duration unexplained = std::chrono::abs(moved) - error - error_;
+    const bool was_set = unexplained > Duration::zero();
+    // A measurement that was interrupted says nothing against a better one.
+    if (measured_ && !was_set && error >= error_) return Duration::zero();
     measured_ = true;
     difference_ = difference;
     error_ = error;
-    return std::chrono::abs(moved) > corrected + error ? moved : Duration::zero();
+    if (was_set) ++times_set_;
+    return unexplained > least_told ? moved : Duration::zero();
   }
   /// Now.
   Duration measure() {
@@ -47,20 +46,18 @@ class WallTime {
     return measured_ && other.measured_ &&
            std::chrono::abs(difference_ - other.difference_) <= error_ + other.error_;
   }
+  /// How often somebody has, as far as was measured.
+  std::uint32_t times_set() const { return times_set_; }
   /// How far of() and at() may be wrong.
   Duration error() const { return error_; }
 
  private:
-  static constexpr Duration least_step = std::chrono::milliseconds(50);
-  /// A daemon corrects the clock by a twelfth of the time at most (chrony, `maxslewrate`); what is more than
-  /// a second it sets, or it is told as if.
-  static constexpr int fastest_correction = 12;
-  static constexpr Duration most_corrected = std::chrono::seconds(1);
+  static constexpr Duration least_told = std::chrono::milliseconds(50);
 
   bool measured_ = false;
-  Time measured_at_{};
   Wall difference_{};
   Duration error_{};
+  std::uint32_t times_set_ = 0;
 };
 
 }  // namespace coupler::host

@@ -19,8 +19,6 @@ namespace {
 using record::Moment;
 using record::Nanoseconds;
 
-/// What is less is a clock that is slowed down or sped up to be right (NTP).
-
 record::Head head_of(const Map& map, std::string device) {
   record::Head head{std::string(map.name), std::move(device), fingerprint_text(map.fingerprint),
                     without_keys(map.text, {"security", "tls"})};

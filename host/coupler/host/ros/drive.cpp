@@ -160,6 +160,7 @@ class DeviceDriver : public Sink {
   SubscriberCounts subscribers_;
   std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
   WallTime wall_;
+  LineLimit wall_lines_;
   std::vector<std::unique_ptr<PointPublisher>> stamped_;     ///< by point; null where it is not stamped
   std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of one span, as publishers take them
   std::function<void(bool)> publish_online_;
@@ -175,7 +176,6 @@ class DeviceDriver : public Sink {
   Time status_due_{};
   WriteHandler writes_;
   LineLimit refused_lines_;
-  LineLimit wall_lines_;
   std::vector<std::shared_ptr<void>> subscriptions_;
 };
 
@@ -229,10 +229,10 @@ void DeviceDriver::measure_wall() {
   const Duration set_by = wall_.measure();
   if (set_by == Duration::zero()) return;
   const double seconds = std::chrono::duration<double>(std::chrono::abs(set_by)).count();
-  const auto line =
-      wall_lines_.say(fmt::format("this machine's clock was set {:.3f} s {}; time stamps follow it", seconds,
-                                  set_by > Duration::zero() ? "ahead" : "back"),
-                      std::chrono::steady_clock::now());
+  const auto line = wall_lines_.say(
+      fmt::format("this machine's clock was set {:.3f} s {}, or it slept; time stamps follow it", seconds,
+                  set_by > Duration::zero() ? "ahead" : "back"),
+      std::chrono::steady_clock::now());
   if (line) log(Level::warning, *line);
 }
 

@@ -3,6 +3,7 @@
 // encode().
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <type_traits>
 
@@ -78,7 +79,8 @@ auto with_stamped_message(const Point& point, F&& f) {
   });
 }
 
-/// Fills what such a message says beside its value.
+/// Fills what such a message says beside its value. The stamp does not go back, unless somebody has set the
+/// clock back: a better measurement of it may find an earlier time, and what that adds to the error is said.
 class Stamper {
  public:
   /// `wall` must outlive it.
@@ -86,14 +88,21 @@ class Stamper {
 
   template <class Message>
   void operator()(Message& message, Stamp stamp) {
-    put_time(message.header.stamp, wall_.of(stamp.at));
+    const WallTime::Wall at = wall_.of(stamp.at);
+    const bool was_set = times_set_ != wall_.times_set();
+    times_set_ = wall_.times_set();
+    last_ = was_set ? at : std::max(last_, at);
+    put_time(message.header.stamp, last_);
     message.sequence = ++sequence_;
-    message.uncertainty = std::chrono::duration<double>(stamp.uncertainty + wall_.error()).count();
+    message.uncertainty =
+        std::chrono::duration<double>(stamp.uncertainty + wall_.error() + (last_ - at)).count();
   }
 
  private:
   const WallTime& wall_;
   std::uint64_t sequence_ = 0;
+  WallTime::Wall last_ = WallTime::Wall::min();
+  std::uint32_t times_set_ = 0;
 };
 
 }  // namespace coupler::host
