@@ -322,6 +322,21 @@ def changes_of_a_node_are_told_as_they_come(coupler, node, checks):
         checks.equal("status after SIGINT", watch.end(), 0)
 
 
+def a_node_that_is_gone_is_looked_for_soon(coupler, node, checks):
+    """However far apart the looks are: what changes between them is not told meanwhile."""
+    here = pathlib.Path(__file__).resolve().parent
+    command = [node, str(here / "schedule.yaml"), "--sim"]
+    with peer.silent_port() as port:
+        with peer.running_node(command, port):
+            watch = Watch(coupler, f"tcp://127.0.0.1:{port}", "--points", "motor", every="3600")
+            checks.equal("a first look", watch.await_line(lambda line: line.endswith(" motor false")) is not None, True)
+        gone = watch.await_line(lambda line: line.endswith(" Connection refused"))
+        with peer.running_node(command, port):
+            back = watch.await_line(lambda line: line.endswith(" online again"), gone or 0)
+            checks.equal("it is back, and told", back is not None, True)
+            checks.equal("status after SIGINT", watch.end(), 0)
+
+
 def main():
     coupler, map_file, command = sys.argv[1], sys.argv[2], sys.argv[3:]
     checks = peer.Checks()
@@ -340,6 +355,7 @@ def main():
     a_node_needs_no_file(coupler, command, checks)
     a_nodes_watchdog_stays_idle(coupler, command[0], checks)
     changes_of_a_node_are_told_as_they_come(coupler, command[0], checks)
+    a_node_that_is_gone_is_looked_for_soon(coupler, command[0], checks)
     checks.done("coupler dump shows what pymodbus and a node hold, tells changes, and writes nothing")
 
 

@@ -138,9 +138,9 @@ def the_worker():
 
 
 @contextlib.contextmanager
-def running_node(command):
-    """Runs a node on a free loopback port; yields the port. It must end well on SIGTERM."""
-    node = subprocess.Popen(command + ["--listen", "127.0.0.1", "--port", "0"], stderr=subprocess.PIPE, text=True)
+def running_node(command, port=0):
+    """Runs a node on a free loopback port, or this one; yields the port. It must end well on SIGTERM."""
+    node = subprocess.Popen(command + ["--listen", "127.0.0.1", "--port", str(port)], stderr=subprocess.PIPE, text=True)
     try:
         said = []
         port = None

@@ -31,8 +31,10 @@ class DeviceReader {
   Snapshot look();
 
   /// Returns then, or before if everything should be looked at anew; a snapshot if the connection has ended
-  /// meanwhile: the next look makes another one, which a caller puts off.
+  /// meanwhile: the next look connects again, and the caller is to wait before it.
   std::optional<Snapshot> wait_until(host::Time time);
+  /// Of the device, until the connection ends.
+  bool hears_changes() const { return changes_.is_active(); }
 
  private:
   using ReadSpan = plan::ReadSpan;

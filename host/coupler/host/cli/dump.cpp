@@ -114,6 +114,7 @@ class Watch {
   /// Returns when to look again.
   host::Time look() {
     const host::Time next = clock_.now() + every_;
+    was_told_ |= reader_.hears_changes();
     Snapshot now = reader_.look();
     if (stopped_) return next;
     const bool is_online = now.online();
@@ -133,9 +134,9 @@ class Watch {
   }
 
   void wait_until(host::Time next) {
+    was_told_ |= reader_.hears_changes();
     auto lost = reader_.wait_until(next);
     if (!lost || stopped_) return;
-    was_told_ = true;
     show_(map_, &before_, *lost);
     before_ = *std::move(lost);
     clock_.sleep_until(std::min<host::Time>(next, clock_.now() + pause_after_loss));
