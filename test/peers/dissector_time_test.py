@@ -54,7 +54,7 @@ TRAFFIC = [
      ["waits for changes", "Longest wait: 0 ms", STAMPS[0], "Changes seen: 300"],
      ["changes", *STAMPS, "Newest change: 304", "Changes lost: 0", f"Scheduled output 7: driven [at {SOON}]",
       f"Scheduled output 8: cancelled, another write to the same point [at {SOON}]",
-      f"Scheduled output 9: not driven, the line or channel could not be driven [at {SOON}]",
+      f"Scheduled output 9: not driven, the output could not be driven, or does not take the value [at {SOON}]",
       f"Scheduled output 10: kind 77, reason 99 [at {SOON}]"]),
     (wait(30001, 0), b"\xc1\x03",
      ["waits for changes", "Longest wait: 30001 ms", STAMPS[0], "Changes seen: 0"], ["refused [exception 03]"]),
@@ -84,7 +84,7 @@ TRAFFIC = [
 
 OUTCOMES = (f"Scheduled output 7: driven [at {SOON}], "
             f"Scheduled output 8: cancelled, another write to the same point [at {SOON}], "
-            f"Scheduled output 9: not driven, the line or channel could not be driven [at {SOON}], "
+            f"Scheduled output 9: not driven, the output could not be driven, or does not take the value [at {SOON}], "
             f"Scheduled output 10: kind 77, reason 99 [at {SOON}]")
 # A filter, and the information columns of what it finds, from the dissector's first words on.
 FILTERS = [

@@ -5,7 +5,7 @@ local time_tables = { "coils", "discrete_inputs", "holding_registers", "input_re
 local reasons = {
   "its client cancelled it", "another write to the same point", "the watchdog expired", "outputs went to their safe state",
   "the node read a new map, lost or found a chip, or ended", "its connection ended",
-  "the line or channel could not be driven", "the watchdog keeps outputs safe",
+  "the output could not be driven, or does not take the value", "the watchdog keeps outputs safe",
 }
 
 -- Nanoseconds, 8 bytes, as seconds of the node's clock.

@@ -22,7 +22,7 @@ enum class Reason : std::uint8_t {
   safe_state = 4,   ///< the outputs went to their safe state for another reason
   reload = 5,       ///< the node reads a new map, loses or finds a chip, or ends
   connection = 6,   ///< the connection that scheduled it has ended
-  hardware = 7,     ///< the line or channel could not be driven
+  hardware = 7,     ///< the output could not be driven, or does not take the value any more
   locked = 8,       ///< the watchdog keeps outputs in their safe state until it is reset
 };
 

@@ -53,7 +53,7 @@ TEST_F(NodeOutputsTest, What_the_node_tells_is_the_outcome) {
   EXPECT_EQ(sink->outcomes[1].result, Became::cancelled);
   EXPECT_EQ(sink->outcomes[1].reason, "the watchdog expired");
   EXPECT_EQ(sink->outcomes[2].result, Became::failed);
-  EXPECT_EQ(sink->outcomes[2].reason, "the line or channel could not be driven");
+  EXPECT_EQ(sink->outcomes[2].reason, "the output could not be driven, or does not take the value");
 }
 
 TEST_F(NodeOutputsTest, Changes_of_bits_are_heard_of_meanwhile) {
