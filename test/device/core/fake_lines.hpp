@@ -26,6 +26,7 @@ class FakeLines : public Lines {
     return !broken;
   }
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override {
+    if (on_drive) on_drive();
     if (broken || (stuck && coils.contains(*stuck))) return false;
     if (remembers) driven_.emplace_back(coils, std::vector<std::uint16_t>(levels.begin(), levels.end()));
     for (auto& [address, output] : outputs)
@@ -81,6 +82,7 @@ class FakeLines : public Lines {
   bool unplugged = false;              ///< and known to be
   bool remembers = true;
   int safe_calls = 0;
+  std::function<void()> on_drive;           ///< is called when they are about to be driven
   std::function<void()> on_safe;            ///< is called when they are about to be driven to it
   std::map<std::uint16_t, Output> outputs;  ///< the coils that have a line
 

@@ -130,6 +130,22 @@ TEST_F(ScheduledOutputs, An_edge_that_is_seen_during_a_duration_stays_latched) {
   EXPECT_THAT(levels(), ElementsAre(0, 0, 0, 0, 0, 1));
 }
 
+TEST_F(ScheduledOutputs, Times_are_those_at_which_it_was_done) {
+  const milliseconds takes(3);
+  node_.lines.on_drive = [&] { node_.now += takes; };
+  const TimePoint due = in(milliseconds(20));
+  const auto number = accept(coils(due, 0, {1}, milliseconds(50)));
+  node_.now = due;
+  node_.handler.tick(due);
+  ASSERT_THAT(node_.outcomes.told, ElementsAre(outcome(Change::Kind::done, Reason::none, number)));
+  EXPECT_EQ(node_.outcomes.told[0].at, node_time(due + takes));
+  EXPECT_EQ(node_.handler.next_scheduled(), due + takes + milliseconds(50))
+      << "the duration counts from there";
+  const auto* told = node_.changes.ring().next_after(0);
+  ASSERT_NE(told, nullptr);
+  EXPECT_EQ(told->change.at, node_time(due + takes)) << "of the coil";
+}
+
 TEST_F(ScheduledOutputs, The_identity_area_says_that_it_is_answered) {
   const Pdu reply = node_.ask(pdu(4, {0xFF00 + identity::at_functions, 1}));
   EXPECT_THAT(reply, ElementsAre(4, 2, 0, 3)) << "65 and 66";

@@ -76,6 +76,7 @@ TEST(Allocations, From_the_socket_to_the_reply_there_is_none) {
     EXPECT_EQ((waits ? client.received() : client.awaited()).empty(), waits)
         << "function " << int{request[0]};
   }
+  EXPECT_EQ(node.node.outcomes.told.size(), 1U) << "an output was scheduled, and cancelled";
 }
 
 TEST(Allocations, Connecting_and_leaving_cost_none) {

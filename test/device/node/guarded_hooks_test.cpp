@@ -2,8 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <optional>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "coupler/device/node/guarded_hooks.hpp"
 #include "coupler/device/node/point_hooks.hpp"
@@ -114,6 +117,11 @@ class Settable : public PointHooks {
   explicit Settable(const Map& map) : PointHooks(map) {}
   auto set_speed(std::int16_t value) { return set<std::int16_t>(0, value); }
   auto set_lamp(bool on) { return set<bool>(0, on); }
+  auto set_lamps(const std::array<bool, 3>& on) { return set<std::array<bool, 3>>(0, on); }
+  void replace_lamp(bool on) {
+    const std::uint16_t bit = on ? 1 : 0;
+    replace_registers(0, &bit);
+  }
 };
 
 TEST(PointHooks, A_value_is_set_in_the_process_that_serves_and_nowhere_else) {
@@ -126,31 +134,57 @@ TEST(PointHooks, A_value_is_set_in_the_process_that_serves_and_nowhere_else) {
   EXPECT_TRUE(hooks.set_speed(5).has_value());
 }
 
+/// Where the values go that such hooks set.
+struct Taken {
+  explicit Taken(MapPtr of) : owner(std::move(of)) {
+    changes.begin(1);
+    hooks.allow_setting(nullptr);
+  }
+  void put() { hooks.put_new_values(image, changes); }
+
+  MapPtr owner;
+  NodeMemory size = node_memory(owner->map());
+  std::vector<Image::Area> areas = std::vector<Image::Area>(size.areas);
+  std::vector<std::uint16_t> cells = std::vector<std::uint16_t>(size.cells);
+  Image image{owner->map(), areas, cells};
+  std::vector<ChangeRing::Entry> ring = std::vector<ChangeRing::Entry>(200);
+  std::vector<std::uint16_t> told = std::vector<std::uint16_t>(image.bits().size());
+  Changes changes{image, ring, told};
+  Settable hooks{owner->map()};
+};
+
 TEST(PointHooks, Each_value_of_a_bit_is_told_or_counted_as_lost) {
-  const MapPtr map = MapBuilder().coil("lamp", 0).build();
-  const NodeMemory size = node_memory(map->map());
-  std::vector<Image::Area> areas(size.areas);
-  std::vector<std::uint16_t> cells(size.cells);
-  Image image(map->map(), areas, cells);
-  std::vector<ChangeRing::Entry> ring(200);
-  std::vector<std::uint16_t> told(image.bits().size());
-  Changes changes(image, ring, told);
-  changes.begin(1);
-  Settable hooks(map->map());
-  hooks.allow_setting(nullptr);
-  for (const bool on : {true, false, true, false}) ASSERT_TRUE(hooks.set_lamp(on));
-  hooks.put_new_values(image, changes);
-  EXPECT_EQ(changes.ring().newest(), 4U);
+  Taken node(MapBuilder().coil("lamp", 0).build());
+  for (const bool on : {true, false, true, false}) ASSERT_TRUE(node.hooks.set_lamp(on));
+  node.put();
+  EXPECT_EQ(node.changes.ring().newest(), 4U);
   // Where nobody takes them, they do not become more and more, and the last one counts.
-  for (int i = 0; i < 1001; ++i) ASSERT_TRUE(hooks.set_lamp(i % 2 == 0));
-  hooks.put_new_values(image, changes);
-  EXPECT_EQ(changes.ring().newest(), 4U + 1001U);  // told, or counted as lost
+  for (int i = 0; i < 1001; ++i) ASSERT_TRUE(node.hooks.set_lamp(i % 2 == 0));
+  node.put();
+  EXPECT_EQ(node.changes.ring().newest(), 4U + 1001U);  // told, or counted as lost
   int heard = 0;
-  for (const auto* entry = changes.ring().next_after(4); entry != nullptr;
-       entry = changes.ring().next_after(entry->number))
+  for (const auto* entry = node.changes.ring().next_after(4); entry != nullptr;
+       entry = node.changes.ring().next_after(entry->number))
     ++heard;
   EXPECT_EQ(heard, 15);  // the last two of sixteen values are equal
-  EXPECT_EQ(image.find(Table::coils, modbus::Range::of(0, 1))[0], 1);
+  EXPECT_EQ(node.image.find(Table::coils, modbus::Range::of(0, 1))[0], 1);
+}
+
+TEST(PointHooks, So_is_each_value_of_each_bit_of_an_array) {
+  Taken node(
+      MapBuilder().add(Table::coils, "lamps", 0, Type::BOOL, [](Point& point) { point.count = 3; }).build());
+  // One toggles, one changes once, the third never.
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(node.hooks.set_lamps({i % 2 == 0, i >= 50, false}));
+  node.put();
+  EXPECT_EQ(node.changes.ring().newest(), 100U + 1U);
+}
+
+TEST(PointHooks, What_takes_the_place_of_others_leaves_none_of_them) {
+  Taken node(MapBuilder().coil("lamp", 0).build());
+  for (int i = 0; i < 1001; ++i) ASSERT_TRUE(node.hooks.set_lamp(i % 2 == 0));
+  node.hooks.replace_lamp(true);
+  node.put();
+  EXPECT_EQ(node.changes.ring().newest(), 1U);
 }
 
 }  // namespace

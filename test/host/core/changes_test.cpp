@@ -172,7 +172,37 @@ TEST_F(ChangesTest, After_a_new_epoch_everything_is_read_once) {
   EXPECT_EQ(sink->reported("counts its changes anew"), 1);
 }
 
-TEST_F(ChangesTest, In_a_new_epoch_the_node_may_have_another_watchdog_and_is_asked) {
+TEST_F(ChangesTest, In_a_new_epoch_the_node_may_have_another_clock) {
+  begin(cell());
+  run_for(seconds(1));
+  device.epoch = 77;
+  device.changes.clear();
+  device.clock_is_ahead = seconds(1);
+  run_for(seconds(3));
+  const Time edge = clock.now();
+  device.change(Table::discrete_inputs, 3, true);
+  run_for(milliseconds(1));
+  const Stamp stamp = sink->stamps.back();
+  EXPECT_LE(std::chrono::abs(stamp.at - edge), stamp.uncertainty);
+  EXPECT_EQ(sink->reported("has jumped"), 0);
+}
+
+TEST_F(ChangesTest, Stamps_of_a_point_do_not_go_back) {
+  begin(cell());
+  run_for(milliseconds(300));
+  const Time before = clock.now() - milliseconds(20);
+  device.change(Table::discrete_inputs, 3, true);
+  run_for(milliseconds(1));
+  const Stamp first = sink->stamps.back();
+  device.change(Table::discrete_inputs, 3, false);
+  device.changes.back().at = device.changes.front().at - milliseconds(20);
+  run_for(milliseconds(1));
+  const Stamp second = sink->stamps.back();
+  EXPECT_EQ(second.at, first.at);
+  EXPECT_GE(second.uncertainty, second.at - before);
+}
+
+TEST_F(ChangesTest, In_a_new_epoch_the_the_node_may_have_another_watchdog_and_is_asked) {
   begin(cell());
   run_for(seconds(2));
   device.tell_changes(300);

@@ -18,6 +18,11 @@ Result<> TimedDevice::read_registers(Table table, modbus::Range range, std::uint
   return FakeDevice::read_registers(table, range, registers);
 }
 
+Result<> TimedDevice::receive(const modbus::WriteRequest& request) {
+  clock_.advance(reply_time);
+  return FakeDevice::receive(request);
+}
+
 DeviceTest::DeviceTest() = default;
 DeviceTest::~DeviceTest() = default;
 

@@ -23,6 +23,7 @@ class TimedDevice : public FakeDevice {
   bool is_mute = false;  ///< answers the question for its identity only
 
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
+  Result<> receive(const modbus::WriteRequest& request) override;
 
  private:
   FakeClock& clock_;

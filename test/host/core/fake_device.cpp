@@ -56,11 +56,12 @@ void FakeDevice::change(Table table, std::uint16_t address, bool value) {
   values[{table, address}] = value ? 1 : 0;
   using Kind = modbus::Change::Kind;
   changes.push_back({static_cast<std::uint8_t>(table == Table::coils ? 1 : 2), value ? Kind::on : Kind::off,
-                     address, now().time_since_epoch()});
+                     address, now().time_since_epoch() + clock_is_ahead});
 }
 
 void FakeDevice::decide(std::uint16_t number, modbus::Change::Kind kind, modbus::Reason reason) {
-  changes.push_back({static_cast<std::uint8_t>(reason), kind, number, now().time_since_epoch()});
+  changes.push_back(
+      {static_cast<std::uint8_t>(reason), kind, number, now().time_since_epoch() + clock_is_ahead});
 }
 
 Result<modbus::ScheduleReply> FakeDevice::schedule(const modbus::ScheduleRequest& request) {
@@ -112,8 +113,8 @@ void FakeDevice::answer_wait() {
   if (begins_epochs) ++epoch;
   modbus::ChangesReply reply;
   reply.epoch = epoch;
-  reply.arrived = wait_sent_.time_since_epoch();
-  reply.replied = now().time_since_epoch();
+  reply.arrived = wait_sent_.time_since_epoch() + clock_is_ahead;
+  reply.replied = now().time_since_epoch() + clock_is_ahead;
   reply.newest = changes.size();
   if (wait->epoch == epoch) {
     const std::uint64_t first = std::max(wait->seen, forgotten);

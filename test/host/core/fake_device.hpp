@@ -38,6 +38,7 @@ class FakeDevice : public Transport {
   bool missing_for_reads_only = false;   ///< writes to what is missing are acknowledged
   bool can_wait_for_changes = true;      ///< it does not share its connection
   std::uint32_t epoch = 1;
+  Duration clock_is_ahead{0};           ///< the device's
   std::vector<modbus::Change> changes;  ///< since the epoch began; the first has number 1
   std::uint64_t forgotten = 0;          ///< so many of them cannot be told any more
   std::optional<modbus::Exception> refuses_waits;

@@ -33,6 +33,18 @@ TEST_F(ScheduledWritesTest, It_is_written_when_its_time_has_come_and_not_before)
   EXPECT_GE(told.at.at, due);
 }
 
+TEST_F(ScheduledWritesTest, When_it_was_written_is_as_uncertain_as_the_network) {
+  begin_foreign(press());
+  schedule("lamp", 1, milliseconds(300));
+  device.reply_time = milliseconds(30);
+  const Time due = clock.now() + milliseconds(300);
+  run_for(milliseconds(400));
+  const ScheduledOutcome told = outcome();
+  ASSERT_EQ(told.result, Became::done);
+  EXPECT_EQ(told.at.uncertainty, milliseconds(15));
+  EXPECT_GE(told.at.at, due + milliseconds(15));
+}
+
 TEST_F(ScheduledWritesTest, Those_of_one_time_are_written_in_their_order) {
   begin_foreign(press());
   schedule("speed", 1, milliseconds(300));

@@ -21,13 +21,16 @@ TEST_F(UnitTransportTest, Units_behind_one_gateway_share_its_connection) {
   for (int number = 1; number <= units; ++number) {
     ASSERT_TRUE(read(number));
     EXPECT_EQ(word, 100 * number);
+    EXPECT_FALSE(unit(number).can_wait()) << "the others' requests would wait behind it";
   }
 }
 
 TEST_F(UnitTransportTest, Where_the_limits_allow_it_each_has_a_connection_of_its_own) {
   make(units);
-  for (const auto& transport : transports)
+  for (const auto& transport : transports) {
     EXPECT_NE(dynamic_cast<ModbusTransport*>(transport.get()), nullptr);
+    EXPECT_TRUE(transport->can_wait());
+  }
 }
 
 TEST_F(UnitTransportTest, A_silent_unit_costs_the_others_time_but_not_their_connection) {

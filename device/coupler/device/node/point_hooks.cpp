@@ -54,7 +54,9 @@ void PointHooks::keep(std::uint32_t point, const std::uint16_t* registers) {
 void PointHooks::replace_registers(std::uint32_t point, const std::uint16_t* registers) {
   {
     const std::lock_guard lock(mutex_);
-    set_[point].registers.clear();
+    auto& [values, lost] = set_[point];  // nobody was to see these
+    values.clear();
+    lost = 0;
     points_.erase(std::remove(points_.begin(), points_.end(), point), points_.end());
   }
   keep(point, registers);

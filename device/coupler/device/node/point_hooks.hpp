@@ -71,9 +71,9 @@ class PointHooks : public Hooks {
   void replace_registers(std::uint32_t point, const std::uint16_t* registers);
 
   /// From any thread of the process that serves: clients read the value from their next request on, and hear
-  /// of each value of a bit, one behind the other, if they wait for changes: of sixteen before the node looks
-  /// at them; what is between the last two of more counts as lost. The error says what is wrong
-  /// with it, or that this is another process.
+  /// of each value of a bit, one behind the other, if they wait for changes. Of more than sixteen before the
+  /// node looks at them they hear of the first fifteen and the last; the others count as lost. The error says
+  /// what is wrong with it, or that this is another process.
   template <class T>
   tl::expected<void, std::string> set(std::uint32_t point, const T& value) {
     std::array<std::uint16_t, modbus::max_read_bits> registers{};

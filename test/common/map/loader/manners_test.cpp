@@ -133,6 +133,8 @@ TEST(HostOptions, What_is_only_written_is_not_read_back) {
   EXPECT_FALSE(OnePoint("coils", "{address: 0, access: write}", defaults)->host.verify_write);
   EXPECT_FALSE(
       OnePoint("coils", "{address: 0, access: write, verify_write: false}", defaults)->host.verify_write);
+  EXPECT_FALSE(OnePoint("coils", "{address: 0, pulse: 200ms}", defaults)->host.verify_write)
+      << "it is off again by then";
 }
 
 TEST(HostOptions, Defaults_stamp_what_is_read_and_no_array) {
