@@ -28,7 +28,7 @@ plant_node() {
 worker() { pgrep -P "$(pid "${1:-node}")" -x coupler-node-io; }
 new_worker() { local now; now=$(worker) && [ "$now" != "$1" ] && [[ "$(cat "/proc/$now/stat")" != *" Z "* ]]; }
 
-client() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 1502 "$@"; }
+client() { mbpoll -m tcp -a 1 -0 -1 -q -o 10 -p 1502 "$@"; }
 
 # mbpoll reports a failed request on stderr and exits with 0 all the same.
 answered() {

@@ -27,7 +27,7 @@ def run(*words):
 
 def mbpoll(*options, values=()):
     """The values that mbpoll has read by their number, or what it says of an error. Addresses count from 0."""
-    done = run("mbpoll", "-m", "tcp", "-p", NODE[1], "-1", "-0", "-q", *options, NODE[0], *values)
+    done = run("mbpoll", "-m", "tcp", "-o", "10", "-p", NODE[1], "-1", "-0", "-q", *options, NODE[0], *values)
     read = re.findall(r"^\[\d+\]:\s+(\S+)", done.stdout, re.M)
     return [int(value) for value in read] if done.returncode == 0 else done.stdout + done.stderr
 
@@ -165,7 +165,7 @@ class Lwip(unittest.TestCase):
 
     def test_the_map_is_proven_equal_and_the_machine_has_a_name(self):
         coupler = BUILD / "bin" / "coupler"
-        status = run(coupler, "status", NODE[0])
+        status = run(coupler, "status", NODE[0], "--timeout", "20")
         self.assertEqual(status.returncode, 0, status.stdout + status.stderr)
         self.assertIn("board-1", status.stdout)
         dump = run(coupler, "dump", "config/examples/lwip/board.yaml")

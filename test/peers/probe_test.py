@@ -181,7 +181,7 @@ def a_known_value_is_found_in_each_order(folder, checks):
 def ctrl_c_shows_what_was_found(checks):
     device = foreign_server.Device({"coils": {at: True for at in range(2000)}})
     with foreign_server.serving(device) as port:
-        running = subprocess.Popen([COUPLER, "probe", f"127.0.0.1:{port}/1", "--rate", "20"], stdout=subprocess.PIPE,
+        running = subprocess.Popen([COUPLER, "probe", f"127.0.0.1:{port}/1", "--rate", "20", "--timeout", "20"], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
         peer.await_true("Ctrl-C: requests", lambda: len(device.functions) >= 30, checks)
         running.send_signal(signal.SIGINT)
@@ -195,7 +195,7 @@ def requests_keep_the_rate(checks):
     device = foreign_server.Device({"coils": {}})
     with foreign_server.serving(device) as port:
         began = time.monotonic()
-        subprocess.run([COUPLER, "probe", f"127.0.0.1:{port}/1", "--to", "4", "--rate", "20"], capture_output=True,
+        subprocess.run([COUPLER, "probe", f"127.0.0.1:{port}/1", "--to", "4", "--rate", "20", "--timeout", "20"], capture_output=True,
                        timeout=peer.PATIENCE, check=True)
         took = time.monotonic() - began
     checks.equal("no more than 20 requests a second", len(device.functions) - 1 <= took * 20, True)

@@ -9,7 +9,7 @@ cd "$(dirname "$0")"
 . ../kernel/plant.sh
 readonly unit=coupler-node.service
 
-client() { mbpoll -m tcp -a 1 -0 -1 -q -o 2 -p 502 "$@"; }
+client() { mbpoll -m tcp -a 1 -0 -1 -q -o 10 -p 502 "$@"; }
 # Prints what a command says only if it fails.
 quietly() { local output; output=$("$@" 2>&1) || { echo "$output"; return 1; }; }
 property() { systemctl show --value -p "$1" "$unit"; }

@@ -129,7 +129,7 @@ TEST(RtuTransport, Silence_is_a_timeout) {
 }
 
 TEST(RtuTransport, Where_nothing_but_noise_comes_the_settings_are_named) {
-  OnLine on([](const Octets&) { return Octets{0xF0, 0xF0, 0xF0}; }, impatient);
+  OnLine on([](const Octets&) { return Octets{0xF0, 0xF0, 0xF0}; }, milliseconds(2000));
   const auto value = read(on.transport, 7);
   ASSERT_TRUE(is<BadFrame>(value));
   EXPECT_THAT(to_string(value.error()), HasSubstr("parity"));
@@ -154,7 +154,7 @@ TEST(RtuTransport, A_hang_up_that_was_meant_for_the_unit_before_ends_nothing) {
 }
 
 TEST(RtuTransport, The_late_reply_of_another_unit_is_no_noise_and_is_counted) {
-  OnLine on([](const Octets&) { return rtu(17, {3, 2, 0, 1}); }, impatient);
+  OnLine on([](const Octets&) { return rtu(17, {3, 2, 0, 1}); }, milliseconds(2000));
   EXPECT_TRUE(is<Timeout>(read(on.transport, 7)));
   EXPECT_EQ(on.transport.discarded(), 7U);
 }
