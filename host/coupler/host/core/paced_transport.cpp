@@ -15,13 +15,13 @@ void PacedTransport::pause() {
   begun_ = clock_.now();
 }
 
-void PacedTransport::answered_at(Time time, Duration pause) {
+void PacedTransport::ended_at(Time time, Duration rest) {
   answered_ = time;
-  ready_ = pause > Duration::zero() ? time + pause : Time::min();
+  ready_ = rest > Duration::zero() ? time + rest : Time::min();
 }
 
 Result<> PacedTransport::answered(Result<> result) {
-  answered_at(clock_.now(), gap_);
+  ended_at(clock_.now(), gap_);
   if (const ExceptionReply* exception = result ? nullptr : exception_in(result.error()))
     seen_.set(static_cast<std::size_t>(exception->code));
   statistics_.answered(answered_ - begun_, result);
@@ -38,7 +38,7 @@ void PacedTransport::give(const std::optional<WaitAnswer>& answer) {
 
 Result<> PacedTransport::connect() {
   Result<> result = transport_.connect();
-  answered_at(clock_.now(), delay_);
+  ended_at(clock_.now(), delay_);
   return result;
 }
 
@@ -78,7 +78,7 @@ Result<> PacedTransport::send_wait(const modbus::ChangesRequest& request) {
 Result<> PacedTransport::receive_wait() {
   if (Result<> received = transport_.receive_wait(); !received) return answered(received);
   const auto answer = transport_.take_wait_answer();
-  if (answer) answered_at(answer->received, gap_);
+  if (answer) ended_at(answer->received, gap_);
   give(answer);
   return {};
 }

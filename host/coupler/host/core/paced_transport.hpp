@@ -82,7 +82,7 @@ class PacedTransport : public Transport {
  private:
   void pause();
   /// The next request is made no sooner than `pause` later.
-  void answered_at(Time time, Duration pause);
+  void ended_at(Time time, Duration rest);
   Result<> answered(Result<> result);
   void give(const std::optional<WaitAnswer>& answer);
   template <class Request>

@@ -29,11 +29,12 @@ enum class Take { all, one_frame };
 /// only if there are not all of them: the rest comes within `timeout`.
 Result<> receive_frame(int socket, std::chrono::milliseconds timeout, Deadline deadline,
                        modbus::Framer& framer, Take take, bool has_begun = false) {
+  bool shortens = has_begun;
   for (bool waits = !has_begun;;) {
     const auto outcome = framer.next();
     if (outcome == modbus::Framer::Outcome::frame) return {};
     if (outcome == modbus::Framer::Outcome::bad) return fail(BadFrame{"not Modbus/TCP"});
-    if (waits && std::exchange(has_begun, false)) deadline = std::min(deadline, Deadline(timeout));
+    if (waits && std::exchange(shortens, false)) deadline = std::min(deadline, Deadline(timeout));
     pollfd wanted{socket, POLLIN, 0};
     if (waits && ::poll(&wanted, 1, deadline.left()) == 0) return fail(Timeout{timeout});
     const auto room = framer.room();
