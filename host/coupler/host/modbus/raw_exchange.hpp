@@ -21,8 +21,7 @@ Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu);
 /// Waits for the reply with this transaction and unit. Its PDU is valid as long as the framer.
 /// `has_begun`: it has come, or a part of it, the rest of which comes within `timeout` from now.
 Result<modbus::Bytes> receive_reply(int socket, const modbus::Frame& to, std::chrono::milliseconds timeout,
-                                    const Deadline& deadline, modbus::Framer& framer,
-                                    bool has_begun = false);
+                                    const Deadline& deadline, modbus::Framer& framer, bool has_begun = false);
 
 /// The same where the reply to a later request may follow: takes no byte of that one.
 Result<modbus::Bytes> receive_first_reply(int socket, const modbus::Frame& to,
