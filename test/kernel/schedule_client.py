@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A client that schedules coil 0 and waits for what becomes of it, which it prints:
-  python3 schedule_client.py SECONDS     how far ahead"""
+  python3 schedule_client.py SECONDS [MS]     how far ahead; for how long, 0 is for ever"""
 import pathlib
 import struct
 import sys
@@ -15,7 +15,8 @@ OUTCOMES = {3: "driven", 4: "cancelled", 5: "failed"}
 def main():
     with Listener(("127.0.0.1", 1502)) as node:
         due = time.monotonic_ns() + int(float(sys.argv[1]) * 1e9)
-        reply = node.ask(struct.pack(">BBBIQIBHHBB", 66, 1, 1, node.epoch, due, 0, 1, 0, 1, 1, 1))
+        lasts = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+        reply = node.ask(struct.pack(">BBBIQIBHHBB", 66, 1, 1, node.epoch, due, lasts, 1, 0, 1, 1, 1))
         print("scheduled" if reply[0] == 66 else f"exception {reply[1]:02}", flush=True)
         try:
             while reply[0] == 66:
