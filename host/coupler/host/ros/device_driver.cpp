@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/ros/device_driver.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/host/ros/device_panel.hpp"
+#include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros/status.hpp"
+#include "coupler/map/loader/load.hpp"
+
+namespace coupler::host {
+namespace {
+
+std::string topic(const Map& map, std::string_view point) { return fmt::format("{}/{}", map.name, point); }
+
+/// Many topics take their time, above all where the processor is busy: a signal ends that.
+std::vector<std::unique_ptr<PointPublisher>> advertise_all(Node& node, const Map& map,
+                                                           SubscriberCounts& subscribers) {
+  std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
+  for (std::uint32_t i = 0; i < map.points.size() && !Shutdown::requested; ++i)
+    if (is_readable(map.points[i]))
+      result[i] = node.advertise(topic(map, map.points[i].name), map.points[i], i, subscribers);
+  return result;
+}
+
+/// By point; null for those that are not stamped.
+std::vector<std::unique_ptr<PointPublisher>> advertise_stamped(Node& node, const Map& map,
+                                                               SubscriberCounts& subscribers,
+                                                               const WallTime& wall) {
+  std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
+  for (std::uint32_t i = 0; i < map.points.size() && !Shutdown::requested; ++i)
+    if (map.points[i].host.stamped)
+      result[i] = node.advertise_stamped(topic(map, map.points[i].name) + "/stamped", map.points[i], i,
+                                         subscribers, wall);
+  return result;
+}
+
+Node::PublishScheduled advertise_scheduled(Node& node, const Map& map, const WallTime& wall) {
+  return can_schedule(map) ? node.advertise_scheduled(topic(map, "scheduled"), map, wall)
+                           : Node::PublishScheduled();
+}
+
+std::function<void(bool)> advertise_online(Node& node, const Map& map) {
+  auto online = node.advertise_online(topic(map, "online"));
+  online(false);
+  return online;
+}
+
+}  // namespace
+
+DeviceDriver::DeviceDriver(Node& node, const Map& map, const Followed& followed,
+                           std::unique_ptr<Transport> transport)
+    : node_(node),
+      map_(map),
+      subscribers_(map.points.size()),
+      publishers_(advertise_all(node, map_, subscribers_)),
+      stamped_(advertise_stamped(node, map_, subscribers_, wall_)),
+      publish_online_(advertise_online(node, map)),
+      publish_status_(node.advertise_status(topic(map, "status"), map)),
+      publish_scheduled_(advertise_scheduled(node, map_, wall_)),
+      diagnostics_(map, node),
+      services_(map, subscribers_),
+      followers_(start_followers(followed)),
+      transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport), node)),
+      thread_(map, map.verify, load_served_map, *transport_, *this, map.poll),
+      writes_{[this](const Write& write) { thread_.write(write); },
+              [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {
+  for (std::uint32_t i = 0; i < map_.points.size() && !Shutdown::requested; ++i)
+    if (is_writable(map_.points[i]))
+      subscriptions_.push_back(node.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
+  services_.start(
+      node, {writes_, [this] { return thread_.reset_watchdog(); }, [this] { return thread_.make_safe(); },
+             [this](const ScheduledWrite& what) { return thread_.schedule(what); },
+             [this] { return thread_.statistics(); }});
+  if (map.poll == Poll::subscribed)
+    subscribers_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
+  subscribers_.on_each([this](std::uint32_t point) { thread_.want(point, true); });
+}
+
+std::vector<std::unique_ptr<Follower>> DeviceDriver::start_followers(const Followed& followed) {
+  const auto report = [this](Level level, const std::string& text) { log(level, text); };
+  std::vector<std::unique_ptr<Follower>> followers;
+  if (followed.recording) followers.push_back(DeviceRecording::start(map_, *followed.recording, report));
+  if (followed.panel) followers.push_back(start_panel(map_, *followed.panel, report));
+  followers.erase(std::remove(followers.begin(), followers.end(), nullptr), followers.end());
+  return followers;
+}
+
+void DeviceDriver::end_followers() {
+  for (const auto& follower : followers_) follower->end();
+}
+
+bool DeviceDriver::stop() {
+  services_.stop();
+  for (const auto& follower : followers_) follower->end_comes();
+  return thread_.end();
+}
+
+bool DeviceDriver::report(Time now, bool force) {
+  using State = PointQuality::State;
+  const std::uint64_t revision = thread_.revision();
+  if (!force && revision == reported_ && now <= stale_from_ && now < status_due_) return false;
+  reported_ = revision;
+  stale_from_ = Time::max();
+  const DeviceSnapshot device = thread_.statistics();
+  std::vector<PointQuality> points = thread_.qualities();
+  for (const auto& follower : followers_) follower->judge(device, points, revision, now);
+  for (const PointQuality& point : points) stale_from_ = std::min(stale_from_, point.stale_from);
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (const auto state = points[i].state; is_readable(map_.points[i]) && subscribers_.is_unwanted(i) &&
+                                            (state == State::stale || state == State::never_read))
+      points[i].state = State::not_wanted;
+  if (publish_status_(device, points, now)) status_due_ = now + status_interval;
+  thread_.report_held_back();
+  for (LineLimit* const lines : {&refused_lines_, &wall_lines_})
+    if (const auto line = lines->due(now)) log(Level::warning, *line);
+  return diagnostics_.update(device, points);
+}
+
+void DeviceDriver::on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
+  std::copy(bits.begin(), bits.end(), bits_.begin());
+  publish(span, {bits_.data(), bits.size()}, stamp);
+  for (const auto& follower : followers_) follower->sink().on_bits(span, bits, stamp);
+}
+
+void DeviceDriver::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) {
+  publish(span, registers, stamp);
+  for (const auto& follower : followers_) follower->sink().on_registers(span, registers, stamp);
+}
+
+void DeviceDriver::publish(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) {
+  bool is_measured = false;  // once, so that the stamps of one read are equal
+  for (const std::uint32_t index : span.points) {
+    const modbus::Range place = read_range(map_.points[index]);
+    const std::uint16_t* value = &registers[place.start() - std::size_t{span.range.start()}];
+    if (!publishers_[index]) continue;  // the driver ends before it has begun
+    publishers_[index]->publish(value, stamp);
+    if (stamped_[index]) {
+      if (!std::exchange(is_measured, true)) measure_wall();
+      stamped_[index]->publish(value, stamp);
+    }
+    if (services_.value_waiter().waits_for(index))
+      services_.value_waiter().deliver(value, place.count(), std::min(transport_->read_sent_at(), stamp.at));
+  }
+}
+
+void DeviceDriver::measure_wall() {
+  const Duration set_by = wall_.measure();
+  if (set_by == Duration::zero()) return;
+  const double seconds = std::chrono::duration<double>(std::chrono::abs(set_by)).count();
+  const auto line = wall_lines_.say(
+      fmt::format("this machine's clock was set {:.3f} s {}, or it slept; time stamps follow it", seconds,
+                  set_by > Duration::zero() ? "ahead" : "back"),
+      std::chrono::steady_clock::now());
+  if (line) log(Level::warning, *line);
+}
+
+Time DeviceDriver::repeat_at(std::uint32_t point) const {
+  Time first = Time::max();
+  for (const auto* publishers : {&publishers_, &stamped_})
+    if (const auto& publisher = (*publishers)[point]) first = std::min(first, publisher->repeat_at());
+  return first;
+}
+
+void DeviceDriver::on_identified(bool is_node) {
+  for (const auto& follower : followers_) follower->sink().on_identified(is_node);
+}
+
+void DeviceDriver::on_online(bool online) {
+  if (online)  // values from before the interruption are history
+    for (const auto* publishers : {&publishers_, &stamped_})
+      for (const auto& publisher : *publishers)
+        if (publisher) publisher->renew();
+  services_.value_waiter().set_online(online);
+  publish_online_(online);
+  for (const auto& follower : followers_) follower->sink().on_online(online);
+}
+
+void DeviceDriver::on_scheduled(const ScheduledOutcome& outcome) {
+  measure_wall();
+  publish_scheduled_(outcome);
+}
+
+void DeviceDriver::on_report(Level level, const std::string& text) {
+  log(level, text);
+  for (const auto& follower : followers_) follower->sink().on_report(level, text);
+}
+
+void DeviceDriver::log(Level level, const std::string& text) {
+  node_.log(level, fmt::format("{}: {}", map_.name, text));
+}
+
+void DeviceDriver::refuse(std::optional<std::uint32_t> point, const std::string& what) {
+  if (point) {
+    Write refused;
+    refused.point = *point;
+    thread_.refuse(refused, what);
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (const auto line = refused_lines_.say("refused a write to " + what, now)) log(Level::warning, *line);
+}
+
+}  // namespace coupler::host

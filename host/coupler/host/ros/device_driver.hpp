@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coupler/base/line_limit.hpp"
+#include "coupler/host/core/device_thread.hpp"
+#include "coupler/host/core/wall_time.hpp"
+#include "coupler/host/ros/device_recording.hpp"
+#include "coupler/host/ros/device_services.hpp"
+#include "coupler/host/ros/diagnostics.hpp"
+#include "coupler/host/ros/node.hpp"
+#include "coupler/host/ros/traced_transport.hpp"
+
+namespace coupler::host {
+
+/// One device in ROS: `<name>/<point>` for each readable point, with `<name>/<point>/stamped` where the map
+/// says so, `<name>/<point>/write` for each writable one, the latched `<name>/online` and `<name>/status`,
+/// `<name>/scheduled`, services, diagnostics, and the thread that drives the device. Values are published in
+/// that thread as they are decoded.
+class DeviceDriver : public Sink {
+ public:
+  /// What follows it, besides ROS.
+  struct Followed {
+    std::optional<std::string> recording;  ///< the path of one
+    std::optional<unsigned> panel;         ///< the port of one
+  };
+
+  /// The map's views must outlive it. Callbacks of the node refer to it: the node must be shut down before it
+  /// is destroyed, and publish no more diagnostics.
+  DeviceDriver(Node& node, const Map& map, const Followed& followed, std::unique_ptr<Transport> transport);
+  ~DeviceDriver() override { services_.stop(); }
+
+  /// After stop(): its outputs are safe, however long the disk takes.
+  void end_followers();
+
+  /// Stops the device's thread; what comes from ROS afterwards does nothing. False if an output should have
+  /// its safe value and has not.
+  bool stop();
+
+  /// Publishes the status if it is due, and updates the diagnostics: true if they are to be published at
+  /// once. To be called about ten times a second; without news and without `force` it does nothing.
+  bool report(Time now, bool force);
+
+  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override;
+  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override;
+  Time repeat_at(std::uint32_t point) const override;
+  void on_identified(bool is_node) override;
+  void on_online(bool online) override;
+  void on_scheduled(const ScheduledOutcome& outcome) override;
+  void on_report(Level level, const std::string& text) override;
+
+ private:
+  void log(Level level, const std::string& text);
+  std::vector<std::unique_ptr<Follower>> start_followers(const Followed& followed);
+  void publish(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp);
+  void measure_wall();
+  void refuse(std::optional<std::uint32_t> point, const std::string& what);
+
+  Node& node_;
+  Map map_;
+  SubscriberCounts subscribers_;
+  std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
+  WallTime wall_;
+  LineLimit wall_lines_;
+  std::vector<std::unique_ptr<PointPublisher>> stamped_;     ///< by point; null where it is not stamped
+  std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of one span, as publishers take them
+  std::function<void(bool)> publish_online_;
+  Node::PublishStatus publish_status_;
+  Node::PublishScheduled publish_scheduled_;  ///< empty if no point can be written
+  Diagnostics diagnostics_;
+  DeviceServices services_;
+  const std::vector<std::unique_ptr<Follower>> followers_;
+  std::unique_ptr<TracedTransport> transport_;
+  DeviceThread thread_;
+  std::uint64_t reported_ = 0;  ///< the thread's revision
+  Time stale_from_{};           ///< the first of the good points becomes stale
+  Time status_due_{};
+  WriteHandler writes_;
+  LineLimit refused_lines_;
+  std::vector<std::shared_ptr<void>> subscriptions_;
+};
+
+}  // namespace coupler::host
