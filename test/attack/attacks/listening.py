@@ -88,7 +88,7 @@ def everybody_listens(node):
                 everybody.hear(listener)
 
 
-@attack("a thousand clients wait for changes and read no reply: the node makes room for newcomers and serves them")
+@attack("a thousand clients ask for changes and do nothing more, a quarter of them wait: the node makes room and serves newcomers")
 def nobody_asks_again(node):
     with contextlib.ExitStack() as stack:
         for number in range(4 * CONNECTIONS):

@@ -114,7 +114,6 @@ class Watch {
   /// Returns when to look again.
   host::Time look() {
     const host::Time next = clock_.now() + every_;
-    was_told_ |= reader_.hears_changes();
     Snapshot now = reader_.look();
     if (stopped_) return next;
     const bool is_online = now.online();

@@ -81,7 +81,7 @@ class PacedTransport : public Transport {
 
  private:
   void pause();
-  /// The next request is made no sooner than `pause` later.
+  /// The next request is made no sooner than `rest` later.
   void ended_at(Time time, Duration rest);
   Result<> answered(Result<> result);
   void give(const std::optional<WaitAnswer>& answer);
