@@ -3,7 +3,7 @@
 from support import testing
 from support.device import Device
 from support.network import Network
-from support.patience import NO_TIMEOUT
+from support.patience import NO_TIMEOUT, wait_until
 from support.truth import TIMEOUT, Truth
 
 
@@ -46,6 +46,7 @@ class FaultLink(testing.RosTest):
         accepted = self.device.accepted
         self.network.pull()
         self.set(2)
+        wait_until(self.network.loses_a_request, "the request after the last value")
         self.truth.level.stays_quiet()
         self.network.plug()
         self.truth.is_good(2)

@@ -3,6 +3,9 @@
 import contextlib
 import ctypes
 import ipaddress
+import pathlib
+import socket
+import struct
 import subprocess
 import unittest
 
@@ -63,6 +66,16 @@ class Network:
     def pull(self):
         """The cable out of the device: packets vanish, nobody says a word."""
         ip("-n", self._name, "link", "set", self._far, "down")
+
+    def loses_a_request(self):
+        """True when this end has sent the device what is not acknowledged: of a pulled cable, for as long as it is out. An
+        answer that was under way has come before."""
+        number, = struct.unpack("=I", socket.inet_aton(self.device))  # proc(5): the address as the machine holds it
+        for line in pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:]:
+            _, _, remote, _, queues = line.split()[:5]
+            if remote.startswith(f"{number:08X}:") and int(queues.split(":")[0], 16):
+                return True
+        return False
 
     def plug(self):
         ip("-n", self._name, "link", "set", self._far, "up")
