@@ -2,6 +2,8 @@
 #include "coupler/cli/map_argument.hpp"
 
 #include <spawn.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -49,12 +51,18 @@ bool ends_in(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
 
+/// An absolute path of a device, but not such as /dev/null.
+bool is_serial_line(const std::string& path) {
+  struct stat status {};
+  return starts_with(path, "/") && ::stat(path.c_str(), &status) == 0 && S_ISCHR(status.st_mode) &&
+         major(status.st_rdev) != 1;
+}
+
 /// A file that is missing is none: only what can be a place, and no path or file of a map.
 bool can_be_a_device(const std::string& argument) {
   if (names_a_node(argument)) return true;
   std::error_code ignored;
-  const auto file = std::filesystem::status(argument, ignored);
-  if (std::filesystem::exists(file)) return std::filesystem::is_character_file(file);
+  if (std::filesystem::exists(argument, ignored)) return is_serial_line(argument);
   for (const std::string_view end : {".yaml", ".yml", ".json"})
     if (ends_in(argument, end)) return false;
   if (starts_with(argument, "/")) return starts_with(argument, "/dev/");
@@ -92,13 +100,11 @@ LoadResult load_and_renew_lock(const std::string& path) {
   return {nullptr, std::move(loaded.diagnostics)};
 }
 
-/// If there is no such file and it has the name of a host, the error says how a node is named.
+/// If it can be a host or a serial line, the error says how a node there is named.
 MapArgument from_file(const std::string& argument, const TlsTexts& tls, LoadResult loaded) {
   const Exit exit = loaded.map ? ok : bad_input;
   const std::string node = any_given(tls) ? "tls://" + argument : node_argument(argument);
-  std::error_code ignored;
-  if (exit != ok && !std::filesystem::exists(argument, ignored) && can_be_a_device(argument) &&
-      parse_node_address(node))
+  if (exit != ok && can_be_a_device(argument) && parse_node_address(node))
     loaded.diagnostics.back().remedy += fmt::format("; for the map of a node write {}", node);
   return {std::move(loaded), exit};
 }

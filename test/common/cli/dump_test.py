@@ -7,6 +7,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+PATIENCE = 120  # seconds; no rule, only reached when something is broken
 MAP = """\
 name: cell
 mapping:
@@ -23,7 +24,7 @@ class Dump(unittest.TestCase):
 
     def dump(self, *arguments):
         return subprocess.run([os.environ["COUPLER"], "dump", *arguments], cwd=self.folder,
-                              capture_output=True, text=True, encoding="utf-8", check=False)
+                              capture_output=True, text=True, encoding="utf-8", check=False, timeout=PATIENCE)
 
     def refused(self, status, what, *arguments):
         done = self.dump(*arguments)
@@ -39,6 +40,12 @@ class Dump(unittest.TestCase):
         for place, node in (("127.0.0.1:1502", "tcp://127.0.0.1:1502"), ("press.local", "tcp://press.local"),
                             ("/dev/ttyUSB77", "rtu:/dev/ttyUSB77")):
             self.refused(1, f"{place}: {missing}; for the map of a node write {node}\n", place)
+        for end in os.openpty():
+            self.addCleanup(os.close, end)
+        line = os.ttyname(end)
+        device = "error: it is a device, not a file; give the path of a map, or - for standard input"
+        self.refused(1, f"{line}: {device}; for the map of a node write rtu:{line}\n", line)
+        self.refused(1, f"/dev/null: {device}\n", "/dev/null")
         for file in ("press.yaml", "./press", "a b"):
             self.refused(1, f"{file}: {missing}\n", file)
 

@@ -43,11 +43,16 @@ tl::expected<std::string, int> read_file(const std::string& path) {
   return text;
 }
 
+LoadResult no_map(const std::string& path, std::string what, std::string remedy) {
+  return {nullptr, {{Diagnostic::Severity::error, path, 0, 0, std::move(what), std::move(remedy)}}};
+}
+
 LoadResult unreadable(const std::string& path, int error, std::string remedy) {
-  const std::string what =
-      error == EFBIG ? fmt::format("the file has more than {} MiB, but a map may not", max_file_size >> 20)
-                     : fmt::format("the file cannot be read: {}", std::strerror(error));
-  return {nullptr, {{Diagnostic::Severity::error, path, 0, 0, what, std::move(remedy)}}};
+  return no_map(path,
+                error == EFBIG
+                    ? fmt::format("the file has more than {} MiB, but a map may not", max_file_size >> 20)
+                    : fmt::format("the file cannot be read: {}", std::strerror(error)),
+                std::move(remedy));
 }
 
 /// The text with the addresses, which a node serves, is the same map. It is read again to make sure:
@@ -113,6 +118,9 @@ LoadResult load_map_file(const std::string& path, LockUse use, std::string_view 
     if (!text) return unreadable("<stdin>", text.error(), "give it a map");
     return load_map_with_lock(*text, "<stdin>", LockFile{}, name);
   }
+  std::error_code ignored;
+  if (std::filesystem::is_character_file(path, ignored))  // a serial line has no end
+    return no_map(path, "it is a device, not a file", "give the path of a map, or - for standard input");
   const auto text = read_file(path);
   if (!text) return unreadable(path, text.error(), "give the path of a map");
   LockFile lock{path + ".lock", std::nullopt, use};

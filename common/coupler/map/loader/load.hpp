@@ -59,7 +59,7 @@ LoadResult load_map_with_lock(std::string_view text, std::string_view file, Lock
                               std::string_view name = {});
 
 /// The same from a file, and from the lock beside it; "-" is standard input, which has none. A file that
-/// cannot be read is a diagnostic. Nothing is written.
+/// cannot be read, or is a device, is a diagnostic. Nothing is written.
 LoadResult load_map_file(const std::string& path, LockUse use = LockUse::read, std::string_view name = {});
 
 }  // namespace coupler

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
 #include "coupler/map/fingerprint.hpp"
 #include "test/common/map/loader/loaded.hpp"
 #include "test/support/paths.hpp"
@@ -131,9 +138,20 @@ TEST(Load, A_file_that_cannot_be_read_is_a_diagnostic) {
       test::in_tree("test") + ": error: the file cannot be read: Is a directory; give the path of a map\n");
 }
 
-TEST(Load, A_file_without_end_is_refused) {
+TEST(Load, A_device_is_refused_since_it_may_have_no_end) {
   EXPECT_EQ(to_string(load_map_file("/dev/zero").diagnostics.at(0)),
-            "/dev/zero: error: the file has more than 16 MiB, but a map may not; give the path of a map");
+            "/dev/zero: error: it is a device, not a file; give the path of a map, or - for standard input");
+}
+
+TEST(Load, A_file_that_is_too_long_is_refused) {
+  const auto path = std::filesystem::temp_directory_path() / fmt::format("long-{}.yaml", ::getpid());
+  std::ofstream(path).close();
+  std::filesystem::resize_file(path, max_file_size + 1);
+  const LoadResult result = load_map_file(path.string());
+  std::filesystem::remove(path);
+  EXPECT_EQ(
+      to_string(result.diagnostics.at(0)),
+      path.string() + ": error: the file has more than 16 MiB, but a map may not; give the path of a map");
 }
 
 TEST(Load, A_json_map_may_name_its_schema) {
