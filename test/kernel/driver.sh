@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The whole chain on a chip of the kernel: line, coupler-node, coupler_driver, topic, and back; and what the driver records
-# of it, played to a driver without that chip.
+# The whole chain on a chip of the kernel: line, coupler-node, coupler_driver, topic, and back; an output at a time, also
+# across a fault; and what the driver records of all, played to a driver without that chip.
 #   test/kernel/run --mem 1G test/kernel/driver.sh BUILD_DIR
 set -euo pipefail
 export PYTHONUNBUFFERED=1  # what rostopic prints is looked for in a file while it runs
@@ -16,12 +16,14 @@ set +u
 set -u
 plant_chip
 plant_node plant.yaml
+readonly not_begun='the node read a new map, lost or found a chip, or ended'
 
 # roscore gives its master 10 s to start, which this kernel may need on a busy machine.
 start core ../support/ros-master 11311
 check "a ROS master answers" wait_until says core http://
 recording=$check_folder/plant.jsonl
-start driver "$bin/coupler_driver" _address:=127.0.0.1 _port:=1502 _record:="$recording"
+# A busy machine's node is late, not lost.
+start driver "$bin/coupler_driver" _address:=127.0.0.1 _port:=1502 _timeout:="$patience" _record:="$recording"
 check "the driver connects, with the node's own map" wait_until says driver 'connected'
 
 echo "# pulling a line shows on its topic"
@@ -47,8 +49,36 @@ check "the clock is set an hour ahead" date -s "@$later"
 check "the driver tells it" wait_until says driver "clock was set 3[56].* s ahead"
 check "stamps are an hour later" wait_until is_stamped_from "$later"
 
+echo "# an output at a time: driven, or told why not"
+sim_pull plant 0 down
+schedule() {
+  start "$1" python3 schedule_in_ros.py "$2"
+  check "it is accepted" wait_until says "$1" 'accepted: the node does it'
+  due=$((SECONDS + $2))
+}
+not_driven() {
+  sleep $((due + 1 - SECONDS > 0 ? due + 1 - SECONDS : 0))
+  check "nothing was driven at its time" level_is 0 0
+}
+schedule calm 3
+check "it is told" wait_until says calm 'lamp done: $'
+check "the line is high" level_is 0 1
+check "it is written off" set_coil 0 0
+schedule read_again 10
+check "the map is read again" kill -HUP "$(pid node)"
+check "it is told that it is cancelled" wait_until says read_again "lamp cancelled: $not_begun"
+not_driven
+for signal in KILL STOP; do
+  schedule "$signal" 10
+  check "SIG$signal to the process that serves" kill -s "$signal" "$(worker)"
+  check "it is told that nobody knows" wait_until says "$signal" 'lamp unknown: the connection ended before'
+  not_driven
+done
+schedule unplugged 30 # the node looks for its chips once a second
+
 echo "# unplugging the chip is told, and crashes nobody"
 sim_unplug plant
+check "it is told that it is cancelled" wait_until says unplugged "lamp cancelled: $not_begun"
 check "the driver tells of exception 04" wait_until says driver 'device failure'
 check "the node names the line" wait_until says node 'BUTTON'
 check "the driver runs" running driver

@@ -31,11 +31,9 @@ pulse() {
   done
 }
 
-# gpiomon of libgpiod 1 takes the chip as an argument, that of libgpiod 2 as an option.
 watch_control() {
-  if [[ $(gpiomon --version) == *v1.* ]]; then start "$1" stdbuf -oL gpiomon "$chip" "$control"
-  else start "$1" stdbuf -oL gpiomon -c "$chip" "$control"; fi
-  pause 0.5
+  start "$1" monitor "$chip" "$control"
+  check "gpiomon watches its line" wait_until is_watched "$chip"
 }
 rising_seen() { grep -ciE 'rising' "$(log "$1")" || true; }
 saw() { [ "$(rising_seen "$1")" -ge "$2" ]; }
@@ -72,7 +70,7 @@ print(latched)
 }
 
 width=
-for try in 0.001 0.002 0.005 0.01; do
+for try in 0.001 0.002 0.005 0.01 0.02 0.05; do
   watch_control "try-$try"
   pulse 200 "$try" "$control"
   within 1 saw "try-$try" 200 >/dev/null || true
@@ -104,14 +102,24 @@ expect "and counts on from there" 4000005 "$(counter 4 0)"
 refuse "half of it cannot be written" answered client -t 4 -r 0 127.0.0.1 -- 7
 
 echo "# debounce"
-for _ in 1 2 3; do
+# A round in which this program had to wait between two pulses has other presses, and is made again.
+bounce() {
+  local begun took wire
+  wire=$(sim_wire plant "$bouncy")
+  begun=$(microseconds)
   pulse 5 0.01 "$bouncy"
-  sim_pull plant "$bouncy" up
+  [ "$1" = released ] || echo pull-up >"$wire/pull"
+  took=$(($(microseconds) - begun))
+  slowest=$((took > slowest ? took : slowest))
   pause 1.2
-  pulse 5 0.01 "$bouncy"
-  pause 1.2
+}
+for _ in 1 2 3 4 5; do
+  before=$(counter 3 4) slowest=0
+  for _ in 1 2 3; do bounce pressed; bounce released; done
+  pressed=$(($(counter 3 4) - before))
+  [ "$slowest" -ge 350000 ] || break
 done
-expect "three presses that bounce are three" 3 "$(counter 3 4)"
+expect "three presses that bounce are three" 3 "$pressed"
 
 echo "# the worker process is killed"
 before=$(counter 3 0)
@@ -128,11 +136,15 @@ before=$(counter 3 2)
 start heard python3 heard_changes.py 1
 check "a client waits for changes" wait_until says heard listening
 id=$(worker)
+watch_control storm
 kill -STOP "$(pid node)" # the supervisor, which would end a worker process that is silent for so long
 kill -STOP "$id"
-pulse 700 "$width" "$wave"
+pulse 700 "$width" "$wave" "$control"
 kill -CONT "$id"
 kill -CONT "$(pid node)" # at once: a worker whose supervisor is silent for 5 s ends it
+within 10 saw storm 700 >/dev/null || true
+echo "# bare gpiomon beside it saw $(rising_seen storm) of 700"
+stop storm INT || true
 counted=$(($(counter 3 2) - before))
 lost=$(lost)
 echo "# of 1400 edges $counted were counted, $lost reported as lost"
@@ -146,5 +158,10 @@ unheard=$(sed -nE 's/^told [0-9]+, lost ([0-9]+)$/\1/p' "$(log heard)")
 echo "# it was told $told edges, and that $unheard were lost"
 check "it was not told all" test "$told" -lt 1400
 check "and knows" test "$unheard" -gt 0
+# libgpiod 2 numbers edges, so it is known how many are missing. The simulator merges some on a machine that is very busy.
+if ldd "$bin/coupler-node" | grep -q 'libgpiod\.so\.3' && [ "$(rising_seen storm)" -eq 700 ]; then
+  expect "counted and lost are all that were made" 1400 $((counted + lost))
+  expect "so are told and lost" 1400 $((told + unheard))
+fi
 check "it ends well on SIGTERM" stop node TERM
 cat "$(log node)"

@@ -15,6 +15,7 @@
 #   sim_value NAME LINE                 prints the level of the wire, 0 or 1 (physical: active-low is not applied)
 #   sim_unplug NAME, sim_plug NAME      pulls the chip out, also while it is in use, and plugs it in again; pulls are lost
 #   sim_remove NAME                     unplugs and forgets it
+#   monitor CHIP LINE                   gpiomon, of libgpiod 1 or 2; to be started, then wait for is_watched CHIP
 # A function that cannot do it prints why on stderr and gives 1.
 #
 # To know when testing: a line that nobody drives falls back to its pull, so to see that something drives it, pull it
@@ -108,3 +109,10 @@ sim_value() {
   cat "$wire/value"
 }
 
+if [[ $(gpiomon --version) == *v1.* ]]; then
+  monitor() { exec gpiomon --line-buffered "$1" "$2"; }
+  is_watched() { gpioinfo "$1" | grep -q gpiomon; }
+else
+  monitor() { exec stdbuf -oL gpiomon --chip "$1" "$2"; }
+  is_watched() { gpioinfo --chip "$1" | grep -q gpiomon; }
+fi

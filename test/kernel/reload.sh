@@ -49,7 +49,7 @@ def check(pdu, wanted):
         print("wrong", pdu, answer)
 while going:
     try:
-        node = node or socket.create_connection(("127.0.0.1", 1502), timeout=5)
+        node = node or socket.create_connection(("127.0.0.1", 1502), timeout=60)
         check(b"\5\0\0\xff\0", b"\5\0\0\xff\0")
         check(b"\1\0\0\0\2", b"\1\1\3")
         check(b"\3\0\0\0\1", b"\3\2\4\xd2")
@@ -174,7 +174,7 @@ plant_node "$map"
 exec 8<>/dev/tcp/127.0.0.1/1502
 check "the map is taken" reload_with "$taken" < <(watched lamp 0 0 | sed '/watchdog/d')
 printf '\0\1\0\0\0\6\1\5\0\0\0\0' >&8
-expect "a client that was there is answered" '00 01 00 00 00 06 01 05 00 00 00 00' "$(timeout 5 head -c 12 <&8 | od -An -tx1 | xargs)"
+expect "a client that was there is answered" '00 01 00 00 00 06 01 05 00 00 00 00' "$(timeout 60 head -c 12 <&8 | od -An -tx1 | xargs)"
 check "and drives" level_is 0 0
 exec 8<&-
 

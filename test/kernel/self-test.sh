@@ -10,14 +10,10 @@ set -euo pipefail
 # The tools of libgpiod 2 take the chip by an option, and read at once only with numeric output asked for.
 if [[ $(gpioget --version) == *v1.* ]]; then
   get() { gpioget "$1" "$2"; }
-  monitor() { exec gpiomon --line-buffered "$1" "$2"; }
   drive() { exec gpioset --mode=signal "$1" "$2"; }
-  rising=RISING falling=FALLING
 else
   get() { gpioget --numeric --chip "$1" "$2"; }
-  monitor() { exec gpiomon --chip "$1" "$2"; }
   drive() { exec gpioset --chip "$1" "$2"; }
-  rising=rising falling=falling
 fi
 sees() { "${@:2}" | grep -- "$1" >/dev/null; }
 wire_is() { [ "$(sim_value "$1" "$2")" = "$3" ]; }
@@ -41,14 +37,11 @@ stop output KILL || true
 check "a line that nobody drives any more falls back to its pull" wait_until wire_is plain 5 0
 
 start edges monitor "$(sim_chip plain)" 0
-sees_edges() { says edges "$rising" "$1" && says edges "$falling" "$2"; }
-# gpiomon does not say when it watches: pull until it reports.
-toggle() { sim_pull plain 0 up; sleep 0.02; sim_pull plain 0 down; sleep 0.02; sees_edges 1 1; }
-check "both edges are reported" wait_until toggle
-before=$(grep -c . "$(log edges)")
+check "gpiomon watches the line" wait_until is_watched "$(sim_chip plain)"
 for _ in 1 2 3 4 5; do sim_pull plain 0 up; sleep 0.02; sim_pull plain 0 down; sleep 0.02; done
-reported() { [ "$(($(grep -c . "$(log edges)") - before))" = "$1" ]; }
-check "five pulses are ten edges" wait_until reported 10
+check "five pulses are ten edges" wait_until says edges '.' 10
+check "five of them rise" says edges '[Rr][Ii][Ss][Ii][Nn][Gg]' 5
+refuse "no more were reported" says edges '.' 11
 sim_create other 2
 check "a second chip stands beside the first" sees "\[other\] (2 lines)" gpiodetect
 stop edges INT || true
@@ -64,8 +57,8 @@ expect "a hogged line is driven" 1 "$(sim_value named 3)"
 chip=$(sim_chip plain)
 start held drive "$chip" 6=1
 check "an output is held before the chip is unplugged" wait_until wire_is plain 6 1
-check "a chip in use can be unplugged" timeout 10 bash -c "echo 0 >$sim_folder/plain/live"
-status=0; timeout 5 "$BASH" -c "$(declare -f get); get $chip 3" || status=$?
+check "a chip in use can be unplugged" timeout 60 bash -c "echo 0 >$sim_folder/plain/live"
+status=0; timeout 60 "$BASH" -c "$(declare -f get); get $chip 3" || status=$?
 refuse "reading an unplugged chip does not hang" test "$status" = 124
 refuse "reading an unplugged chip is an error" test "$status" = 0
 refuse "an unplugged chip has no name" sim_chip plain
