@@ -16,6 +16,7 @@ from support.times import ROUNDING, ros_duration, ros_time, seconds
 MAP = """
 name: cell
 address: 127.0.0.1
+timeout: 60
 rate: 50
 mapping:
   coils: {lamp: {address: 4STAMPED}}

@@ -36,6 +36,7 @@ def record_a_session(node, coupler, map_file, file, checks):
     chance = random.Random(5)
     with Node(node, map_file) as device, Recorder(coupler, map_file, device.port, file) as recorder:
         recorder.await_value("level", -2, checks)
+        time.sleep(2)  # who is played it five times as fast reads what was there in the beginning, too
         client = peer.pymodbus_client(device.port)
         for _ in range(10):
             for coil in (0, 1):

@@ -12,6 +12,7 @@ from support.topics import wait_until
 MAP = """
 name: closed
 address: 127.0.0.1
+timeout: 60
 mapping:
   coils: {lamp: 3}
   holding_registers: {level: {address: 4, type: INT}}

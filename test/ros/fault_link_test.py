@@ -40,20 +40,20 @@ class FaultLink(testing.RosTest):
         self.truth.is_good(2)
 
     def test_a_cable_that_is_back_before_the_timeout_costs_no_connection(self):
-        self.truth.driver.end()
+        self.truth.end()
         self.start(NO_TIMEOUT)
         self.truth.is_good(1)
         accepted = self.device.accepted
         self.network.pull()
         self.set(2)
-        wait_until(self.network.loses_a_request, "the request after the last value")
+        wait_until(lambda: self.network.loses_a_request(self.device.port), "the request after the last value")
         self.truth.level.stays_quiet()
         self.network.plug()
         self.truth.is_good(2)
         self.assertEqual(self.device.accepted, accepted)
 
     def test_a_driver_that_starts_without_a_cable_waits_for_it(self):
-        self.truth.driver.end()
+        self.truth.end()
         self.network.pull()
         self.start()
         self.truth.is_offline()

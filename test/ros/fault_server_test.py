@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The server goes, freezes, is slow, or has no connection to spare."""
+import select
 import time
 
 from support import testing
 from support.device import Device
+from support.patience import PATIENCE
 from support.ports import free_port
 from support.pymodbus_server import LEVEL, Server
 from support.truth import OK, TIMEOUT, WARN, Truth
@@ -44,7 +46,7 @@ class FaultConnection(testing.RosTest):
         truth.is_good(1)
 
         def answer(request):
-            time.sleep(TIMEOUT + 0.2)
+            select.select([request.connection], [], [], PATIENCE)  # until the driver has given up
             return self.device.serve(request)
 
         self.device.answer = answer

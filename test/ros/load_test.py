@@ -109,8 +109,12 @@ class Flood(LoadTest):
         speed.wait_for(lambda value: value == last)
 
     def test_the_newest_value_of_each_topic_is_on_the_wire_after_one_request_for_each(self):
-        topics = self.publishers({"/slow/speed/write": UInt16, "/slow/torque/write": UInt16})
-        last = self.flood(topics)
+        topics = self.senders("speed", "torque")
+        last = self.flood(topics) + 1
+        self.device.hold()
+        for topic in topics:
+            in_order.publish(topic, last)
+        self.device.go_on()
         for address in (10, 20):
             wait_until(lambda a=address: self.device.tables["holding_registers"][a] == last, "the last value")
         values = list(self.device.written())

@@ -13,6 +13,7 @@ COUPLER = process.BUILD / "bin" / "coupler"
 MAP = """
 name: press
 address: 127.0.0.1
+timeout: 60
 rate: 20
 mapping:
   coils:

@@ -10,6 +10,7 @@ import xmlrpc.client
 from support import process
 from support.device import Device
 from support.patience import NO_TIMEOUT, PATIENCE
+from support.ports import free_port
 from support.topics import wait_until
 
 MASTER = pathlib.Path(__file__).resolve().parents[1] / "support/ros-master"
@@ -28,8 +29,8 @@ NODE = "/kept_driver"
 class MasterRestart(unittest.TestCase):
     """With a master of its own, and no rospy in this process: that belongs to another master."""
 
-    def start_master(self, *port):
-        master = subprocess.Popen([MASTER, *map(str, port)], stdout=subprocess.PIPE, text=True)
+    def start_master(self, port):
+        master = subprocess.Popen([MASTER, str(port)], stdout=subprocess.PIPE, text=True)
         self.addCleanup(master.wait)
         self.addCleanup(master.terminate)
         uri = master.stdout.readline().strip()
@@ -55,13 +56,14 @@ class MasterRestart(unittest.TestCase):
     def test_topics_services_and_parameters_come_back_and_polling_goes_on(self):
         self.device = Device().start()
         self.addCleanup(self.device.stop)
-        running, uri = self.start_master()
+        running, uri = self.start_master(free_port())  # which nobody takes while no master is there
         self.master = xmlrpc.client.ServerProxy(uri)
         self.environment = {**os.environ, "ROS_MASTER_URI": uri}
         with process.Process("coupler_driver", f"_map:={process.write_map(MAP)}", f"_port:={self.device.port}",
                              environment=self.environment) as driver:
             driver.wait_for("connected")
             self.publish_until_written(7)
+            wait_until(lambda: {"/kept/safe", "/kept/schedule"} <= set(self.of_node()[2]), "the services, which come last")
             before = self.of_node()
             self.assertIn("/kept/level", before[0])
             self.assertIn("/kept/goal/write", before[1])

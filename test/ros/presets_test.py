@@ -58,7 +58,8 @@ class PresetTest(testing.RosTest):
         if watchdog:
             top += f"\nwatchdog: {{{watchdog}}}"
         path = process.write_map(MAP.format(preset=preset, top=top, mapping=mapping, rate=rate, timeout=NO_TIMEOUT))
-        return self.driver(f"_map:={path}", f"_port:={self.coupler.port}")
+        self.coupler.driver = self.driver(f"_map:={path}", f"_port:={self.coupler.port}")
+        return self.coupler.driver
 
     def write(self, point, value):
         return self.service("/rack/write", Write)(point, value)

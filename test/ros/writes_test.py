@@ -56,16 +56,26 @@ class Writes(testing.RosTest):
                 free.wait(PATIENCE)
                 return device.serve(request)
 
+            def burst(first):
+                """The writes that it became."""
+                before = len(device.seen(SINGLE, SEVERAL))
+                free.clear()
+                asked.clear()
+                self.assertTrue(asked.wait(PATIENCE))
+                for value, publisher in enumerate(publishers):
+                    publisher.publish(first + value)
+                    time.sleep(0.1)  # each topic has a thread and a connection of its own, and only what comes in order is merged
+                free.set()
+                wait_until(lambda: registers(device, 0, COUNT) == list(range(first, first + COUNT)), "all values")
+                return device.seen(SINGLE, SEVERAL)[before:]
+
             device.answer = answer
-            self.assertTrue(asked.wait(PATIENCE))
-            for value, publisher in enumerate(publishers):
-                publisher.publish(100 + value)
-                time.sleep(0.1)  # each topic has a thread and a connection of its own, and only what comes in order is merged
-            free.set()
-            wait_until(lambda: registers(device, 0, COUNT) == list(range(100, 100 + COUNT)), "all values")
-            writes = device.seen(SINGLE, SEVERAL)
+            for first in (100, 200, 300):  # a driver that had no time meanwhile shows nothing
+                writes = burst(first)
+                if len(writes) < COUNT:
+                    break
             self.assertLess(len(writes), COUNT, writes)
-            self.assertTrue(device.seen(SEVERAL))
+            self.assertIn(SEVERAL, [write.function for write in writes])
 
     def test_a_single_write_to_an_idle_device_is_one_register(self):
         with Device() as device:

@@ -4,6 +4,7 @@ import socket
 import sys
 
 import rospy
+from roscpp.srv import GetLoggers
 
 from support.topics import wait_until
 
@@ -18,10 +19,12 @@ def senders(test, kinds):
 
 
 def publish(publisher, value):
-    """Returns when the driver has read the message."""
+    """Returns when the driver has taken the message."""
     publisher.publish(value)
-    connection = publisher.impl.connections[0].socket
-    wait_until(lambda: _receiving_end(connection)[4].endswith(":00000000"), "the driver to read it")
+    connection = publisher.impl.connections[0]
+    wait_until(lambda: _receiving_end(connection.socket)[4].endswith(":00000000"), "the driver to read it")
+    # The thread that has read it answers this when it has handed it on.
+    rospy.ServiceProxy(f"{connection.endpoint_id}/get_loggers", GetLoggers)()
 
 
 def _receiving_end(connection):

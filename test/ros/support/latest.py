@@ -22,12 +22,18 @@ class LatestStatus(Latest):
 
 
 class LatestDiagnostics(Latest):
-    """`known`: connection, polling, writes."""
+    """`known`: connection, polling, writes. `told`: the levels of all that came, as (name, level)."""
 
     def __init__(self, device):
-        super().__init__("/diagnostics", DiagnosticArray,
-                         lambda known, message: known.update(
-                             {status.name.split(f"{device} ")[-1]: status for status in message.status}))
+        self._device = device
+        self.told = []
+        super().__init__("/diagnostics", DiagnosticArray, self._merge_diagnostics)
+
+    def _merge_diagnostics(self, known, message):
+        for status in message.status:
+            name = status.name.split(f"{self._device} ")[-1]
+            known[name] = status
+            self.told.append((name, status.level))
 
     def level(self, name, *wanted):
         return self.says("", name, *wanted)

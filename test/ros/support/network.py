@@ -32,7 +32,8 @@ class Network:
                 ip("-n", self._name, "link", "set", self._far, "up")
                 undo.pop_all()
         except (OSError, subprocess.CalledProcessError) as error:
-            raise unittest.SkipTest(f"no network namespaces here (needs root and iproute2): {error}") from error
+            why = getattr(error, "stderr", "").strip() or error
+            raise unittest.SkipTest(f"no network namespaces here (needs root and iproute2): {why}") from error
         return self
 
     def _take_a_number(self):
@@ -67,13 +68,14 @@ class Network:
         """The cable out of the device: packets vanish, nobody says a word."""
         ip("-n", self._name, "link", "set", self._far, "down")
 
-    def loses_a_request(self):
-        """True when this end has sent the device what is not acknowledged: of a pulled cable, for as long as it is out. An
-        answer that was under way has come before."""
+    def loses_a_request(self, port):
+        """True when a connection to the device's port has sent what is not acknowledged: with the cable pulled, for as long as
+        it is out. An answer that was under way has come before."""
         number, = struct.unpack("=I", socket.inet_aton(self.device))  # proc(5): the address as the machine holds it
+        peer, established = f"{number:08X}:{port:04X}", "01"
         for line in pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:]:
-            _, _, remote, _, queues = line.split()[:5]
-            if remote.startswith(f"{number:08X}:") and int(queues.split(":")[0], 16):
+            _, _, remote, state, queues = line.split()[:5]
+            if (remote, state) == (peer, established) and int(queues.split(":")[0], 16):
                 return True
         return False
 

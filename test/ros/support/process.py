@@ -50,6 +50,14 @@ class Process:
     def running(self):
         return self._child.poll() is None
 
+    def starved(self):
+        """Seconds that its threads have waited for a processor."""
+        waited = 0
+        for thread in pathlib.Path(f"/proc/{self._child.pid}/task").glob("*/schedstat"):
+            with contextlib.suppress(OSError):  # it has ended
+                waited += int(thread.read_text(encoding="ascii").split()[1])
+        return waited / 1e9
+
     @contextlib.contextmanager
     def frozen(self):
         """Stopped, as a machine that hangs: its connections stay, and it asks nothing."""

@@ -7,6 +7,7 @@ import time
 
 import rospy
 import rostopic
+from rospy.impl.registration import get_topic_manager
 
 from support.patience import PATIENCE, QUIET, wait_until
 
@@ -63,8 +64,9 @@ class Topic:
 
     def stays_quiet(self):
         """Nothing is published from now on. By a subscription anew: what was published before may still be under way in the
-        old one."""
+        old one, and two of a process have one connection."""
         self.close()
+        assert not get_topic_manager().has_subscription(self.name), f"another subscriber of {self.name} keeps the connection"
         self._subscribe()
         time.sleep(QUIET)
         if self.values:

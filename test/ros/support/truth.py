@@ -22,9 +22,17 @@ class Truth:
         self.online = test.topic("/plant/online", Bool)
         self.status = LatestStatus("plant")
         self.diagnostics = LatestDiagnostics("plant")
-        for voice in (self.status, self.diagnostics):
-            test.addCleanup(voice.close)
+        test.addCleanup(self._close)
         self._test = test
+
+    def end(self):
+        """The driver, and listening to it."""
+        self.driver.end()
+        self._close()
+
+    def _close(self):
+        for voice in (self.level, self.online, self.status, self.diagnostics):
+            voice.close()
 
     def is_good(self, value, polling=(OK,)):
         self.level.values.clear()

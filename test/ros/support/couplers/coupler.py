@@ -17,11 +17,13 @@ class Coupler(Device):
         self.answer = self._locked
         self.timeout = 0     # seconds; 0: off
         self.fed_at = None   # by the clock of its own; None: it does not run
+        self.driver = None   # a process: how long it waits for a processor is no fault of its
         self.expired = False
         self.expiries = 0
         self._state = threading.RLock()
         self._ended = threading.Event()
         self._clock = 0
+        self._starved = 0
 
     def start(self):
         super().start()
@@ -33,7 +35,16 @@ class Coupler(Device):
         super().stop()
 
     def feed(self):
-        self.fed_at = self._clock
+        self.fed_at, self._starved = self._clock, self._driver_starved()
+
+    def _driver_starved(self):
+        return self.driver.starved() if self.driver else 0
+
+    def _is_late(self):
+        if self.fed_at is None or not self.timeout:
+            return False
+        passed = self._clock - self.fed_at
+        return passed > self.timeout and passed - max(0, self._driver_starved() - self._starved) > self.timeout
 
     def coil(self, address):
         return self.tables["coils"][address]
@@ -54,11 +65,11 @@ class Coupler(Device):
                 now = time.monotonic()
                 self._clock += min(now - ticked, 0.05)
                 ticked = now
-                late = self.fed_at is not None and self.timeout and self._clock - self.fed_at > self.timeout
-                if late and not self.expired:
-                    self.expired, self.fed_at = True, None
+                if not self.expired and self._is_late():
+                    self.fed_at = None
                     self.expiries += 1
                     self.expire()
+                    self.expired = True  # what a test waits for
 
     def expire(self):
         for address in self.outputs:
