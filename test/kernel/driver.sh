@@ -54,7 +54,7 @@ sim_pull plant 0 down
 schedule() {
   start "$1" python3 schedule_in_ros.py "$2"
   check "it is accepted" wait_until says "$1" 'accepted: the node does it'
-  due=$((SECONDS + $2))
+  due=$((SECONDS + $(sed -nE 's/.*, in ([0-9]+) s$/\1/p' "$(log "$1")")))
 }
 not_driven() {
   sleep $((due + 1 - SECONDS > 0 ? due + 1 - SECONDS : 0))

@@ -109,7 +109,7 @@ sim_value() {
   cat "$wire/value"
 }
 
-if [[ $(gpiomon --version) == *v1.* ]]; then
+if [[ $(gpiomon --version 2>/dev/null) == *v1.* ]]; then
   monitor() { exec gpiomon --line-buffered "$1" "$2"; }
   is_watched() { gpioinfo "$1" | grep -q gpiomon; }
 else

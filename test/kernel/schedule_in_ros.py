@@ -34,9 +34,11 @@ def main():
     while not is_settled():
         time.sleep(0.05)
     seconds = float(sys.argv[1])
-    while not (answer := schedule("lamp", seconds)).success:
+    while " s past" in (answer := schedule("lamp", seconds)).message or "exception 03" in answer.message:
         seconds *= 2
-    print(answer.message, flush=True)
+    print(f"{answer.message}, in {seconds:.0f} s", flush=True)
+    if not answer.success:
+        return
     while (outcome := told.get()).number != answer.number:
         pass
     print(f"{outcome.point} {RESULTS[outcome.result]}: {outcome.reason}", flush=True)

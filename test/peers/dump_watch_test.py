@@ -201,6 +201,7 @@ def a_change_has_its_own_time(coupler, node, checks):
     with peer.running_node([node, str(here / "schedule.yaml"), "--sim"]) as port:
         watch = Watch(coupler, f"tcp://127.0.0.1:{port}", "--points", "motor", every="3600")
         checks.equal("a first look", watch.await_line(lambda line: line.endswith(" motor false")) is not None, True)
+        time.sleep(2)  # a few answers, of which the quickest tells the most of the node's clock
         client = peer.pymodbus_client(port)
         peer.freeze(watch.program)
         try:

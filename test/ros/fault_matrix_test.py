@@ -266,8 +266,10 @@ class FaultMatrix(testing.RosTest):
         for head, number in (("", 1), ("addressing: modicon\n", 40002), ("addressing: modicon\n", 2)):
             with self.subTest(head, number=number):
                 driver = self.start(f"  holding_registers: {{level: {{address: {number}, type: INT}}}}\n", head=head)
-                self.assertEqual(self.topic("/plant/level", Int16).next(), 22)
+                level = self.topic("/plant/level", Int16)
+                self.assertEqual(level.next(), 22)
                 driver.end()
+                level.close()
 
     # 14. FC 06 or FC 16 is refused
     def test_14_a_device_without_fc_6_or_without_fc_16_is_written_as_the_map_says(self):

@@ -159,7 +159,7 @@ class Wago(PresetTest):
     def test_a_generated_driver_does_the_same(self):
         if not (process.BUILD / "bin" / "wago_driver").exists():
             self.skipTest("wago_driver was not built")
-        driver = process.Process("wago_driver", f"_port:={self.coupler.port}")
+        driver = self.coupler.driver = process.Process("wago_driver", f"_port:={self.coupler.port}")
         self.addCleanup(driver.end)
         driver.wait_for("watchdog is fed: outputs go off after 1200 ms")
         self.publisher("/wago/valve/write", Bool).publish(True)

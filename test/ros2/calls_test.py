@@ -126,7 +126,7 @@ class Watchdog(testing.RosTest):
         self.addCleanup(coupler.stop)
         path = process.write_map(f"name: rack\naddress: 127.0.0.1\nrate: 20\ntimeout: {NO_TIMEOUT}s\npreset: wago_750\n"
                                  "watchdog: {timeout: 1500ms, recovery: manual}\nmapping:\n  coils: {valve: 3}\n")
-        driver = self.driver("--map", path, "--port", coupler.port)
+        driver = coupler.driver = self.driver("--map", path, "--port", coupler.port)
         driver.wait_for("watchdog is fed: outputs go off after 1500 ms")
         self.assertTrue(self.service("/rack/write", Write)("valve", "true").success)
         with driver.frozen():

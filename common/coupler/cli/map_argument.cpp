@@ -51,18 +51,22 @@ bool ends_in(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
 
-/// An absolute path of a device, but not such as /dev/null.
-bool is_serial_line(const std::string& path) {
+/// An absolute path of a device, but not such as /dev/null or /dev/gpiochip0. A pseudo-terminal has no entry
+/// in /sys.
+bool can_be_a_serial_line(const std::string& path) {
   struct stat status {};
-  return starts_with(path, "/") && ::stat(path.c_str(), &status) == 0 && S_ISCHR(status.st_mode) &&
-         major(status.st_rdev) != 1;
+  if (!starts_with(path, "/") || ::stat(path.c_str(), &status) != 0 || !S_ISCHR(status.st_mode)) return false;
+  std::error_code ignored;
+  const auto subsystem = std::filesystem::read_symlink(
+      fmt::format("/sys/dev/char/{}:{}/subsystem", major(status.st_rdev), minor(status.st_rdev)), ignored);
+  return subsystem.empty() || subsystem.filename() == "tty";
 }
 
 /// A file that is missing is none: only what can be a place, and no path or file of a map.
 bool can_be_a_device(const std::string& argument) {
   if (names_a_node(argument)) return true;
   std::error_code ignored;
-  if (std::filesystem::exists(argument, ignored)) return is_serial_line(argument);
+  if (std::filesystem::exists(argument, ignored)) return can_be_a_serial_line(argument);
   for (const std::string_view end : {".yaml", ".yml", ".json"})
     if (ends_in(argument, end)) return false;
   if (starts_with(argument, "/")) return starts_with(argument, "/dev/");

@@ -115,6 +115,21 @@ TEST(ClockMapping, One_exchange_is_known_to_half_of_what_the_network_took) {
   EXPECT_GE(stamp->uncertainty, nanoseconds(200));
 }
 
+TEST(ClockMapping, A_jump_is_seen_at_the_arrival_of_a_request_that_waits_long) {
+  ClockMapping mapping;
+  const Time sent = Time{} + seconds(100);
+  mapping.add({sent, NodeTime(0), NodeTime(0), sent + milliseconds(1)});
+  // The offset is 20 ms now. After ten seconds it can be 6 ms; after 40 it could be 21 ms.
+  const Time again = sent + seconds(10) + milliseconds(20);
+  const NodeTime arrived = seconds(10);
+  EXPECT_EQ(mapping.add({again, arrived, arrived + seconds(30), again + seconds(30) + milliseconds(1)}),
+            Outcome::jumped);
+  const auto stamp = mapping.map(arrived);
+  ASSERT_TRUE(stamp);
+  EXPECT_GE(stamp->uncertainty, nanoseconds(0));
+  EXPECT_LE(std::chrono::abs(stamp->at - again), stamp->uncertainty);
+}
+
 TEST(ClockMapping, A_long_exchange_does_not_spoil_what_a_short_one_told) {
   World world(1, 0, 0);
   ClockMapping mapping;

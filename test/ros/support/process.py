@@ -50,13 +50,16 @@ class Process:
     def running(self):
         return self._child.poll() is None
 
-    def starved(self):
-        """Seconds that its threads have waited for a processor."""
-        waited = 0
-        for thread in pathlib.Path(f"/proc/{self._child.pid}/task").glob("*/schedstat"):
+    def waits(self):
+        """Of each thread: the seconds for which it has waited for a processor, but for a wait that is not over, and whether it
+        wants one now."""
+        threads = {}
+        for thread in pathlib.Path(f"/proc/{self._child.pid}/task").iterdir():
             with contextlib.suppress(OSError):  # it has ended
-                waited += int(thread.read_text(encoding="ascii").split()[1])
-        return waited / 1e9
+                waited = int((thread / "schedstat").read_text(encoding="ascii").split()[1]) / 1e9
+                state = (thread / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+                threads[thread.name] = waited, state == "R"
+        return threads
 
     @contextlib.contextmanager
     def frozen(self):

@@ -47,10 +47,14 @@ ClockMapping::Outcome ClockMapping::add(const Exchange& exchange) {
   if (is_first) begin(exchange);
   const double least = offset(exchange.sent, exchange.arrived);
   const double most = offset(exchange.received, exchange.replied);
+  // Looked at before a bound gives way to a newer one, which may hide it.
+  const bool contradicts =
+      !is_first && (least > most_at(exchange.arrived) || most < least_at(exchange.replied));
   if (is_first || least >= least_at(exchange.arrived)) least_ = {exchange.arrived, least};
   if (is_first || most <= most_at(exchange.replied)) most_ = {exchange.replied, most};
   if (is_first) reference_ = interval_at(exchange.replied);
-  if (const Interval now = interval_at(exchange.replied); now.least > now.most) {
+  // Between the two bounds' own times they are as close as anywhere.
+  if (const Interval closest = interval_at(least_.as_of); contradicts || closest.least > closest.most) {
     forget();
     return is_first || add(exchange) == Outcome::refused ? Outcome::refused : Outcome::jumped;
   }

@@ -23,7 +23,7 @@ class Coupler(Device):
         self._state = threading.RLock()
         self._ended = threading.Event()
         self._clock = 0
-        self._starved = 0
+        self._waits = {}
 
     def start(self):
         super().start()
@@ -35,16 +35,19 @@ class Coupler(Device):
         super().stop()
 
     def feed(self):
-        self.fed_at, self._starved = self._clock, self._driver_starved()
+        self.fed_at, self._waits = self._clock, self._driver_waits()
 
-    def _driver_starved(self):
-        return self.driver.starved() if self.driver else 0
+    def _driver_waits(self):
+        return self.driver.waits() if self.driver and self.driver.running else {}
 
     def _is_late(self):
-        if self.fed_at is None or not self.timeout:
+        if self.fed_at is None or not self.timeout or self._clock - self.fed_at <= self.timeout:
             return False
-        passed = self._clock - self.fed_at
-        return passed > self.timeout and passed - max(0, self._driver_starved() - self._starved) > self.timeout
+        waits = self._driver_waits()
+        if any(wants_one for _, wants_one in waits.values()):
+            return False  # it is told when the driver sleeps
+        waited = max((now - self._waits.get(thread, (0, False))[0] for thread, (now, _) in waits.items()), default=0)
+        return self._clock - self.fed_at - waited > self.timeout
 
     def coil(self, address):
         return self.tables["coils"][address]
