@@ -130,6 +130,23 @@ TEST(ClockMapping, A_jump_is_seen_at_the_arrival_of_a_request_that_waits_long) {
   EXPECT_LE(std::chrono::abs(stamp->at - again), stamp->uncertainty);
 }
 
+TEST(ClockMapping, A_clock_that_counts_milliseconds_does_not_jump) {
+  World world(7, 0, 0);
+  ClockMapping mapping;
+  const auto ticks = [](NodeTime at) { return std::chrono::floor<milliseconds>(at); };
+  for (int i = 0; i < 400; ++i) {
+    Exchange told = world.exchange(milliseconds(1000));
+    told.arrived = ticks(told.arrived);
+    told.replied = ticks(told.replied);
+    ASSERT_EQ(mapping.add(told), Outcome::taken) << i;
+    const auto stamp = mapping.map(told.arrived);
+    ASSERT_TRUE(stamp);
+    EXPECT_GE(stamp->uncertainty, nanoseconds(0));
+    EXPECT_LE(std::chrono::abs(stamp->at - told.sent), milliseconds(201));  // at most what the network takes
+    world.pass(microseconds(50));
+  }
+}
+
 TEST(ClockMapping, A_long_exchange_does_not_spoil_what_a_short_one_told) {
   World world(1, 0, 0);
   ClockMapping mapping;

@@ -9,7 +9,9 @@ import time
 _CACHE = pathlib.Path(os.environ["COUPLER_BUILD_DIR"]) / "CMakeCache.txt"
 _SANITIZED = _CACHE.exists() and re.search(r"^COUPLER_SANITIZE:\w+=.", _CACHE.read_text(), re.MULTILINE)
 
-PATIENCE = 180 if _SANITIZED else 60  # seconds until what must come is given up
+# Seconds until what must come is given up. Longer than the 60 for which rospy waits for the header of a connection, and all
+# that connect after it with it: now and then roscpp makes one and says nothing, and a minute later connects again.
+PATIENCE = 240 if _SANITIZED else 150
 QUIET = 0.7  # seconds in which nothing comes: fourteen polls at the 20 Hz of most maps
 
 # Of a map whose test is not about timeouts: longer than any test waits, so that a reply that comes late because the machine

@@ -16,6 +16,10 @@ constexpr NodeTime longest_time = std::chrono::hours(24 * 365 * 100);
 /// For a drift to be worth measuring.
 constexpr NodeTime measured_over = std::chrono::seconds(10);
 
+/// By so much the times of a clock that counts milliseconds, as a microcontroller's may, contradict each
+/// other: that is no jump.
+constexpr Nanoseconds coarsest_tick = std::chrono::milliseconds(1);
+
 bool is_possible(NodeTime at) { return at >= NodeTime::zero() && at <= longest_time; }
 
 double between(NodeTime from, NodeTime to) { return Nanoseconds(to - from).count(); }
@@ -47,16 +51,19 @@ ClockMapping::Outcome ClockMapping::add(const Exchange& exchange) {
   if (is_first) begin(exchange);
   const double least = offset(exchange.sent, exchange.arrived);
   const double most = offset(exchange.received, exchange.replied);
-  // Looked at before a bound gives way to a newer one, which may hide it.
-  const bool contradicts =
-      !is_first && (least > most_at(exchange.arrived) || most < least_at(exchange.replied));
+  // Before a bound gives way to a newer one, which may hide it.
+  Nanoseconds contradiction(
+      is_first ? 0 : std::max(least - most_at(exchange.arrived), least_at(exchange.replied) - most));
   if (is_first || least >= least_at(exchange.arrived)) least_ = {exchange.arrived, least};
   if (is_first || most <= most_at(exchange.replied)) most_ = {exchange.replied, most};
   if (is_first) reference_ = interval_at(exchange.replied);
   // Between the two bounds' own times they are as close as anywhere.
-  if (const Interval closest = interval_at(least_.as_of); contradicts || closest.least > closest.most) {
+  const Interval closest = interval_at(least_.as_of);
+  contradiction = std::max(contradiction, Nanoseconds(closest.least - closest.most));
+  if (contradiction.count() > 0) {
     forget();
-    return is_first || add(exchange) == Outcome::refused ? Outcome::refused : Outcome::jumped;
+    if (is_first || add(exchange) == Outcome::refused) return Outcome::refused;
+    return contradiction > coarsest_tick ? Outcome::jumped : Outcome::taken;
   }
   measure_drift(exchange.replied);
   return Outcome::taken;

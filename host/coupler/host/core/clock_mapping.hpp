@@ -30,7 +30,7 @@ class ClockMapping {
   static constexpr double most_wander = 20e-6;
 
   enum class Outcome {
-    taken,
+    taken,    ///< where it contradicts what was known by a millisecond at most, the mapping begins with it
     jumped,   ///< it contradicts what was known: one of the clocks has jumped. The mapping begins with it
     refused,  ///< no two clocks can have these times; nothing is known any more
   };
