@@ -4,6 +4,7 @@
 #   check TEXT CMD…           ok if CMD succeeds            refuse TEXT CMD…   ok if CMD fails
 #   expect TEXT WANTED GOT    ok if both are the same text
 #   wait_until CMD…           tries CMD every 20 ms; fails after three minutes, and shows the last try's output
+#   sleep_until SECOND        until $SECONDS is that, or not at all
 #   within SECONDS CMD…       the same, where failing is no failure of the test
 #   start NAME CMD…           runs CMD in the background; its output goes to the file $(log NAME)
 #   pid NAME, log NAME        the process id, the file of its output
@@ -50,6 +51,8 @@ expect() {
 microseconds() { echo "${EPOCHREALTIME/[.,]/}"; }
 
 readonly patience=180 # seconds: only tells what hangs from what works, also where four programs share two busy processors
+
+sleep_until() { sleep $(($1 > SECONDS ? $1 - SECONDS : 0)); }
 
 wait_until() { within "$patience" "$@"; }
 

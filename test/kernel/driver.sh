@@ -57,7 +57,7 @@ schedule() {
   due=$((SECONDS + $(sed -nE 's/.*, in ([0-9]+) s$/\1/p' "$(log "$1")")))
 }
 not_driven() {
-  sleep $((due + 1 - SECONDS > 0 ? due + 1 - SECONDS : 0))
+  sleep_until $((due + 1))
   check "nothing was driven at its time" level_is 0 0
 }
 schedule calm 3

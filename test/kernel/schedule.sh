@@ -58,7 +58,7 @@ schedule read_again 8
 begun=$SECONDS
 check "it is taken" read_again
 check "who waits is told that it is cancelled" wait_until says read_again 'cancelled, reason 5'
-sleep $((begun + 9 - SECONDS > 0 ? begun + 9 - SECONDS : 0))
+sleep_until $((begun + 9))
 check "nothing was driven at its time" level_is 0 0
 stop read_again KILL || true
 schedule lasting 1 8000
@@ -93,7 +93,7 @@ for signal in STOP KILL; do
   kill -s "$signal" "$before"
   check "another one is started" wait_until new_worker "$before"
   check "who waited is told by the end of the connection" wait_until says "$signal" 'the connection ended'
-  sleep $((begun + 6 - SECONDS > 0 ? begun + 6 - SECONDS : 0))
+  sleep_until $((begun + 6))
   check "nothing was driven at its time" level_is 0 0
   expect "nor says the node so" 0 "$(coil 0)"
   refuse "nor was it told" says "$signal" 'driven'
@@ -105,5 +105,5 @@ begun=$SECONDS
 check "it ends" stop node
 check "who waited was told why" wait_until says ended 'cancelled, reason 5'
 plant_node plant.yaml
-sleep $((begun + 6 - SECONDS > 0 ? begun + 6 - SECONDS : 0))
+sleep_until $((begun + 6))
 check "nothing was driven at its time" level_is 0 0

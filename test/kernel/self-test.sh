@@ -40,7 +40,8 @@ start edges monitor "$(sim_chip plain)" 0
 check "gpiomon watches the line" wait_until is_watched "$(sim_chip plain)"
 for _ in 1 2 3 4 5; do sim_pull plain 0 up; sleep 0.02; sim_pull plain 0 down; sleep 0.02; done
 check "five pulses are ten edges" wait_until says edges '.' 10
-check "five of them rise" says edges '[Rr][Ii][Ss][Ii][Nn][Gg]' 5
+check "five of them rise" says edges '(rising|RISING)' 5
+check "five fall" says edges '(falling|FALLING)' 5
 refuse "no more were reported" says edges '.' 11
 sim_create other 2
 check "a second chip stands beside the first" sees "\[other\] (2 lines)" gpiodetect

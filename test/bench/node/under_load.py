@@ -7,8 +7,8 @@ import itertools
 import json
 import statistics
 import subprocess
-import sys
 
+from support.busy_loops import busy_loops
 from support.served import Served
 
 PRIORITY = 10  # of the process that answers under --realtime, coupler/device/node/realtime.hpp
@@ -58,18 +58,6 @@ def measure(servers, load, arguments, repetitions):
             runs[side].append(json.loads(done.stdout))
     return {side: {figure: (max if figure == "max_us" else statistics.median)(result[figure] for result in results)
                    for figure in FIGURES} for side, results in runs.items()}
-
-
-@contextlib.contextmanager
-def busy_loops(cores):
-    loops = [subprocess.Popen(["taskset", "--cpu-list", str(core), sys.executable, "-c", "while True: pass"])
-             for core in cores]
-    try:
-        yield
-    finally:
-        for loop in loops:
-            loop.kill()
-            loop.wait()
 
 
 def print_row(row):
