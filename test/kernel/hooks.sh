@@ -59,6 +59,8 @@ expect "and the hook gets its value back" "$before motor 0 motor 1" "$(hooks_cal
 expect "clients read what it was" 1 "$(coil 0)"
 check "the hook alone goes on" set_coil 0 0
 
+check "without the chip another process begins" wait_until says gate '^began 0 in' 4
+
 echo "# it ends"
 before=$(worker gate)
 stop gate TERM || true
