@@ -75,6 +75,8 @@ constexpr unsigned width(Type type) {
   return 0;
 }
 
+constexpr bool is_float(Type type) { return type == Type::REAL || type == Type::LREAL; }
+
 /// Where the bytes of a value stand in its registers. A is the most significant byte.
 /// Values of one register know ABCD ("AB") and BADC ("BA") only.
 enum class Order : std::uint8_t {

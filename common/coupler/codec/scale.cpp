@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/codec/scale.hpp"
 
+#include <array>
 #include <limits>
 #include <type_traits>
 
@@ -66,6 +67,12 @@ void encode_nearest(double value, const Format& format, const Scale& scale, std:
     const double raw = raw_of(value, scale);
     put(fits<T>(raw) ? rounded<T>(raw) : raw < 0 ? Ends::lowest() : Ends::max(), format, registers);
   });
+}
+
+double nearest_published(double value, const Format& format, const Scale& scale) {
+  std::array<std::uint16_t, 4> registers{};  // no number has more
+  encode_nearest(value, format, scale, registers.data());
+  return published(registers.data(), format, scale);
 }
 
 PublishedRange published_range(Type type, const Scale& scale) {

@@ -136,7 +136,7 @@ std::string range_words(const Point& point) {
   const auto [least, most] = codec::published_range(type, point.scale);
   // The channel takes no more, whatever the register could hold.
   if (point.pwm.present()) return number(std::max(0.0, least)) + " … " + number(std::min(100.0, most));
-  if (type == Type::REAL || type == Type::LREAL) {
+  if (is_float(type)) {
     if (min != Bounds::no_min) return "from " + number(min);
     return max == Bounds::no_max ? "" : "up to " + number(max);
   }

@@ -101,7 +101,7 @@ std::string format_keys(const Point& point, std::string_view indent) {
   if (format.type == Type::STRING) keys += fmt::format("{}count: {}\n", indent, codec::registers(format));
   if (const std::string_view swap = swap_of(format); !swap.empty())
     keys += fmt::format("{}swap: {}\n", indent, swap);
-  if (format.type == Type::REAL || format.type == Type::LREAL)
+  if (is_float(format.type))
     keys += fmt::format("{}precision: {}\n", indent, float_decimals);
   else if (point.scale.present())
     keys += fmt::format("{}precision: {}\n", indent,
@@ -248,7 +248,7 @@ class EntityWriter {
     if (point.format.type == Type::STRING && point.format.length % 2 != 0)
       warnings_.add("texts of odd length have a byte more there", "keep that byte 0, which ends the text",
                     point.name);
-    if (point.format.type == Type::REAL || point.format.type == Type::LREAL)
+    if (is_float(point.format.type))
       warnings_.add("floats are rounded to 6 decimals", "change 'precision' if that is too few", point.name);
     if (point.format.type == Type::STRING && point.format.encoding != codec::Encoding::utf8)
       warnings_.add("texts are read as UTF-8", "keep to ASCII in these points", point.name);

@@ -38,8 +38,6 @@ class Body {
   int depth_ = 1;
 };
 
-bool is_float(Type type) { return type == Type::REAL || type == Type::LREAL; }
-
 bool is_bit_string(Type type) { return !codec::is_scalable(type); }
 
 std::string converted(std::string_view from, std::string_view to, std::string_view value) {

@@ -64,7 +64,7 @@ std::string value_range(const Point& point) {
     const auto [least, most] = codec::published_range(type, point.scale);
     return fmt::format(", {:g} … {:g}", std::max(least, min), std::min(most, max));
   }
-  if (type == Type::REAL || type == Type::LREAL) return {};
+  if (is_float(type)) return {};
   return codec::with_number(type, [](auto zero) {
     using Ends = std::numeric_limits<decltype(zero)>;
     return fmt::format(", {} … {}", +Ends::lowest(), +Ends::max());

@@ -2,7 +2,6 @@
 #include "coupler/generate/python.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <iterator>
 #include <vector>
@@ -88,9 +87,7 @@ int function_code(const Point& point, const Limits& limits) {
 
 /// The number that the point's registers hold for a bound of the map.
 std::string bound(const Point& point, double number) {
-  std::array<std::uint16_t, 4> registers{};  // no number has more
-  codec::encode_nearest(number, point.format, point.scale, registers.data());
-  return codec::decimal(codec::published(registers.data(), point.format, point.scale));
+  return codec::decimal(codec::nearest_published(number, point.format, point.scale));
 }
 
 /// What the values of a register point are, as arguments of Spec.

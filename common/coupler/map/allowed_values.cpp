@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/map/allowed_values.hpp"
 
-#include <array>
 #include <cmath>
 
 #include "coupler/codec/number.hpp"
@@ -10,11 +9,8 @@
 namespace coupler {
 namespace {
 
-/// As the point publishes it, after its registers have held it.
 double nearest(double bound, const Point& point) {
-  std::array<std::uint16_t, 4> registers{};  // no number has more
-  codec::encode_nearest(bound, point.format, point.scale, registers.data());
-  return codec::published(registers.data(), point.format, point.scale);
+  return codec::nearest_published(bound, point.format, point.scale);
 }
 
 /// The integer in the registers is `value`. Integers above the range of `value` are none.
@@ -44,8 +40,7 @@ std::optional<Forbidden> why_forbidden(const Point& point, const std::uint16_t* 
 
 std::optional<ForbiddenValue> find_forbidden(const Point& point, const std::uint16_t* registers) {
   // Each write of the driver comes here, and of most points every value may be written.
-  const codec::Type type = point.format.type;
-  if (!limits_values(point) && type != codec::Type::REAL && type != codec::Type::LREAL) return std::nullopt;
+  if (!limits_values(point) && !codec::is_float(point.format.type)) return std::nullopt;
   const std::size_t width = codec::registers(point.format);
   for (std::size_t i = 0; i < point.count; ++i, registers += width)
     if (const auto why = why_forbidden(point, registers)) return ForbiddenValue{*why, registers};

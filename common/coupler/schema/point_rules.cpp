@@ -24,8 +24,7 @@ constexpr Section registers = Section::input_register | Section::holding_registe
 constexpr Section outputs = Section::coil | Section::holding_register;
 constexpr Section lines = Section::coil_line | Section::input_line;
 
-bool is_float(Type type) { return type == Type::REAL || type == Type::LREAL; }
-bool is_whole(Type type) { return codec::is_scalable(type) && !is_float(type); }
+bool is_whole(Type type) { return codec::is_scalable(type) && !codec::is_float(type); }
 bool is_part(Type type) { return codec::width(type) == 1 || codec::width(type) == 8; }
 
 template <class Rule>

@@ -15,26 +15,24 @@ namespace {
 
 constexpr std::string_view names_form = "write it as in 'values: {0: idle, 1: running}'";
 
-bool is_float(codec::Type type) { return type == codec::Type::REAL || type == codec::Type::LREAL; }
-
 /// The bound is a value of the point: of the type, and not between two steps of a scaled integer.
 void check_bound(std::string_view key, double bound, const Reader& reader, const Point& point,
                  const Context& context) {
   const Entry* entry = reader.find(key);
   if (entry == nullptr) return;
+  // 65535 × 0.001 - 40 is not quite 25.535.
+  const double rounding = codec::is_float(point.format.type) ? 0 : 1e-6 * std::fabs(point.scale.gain);
   const auto [least, most] = codec::published_range(point.format.type, point.scale);
-  if (bound < least || bound > most) {
+  if (bound < least - rounding || bound > most + rounding) {
     context.problems.error(entry->at,
                            fmt::format("'{}' is {:.15g}, but {} is published from {:.15g} to {:.15g}", key,
                                        bound, shown(point.name), least, most),
                            fmt::format("write a number in that range, or remove '{}'", key));
     return;
   }
-  if (is_float(point.format.type)) return;
-  std::array<std::uint16_t, 4> registers{};
-  codec::encode_nearest(bound, point.format, point.scale, registers.data());
-  const double nearest = codec::published(registers.data(), point.format, point.scale);
-  if (std::fabs(nearest - bound) > 1e-6 * std::fabs(point.scale.gain))
+  if (codec::is_float(point.format.type)) return;
+  const double nearest = codec::nearest_published(bound, point.format, point.scale);
+  if (std::fabs(nearest - bound) > rounding)
     context.problems.error(entry->at,
                            fmt::format("'{}' is {:.15g}, which is not a value of {}; the nearest is {:.15g}",
                                        key, bound, shown(point.name), nearest),
@@ -55,7 +53,7 @@ bool check_type(const Reader& reader, const Point& point, const Context& context
     for (const std::string_view key : {"min", "max"})
       refuse(key, type, "use a type that is a number: SINT to ULINT, REAL or LREAL");
     refuse("values", type, "use a type that is a whole number: SINT to ULINT");
-  } else if (is_float(point.format.type)) {
+  } else if (codec::is_float(point.format.type)) {
     refuse("values", type, "use a type that is a whole number: SINT to ULINT");
   } else if (point.scale.present()) {
     refuse("values", "a point with a 'scale'", "remove 'scale': names are for whole numbers");

@@ -35,6 +35,9 @@ void check_size(const DraftPoint& draft, std::string_view key, std::uint16_t lim
                            fmt::format("make it shorter, or raise '{}' if the device takes more", key));
 }
 
+/// What helps a point that shares its register: it is read before it is written.
+constexpr const char* for_itself = "give it a register of its own, or 'limits: {mask_write: true}'";
+
 /// Bits of one address, and whose they are.
 struct Claim {
   std::uint16_t mask;
@@ -127,7 +130,8 @@ void check_sizes(const DraftPoints& points, const Limits& limits, const Context&
     if (!draft.placed) continue;
     const bool bits = holds_bits(draft.point.table);
     const std::uint16_t most_read = bits ? limits.read_bits : limits.read_registers;
-    if (range(draft.point).count() > most_read || !is_writable(draft.point))
+    const bool too_long_to_read = is_readable(draft.point) && range(draft.point).count() > most_read;
+    if (too_long_to_read || !is_writable(draft.point))
       check_size(draft, bits ? "read_bits" : "read_registers", most_read, context);
     else
       check_size(draft, bits ? "write_bits" : "write_registers",
@@ -162,18 +166,20 @@ void check_overlaps(const DraftPoints& points, const Context& context) {
   }
 }
 
-void check_unreadable(const Areas& areas, const DraftPoints& points, const Context& context) {
+void check_unreadable(const Areas& areas, const DraftPoints& points, const Limits& limits,
+                      const Context& context) {
   for (const Area& area : areas) {
     for (const DraftPoint& draft : points) {
       const Point& point = draft.point;
-      if (!draft.placed || !is_readable(point) || point.table != area.table ||
+      if (!draft.placed || !needs_answers(point, limits) || point.table != area.table ||
           !read_range(point).overlaps(area.range))
         continue;
-      context.problems.error(draft.address_at,
-                             fmt::format("{} is read from an area that is 'unreadable' (line {})",
-                                         shown(point.name), area.at.line),
-                             "give it 'access: write', or make the area smaller",
-                             {{area.at, "the area is here"}});
+      context.problems.error(
+          draft.address_at,
+          fmt::format("{} is read {}from an area that is 'unreadable' (line {})", shown(point.name),
+                      is_readable(point) ? "" : "before it is written ", area.at.line),
+          is_readable(point) ? "give it 'access: write', or make the area smaller" : for_itself,
+          {{area.at, "the area is here"}});
     }
   }
 }
@@ -191,7 +197,7 @@ void check_broadcast(const Reader& top, const DraftPoints& points, const Map& he
           fmt::format("{} needs to be read, but 'unit: 0' is a broadcast, which nobody answers",
                       shown(draft.point.name)),
           is_readable(draft.point) ? "give it 'access: write', or the map the coupler's own unit, 1 to 247"
-                                   : "give it a register of its own, or 'limits: {mask_write: true}'");
+                                   : for_itself);
 }
 
 void check_reserved(const Areas& areas, const DraftPoints& points, const Context& context) {

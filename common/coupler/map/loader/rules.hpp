@@ -22,8 +22,9 @@ void warn_of_modicon_numbers(const DraftPoints& points, const Context& context);
 /// otherwise an error; each point is reported once, against one that stands before it in the file.
 void check_overlaps(const DraftPoints& points, const Context& context);
 
-/// No point is read from an unreadable area.
-void check_unreadable(const Areas& areas, const DraftPoints& points, const Context& context);
+/// No point is read from an unreadable area, not even before it is written.
+void check_unreadable(const Areas& areas, const DraftPoints& points, const Limits& limits,
+                      const Context& context);
 
 /// To a broadcast points are written, and nothing is read.
 void check_broadcast(const Reader& top, const DraftPoints& points, const Map& head, const Context& context);

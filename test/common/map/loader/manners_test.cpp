@@ -51,6 +51,22 @@ TEST(Scaled, Values_in_the_map_are_written_as_they_are_published) {
   EXPECT_EQ(words(point->host.deadman.value), Words{0xFFF6});
 }
 
+TEST(Scaled, A_bound_may_be_the_last_value_of_the_type_however_that_is_rounded) {
+  for (const char* options : {"type: UINT, scale: {gain: 0.001, offset: -40}, max: 25.535",
+                              "type: INT, scale: {gain: 0.01, offset: -273.15}, min: -600.83",
+                              "type: INT, scale: 0.7, max: 22936.9",
+                              "type: DINT, scale: {gain: 0.005, offset: -273.15}, max: 10737145.085"})
+    OnePoint("holding_registers", std::string("{address: 0, ") + options + "}");
+}
+
+TEST(Scaled, A_bound_beyond_the_last_value_is_none) {
+  const auto loaded =
+      load_map(map_of("holding_registers",
+                      "a: {address: 0, type: UINT, scale: {gain: 0.001, offset: -40}, max: 25.536}"),
+               "map");
+  EXPECT_FALSE(loaded.map);
+}
+
 TEST(Analogue, A_register_names_the_channel_behind_it) {
   const OnePoint in("input_registers", "{address: 0, type: INT, iio: {device: adc0, channel: voltage3}}");
   EXPECT_EQ(in->iio.device, "adc0");
@@ -146,6 +162,18 @@ TEST(HostOptions, Defaults_stamp_what_is_read_and_no_array) {
   EXPECT_FALSE(OnePoint("coils", "{address: 0, count: 8, stamped: false}", defaults)->host.stamped);
   EXPECT_FALSE(OnePoint("coils", "{address: 0, access: write}", defaults)->host.stamped);
   EXPECT_FALSE(OnePoint("coils", "{address: 0}")->host.stamped);
+}
+
+TEST(HostOptions, What_is_only_written_may_be_longer_than_what_the_device_sends) {
+  const OnePoint recipe("holding_registers", "{address: 0, type: INT, count: 20, access: write}",
+                        "limits: {read_registers: 16, write_registers: 32}\n");
+  EXPECT_EQ(recipe->count, 20);
+}
+
+TEST(Unreadable, Parts_of_a_register_are_there_if_the_device_writes_them_by_itself) {
+  load_clean(map_of("holding_registers", "a: {address: 0, type: BOOL, bit: 0, access: write}",
+                    "unreadable: [{table: holding_registers, from: 0, to: 0}]\n"
+                    "limits: {mask_write: true}\n"));
 }
 
 TEST(Unreadable, Areas_are_sorted_and_in_the_addressing_of_the_map) {
