@@ -12,8 +12,9 @@ using std::chrono::milliseconds;
 
 struct DeadmanTest : test::DeviceTest {
   /// `names`: of the speeds.
-  void start_online(const std::vector<NamedValue>& names = {}) {
+  void start_online(const std::vector<NamedValue>& names = {}, OnReconnect on_reconnect = OnReconnect::drop) {
     fakes::MapBuilder builder;
+    builder.head().on_reconnect = on_reconnect;
     const auto stop = builder.keep({1});
     builder.add(Table::holding_registers, "speed", 5, Type::UINT, [&](Point& point) {
       point.access = Access::write;
@@ -26,6 +27,11 @@ struct DeadmanTest : test::DeviceTest {
     run_for(milliseconds(10));
   }
   std::uint16_t speed() { return device.values[{Table::holding_registers, 5}]; }
+  /// From now on each request gets this; what was asked is in device.requests.
+  void refuse_all(modbus::Exception code) {
+    device.requests.clear();
+    device.refuses = [code](const std::string&) { return code; };
+  }
   std::size_t writes() const { return device.count("write register 5"); }
 };
 
@@ -94,6 +100,50 @@ TEST_F(DeadmanTest, A_deadman_value_that_was_lost_is_written_again) {
   device.next_errors.push_back(Timeout{milliseconds(3000)});
   run_for(milliseconds(500));
   EXPECT_EQ(speed(), 1);
+}
+
+TEST_F(DeadmanTest, A_deadman_value_whose_unit_is_away_is_written_when_it_is_back) {
+  for (const OnReconnect on_reconnect : {OnReconnect::drop, OnReconnect::restore}) {
+    engine.reset();
+    start_online({}, on_reconnect);
+    push("speed", 500);
+    run_for(milliseconds(100));
+    sink->online.clear();
+    refuse_all(modbus::Exception::gateway_target_failed_to_respond);
+    run_for(milliseconds(4000));
+    EXPECT_THAT(sink->online, testing::ElementsAre(false)) << "no answer of a gateway is one of its unit";
+    EXPECT_LE(device.requests.size(), 8U) << "it is asked less and less often";
+    EXPECT_EQ(speed(), 500);
+    std::vector<std::uint16_t> written;
+    device.refuses = [&](const std::string&) {
+      written.push_back(speed());
+      return std::nullopt;
+    };
+    run_for(milliseconds(10000));
+    EXPECT_EQ(speed(), 1);
+    EXPECT_EQ(std::count(written.begin() + 1, written.end(), 500), 0) << "500 was restored";
+  }
+}
+
+TEST_F(DeadmanTest, A_deadman_value_that_the_device_does_not_carry_out_is_tried_again_each_second) {
+  start_online();
+  push("speed", 500);
+  run_for(milliseconds(100));
+  refuse_all(modbus::Exception::server_device_busy);
+  run_for(milliseconds(3000));
+  EXPECT_EQ(writes(), 3U);
+  device.refuses = nullptr;
+  run_for(milliseconds(1000));
+  EXPECT_EQ(speed(), 1);
+}
+
+TEST_F(DeadmanTest, A_deadman_value_that_the_device_never_takes_is_written_once) {
+  start_online();
+  push("speed", 500);
+  run_for(milliseconds(100));
+  refuse_all(modbus::Exception::illegal_data_value);
+  run_for(milliseconds(3000));
+  EXPECT_EQ(writes(), 1U);
 }
 
 }  // namespace

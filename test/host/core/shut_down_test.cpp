@@ -86,6 +86,16 @@ TEST_F(ShutDownTest, A_device_that_is_away_at_the_end_is_told_of) {
   EXPECT_EQ(sink->reported("no output could be set to its safe value: not connected"), 1);
 }
 
+TEST_F(ShutDownTest, No_answer_is_awaited_to_a_write_that_could_not_be_sent) {
+  start_online(OnShutdown::safe);
+  push("off", 1);
+  device.connected = false;  // reset by the device
+  EXPECT_FALSE(engine->send_now());
+  EXPECT_FALSE(engine->stop());
+  EXPECT_TRUE(device.requests.empty());
+  EXPECT_EQ(sink->reported("no output could be set to its safe value: not connected"), 1);
+}
+
 TEST_F(ShutDownTest, Writes_that_still_wait_are_dropped_before_the_safe_values) {
   start_online(OnShutdown::safe);
   push("off", 1);

@@ -171,5 +171,18 @@ TEST_F(WriteExchangeTest, Nothing_is_written_when_the_rest_of_the_register_canno
   EXPECT_THAT(device.requests, ElementsAre("read holding_registers 7+1"));
 }
 
+TEST_F(WriteExchangeTest, A_unit_that_is_away_is_not_asked_for_the_other_values) {
+  const auto owned = MapBuilder().coil("a", 0).coil("b", 1).coil("c", 7).build();
+  const std::uint16_t on = 1;
+  std::vector<Write> writes;
+  for (std::uint32_t i = 0; i < 3; ++i) writes.push_back(make_write(owned->map(), i, {&on, 1}));
+  device.connected = true;
+  device.next_errors = {ExceptionReply{modbus::Exception::gateway_target_failed_to_respond}};
+  const auto rejected = write_values(writes, owned->map(), device);
+  ASSERT_FALSE(rejected);
+  EXPECT_TRUE(is_unit_away(rejected.error()));
+  EXPECT_THAT(device.requests, ElementsAre("write coils 0+2"));
+}
+
 }  // namespace
 }  // namespace coupler::host

@@ -75,14 +75,29 @@ TEST_F(WriteResultsTest, A_value_that_a_newer_one_overtakes_is_superseded) {
 
 TEST_F(WriteResultsTest, An_exception_is_told_with_its_code_whatever_it_is) {
   start_online();
-  for (const int code : {4, 5, 6, 0x0A, 0x0B, 0x60}) {
+  for (const int code : {4, 5, 6, 0x60}) {
     device.next_errors.push_back(ExceptionReply{static_cast<modbus::Exception>(code)});
     push("k0", 1, &results);
     engine->step();
     EXPECT_NE(results.text.find(fmt::format("exception {:02X}", code)), std::string::npos) << results.text;
   }
-  EXPECT_EQ(written(Outcome::exception), 6U);
+  EXPECT_EQ(written(Outcome::exception), 4U);
   EXPECT_EQ(device.count("connect"), 0U) << "an exception is an answer: the connection stays";
+}
+
+TEST_F(WriteResultsTest, An_exception_of_the_gateway_takes_the_unit_offline_and_keeps_the_connection) {
+  start_online();
+  for (const int code : {0x0A, 0x0B}) {
+    sink->online.clear();
+    device.next_errors.push_back(ExceptionReply{static_cast<modbus::Exception>(code)});
+    push("k0", 1, &results);
+    engine->step();
+    EXPECT_NE(results.text.find(fmt::format("exception {:02X}", code)), std::string::npos) << results.text;
+    EXPECT_THAT(sink->online, ElementsAre(false));
+    run_for(milliseconds(500));
+    EXPECT_THAT(sink->online, ElementsAre(false, true));
+    EXPECT_EQ(device.count("connect"), 0U);
+  }
 }
 
 TEST_F(WriteResultsTest, A_device_that_refuses_several_at_once_gets_them_one_by_one) {

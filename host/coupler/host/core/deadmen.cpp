@@ -42,9 +42,10 @@ std::optional<std::uint32_t> Deadmen::take_expired(Time now) {
   return std::nullopt;
 }
 
-void Deadmen::put_back(std::uint32_t point) {
+void Deadmen::put_back(std::uint32_t point, Time when) {
   Time::rep expected = disarmed;  // unless a message has armed it meanwhile
-  if (Entry* const entry = find(point)) entry->deadline.compare_exchange_strong(expected, 0);
+  if (Entry* const entry = find(point))
+    entry->deadline.compare_exchange_strong(expected, when.time_since_epoch().count());
 }
 
 }  // namespace coupler::host

@@ -24,8 +24,8 @@ class Deadmen {
   Time due() const;
   /// A point whose deadline has passed: it is disarmed, and its value is to be written.
   std::optional<std::uint32_t> take_expired(Time now);
-  /// The value could not be written: the point is still expired.
-  void put_back(std::uint32_t point);
+  /// The value could not be written: it is to be tried again from `when` on, unless a message comes first.
+  void put_back(std::uint32_t point, Time when = {});
 
  private:
   static constexpr Time::rep disarmed = Time::max().time_since_epoch().count();

@@ -19,7 +19,7 @@ Result<> write_batch(const WriteBatch& batch, const Map& map, Transport& transpo
                      std::vector<RejectedValue>& rejected) {
   Result<> answer = exchange(batch, map, transport);
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
-  if (exception == nullptr) return answer;
+  if (exception == nullptr || is_unit_away(answer.error())) return answer;
   if (batch.writes().size() == 1) {
     rejected.push_back({batch.writes().front().point, exception->code});
     return {};

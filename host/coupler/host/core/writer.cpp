@@ -11,12 +11,15 @@ namespace {
 
 using Outcome = WriteResult::Outcome;
 
-/// With these the device has carried out nothing of a request, and the cause may be how it was put together:
-/// a device that takes one value only, or one of several that it does not have.
-bool may_be_of_merging(modbus::Exception code) {
+/// With these the device has carried out nothing of a request and never will. The cause may be how it was put
+/// together: a device that takes one value only, or one of several that it does not have.
+bool is_wrong(modbus::Exception code) {
   return code == modbus::Exception::illegal_function || code == modbus::Exception::illegal_data_address ||
          code == modbus::Exception::illegal_data_value;
 }
+
+/// Until a deadman value that the device would not carry out is written again.
+constexpr auto deadman_retry = std::chrono::seconds(1);
 
 /// " idle", for the log. Nothing of an array or a text, which may be long.
 std::string deadman_value(const Point& point) {
@@ -140,7 +143,7 @@ Result<> Writer::finish(const Result<>& answer) {
   if (!answer && exception == nullptr) return answer;  // disconnected() tells them
   std::swap(batch_, done_);
   Result<> link;
-  if (exception != nullptr && done_.writes().size() > 1 && may_be_of_merging(exception->code)) {
+  if (exception != nullptr && done_.writes().size() > 1 && is_wrong(exception->code)) {
     merges_ = false;
     queue_.put_back(done_.writes());
     sink_.on_report(Level::info,
@@ -164,23 +167,28 @@ Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
     settle(write, {Outcome::ok});
     return {};
   }
-  if (const ExceptionReply* exception = exception_in(answer.error())) {
-    const bool is_right = is_node_ && exception->code == modbus::Exception::illegal_function;
-    settle(write, {Outcome::exception, exception->code,
-                   is_right ? "this client has no right to write it" : std::string_view()});
-    return {};
+  const ExceptionReply* exception = exception_in(answer.error());
+  const bool is_away = exception == nullptr || is_unit_away(answer.error());
+  if (is_away || !is_wrong(exception->code)) {
+    // It is the newest command all the same: nothing older is restored, and a deadman stays due.
+    if (!write.of_schedule) remember(write);
+    if (write.of_deadman) deadmen_.put_back(write.point, is_away ? Time() : clock_.now() + deadman_retry);
   }
-  if (!write.of_schedule) remember(write);
-  if (write.of_deadman) deadmen_.put_back(write.point);
-  settle(write, {Outcome::lost, std::nullopt, to_string(answer.error())});
-  return answer;
+  if (exception == nullptr) {
+    settle(write, {Outcome::lost, std::nullopt, to_string(answer.error())});
+    return answer;
+  }
+  const bool is_right = is_node_ && exception->code == modbus::Exception::illegal_function;
+  settle(write, {Outcome::exception, exception->code,
+                 is_right ? "this client has no right to write it" : std::string_view()});
+  return is_away ? answer : Result<>{};
 }
 
 Result<> Writer::verify(const Write& write) {
   ReadBack back;
   const Result<> read = back.read(write, map_, transport_);
   const ExceptionReply* exception = read ? nullptr : exception_in(read.error());
-  if (!read && exception == nullptr) return finish_one(write, read);
+  if (!read && (exception == nullptr || is_unit_away(read.error()))) return finish_one(write, read);
   WriteResult result;
   if (exception != nullptr) {
     result = {Outcome::not_taken, exception->code};
@@ -297,7 +305,7 @@ void Writer::drop(const Write& write) {
 
 bool Writer::shut_down(bool connected) {
   if (map_.on_shutdown != OnShutdown::safe || safe_values_.empty()) return true;
-  if (!connected) {
+  if (!connected || send_error_) {
     sink_.on_report(Level::error, "no output could be set to its safe value: not connected");
     return false;
   }
