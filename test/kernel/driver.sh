@@ -34,11 +34,14 @@ check "pulled up, it tells so" wait_until says button 'data: True'
 
 echo "# publishing drives a line"
 sim_pull plant 0 down
-check "a message is published" rostopic pub --once /plant/lamp/write std_msgs/Bool 'data: true'
+# Without --once, which ends 3 s later: whoever connects late gets it, too.
+start on rostopic pub /plant/lamp/write std_msgs/Bool 'data: true'
 check "the line is high, against its pull" wait_until level_is 0 1
+check "who published it ends" stop on INT
 sim_pull plant 0 up
-check "another message" rostopic pub --once /plant/lamp/write std_msgs/Bool 'data: false'
+start off rostopic pub /plant/lamp/write std_msgs/Bool 'data: false'
 check "the line is low, against its pull" wait_until level_is 0 0
+check "who published that ends" stop off INT
 
 echo "# somebody sets the clock: stamps follow it, and it is told"
 is_stamped_from() { [ "$(tail -n 1 "$(log stamped)" | cut -d, -f3 | cut -c -10)" -ge "$1" ]; }
@@ -92,9 +95,16 @@ is_heard() { rosnode info /another | grep -A1 'topic: /plant/button$' | grep -q 
 low=$(grep -c 'data: False' "$(log button)") high=$(grep -c 'data: True' "$(log button)")
 start another "$bin/coupler_driver" __name:=another _map:=plant.yaml _address:=127.0.0.1 _port:=1503
 check "rostopic hears another driver" wait_until is_heard
-start replay "$bin/coupler-node" --sim --replay "$recording" --speed 5 --listen 127.0.0.1 --port 1503
+play() { start replay "$bin/coupler-node" --sim --replay "$recording" --speed 5 --listen 127.0.0.1 --port 1503; }
+play
 check "the topic tells that the line was low" wait_until says button 'data: False' $((low + 1))
 check "then that it was high" wait_until says button 'data: True' $((high + 1))
-check "the driver tells of exception 04 once more" wait_until says another 'device failure'
 check "the node ends with the recording" wait_until ended "$(pid replay)"
+# Its last second, which has the exception, may pass while this kernel stands still.
+for _ in 1 2 3 4 5; do
+  ! within 5 says another 'device failure' || break
+  play
+  wait_until ended "$(pid replay)" || true
+done
+check "the driver tells of exception 04 once more" says another 'device failure'
 check "the driver ends well on SIGINT" stop another INT

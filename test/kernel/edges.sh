@@ -40,7 +40,11 @@ saw() { [ "$(rising_seen "$1")" -ge "$2" ]; }
 
 pair() { answered client -t "$1" -r "$2" -c 2 127.0.0.1 | sed -nE 's/^\[[0-9]+\]:[[:space:]]*([0-9]+).*/\1/p'; }
 # Counters stand in the map's order, CDAB; statistics with the most significant register first.
-counter() { local words; mapfile -t words < <(pair "$1" "$2"); echo $((words[1] * 65536 + words[0])); }
+counter() {
+  local words
+  mapfile -t words < <(pair "$1" "$2")
+  [ ${#words[@]} -eq 2 ] && echo $((words[1] * 65536 + words[0]))
+}
 lost() { local words; mapfile -t words < <(pair 3 65305); echo $((words[0] * 65536 + words[1])); }
 
 # Clears the latch, sees that it is clear, and sends one pulse, so many times; prints how often it was set then.
@@ -109,9 +113,9 @@ bounce() {
   begun=$(microseconds)
   pulse 5 0.01 "$bouncy"
   [ "$1" = released ] || echo pull-up >"$wire/pull"
-  took=$(($(microseconds) - begun))
-  slowest=$((took > slowest ? took : slowest))
   pause 1.2
+  took=$(($(microseconds) - begun - 1200000)) # now that the last edge has come, too
+  slowest=$((took > slowest ? took : slowest))
 }
 for _ in 1 2 3 4 5; do
   before=$(counter 3 4) slowest=0

@@ -43,11 +43,17 @@ check "what its thread sets is read" wait_until input_is 0 1
 expect "the brake has stayed" 1 "$(sim_value plant 0)"
 
 echo "# the process that serves dies during a pulse"
-check "the horn sounds" set_coil 2 1
-kill -KILL "$(worker gate)"
-check "another process begins" wait_until says gate '^began 0 in' 3
+# A pulse that was over before shows nothing, and there is another one.
+for died in 2 3 4 5 6; do
+  ended=$(grep -c '^horn 0 in' "$(log gate)" || true)
+  before=$(worker gate)
+  check "the horn sounds" set_coil 2 1
+  kill -KILL "$before"
+  check "another process begins" wait_until says gate '^began 0 in' $((died + 1))
+  says gate "^horn 0 in $before$" || break
+done
 check "which ends the pulse" wait_until says gate "^horn 0 in $(worker gate)$"
-expect "once, and no other process did" 1 "$(grep -c '^horn 0 in' "$(log gate)")"
+expect "once, and no other process did" $((ended + 1)) "$(grep -c '^horn 0 in' "$(log gate)")"
 
 echo "# a line that cannot be driven"
 check "the firmware is told a speed" answered client -t 4 -r 0 127.0.0.1 -- 6
@@ -59,10 +65,10 @@ expect "and the hook gets its value back" "$before motor 0 motor 1" "$(hooks_cal
 expect "clients read what it was" 1 "$(coil 0)"
 check "the hook alone goes on" set_coil 0 0
 
-check "without the chip another process begins" wait_until says gate '^began 0 in' 4
+check "without the chip another process begins" wait_until says gate '^began 0 in' $((died + 2))
 
 echo "# it ends"
 before=$(worker gate)
 stop gate TERM || true
 check "the firmware is made safe, once, by the process that served" says gate "^safe 0 in $before$" 1
-expect "and by no other" 3 "$(grep -c '^safe 0 in' "$(log gate)")"
+expect "and by no other" $((died + 1)) "$(grep -c '^safe 0 in' "$(log gate)")"

@@ -16,9 +16,9 @@ for level in up down up; do
   check "pulling a line $level shows in its input" wait_until input_is 0 "$([ "$level" = up ] && echo 1 || echo 0)"
 done
 sim_pull plant 3 down
-expect "an active-low input is on while its line is low" 1 "$(input 1)"
+check "an active-low input is on while its line is low" wait_until input_is 1 1
 sim_pull plant 3 up
-expect "and off while it is high" 0 "$(input 1)"
+check "and off while it is high" wait_until input_is 1 0
 
 sim_pull plant 0 down
 check "a coil is written" set_coil 0 1
@@ -35,8 +35,20 @@ expect "its line is low, against its pull" 0 "$(sim_value plant 1)"
 
 echo "# debounce"
 wire=$(sim_wire plant 4)/pull
-for _ in 1 2 3 4 5; do for level in up down; do echo "pull-$level" >"$wire"; sleep 0.03; done; done
-expect "a level that does not last is not seen" 0 "$(input 2)"
+# A level that lasted since this program was kept waiting is another one, and there is another round.
+for _ in {1..20}; do
+  slowest=0
+  for _ in 1 2 3 4 5; do
+    begun=$(microseconds)
+    for level in up down; do echo "pull-$level" >"$wire"; sleep 0.03; done
+    took=$(($(microseconds) - begun))
+    slowest=$((took > slowest ? took : slowest))
+  done
+  seen=$(input 2)
+  [ "$slowest" -ge 900000 ] || break
+  wait_until input_is 2 0
+done
+expect "a level that does not last is not seen" 0 "$seen"
 sim_pull plant 4 up
 check "one that lasts is" wait_until input_is 2 1
 

@@ -74,7 +74,7 @@ check "the node sees it" wait_until says node 'line 0 failed: No such device' 2
 sim_plug plant
 sim_pull plant 0 down
 check "plugged in again, the line is high, against its pull" wait_until level_is 0 1
-check "it is written off" set_coil 0 0
+check "it is written off" wait_until set_coil 0 0 # by the next process: this one has lost its line
 check "and low" level_is 0 0
 stop gone KILL || true
 

@@ -22,19 +22,22 @@ try:
     import foreign_server
 except ImportError as error:
     peer.skip(f"python3-pymodbus is missing ({error}); run scripts/install-packages test")
-from recording import TAPE_MAP, Node, Recorder, Tape, outcomes, until_lost, values, whole_lines
+from recording import TAPE_MAP, Node, Recorder, Tape, outcomes, until_lost, values, waits_noted, whole_lines
 
 OUTPUTS = ["lamp", "valve"]
 TOLD = [*OUTPUTS, "lamp_burns", "valve_closed"]  # a node tells changes of bits: none is missed, at any speed
 READ = ["setpoint", "gain", "label", "pressure", "curve"]
 FAULT = 0.7  # seconds that each lasts
 STEP = 0.4   # seconds between a value and the next
+WAIT = 0.3   # seconds: what is read ten times a second, and is there for longer by 0.2 s, is seen
 
 
-def record_a_session(node, coupler, map_file, file, checks):
+def record_a_session(node, coupler, map_file, file, checks, silence):
     """pymodbus writes at random, but nothing so often that reading it ten times a second might miss it."""
     chance = random.Random(5)
-    with Node(node, map_file) as device, Recorder(coupler, map_file, device.port, file) as recorder:
+    file.unlink(missing_ok=True)
+    with Node(node, map_file) as device, Recorder(coupler, map_file, device.port, file) as recorder, \
+            waits_noted(silence, device, recorder):
         recorder.await_value("level", -2, checks)
         time.sleep(2)  # who is played it five times as fast reads what was there in the beginning, too
         client = peer.pymodbus_client(device.port)
@@ -65,12 +68,17 @@ def first_change(lines):
 
 def the_session_is_played(node, coupler, map_file, recorded, file, speed, checks):
     again = file.with_name(f"again{speed}.jsonl")
-    with Node(node, "--replay", file, "--speed", speed) as device, \
-            Recorder(coupler, map_file, device.port, again) as recorder:
-        checks.equal(f"speed {speed}: status of the node", device.wait(), 0)
-        recorder.await_lines("its end", lambda lines: lines[-1].get("device") == "lost", checks)
-        checks.equal(f"speed {speed}: status of the recorder", recorder.end(), 0)
-    played = until_lost(recorder.lines())
+
+    def play(silence):
+        again.unlink(missing_ok=True)
+        with Node(node, "--replay", file, "--speed", speed) as device, \
+                Recorder(coupler, map_file, device.port, again) as recorder, waits_noted(silence, device, recorder):
+            checks.equal(f"speed {speed}: status of the node", device.wait(), 0)
+            recorder.await_lines("its end", lambda lines: lines[-1].get("device") == "lost", checks)
+            checks.equal(f"speed {speed}: status of the recorder", recorder.end(), 0)
+        return until_lost(recorder.lines())
+
+    played = peer.undisturbed(WAIT, play)
     slack = 1 + speed  # a busy machine may be late by a second, with the recording and with what is played
     begins = first_change(recorded), first_change(played)
     for point in [*TOLD, *READ, "level"]:
@@ -190,7 +198,7 @@ def a_foreign_coupler_is_played_without_what_nodes_have(node, coupler, folder, c
 
 def the_recorded_is_played(node, coupler, map_file, folder, checks):
     file = folder / "session.jsonl"
-    recorded = record_a_session(node, coupler, map_file, file, checks)
+    recorded = peer.undisturbed(WAIT, lambda silence: record_a_session(node, coupler, map_file, file, checks, silence))
     checks.equal("a session with changes", min(len(values(recorded, "lamp")), len(values(recorded, "curve"))) > 2, True)
     for speed in (0.5, 5):  # at the first all that is read is there for half a second at least, and so is seen
         the_session_is_played(node, coupler, map_file, recorded, file, speed, checks)
