@@ -11,6 +11,7 @@
 #include "manners_map.hpp"
 #include "moxa_map.hpp"
 #include "secure_map.hpp"
+#include "shared_map.hpp"
 #include "test/device/core/fake_lines.hpp"
 #include "test/generate/same_map.hpp"
 #include "test/support/paths.hpp"
@@ -55,6 +56,13 @@ TEST(Generated, Roles_and_the_files_of_certificates_survive) {
   ASSERT_TRUE(loaded->map().security.files.present());
   ASSERT_TRUE(loaded->map().connection.tls.present());
   testing::expect_same(maps::secure::map, loaded->map());
+}
+
+TEST(Generated, Points_that_share_an_address_keep_the_names_of_their_values) {
+  const LoadResult loaded = load_map_file(test::in_tree("test/generate/shared.yaml"));
+  ASSERT_TRUE(loaded.map);
+  EXPECT_FALSE(loaded.diagnostics.empty()) << "the points do not overlap";
+  testing::expect_same(maps::shared::map, loaded.map->map());
 }
 
 TEST(Generated, Addresses_come_from_the_lock) {

@@ -2,6 +2,9 @@
 #include "coupler/generate/generate.hpp"
 #include "coupler/generate/macros.hpp"
 
+#include <cstddef>
+#include <type_traits>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -112,32 +115,32 @@ std::string host(const HostOptions& options) {
   return fmt::format("{{{}, {}}}", values_of(options), deadman(options.deadman));
 }
 
-/// The array of the names of its values, which stands before the points: "values_of_coils_7".
-std::string values_name(const Point& point) {
-  if (point.values.empty()) return "{}";
-  const std::string part = is_partial(point) ? fmt::format("_{}", codec::mask(point.format)) : "";
-  return fmt::format("values_of_{}_{}{}", to_string(point.table), point.address, part);
+/// The array of the names of its values, which stands before the points. `index`: in Map::points; several
+/// points may share an address.
+std::string values_name(const Point& point, std::size_t index) {
+  return point.values.empty() ? "{}" : fmt::format("values_of_point_{}", index);
 }
 
 /// What few points have behind counter and latched: count, scale, iio, pwm, safe registers, read address,
 /// bounds, names of values, pulse, host.
-std::string rest(const Point& point) {
+std::string rest(const Point& point, std::size_t index) {
   return fmt::format("{}, {}, {}, {}, {}, {}, {}, {}, {}ms, {}", point.count, aggregate(point.scale),
                      aggregate(point.iio), aggregate(point.pwm), registers(point.safe_value),
                      point.read_address ? fmt::format("::std::uint16_t{{{}}}", *point.read_address) : "{}",
-                     aggregate(point.bounds), values_name(point), point.pulse.count(), host(point.host));
+                     aggregate(point.bounds), values_name(point, index), point.pulse.count(),
+                     host(point.host));
 }
 
 /// All that most points do not have.
-std::string extras(const Point& point) {
+std::string extras(const Point& point, std::size_t index) {
   const std::string edges = fmt::format(", {}, {}", aggregate(point.counter), aggregate(point.latched));
-  const std::string more = rest(point);
-  if (more != rest(Point{})) return edges + ",\n     " + more;
+  const std::string more = rest(point, index);
+  if (more != rest(Point{}, index)) return edges + ",\n     " + more;
   return point.counter.present() || point.latched.present() ? edges : std::string();
 }
 
 /// The point as an aggregate, `{"lamp", Table::coils, 0, …}`, under a comment that says what it is and where.
-std::string row(const Point& point) {
+std::string row(const Point& point, std::size_t index) {
   const std::string what = point.description.empty() ? "" : comment(point.description) + ": ";
   return fmt::format(
       "    // {}{}\n"
@@ -146,7 +149,7 @@ std::string row(const Point& point) {
       "     {}, {}{}}},\n",
       what, place(point), literal(point.name), enumerator(point.table), point.address, format(point.format),
       enumerator(point.access), registers(point.initial), enumerator(point.safe), aggregate(point.line),
-      literal(point.description), literal(point.units), extras(point));
+      literal(point.description), literal(point.units), extras(point, index));
 }
 
 std::string row(const SimWire& wire) { return fmt::format("    {},\n", aggregate(wire)); }
@@ -220,15 +223,22 @@ template <class T>
 std::string array(std::string_view declaration, std::string_view fields, Span<const T> elements) {
   if (elements.empty()) return {};
   std::string rows;
-  for (const T& element : elements) rows += row(element);
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if constexpr (std::is_same_v<T, Point>)
+      rows += row(elements[i], i);
+    else
+      rows += row(elements[i]);
+  }
   return fmt::format("// {}\nconstexpr {}[] = {{\n{}}};\n\n", fields, declaration, rows);
 }
 
 std::string values(const Map& map) {
   std::string out;
-  for (const Point& point : map.points)
-    out += array("NamedValue " + values_name(point), comment(point.name) + ": what its values are called.",
+  for (std::size_t i = 0; i < map.points.size(); ++i) {
+    const Point& point = map.points[i];
+    out += array("NamedValue " + values_name(point, i), comment(point.name) + ": what its values are called.",
                  point.values);
+  }
   return out;
 }
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/generate/generate.hpp"
 
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -61,6 +66,25 @@ TEST(Table, Connection_polling_and_limits_are_in_it) {
 TEST(Table, Counters_and_latches_follow_the_units) {
   EXPECT_THAT(source(), AllOf(HasSubstr("     \"\", \"\", {}, {\"button\", Edge::both}},\n"),
                               HasSubstr("     \"\", \"\", {\"button\", Edge::falling}, {}},\n")));
+}
+
+TEST(Table, Each_of_several_points_at_one_address_names_its_values_in_an_array_of_its_own) {
+  OwnedMap owned;
+  const NamedValue idle[] = {{0, "idle"}};
+  std::vector<Point> points(3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].name = std::array{"first", "second", "third"}[i];
+    points[i].table = Table::holding_registers;
+    points[i].format.type = codec::Type::INT;
+    points[i].values = idle;
+  }
+  points[2].access = Access::write;
+  owned.finish({}, std::move(points), {});
+  const std::string text = table_source(owned.map(), testing::provenance);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_THAT(text, HasSubstr(fmt::format("constexpr NamedValue values_of_point_{}[] = {{", i)));
+    EXPECT_THAT(text, HasSubstr(fmt::format(", values_of_point_{}, 0ms", i)));
+  }
 }
 
 TEST(Table, The_service_is_in_it) {
