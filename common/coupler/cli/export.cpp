@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -51,11 +50,8 @@ Exit run(const Arguments& arguments) {
   const formats::Export exported = arguments.node_statistics ? exporter->write_with_statistics(argument.map())
                                                              : exporter->write(argument.map());
   print(exported.warnings.diagnostics(arguments.map));
-  std::error_code not_a_file;  // a device has none, and what is new is none yet
-  if (!names_no_file(arguments.out) && std::filesystem::equivalent(arguments.map, arguments.out, not_a_file))
-    return complain("export", bad_call, fmt::format("{} is the map itself", arguments.out),
-                    "name another file with --out");
-  return write_out("export", arguments.out, exported.text);
+  if (names_no_file(arguments.out)) return write_out("export", arguments.out, exported.text);
+  return write_beside_map("export", arguments.map, "--out", arguments.out, exported.text);
 }
 
 }  // namespace

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -79,12 +77,8 @@ std::vector<generate::File> map_pages(const Arguments& arguments, const std::str
 }
 
 /// A file that somebody wrote: all that is generated says by whom.
-bool is_by_hand(const fs::path& path) {
-  if (!fs::is_regular_file(path)) return false;
-  std::ifstream in(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  return !text.empty() && text.find("by coupler ") == std::string::npos &&
-         text.find("\"made_by\": \"coupler ") == std::string::npos;
+bool is_by_hand(const std::string& path) {
+  return has_none_of(path, {"by coupler ", "\"made_by\": \"coupler "});
 }
 
 Exit write(const Arguments& arguments, const std::vector<generate::File>& files) {
@@ -97,7 +91,7 @@ Exit write(const Arguments& arguments, const std::vector<generate::File>& files)
                     fmt::format("cannot create the folder {}: {}", arguments.out, failed.message()), remedy);
   for (const generate::File& file : files) {
     const fs::path path = (folder_of(arguments) / file.name).lexically_normal();
-    if (!arguments.force && is_by_hand(path))
+    if (!arguments.force && is_by_hand(path.string()))
       return complain("generate", bad_call, fmt::format("{} was not made by coupler", path.string()),
                       "name another folder with --out, or replace it with --force");
     const auto outcome = generate::write_if_changed(path, file.content);

@@ -2,12 +2,11 @@
 // What --out names: a file or a folder, or standard output.
 #pragma once
 
-#include <cstdio>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
 #include "coupler/cli/commands.hpp"
-#include "coupler/generate/output.hpp"
 
 namespace coupler::cli {
 
@@ -18,14 +17,13 @@ constexpr std::string_view standard_output = "-";
 inline bool names_no_file(const std::string& out) { return out.empty() || out == standard_output; }
 
 /// Writes what a command makes: to standard output if `out` names no file. Returns how the command ends.
-inline Exit write_out(std::string_view command, const std::string& out, const std::string& text) {
-  if (names_no_file(out)) {
-    std::fputs(text.c_str(), stdout);
-    return ok;
-  }
-  if (const auto outcome = generate::write_if_changed(out, text); !outcome)
-    return complain(command, bad_call, outcome.error(), "give a file that you may write with --out");
-  return ok;
-}
+Exit write_out(std::string_view command, const std::string& out, const std::string& text);
+
+/// Writes a file that a command makes of a map: the map itself is refused. `option` named the file.
+Exit write_beside_map(std::string_view command, const std::string& map, std::string_view option,
+                      const std::string& file, const std::string& text);
+
+/// A file is there, not empty, that has none of `marks`: another program or somebody wrote it.
+bool has_none_of(const std::string& file, std::initializer_list<std::string_view> marks);
 
 }  // namespace coupler::cli

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <string>
 
@@ -8,6 +7,7 @@
 
 #include "coupler/cli/commands.hpp"
 #include "coupler/cli/map_argument.hpp"
+#include "coupler/cli/output_argument.hpp"
 #include "coupler/cli/plan_report.hpp"
 #include "coupler/cli/report.hpp"
 #include "coupler/plan/picture.hpp"
@@ -24,13 +24,6 @@ struct Arguments {
   bool json = false;
   std::string svg;
 };
-
-bool write_file(const std::string& path, const std::string& content) {
-  std::ofstream file(path, std::ios::binary);
-  file << content;
-  file.close();
-  return !file.fail();
-}
 
 void warn_if_too_much(const std::string& file, const Map& map, const plan::NetworkTiming& timing) {
   const double load = plan::load(plan::make_read_plan(map), timing);
@@ -55,9 +48,11 @@ Exit run(const Arguments& arguments) {
   const plan::NetworkTiming timing =
       plan::timing_of(map, std::chrono::duration_cast<std::chrono::nanoseconds>(
                                std::chrono::duration<double, std::milli>(arguments.rtt)));
-  if (!arguments.svg.empty() && !write_file(arguments.svg, plan::picture(map, plan::make_read_plan(map))))
-    return complain("plan", bad_call, "cannot write " + arguments.svg,
-                    "give a file that you may write with --svg");
+  if (!arguments.svg.empty()) {
+    const std::string picture = plan::picture(map, plan::make_read_plan(map));
+    const Exit written = write_beside_map("plan", arguments.map, "--svg", arguments.svg, picture);
+    if (written != ok) return written;
+  }
   if (arguments.json)
     std::puts(plan_json(arguments.map, map, timing).c_str());
   else

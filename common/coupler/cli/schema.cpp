@@ -8,6 +8,16 @@
 #include "coupler/cli/output_argument.hpp"
 
 namespace coupler::cli {
+namespace {
+
+Exit run(const std::string& out) {
+  if (!names_no_file(out) && has_none_of(out, {"json-schema.org/"}))
+    return complain("schema", bad_call, out + " is there, and it is no JSON Schema",
+                    "name another file with --out, or remove it");
+  return write_out("schema", out, schema::map_schema());
+}
+
+}  // namespace
 
 void add_schema(Program& program, Exit& exit) {
   auto command = program.add_command(
@@ -20,7 +30,7 @@ void add_schema(Program& program, Exit& exit) {
   command.footer(
       "Example:\n  coupler schema --out map.schema.json\n"
       "and as the first line of a map beside it: # yaml-language-server: $schema=map.schema.json");
-  command.callback([out, &exit] { exit = write_out("schema", *out, schema::map_schema()); });
+  command.callback([out, &exit] { exit = run(*out); });
 }
 
 }  // namespace coupler::cli

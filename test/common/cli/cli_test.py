@@ -79,6 +79,16 @@ class Schema(Cli):
         self.assertEqual(self.coupler("schema", "--out", "s.json").returncode, 0)
         self.assertEqual((self.folder / "s.json").read_text(encoding="utf-8"), done.stdout)
 
+    def test_it_replaces_another_schema_and_nothing_else(self):
+        self.file("s.json", '{"$schema": "http://json-schema.org/draft-07/schema#"}')
+        self.assertEqual(self.coupler("schema", "--out", "s.json").returncode, 0)
+        self.assertEqual((self.folder / "s.json").read_text(encoding="utf-8"), self.coupler("schema").stdout)
+        name = self.file("cell.yaml", GOOD)
+        done = self.coupler("schema", "--out", name)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(f"{name} is there, and it is no JSON Schema; name another file with --out", done.stderr)
+        self.assertEqual((self.folder / name).read_text(encoding="utf-8"), GOOD)
+
     def test_a_file_that_cannot_be_written_is_told(self):
         done = self.coupler("schema", "--out", "nowhere/s.json")
         self.assertEqual(done.returncode, 2)

@@ -97,7 +97,22 @@ class Plan(Cli):
     def test_of_a_picture_that_cannot_be_written_says_so(self):
         done = self.plan("--svg", "no/such/folder.svg")
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("cannot write no/such/folder.svg; ", done.stderr)
+        self.assertIn("cannot write no/such/folder.svg: No such file or directory; give a file that you may write with --svg",
+                      done.stderr)
+
+    def test_draws_no_picture_over_its_map(self):
+        for name in ("cell.yaml", "./cell.yaml"):
+            done = self.plan("--svg", name)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(f"{name} is the map itself; name another file with --svg", done.stderr)
+            self.assertEqual((self.folder / "cell.yaml").read_text("utf-8"), SPREAD)
+
+    def test_replaces_a_picture_in_one_step(self):
+        (self.folder / "old.svg").write_text("old", "utf-8")
+        (self.folder / "kept.svg").hardlink_to(self.folder / "old.svg")
+        self.assertEqual(self.plan("--svg", "old.svg").returncode, 0)
+        self.assertEqual((self.folder / "kept.svg").read_text("utf-8"), "old")
+        self.assertTrue((self.folder / "old.svg").read_text("utf-8").startswith("<svg"))
 
     def test_of_a_bad_map_says_what_is_wrong(self):
         done = self.plan(text=BAD)
