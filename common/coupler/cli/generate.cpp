@@ -20,6 +20,8 @@
 #include "coupler/generate/code.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/generate/python.hpp"
+#include "coupler/map/loader/document.hpp"
+#include "coupler/map/loader/problems.hpp"
 #include "coupler/test_vectors/json.hpp"
 
 namespace coupler::cli {
@@ -116,6 +118,16 @@ Exit write_python(const Arguments& arguments, const generate::Provenance& proven
   return write(arguments, {{provenance.name + "_client.py", generate::python_client(map, provenance)}});
 }
 
+/// The key of a node's map that would be lost; empty: none. What is loaded from a node leaves both out. With
+/// TLS, how to reach the node was given.
+std::string_view lost_key(const MapArgument& argument) {
+  loader::Problems ignored("");
+  const auto root = loader::parse_document(argument.loaded.map->map().text, ignored);
+  if (root && loader::child(*root, "security") != nullptr) return "security";
+  if (root && loader::child(*root, "tls") != nullptr && !argument.tls.present()) return "tls";
+  return {};
+}
+
 Exit run(const Arguments& arguments) {
   if (!is_url_part(arguments.source_url))
     return complain("generate", bad_call, fmt::format("'{}' cannot be part of a URL", arguments.source_url),
@@ -132,6 +144,12 @@ Exit run(const Arguments& arguments) {
   if (!loaded.map) return argument.exit;
   const std::string source =
       arguments.map == "-" ? "standard input" : fs::path(arguments.map).filename().string();
+  const std::string_view lost =
+      argument.node && !arguments.python && !arguments.vectors ? lost_key(argument) : std::string_view();
+  if (!lost.empty())
+    return complain("generate", bad_input,
+                    fmt::format("the node's map has '{}', which nothing that is made from a node has", lost),
+                    "give the file of its map");
   const Map map = argument.map();
   const std::string name = arguments.name.empty() ? std::string(map.name) : arguments.name;
   if (arguments.docs) return write(arguments, map_pages(arguments, name, source, map, loaded.point_lines));

@@ -20,6 +20,8 @@ mapping:
   coils: {lamp: 0}
   input_registers: {level: {address: 3, type: REAL}}
 """
+SECURITY = "security: {roles: {viewer: {read: all}}, plain: viewer}\n"
+TLS = "tls: {certificate: cell1.pem, key: cell1.key, ca: authority.pem}\n"
 
 
 class Foreign:
@@ -53,7 +55,10 @@ class Live(unittest.TestCase):
         return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, capture_output=True,
                               text=True, encoding="utf-8", check=False)
 
-    def node(self):
+    def node(self, text=None):
+        """Serves cell.yaml, with `text` in it if that is given."""
+        if text is not None:
+            (self.folder / "cell.yaml").write_text(text, encoding="utf-8")
         node = served.Served([os.environ["NODE"], str(self.folder / "cell.yaml"), "--sim", "--port", "0"])
         self.addCleanup(node.stop)
         return f"tcp://127.0.0.1:{node.port}/7"
@@ -91,6 +96,27 @@ class ANode(Live):
         done = self.coupler("generate", "--docs", self.node(), "--out", "pages")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("](", (self.folder / "pages/cell.md").read_text(encoding="utf-8"))
+
+    def test_with_roles_makes_nothing_that_would_lack_them(self):
+        node = self.node(SECURITY + MAP)
+        for out in (["--out", "made"], ["--docs", "--out", "made"]):
+            done = self.coupler("generate", node, *out)
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertIn("the node's map has 'security', which nothing that is made from a node has; "
+                          "give the file of its map", done.stderr)
+            self.assertFalse((self.folder / "made").exists())
+
+    def test_with_roles_makes_what_has_none(self):
+        node = self.node(SECURITY + MAP)
+        for what, made in (("--python", "cell_client.py"), ("--vectors", "cell_vectors.json")):
+            done = self.coupler("generate", node, what)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertTrue((self.folder / made).exists())
+
+    def test_that_is_to_be_reached_by_TLS_makes_no_client_without_it(self):
+        done = self.coupler("generate", self.node(TLS + MAP), "--out", "made")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("the node's map has 'tls', ", done.stderr)
 
     def test_is_compared_with_its_file(self):
         done = self.coupler("diff", "cell.yaml", self.node(), "--fail-on", "documentation")
