@@ -131,6 +131,14 @@ Severity severity_of(const std::string& name) {
   return Severity::documentation;
 }
 
+/// What a node serves is loaded without what is about its own clients. A file beside it is loaded in the same
+/// way, or its map would differ from itself.
+MapPtr comparable(const MapArgument& side, const MapArgument& other) {
+  if (side.node || !other.node) return side.loaded.map;
+  const MapPtr served = load_served_map(side.loaded.map->map().text, "").map;
+  return served != nullptr ? served : side.loaded.map;
+}
+
 Exit run(const Arguments& arguments) {
   const MapArgument older = get_version(arguments.versions.older, arguments.tls);
   print(older.loaded.diagnostics);
@@ -138,7 +146,9 @@ Exit run(const Arguments& arguments) {
   print(newer.loaded.diagnostics);
   if (!older.loaded.map) return older.exit;
   if (!newer.loaded.map) return newer.exit;
-  const auto changes = changes::compare(older.loaded.map->map(), newer.loaded.map->map());
+  const MapPtr before = comparable(older, newer);
+  const MapPtr now = comparable(newer, older);
+  const auto changes = changes::compare(before->map(), now->map());
   const auto report = arguments.format == "json"       ? diff_json
                       : arguments.format == "markdown" ? diff_markdown
                                                        : diff_text;

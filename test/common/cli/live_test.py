@@ -119,8 +119,23 @@ class ANode(Live):
         self.assertIn("the node's map has 'tls', ", done.stderr)
 
     def test_is_compared_with_its_file(self):
-        done = self.coupler("diff", "cell.yaml", self.node(), "--fail-on", "documentation")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for more in ("", "verify: warn\n", SECURITY, TLS):
+            with self.subTest(more):
+                node = self.node(more + MAP)
+                for versions in (["cell.yaml", node], [node, "cell.yaml"]):
+                    done = self.coupler("diff", *versions, "--fail-on", "documentation")
+                    self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
+                    self.assertIn("no difference", done.stdout)
+
+    def test_that_differs_from_its_file_is_told(self):
+        node = self.node("verify: warn\n" + MAP)
+        (self.folder / "cell.yaml").write_text("verify: off\nrate: 3\n" + MAP.replace("lamp: 0", "lamp: 1"),
+                                               encoding="utf-8")
+        done = self.coupler("diff", "cell.yaml", node)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("address-moved", done.stdout)
+        self.assertIn("map-rate-changed", done.stdout)
+        self.assertNotIn("verify-changed", done.stdout)
 
     def test_exports_its_own_address(self):
         node = self.node()
