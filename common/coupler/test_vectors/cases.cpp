@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <type_traits>
 
@@ -162,35 +163,58 @@ std::vector<Element> elements_of(const Point& point) {
                                                   : number_elements(point.format);
 }
 
-/// A number as decode() gives it for the point.
-codec::Value number_of(const Point& point, double number) {
-  if (point.scale.present() || point.format.type == codec::Type::LREAL) return number;
-  if (point.format.type == codec::Type::REAL) return static_cast<float>(number);
-  return static_cast<std::int64_t>(number);
+/// nullopt: no integer of 64 bits has it.
+std::optional<codec::Value> integer_of(double number) {
+  constexpr double two_to_63 = 9223372036854775808.0;
+  if (number >= -two_to_63 && number < two_to_63) return static_cast<std::int64_t>(number);
+  if (number >= two_to_63 && number < 2 * two_to_63) return static_cast<std::uint64_t>(number);
+  return std::nullopt;
 }
 
-/// `min` and `max`, and beside each the next number that must not be written.
+/// Published as integers: neither a float nor scaled.
+bool is_integer(const Point& point) {
+  const codec::Type type = point.format.type;
+  return !point.scale.present() && type != codec::Type::REAL && type != codec::Type::LREAL;
+}
+
+/// A number as the point publishes it; nullopt: none that it could publish.
+std::optional<codec::Value> number_of(const Point& point, double number) {
+  if (is_integer(point)) return integer_of(number);
+  if (!point.scale.present() && point.format.type == codec::Type::REAL) return static_cast<float>(number);
+  return number;
+}
+
+/// `min` and `max`, and beside each a number that must not be written: the next one, and for integers above
+/// 2^53 the next double, since bounds are doubles.
 void add_bounds(const Point& point, std::vector<Element>& allowed, std::vector<codec::Value>& refused) {
   const double step = std::fabs(point.scale.gain);
-  const auto add = [&](double bound, double beyond) {
+  const auto add = [&](double bound, double direction) {
     Element element(codec::registers(point.format));
-    if (encode(number_of(point, bound), point, element.data())) allowed.push_back(element);
-    refused.push_back(number_of(point, beyond));
+    const auto value = number_of(point, bound);
+    if (value && encode(*value, point, element.data())) allowed.push_back(element);
+    double beyond = bound + direction * step;
+    if (is_integer(point) && beyond == bound)
+      beyond = std::nextafter(bound, direction * std::numeric_limits<double>::infinity());
+    if (const auto next = number_of(point, beyond)) refused.push_back(*next);
   };
-  if (point.bounds.min != Bounds::no_min) add(point.bounds.min, point.bounds.min - step);
-  if (point.bounds.max != Bounds::no_max) add(point.bounds.max, point.bounds.max + step);
+  if (point.bounds.min != Bounds::no_min) add(point.bounds.min, -1);
+  if (point.bounds.max != Bounds::no_max) add(point.bounds.max, 1);
 }
 
 /// The named values, and a number between or behind them that has no name.
 void add_names(const Point& point, std::vector<Element>& allowed, std::vector<codec::Value>& refused) {
   if (point.values.empty()) return;
-  std::int64_t unnamed = point.values.front().value;
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  std::int64_t last = point.values.front().value;  // of those without a gap
   for (const NamedValue& named : point.values) {
     allowed.emplace_back(codec::registers(point.format));
     (void)codec::encode(named.value, point.format, allowed.back().data());
-    if (named.value == unnamed) ++unnamed;
+    if (last != most && named.value == last + 1) last = named.value;
   }
-  refused.emplace_back(unnamed);
+  if (last != most)
+    refused.emplace_back(last + 1);
+  else
+    refused.emplace_back(static_cast<std::uint64_t>(most) + 1);
 }
 
 /// `pick(i)`: which element is the i-th value.

@@ -4,12 +4,17 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <variant>
+#include <vector>
 
 namespace coupler::test_vectors {
 namespace {
 
 using codec::Type;
 using codec::Value;
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -62,6 +67,62 @@ TEST(Cases, Numbers_beyond_a_scale_are_refused) {
   Point point = holding(Type::UINT);
   point.scale.gain = 0.5;
   EXPECT_THAT(cases_of(point).refused, Contains(Value(65535.0)));
+}
+
+bool has(const std::vector<Case>& cases, const Value& value) {
+  return std::any_of(cases.begin(), cases.end(),
+                     [&](const Case& one) { return one.values[0] == value && !one.only_read; });
+}
+
+TEST(Cases, A_bound_is_written_and_the_next_integer_is_refused) {
+  Point point = holding(Type::INT);
+  point.bounds.min = -3;
+  point.bounds.max = 7;
+  const Cases made = cases_of(point);
+  EXPECT_TRUE(has(made.cases, std::int64_t{-3}));
+  EXPECT_TRUE(has(made.cases, std::int64_t{7}));
+  EXPECT_THAT(made.refused, AllOf(Contains(Value(std::int64_t{-4})), Contains(Value(std::int64_t{8}))));
+}
+
+TEST(Cases, A_bound_above_63_bits_is_written_and_what_lies_beyond_is_refused) {
+  Point point = holding(Type::ULINT);
+  point.bounds.min = 9223372036854775808.0;
+  point.bounds.max = 10000000000000000000.0;
+  const Cases made = cases_of(point);
+  EXPECT_TRUE(has(made.cases, std::uint64_t{9223372036854775808U}));
+  EXPECT_TRUE(has(made.cases, std::uint64_t{10000000000000000000U}));
+  // The doubles next to them.
+  EXPECT_THAT(made.refused, ElementsAre(std::int64_t{-1}, std::int64_t{9223372036854774784},
+                                        std::uint64_t{10000000000000002048U}));
+}
+
+TEST(Cases, A_bound_at_the_end_of_64_bits_has_nothing_beyond) {
+  Point point = holding(Type::ULINT);
+  point.bounds.max = 18446744073709551616.0;  // as the last ULINT is read from a map
+  EXPECT_THAT(cases_of(point).refused, ElementsAre(std::int64_t{-1}));
+  EXPECT_TRUE(has(cases_of(point).cases, std::numeric_limits<std::uint64_t>::max()));
+
+  point = holding(Type::LINT);
+  point.bounds.min = -9223372036854775808.0;
+  point.bounds.max = 9223372036854775808.0;
+  const Cases made = cases_of(point);
+  EXPECT_TRUE(has(made.cases, std::numeric_limits<std::int64_t>::min()));
+  EXPECT_TRUE(has(made.cases, std::numeric_limits<std::int64_t>::max()));
+  for (const Value& value : made.refused) EXPECT_TRUE(std::holds_alternative<std::uint64_t>(value));
+}
+
+TEST(Cases, The_number_behind_the_last_name_is_refused_also_of_the_greatest_integer) {
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  const NamedValue last[] = {{most - 1, "near"}, {most, "far"}};
+  for (const Type type : {Type::LINT, Type::ULINT}) {
+    Point point = holding(type);
+    point.values = last;
+    EXPECT_THAT(cases_of(point).refused, Contains(Value(static_cast<std::uint64_t>(most) + 1)));
+  }
+  const NamedValue gap[] = {{0, "idle"}, {1, "running"}, {3, "failed"}};
+  Point point = holding(Type::INT);
+  point.values = gap;
+  EXPECT_THAT(cases_of(point).refused, Contains(Value(std::int64_t{2})));
 }
 
 TEST(Cases, Nothing_is_refused_where_nothing_can_be_written) {
