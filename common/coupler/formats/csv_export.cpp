@@ -79,7 +79,7 @@ void add_host_options(const Point& point, const Entry* defaults, Cells& cells) {
   for_each_field(host, HostOptions{}, [&](const auto& field, const auto& value, const auto& usual) {
     if (value != usual && applies(field.about, point)) cells[std::string(field.key)] = written(value);
   });
-  const Entry* deadman = defaults != nullptr ? find(*defaults, "deadman") : nullptr;
+  const Entry* deadman = defaults != nullptr ? loader::child(*defaults, "deadman") : nullptr;
   if (is_writable(point) && host.deadman.present() && deadman != nullptr) cells["deadman"] = flow(*deadman);
 }
 
@@ -100,7 +100,7 @@ using EntriesByName = std::unordered_map<std::string_view, const Entry*>;
 /// The points as they stand in the file.
 EntriesByName entries_of(const Entry& root) {
   EntriesByName entries;
-  if (const Entry* mapping = find(root, "mapping"))
+  if (const Entry* mapping = loader::child(root, "mapping"))
     for (const Entry& table : mapping->children)
       for (const Entry& point : table.children) entries.emplace(point.key, &point);
   return entries;
@@ -123,7 +123,7 @@ bool implies_on_shutdown(const Map& map, const EntriesByName& entries) {
   return std::any_of(map.points.begin(), map.points.end(), [&](const Point& point) {
     const auto entry = entries.find(point.name);
     return !point.line.present() && !is_analogue(point) && entry != entries.end() &&
-           find(*entry->second, "safe") != nullptr;
+           loader::child(*entry->second, "safe") != nullptr;
   });
 }
 
@@ -153,7 +153,7 @@ Export write_csv(const Map& map) {
   std::vector<Cells> rows;
   for (const Point& point : map.points) {
     rows.push_back(cells_of(point));
-    add_host_options(point, root ? find(*root, "defaults") : nullptr, rows.back());
+    add_host_options(point, root ? loader::child(*root, "defaults") : nullptr, rows.back());
     if (const auto entry = entries.find(point.name); entry != entries.end())
       add_file_keys(*entry->second, rows.back());
   }

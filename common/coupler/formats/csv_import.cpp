@@ -84,7 +84,7 @@ class RowReader {
         add(columns_[i], row[i], row, *table, point);
     if (codes_are_access_ && codes == Codes::read && is_writable(*table))
       point.children.push_back(scalar("access", "read", table_cell->at));
-    if (codes == Codes::write && find(point, "access") == nullptr) {
+    if (codes == Codes::write && loader::child(point, "access") == nullptr) {
       point.children.push_back(scalar("access", "write", table_cell->at));
       problems_.warning(
           table_cell->at,
@@ -174,15 +174,15 @@ class RowReader {
 
 /// `safe` of a point with nothing behind it on a node: what the driver leaves. nullptr if no point has one.
 const Entry* safe_for_the_driver(const Entry& map) {
-  const Entry* mapping = find(map, "mapping");
+  const Entry* mapping = loader::child(map, "mapping");
   for (const Table table : {Table::coils, Table::holding_registers}) {
-    const Entry* points = mapping != nullptr ? find(*mapping, to_string(table)) : nullptr;
+    const Entry* points = mapping != nullptr ? loader::child(*mapping, to_string(table)) : nullptr;
     if (points == nullptr) continue;
     for (const Entry& point : points->children) {
-      const Entry* safe = find(point, "safe");
-      const bool wired = table == Table::coils
-                             ? find(point, "line") != nullptr
-                             : find(point, "iio") != nullptr || find(point, "pwm") != nullptr;
+      const Entry* safe = loader::child(point, "safe");
+      const bool wired = table == Table::coils ? loader::child(point, "line") != nullptr
+                                               : loader::child(point, "iio") != nullptr ||
+                                                     loader::child(point, "pwm") != nullptr;
       if (safe != nullptr && !wired) return safe;
     }
   }

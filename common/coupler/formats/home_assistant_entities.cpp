@@ -75,7 +75,7 @@ Names states_of(Settings& verify, const Entity& entity, const Names& commands) {
 
 void read_verify(FoundPoint& found, Entity& entity, const Names& commands) {
   const Entry none = section("verify", entity.given().at);
-  const Entry* given = find(entity.given(), "verify");
+  const Entry* given = loader::child(entity.given(), "verify");
   Settings verify(given->kind == Entry::Kind::map ? *given : none, entity.settings().problems());
   const unsigned address = verify.whole("address", 65535).value_or(found.address);
   const Table table = Entity::table_of("input_type", Entity::word_of(found.table), verify);
@@ -112,7 +112,7 @@ void add_toggle(bool is_light, Entity& entity) {
                 "write false to switch it on");
   FoundPoint found = entity.named("", table, entity.address(), PointUse::write, commands);
   found.write_multiple = Entity::writes_multiple("write_type", settings);
-  const bool verified = find(entity.given(), "verify") != nullptr;  // without a value, too
+  const bool verified = loader::child(entity.given(), "verify") != nullptr;  // without a value, too
   settings.ignore("verify");
   if (verified)
     read_verify(found, entity, commands);

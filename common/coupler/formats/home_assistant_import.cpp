@@ -108,10 +108,12 @@ Span<const Entry> list_of(const Entry& entry) {
   return entry.kind == Entry::Kind::map ? Span<const Entry>(&entry, 1) : Span<const Entry>();
 }
 
-bool is_hub(const Entry& entry) { return find(entry, "type") != nullptr || find(entry, "host") != nullptr; }
+bool is_hub(const Entry& entry) {
+  return loader::child(entry, "type") != nullptr || loader::child(entry, "host") != nullptr;
+}
 
 std::string name_of(const Entry& hub) {
-  const Entry* name = find(hub, "name");
+  const Entry* name = loader::child(hub, "name");
   return name != nullptr ? name->text : "modbus_hub";
 }
 
@@ -199,7 +201,7 @@ std::vector<ForeignUnit> read_hub(const Entry& hub, Problems& problems) {
   HubPoints points;
   ConversionWarnings losses;
   for (const std::string_view platform : entity_platforms())
-    if (const Entry* entities = find(hub, platform))
+    if (const Entry* entities = loader::child(hub, platform))
       for (const Entry& entity : list_of(*entities)) add_entity(platform, entity, points, losses, problems);
   for (const Diagnostic& loss : losses.diagnostics("")) problems.warning(hub.at, loss.what, loss.remedy);
   if (points.empty() && !problems.has_errors())
@@ -210,7 +212,7 @@ std::vector<ForeignUnit> read_hub(const Entry& hub, Problems& problems) {
     ForeignUnit unit;
     unit.unit = number;
     unit.map = section("", hub.at);
-    if (find(hub, "name") != nullptr)
+    if (loader::child(hub, "name") != nullptr)
       unit.map.children.push_back(scalar(
           "name", mended_name(name_of(hub), "hub") + (points.size() > 1 ? fmt::format("_{}", number) : ""),
           hub.at));

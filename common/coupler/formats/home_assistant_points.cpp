@@ -44,7 +44,7 @@ std::optional<unsigned> whole_of(const Entry& given, unsigned most, Problems& pr
 
 const Entry* Settings::find(std::string_view key) {
   used_.emplace(key);
-  const Entry* entry = formats::find(given_, key);
+  const Entry* entry = loader::child(given_, key);
   return entry == nullptr || entry->kind == Entry::Kind::null ? nullptr : entry;
 }
 

@@ -52,7 +52,7 @@ class Names {
     std::string name = wanted;
     int& last = last_.emplace(wanted, 1).first->second;
     while (!lines_.emplace(name, point.key_at.line).second) name = fmt::format("{}_{}", wanted, ++last);
-    if (wanted != point.key && !point.key.empty() && find(point, "description") == nullptr)
+    if (wanted != point.key && !point.key.empty() && loader::child(point, "description") == nullptr)
       point.children.push_back(scalar("description", point.key, point.key_at, true));
     if (wanted != point.key)
       problems_.warning(point.key_at,
@@ -105,7 +105,7 @@ std::string name_from_file(std::string_view file) {
 void set_name(Entry& map, const ImportOptions& options, std::string_view file, const std::string& suffix) {
   if (!options.name.empty())
     set(map, scalar("name", options.name + suffix, map.at));
-  else if (find(map, "name") == nullptr)
+  else if (loader::child(map, "name") == nullptr)
     set(map, scalar("name", name_from_file(file) + suffix, map.at));
 }
 
@@ -139,7 +139,7 @@ void check_units(const std::vector<ForeignUnit>& units, Problems& problems) {
 }
 
 bool has_points(const Entry& map) {
-  const Entry* mapping = find(map, "mapping");
+  const Entry* mapping = loader::child(map, "mapping");
   return mapping != nullptr && std::any_of(mapping->children.begin(), mapping->children.end(),
                                            [](const Entry& table) { return !table.children.empty(); });
 }

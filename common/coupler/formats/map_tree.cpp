@@ -90,7 +90,8 @@ std::string mapping_text(const Entry* mapping) {
   std::string out;
   if (mapping != nullptr)
     for (const Table table : tables)
-      if (const Entry* entry = find(*mapping, to_string(table)); entry != nullptr && !entry->children.empty())
+      if (const Entry* entry = loader::child(*mapping, to_string(table));
+          entry != nullptr && !entry->children.empty())
         out += table_text(*entry, table);
   return out.empty() ? "mapping: {}\n" : "mapping:\n" + out;
 }
@@ -117,15 +118,7 @@ Entry section(std::string_view key, Position at) {
   return entry;
 }
 
-const Entry* find(const Entry& parent, std::string_view key) {
-  const auto found = std::find_if(parent.children.begin(), parent.children.end(),
-                                  [key](const Entry& child) { return child.key == key; });
-  return found == parent.children.end() ? nullptr : &*found;
-}
-
-Entry* find(Entry& parent, std::string_view key) {
-  return const_cast<Entry*>(find(std::as_const(parent), key));
-}
+Entry* find(Entry& parent, std::string_view key) { return const_cast<Entry*>(loader::child(parent, key)); }
 
 Entry& make_section(Entry& parent, std::string_view key, Position at) {
   if (Entry* found = find(parent, key)) return *found;
@@ -159,10 +152,10 @@ std::string write_map(const Entry& map, std::string_view comment) {
   for (const Key& key : loader::all_keys()) {
     if (!overlap(key.sections, Section::map) || key.name == "mapping") continue;
     const std::string_view name = key.same_as.empty() ? key.name : key.same_as;
-    if (const Entry* entry = find(map, key.name))
+    if (const Entry* entry = loader::child(map, key.name))
       out += fmt::format("{}: {}\n", name, value_text(*entry, &key));
   }
-  return out + mapping_text(find(map, "mapping"));
+  return out + mapping_text(loader::child(map, "mapping"));
 }
 
 }  // namespace coupler::formats

@@ -14,8 +14,7 @@ loader::Entry scalar(std::string_view key, std::string text, loader::Position at
 
 loader::Entry section(std::string_view key, loader::Position at);
 
-/// The first child of that key, or nullptr.
-const loader::Entry* find(const loader::Entry& parent, std::string_view key);
+/// As loader::child(), to be changed.
 loader::Entry* find(loader::Entry& parent, std::string_view key);
 
 /// The section of that key, added at the end if it is not there.

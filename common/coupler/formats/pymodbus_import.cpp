@@ -28,19 +28,19 @@ std::string keys_of(const Entry& entry) {
 
 /// The device that was asked for, or the only one; a file of one device is that device.
 const Entry* choose(const Entry& root, const std::string& wanted, Problems& problems) {
-  if (find(root, "setup") != nullptr) {
+  if (loader::child(root, "setup") != nullptr) {
     if (wanted.empty()) return &root;
     problems.error(root.at, "the file is one device, which has no name", "leave --device out");
     return nullptr;
   }
-  const Entry* list = find(root, "device_list");
+  const Entry* list = loader::child(root, "device_list");
   if (list == nullptr || list->children.empty()) {
     problems.error(root.at, "there are no devices in the file",
                    "give a file with a 'device_list', or with one device");
     return nullptr;
   }
   if (wanted.empty() && list->children.size() == 1) return &list->children[0];
-  if (const Entry* device = wanted.empty() ? nullptr : find(*list, wanted)) return device;
+  if (const Entry* device = wanted.empty() ? nullptr : loader::child(*list, wanted)) return device;
   problems.error(list->key_at,
                  wanted.empty() ? fmt::format("the file has several devices: {}", keys_of(*list))
                                 : fmt::format("there is no device '{}' in the file", wanted),
@@ -50,10 +50,10 @@ const Entry* choose(const Entry& root, const std::string& wanted, Problems& prob
 
 /// The only one, or the one that the simulator starts if none is named.
 const Entry* choose_server(const Entry& root, Problems& problems) {
-  const Entry* list = find(root, "server_list");
+  const Entry* list = loader::child(root, "server_list");
   if (list == nullptr || list->children.empty()) return nullptr;
   if (list->children.size() == 1) return &list->children[0];
-  const Entry* server = find(*list, "server");
+  const Entry* server = loader::child(*list, "server");
   if (server == nullptr)
     problems.warning(list->key_at,
                      fmt::format("the file has several servers: {}; none gives the port", keys_of(*list)),

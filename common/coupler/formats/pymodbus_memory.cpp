@@ -31,7 +31,7 @@ SimulatedMemory::SimulatedMemory(const Entry& device, ConversionWarnings& losses
     : losses_(losses), problems_(problems) {
   read_setup(device);
   for (const SimulatedType& type : types)
-    if (const Entry* entries = find(device, type.key))
+    if (const Entry* entries = loader::child(device, type.key))
       for (const Entry& entry : entries->children) define(type, entry);
   if (problems_.has_errors()) return;
   allow_writing(device);
@@ -48,18 +48,18 @@ SimulatedMemory::SimulatedMemory(const Entry& device, ConversionWarnings& losses
 }
 
 void SimulatedMemory::read_setup(const Entry& device) {
-  const Entry* setup = find(device, "setup");
+  const Entry* setup = loader::child(device, "setup");
   if (setup == nullptr) {
     problems_.error(device.at, "the device has no 'setup'", "give the sizes of its tables in one");
     return;
   }
-  defaults_ = find(*setup, "defaults");
-  const Entry* shared = find(*setup, "shared blocks");
+  defaults_ = loader::child(*setup, "defaults");
+  const Entry* shared = loader::child(*setup, "shared blocks");
   shared_ = shared != nullptr && loader::parse_boolean(shared->text).value_or(false);
   constexpr std::string_view sizes[] = {"co size", "di size", "ir size", "hr size"};
   unsigned total = 0;
   for (std::size_t i = 0; i < std::size(sizes); ++i) {
-    const Entry* given = find(*setup, sizes[i]);
+    const Entry* given = loader::child(*setup, sizes[i]);
     const auto size = given != nullptr ? loader::parse_unsigned(given->text) : std::nullopt;
     if (!size || *size > 65536) {
       problems_.error(given != nullptr ? given->at : setup->at,
@@ -74,8 +74,8 @@ void SimulatedMemory::read_setup(const Entry& device) {
 }
 
 const Entry* SimulatedMemory::default_of(std::string_view what, std::string_view type) const {
-  const Entry* all = defaults_ != nullptr ? find(*defaults_, what) : nullptr;
-  return all != nullptr ? find(*all, type) : nullptr;
+  const Entry* all = defaults_ != nullptr ? loader::child(*defaults_, what) : nullptr;
+  return all != nullptr ? loader::child(*all, type) : nullptr;
 }
 
 bool SimulatedMemory::read_range(const Entry& given, unsigned& first, unsigned& last) const {
@@ -102,7 +102,7 @@ void SimulatedMemory::lose_action(const SimulatedType& type, const Entry& action
 
 void SimulatedMemory::define(const SimulatedType& type, const Entry& entry) {
   const bool is_map = entry.kind == Entry::Kind::map;
-  const Entry* place = is_map ? find(entry, "addr") : &entry;
+  const Entry* place = is_map ? loader::child(entry, "addr") : &entry;
   unsigned first = 0;
   unsigned last = 0;
   if (place == nullptr)
@@ -113,9 +113,9 @@ void SimulatedMemory::define(const SimulatedType& type, const Entry& entry) {
     return problems_.error(place->at,
                            fmt::format("{} registers are not whole values of {}", last - first + 1, type.key),
                            fmt::format("give each value {} registers", size));
-  const Entry* value = is_map ? find(entry, "value") : nullptr;
+  const Entry* value = is_map ? loader::child(entry, "value") : nullptr;
   if (value == nullptr) value = default_of("value", type.key);
-  const Entry* action = is_map ? find(entry, "action") : nullptr;
+  const Entry* action = is_map ? loader::child(entry, "action") : nullptr;
   if (action == nullptr) action = default_of("action", type.key);
   if (action != nullptr) lose_action(type, *action);
   if (is_map)
@@ -139,7 +139,7 @@ void SimulatedMemory::define(const SimulatedType& type, const Entry& entry) {
 }
 
 void SimulatedMemory::allow_writing(const Entry& device) {
-  const Entry* write = find(device, "write");
+  const Entry* write = loader::child(device, "write");
   if (write == nullptr) return;
   for (const Entry& given : write->children) {
     unsigned first = 0;
@@ -157,11 +157,11 @@ void SimulatedMemory::allow_writing(const Entry& device) {
 }
 
 void SimulatedMemory::repeat(const Entry& device) {
-  const Entry* all = find(device, "repeat");
+  const Entry* all = loader::child(device, "repeat");
   if (all == nullptr) return;
   for (const Entry& given : all->children) {
-    const Entry* from = find(given, "addr");
-    const Entry* to = find(given, "to");
+    const Entry* from = loader::child(given, "addr");
+    const Entry* to = loader::child(given, "to");
     if (from == nullptr || to == nullptr) {
       problems_.error(given.at, "a repetition without 'addr' or 'to'", "write both");
       continue;

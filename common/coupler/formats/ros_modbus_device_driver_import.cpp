@@ -68,7 +68,7 @@ std::vector<ForeignUnit> read_ros_modbus_device_driver(std::string_view text,
   if (json && !loader::blank_comments(blanked, ignored)) return {};
   warn_of_comments(text, json, blanked, problems);
   ForeignUnit unit;
-  const Entry* number = find(*root, "unit");
+  const Entry* number = loader::child(*root, "unit");
   if (const auto value = number != nullptr ? loader::parse_unsigned(number->text) : std::nullopt;
       value && *value < 256)
     unit.unit = static_cast<unsigned>(*value);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/codec/bit_string.hpp"
 #include "coupler/codec/value.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/printable.hpp"
@@ -47,8 +48,7 @@ struct Text {
   std::string operator()(bool value) const { return value ? "TRUE" : "FALSE"; }
   std::string operator()(std::int64_t value) const { return fmt::to_string(value); }
   std::string operator()(std::uint64_t value) const {
-    const bool is_bit_string = !codec::is_scalable(type);
-    return is_bit_string ? fmt::format("16#{:X}", value) : fmt::to_string(value);
+    return is_declared_as_bits(type) ? fmt::format("16#{:X}", value) : fmt::to_string(value);
   }
   std::string operator()(float value) const { return upper_exponent(codec::decimal(value)); }
   std::string operator()(double value) const { return upper_exponent(codec::decimal(value)); }
@@ -105,6 +105,8 @@ std::string declared_type(const Point& point) {
   return point.count == 1 ? std::string(element)
                           : fmt::format("ARRAY [0..{}] OF {}", point.count - 1, element);
 }
+
+bool is_declared_as_bits(Type type) { return codec::is_bit_string(type) || type == Type::CHAR; }
 
 std::string_view bits_of(Type type) {
   switch (codec::width(type)) {

@@ -28,6 +28,9 @@ std::string comment(std::string_view text);
 /// a zero behind the last.
 std::string declared_type(const Point& point);
 
+/// A value of the type is declared as a bit string: a CHAR as a BYTE.
+bool is_declared_as_bits(codec::Type type);
+
 /// The bit string of a type's width.
 std::string_view bits_of(codec::Type type);
 

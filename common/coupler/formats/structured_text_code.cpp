@@ -38,8 +38,6 @@ class Body {
   int depth_ = 1;
 };
 
-bool is_bit_string(Type type) { return !codec::is_scalable(type); }
-
 std::string converted(std::string_view from, std::string_view to, std::string_view value) {
   return from == to ? std::string(value) : fmt::format("{}_TO_{}({})", from, to, value);
 }
@@ -112,7 +110,8 @@ class Expressions {
     const FloatFunctions& functions = access_.functions;
     if (format_.type == Type::REAL) return fmt::format("{}({})", functions.from_real, raw);
     if (format_.type == Type::LREAL) return fmt::format("{}({})", functions.from_lreal, raw);
-    return is_bit_string(format_.type) ? raw : converted(to_string(format_.type), bits_of(format_.type), raw);
+    return is_declared_as_bits(format_.type) ? raw
+                                             : converted(to_string(format_.type), bits_of(format_.type), raw);
   }
 
  private:
@@ -124,8 +123,9 @@ class Expressions {
     const FloatFunctions& functions = access_.functions;
     if (format_.type == Type::REAL) return fmt::format("{}({})", functions.to_real, bits);
     if (format_.type == Type::LREAL) return fmt::format("{}({})", functions.to_lreal, bits);
-    return is_bit_string(format_.type) ? bits
-                                       : converted(bits_of(format_.type), to_string(format_.type), bits);
+    return is_declared_as_bits(format_.type)
+               ? bits
+               : converted(bits_of(format_.type), to_string(format_.type), bits);
   }
 
   const Access& access_;

@@ -129,7 +129,7 @@ std::optional<ForeignUnit> read_slave(const Entry& slave, Problems& problems) {
 /// The connection. Warns of keys that belong to the simulator.
 std::vector<Entry> read_device(const Entry& root, Problems& problems) {
   std::vector<Entry> keys;
-  const Entry* mode = find(root, "mode");
+  const Entry* mode = loader::child(root, "mode");
   const bool tcp = mode != nullptr && lower(mode->text) == "tcp";
   if (!tcp)
     problems.warning(mode != nullptr ? mode->at : root.at,
@@ -153,7 +153,7 @@ std::vector<ForeignUnit> read_unslave(std::string_view text, const ImportOptions
                                       Problems& problems) {
   const auto root = loader::parse_document(text, problems);
   if (!root) return {};
-  const Entry* slaves = find(*root, "slaves");
+  const Entry* slaves = loader::child(*root, "slaves");
   if (slaves == nullptr || slaves->kind != Entry::Kind::map || slaves->children.empty()) {
     problems.error(slaves != nullptr ? slaves->key_at : root->at, "there are no 'slaves' in the file",
                    "give the configuration of an Unslave simulation");
