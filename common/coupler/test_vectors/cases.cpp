@@ -173,8 +173,7 @@ std::optional<codec::Value> integer_of(double number) {
 
 /// Published as integers: neither a float nor scaled.
 bool is_integer(const Point& point) {
-  const codec::Type type = point.format.type;
-  return !point.scale.present() && type != codec::Type::REAL && type != codec::Type::LREAL;
+  return !point.scale.present() && !codec::is_float(point.format.type);
 }
 
 /// A number as the point publishes it; nullopt: none that it could publish.
