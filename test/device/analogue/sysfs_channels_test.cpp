@@ -96,6 +96,15 @@ TEST_F(ChannelsOfAMap, That_fail_are_logged_once_per_change) {
                                      "pwmchip0 (fan) channel 0 works again"));
 }
 
+TEST_F(ChannelsOfAMap, That_were_given_up_are_not_driven_any_more_and_the_others_are) {
+  open(board().build());
+  channels->give_up(point("fan"));
+  EXPECT_EQ(Channels::Outcome::failed, channels->drive(point("fan"), 75));
+  EXPECT_EQ(Channels::Outcome::done, channels->drive(point("setpoint"), 2));
+  EXPECT_EQ("0", sysfs.read(FakeSysfs::pwm("duty_cycle")));
+  EXPECT_EQ("4000", sysfs.read(FakeSysfs::dac()));
+}
+
 TEST_F(ChannelsOfAMap, Are_sampled_while_there_is_a_sampler) {
   open(board().build());
   EXPECT_EQ(std::nullopt, channels->read(point("volts"), TimePoint::clock::now()));

@@ -191,6 +191,25 @@ TEST_F(Grouped, The_safe_state_holds_what_is_to_be_held_and_tries_every_chip) {
   EXPECT_THAT(first_.levels, ElementsAre(0, 1, 1));
 }
 
+TEST_F(Grouped, One_chip_goes_to_its_safe_state_without_the_others) {
+  EXPECT_TRUE(lines_.drive_safe(1));
+  EXPECT_THAT(second_.levels, ElementsAre(1, 1));
+  EXPECT_EQ(first_.calls, 0);
+}
+
+TEST_F(Grouped, A_chip_that_was_given_up_is_not_called_any_more_and_the_others_are_driven) {
+  lines_.give_up_outputs(0);
+  EXPECT_FALSE(lines_.drive_each(Range::of(0, 12), Levels(12, 1)));
+  EXPECT_FALSE(lines_.drive(Range::of(0, 1), Levels{1}));
+  EXPECT_EQ(first_.calls, 0);
+  EXPECT_THAT(second_.levels, ElementsAre(1, 1));
+  Levels driven(1);
+  lines_.driven(Range::of(0, 1), driven);
+  EXPECT_THAT(driven, ElementsAre(0)) << "as it was driven last";
+  EXPECT_TRUE(lines_.are_plugged(Range::of(0, 12)));
+  EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("chip0 failed: Connection timed out")));
+}
+
 TEST_F(Grouped, A_failure_is_logged_once_per_change_of_state) {
   second_.error = ENODEV;
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(lines_.drive(Range::of(1, 1), Levels{1}));

@@ -44,9 +44,18 @@ class Supervised : public testing::Test, public Workload {
     ++changes_;
     clients_kept_ = clients.size();
   }
-  bool drive_safe() override {
+  std::size_t begin_safe() override {
     ++safe_calls_[0];
-    return drive_safe_();
+    return parts_;
+  }
+  bool drive_safe(std::size_t part) override { return drive_safe_(part); }
+  bool went_safe(const std::vector<SafeOutcome>& parts) override {
+    outcomes_ = parts;
+    return has_durations_;
+  }
+  bool end_durations(const std::vector<SafeOutcome>& parts) override {
+    ++durations_ended_[0];
+    return parts == outcomes_;
   }
   bool make_firmware_safe() override {
     ++firmware_calls_[0];
@@ -78,7 +87,11 @@ class Supervised : public testing::Test, public Workload {
   Loop loop_;
   Signals signals_{loop_};
   FakeLog log_;
-  std::function<bool()> drive_safe_ = [] { return true; };
+  std::size_t parts_ = 1;  ///< of the outputs
+  std::function<bool(std::size_t part)> drive_safe_ = [](std::size_t) { return true; };
+  std::vector<SafeOutcome> outcomes_;  ///< of the parts, as they were told last
+  bool has_durations_ = false;
+  SharedArray<std::atomic<int>> durations_ended_{1};
   std::function<bool()> make_firmware_safe_;  ///< empty: there is no firmware
   // Processes that were forked count here, too.
   SharedArray<std::atomic<int>> safe_calls_{1};
@@ -140,7 +153,7 @@ TEST_F(Supervised, A_process_that_does_not_want_to_end_is_killed) {
 }
 
 TEST_F(Supervised, Outputs_that_cannot_be_driven_are_told) {
-  drive_safe_ = [] { return false; };
+  drive_safe_ = [](std::size_t) { return false; };
   EXPECT_FALSE(supervise(
       [&](SupervisorLink& supervisor) { return ended_before() == 0 ? 0 : beat_for_ever(supervisor); }));
   EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("not every output could be driven")));
@@ -274,7 +287,7 @@ TEST_F(Supervised, Firmware_that_dies_or_never_returns_costs_its_own_outputs_onl
 }
 
 TEST_F(Supervised, Lines_that_hang_do_not_hang_the_supervisor) {
-  drive_safe_ = [&] {
+  drive_safe_ = [&](std::size_t) {
     if (safe_calls_[0] == 1)
       for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
     return true;
@@ -282,6 +295,27 @@ TEST_F(Supervised, Lines_that_hang_do_not_hang_the_supervisor) {
   EXPECT_TRUE(supervise(
       [&](SupervisorLink& supervisor) { return ended_before() == 0 ? 3 : beat_for_ever(supervisor); }));
   EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("not every output could be driven to its safe state")));
+}
+
+TEST_F(Supervised, Lines_that_hang_keep_no_others_from_their_safe_state) {
+  SharedArray<std::atomic<bool>> is_safe(1);
+  parts_ = 2;
+  has_durations_ = true;
+  drive_safe_ = [&](std::size_t part) {
+    if (part == 0)
+      for (;;) ::pause();
+    return is_safe[0] = true;
+  };
+  EXPECT_FALSE(supervise(beat_for_ever));
+  EXPECT_TRUE(is_safe[0]);
+  EXPECT_THAT(outcomes_, ElementsAre(SafeOutcome::hangs, SafeOutcome::safe));
+  EXPECT_EQ(durations_ended_[0], 1) << "they end, too";
+}
+
+TEST_F(Supervised, Durations_end_only_where_there_are_some) {
+  EXPECT_TRUE(supervise(beat_for_ever));
+  EXPECT_THAT(outcomes_, ElementsAre(SafeOutcome::safe));
+  EXPECT_EQ(durations_ended_[0], 0);
 }
 
 TEST_F(Supervised, A_supervisor_that_is_stopped_is_silent_to_its_process_until_it_goes_on) {

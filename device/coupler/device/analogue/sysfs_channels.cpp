@@ -135,6 +135,7 @@ bool SysfsChannels::is_plugged(const Point& point) const {
 
 Channels::Outcome SysfsChannels::drive(const Point& point, double value) {
   Driven& output = channel_of(outputs_, point);
+  if (output.is_given_up) return Outcome::failed;
   const int error = std::visit([&](auto& channel) { return channel.drive(value); }, output.wired.channel);
   // Not every driver publishes the limits of its DAC.
   const bool is_dac = std::holds_alternative<IioOutput>(output.wired.channel);
@@ -142,6 +143,8 @@ Channels::Outcome SysfsChannels::drive(const Point& point, double value) {
   if (output.fault.note(error)) return Outcome::done;
   return error == ENODEV ? Outcome::absent : Outcome::failed;
 }
+
+void SysfsChannels::give_up(const Point& point) { channel_of(outputs_, point).is_given_up = true; }
 
 void SysfsChannels::hand_over(const SysfsChannels* successor) {
   const auto is_kept = [&](const WiredOutput& output) {

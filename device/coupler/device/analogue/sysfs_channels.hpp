@@ -89,6 +89,9 @@ class SysfsChannels : public Channels {
   bool is_plugged(const Point& output) const override;
   Outcome drive(const Point& output, double value) override;
 
+  /// Its hardware hangs: in this process, what needs the output fails from now on.
+  void give_up(const Point& output);
+
   /// Drives outputs that `successor` (may be null) does not have to their safe state.
   void hand_over(const SysfsChannels* successor);
 
@@ -102,6 +105,7 @@ class SysfsChannels : public Channels {
   struct Driven {
     WiredOutput wired;
     Fault fault;
+    bool is_given_up = false;
   };
 
   std::string sysfs_;

@@ -226,13 +226,21 @@ void GroupedLines::restore() {
 
 bool GroupedLines::drive_safe() {
   bool good = true;
-  for (Output& output : outputs_) {
-    for (std::size_t line = 0; line < output.next.size(); ++line)
-      output.next[line] = safe_level(output.wired.lines[line].safe, output.levels()[line]);
-    const Driven driven = drive_alone(output);
-    good &= driven == Driven::yes || (driven == Driven::unplugged && only_holds(output.wired));
-  }
+  for (std::size_t group = 0; group < outputs_.size(); ++group) good &= drive_safe(group);
   return good;
+}
+
+bool GroupedLines::drive_safe(std::size_t group) {
+  Output& output = outputs_[group];
+  for (std::size_t line = 0; line < output.next.size(); ++line)
+    output.next[line] = safe_level(output.wired.lines[line].safe, output.levels()[line]);
+  const Driven driven = drive_alone(output);
+  return driven == Driven::yes || (driven == Driven::unplugged && only_holds(output.wired));
+}
+
+void GroupedLines::give_up_outputs(std::size_t group) {
+  WiredOutputs& hung = outputs_[group].wired;
+  hung.group = std::make_shared<HungOutputs>(hung.group->name());
 }
 
 std::vector<InputGroup*> GroupedLines::event_sources() const {

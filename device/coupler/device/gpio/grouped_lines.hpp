@@ -76,6 +76,10 @@ class GroupedLines : public Lines {
   bool are_plugged(modbus::Range coils) const override;
   bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override;
   bool drive_safe() override;
+  /// The same for the outputs of one group.
+  [[nodiscard]] bool drive_safe(std::size_t group);
+  /// The group's chip, or its bus, hangs: in this process, what needs it fails from now on.
+  void give_up_outputs(std::size_t group);
 
   void add(WiredOutputs wired);
   void add(WiredInputs wired);
@@ -83,6 +87,7 @@ class GroupedLines : public Lines {
   void release();
 
   std::size_t output_groups() const { return outputs_.size(); }
+  const std::string& name_of_outputs(std::size_t group) const { return outputs_[group].wired.group->name(); }
   std::size_t input_groups() const { return inputs_.size(); }
   WiredOutputs& outputs(std::size_t group) { return outputs_[group].wired; }
   WiredInputs& inputs(std::size_t group) { return inputs_[group].wired; }

@@ -88,6 +88,18 @@ class AbsentOutputs : public Absent<OutputGroup> {
   int read(Span<int>) override { return ENODEV; }
 };
 
+/// A stand-in for lines whose chip, or its bus, hangs: calls fail at once.
+class HungOutputs : public OutputGroup {
+ public:
+  explicit HungOutputs(std::string name) : name_(std::move(name)) {}
+  const std::string& name() const override { return name_; }
+  int drive(Span<const int>) override { return ETIMEDOUT; }
+  int read(Span<int>) override { return ETIMEDOUT; }
+
+ private:
+  std::string name_;
+};
+
 class AbsentInputs : public Absent<InputGroup> {
  public:
   using Absent::Absent;

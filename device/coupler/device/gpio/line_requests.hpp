@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -33,6 +34,10 @@ class LineRequests : public Wiring {
 
   Lines& lines() override { return lines_; }
   std::vector<InputGroup*> event_sources() const override { return lines_.event_sources(); }
+  std::size_t output_groups() const override { return lines_.output_groups(); }
+  std::string name_of_outputs(std::size_t group) const override { return lines_.name_of_outputs(group); }
+  bool drive_safe(std::size_t group) override { return lines_.drive_safe(group); }
+  void give_up_outputs(std::size_t group) override { lines_.give_up_outputs(group); }
   bool reconnect(bool safe) override;
   void settle() override { lines_.settle(); }
   Prepared prepare_next(const Map& map, bool safe, Log& log) override;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
@@ -24,6 +25,14 @@ class Wiring {
   virtual Lines& lines() = 0;
   /// The groups whose descriptors the user of the lines has to watch. Owned by this.
   virtual std::vector<InputGroup*> event_sources() const { return {}; }
+  /// The outputs in groups: where hardware hangs, so does what is called for its group, and for no other.
+  virtual std::size_t output_groups() const { return 1; }
+  /// For the log: "gpiochip0 lines 5 (GPIO5), 6 (GPIO6)".
+  virtual std::string name_of_outputs([[maybe_unused]] std::size_t group) const { return "the lines"; }
+  /// Lines::drive_safe() for one group.
+  [[nodiscard]] virtual bool drive_safe([[maybe_unused]] std::size_t group) { return lines().drive_safe(); }
+  /// The group's hardware hangs: in this process, what needs it fails from now on.
+  virtual void give_up_outputs([[maybe_unused]] std::size_t group) {}
   /// See prepare_wiring(); this is the wiring before.
   virtual Prepared prepare_next(const Map& map, bool safe, Log& log) = 0;
 

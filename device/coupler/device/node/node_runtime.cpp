@@ -5,45 +5,17 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <utility>
 
 #include "coupler/device/analogue/sampler.hpp"
-#include "coupler/device/core/duration_end.hpp"
-#include "coupler/device/core/each_point.hpp"
 #include "coupler/device/node/realtime.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/rights_text.hpp"
 
 namespace coupler::device {
-namespace {
-
-/// Ends the durations of a worker process that serves no more.
-struct Ending {
-  explicit Ending(ServingContext& context)
-      : schedule(context.state->scheduled()),
-        hardware(context.hardware()),
-        end(*context.map, context.state->image(), hardware, schedule, next) {}
-
-  OutputSchedule schedule;
-  Hardware hardware;
-  std::array<std::uint16_t, modbus::max_scheduled_bits> next{};
-  DurationEnd end;
-  TimePoint now = TimePoint::clock::now();
-};
-
-/// Whether only a firmware's code is behind it, which hears of the end of a pulse. That is called in the
-/// worker process only: the next one ends it.
-bool is_for_code(const ServingContext& context, const ScheduledOutput& begun) {
-  const auto points = touched_points(*context.map, begun.table, begun.range);
-  return context.hooked && std::none_of(points.begin(), points.end(), has_hardware) &&
-         std::any_of(points.begin(), points.end(), is_pulsed);
-}
-
-}  // namespace
 
 NodeRuntime::NodeRuntime(Loop& loop, const Options& options, ReadMap again, ServiceManager& manager, Log& log,
                          Hooks* hooks)
@@ -311,37 +283,5 @@ void NodeRuntime::change(std::vector<OpenConnection>& clients) {
   requests_.reply(true, text);
   manager_.ready(status_line());
 }
-
-bool NodeRuntime::drive_safe() {
-  // A process that was forked for this has ordinary priority, and only a second. The supervisor has this
-  // priority already.
-  if (options_.realtime) (void)take_priority(RealtimePriority::supervisor);
-  Ending ending(*context_);
-  // If this process is killed while they are driven, the next worker process brings none of them back.
-  ending.schedule.outputs_went_safe(false, ending.now);
-  const bool safe = Hardware(context_->wiring->lines(), context_->analogue.get()).drive_safe();
-  context_->state->watchdog().disarm();
-  ending.schedule.outputs_went_safe(safe, ending.now);
-  // The next worker process may be long in coming.
-  bool ended = true;
-  ending.schedule.each_begun([&](ScheduledOutput& begun) {
-    if (!is_for_code(*context_, begun)) ended &= ending.end.of(begun, ending.now);
-  });
-  return ended && safe;
-}
-
-/// The new map has its points elsewhere, or has them no longer.
-void NodeRuntime::end_durations_that_do_not_fit() {
-  Ending ending(*context_);
-  ending.schedule.each_begun([&](ScheduledOutput& begun) {
-    if (next_->state->fits(begun, *context_->state) || ending.end.of(begun, ending.now)) return;
-    log_.warn(fmt::format(
-        "{} {} to {}: not every output could be driven back at the end of its duration, and the new map does "
-        "not have them so: such an output stays as it is until it is written",
-        to_string(begun.table), begun.range.start(), begun.range.last()));
-  });
-}
-
-bool NodeRuntime::make_firmware_safe() { return hooks_->end(context_->state->image()); }
 
 }  // namespace coupler::device

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,7 +36,10 @@ class NodeRuntime final : public Workload {
   void reload(pid_t requester) override;
   bool look_after(TimePoint now) override;
   void change(std::vector<OpenConnection>& clients) override;
-  bool drive_safe() override;
+  std::size_t begin_safe() override;
+  bool drive_safe(std::size_t part) override;
+  bool went_safe(const std::vector<SafeOutcome>& parts) override;
+  bool end_durations(const std::vector<SafeOutcome>& parts) override;
   bool make_firmware_safe() override;
   bool has_firmware() const override { return firmware_ != nullptr; }
 
@@ -51,6 +55,7 @@ class NodeRuntime final : public Workload {
   bool tls_is_ready(TimePoint now);
   void refuse(const ServeError& error);
   bool reconnect(TimePoint now);
+  void hurry() const;
   void end_durations_that_do_not_fit();
   int end_without_supervisor(IoService& service);
 

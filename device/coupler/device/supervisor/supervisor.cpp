@@ -2,18 +2,17 @@
 #include "coupler/device/supervisor/supervisor.hpp"
 
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
+#include <cstddef>
 #include <cstring>
 #include <functional>
-#include <optional>
 #include <utility>
 
 #include "coupler/device/supervisor/cpu_time.hpp"
 #include "coupler/device/supervisor/heartbeat.hpp"
+#include "coupler/device/supervisor/safety_processes.hpp"
 
 namespace coupler::device {
 namespace {
@@ -23,57 +22,29 @@ constexpr std::chrono::milliseconds turn{100};
 /// Ten in the time after which a worker process takes its supervisor for dead.
 constexpr std::chrono::milliseconds beat_period = std::chrono::milliseconds(SupervisorLink::timeout) / 10;
 
-/// A process that drives outputs to their safe state. It may take as long as a worker process may be silent.
-class SafetyProcess {
- public:
-  /// nullopt: it cannot be started.
-  static std::optional<SafetyProcess> start(const std::function<bool()>& work) {
-    auto child = Child::start([&] {
-      ::prctl(PR_SET_NAME, "coupler-safety");
-      // In case nobody is left to kill it.
-      ::alarm(2 * static_cast<unsigned>(Silence::limit_in_any_case.count()));
-      return work() ? 0 : 1;
-    });
-    return child ? std::optional(SafetyProcess(*std::move(child))) : std::nullopt;
-  }
-
-  /// Waits for its end. False: an output could not be driven, or it took too long and is killed. If it cannot
-  /// be killed it is added to `lost`.
-  bool finish(std::vector<Child>& lost) {
-    while (!silence_.is_too_long()) {
-      if (const auto status = child_.wait(turn)) return ended_well(*status);
-      const TimePoint now = TimePoint::clock::now();
-      silence_.sample(now, false, cpu_wait_.sample(now));
-    }
-    if (!child_.kill()) lost.push_back(std::move(child_));
-    return false;
-  }
-
- private:
-  explicit SafetyProcess(Child child)
-      : child_(std::move(child)),
-        cpu_wait_(child_.pid()),
-        silence_(TimePoint::clock::now(), turn, cpu_wait_.sample(TimePoint::clock::now())) {}
-
-  Child child_;
-  CpuWait cpu_wait_;
-  Silence silence_;
-};
-
-/// Drives the outputs of the workload to their safe state while nobody else does: the hardware, and at the
-/// same time what its firmware is behind if that is wanted, each in a process of its own. False: one could
-/// not be driven, or took too long. A process that cannot be killed is added to `lost`.
+/// Drives the outputs of the workload to their safe state while nobody else does, and at the same time what
+/// its firmware is behind if that is wanted. False: one could not be driven, or took too long. A process that
+/// cannot be killed is added to `lost`.
 bool make_safe(Workload& workload, bool firmware_too, std::vector<Child>& lost) {
-  auto hardware = SafetyProcess::start([&] { return workload.drive_safe(); });
-  bool safe = hardware || workload.drive_safe();
-  std::optional<SafetyProcess> firmware;
-  if (firmware_too && workload.has_firmware()) {
-    firmware = SafetyProcess::start([&] { return workload.make_firmware_safe(); });
-    safe &= firmware.has_value();
-  }
-  if (hardware) safe &= hardware->finish(lost);
-  if (firmware) safe &= firmware->finish(lost);
-  return safe;
+  const std::size_t parts = workload.begin_safe();
+  std::vector<std::function<bool()>> works;
+  works.reserve(parts + 1);
+  for (std::size_t part = 0; part < parts; ++part)
+    works.emplace_back([&workload, part] { return workload.drive_safe(part); });
+  if (firmware_too && workload.has_firmware())
+    works.emplace_back([&workload] { return workload.make_firmware_safe(); });
+  std::vector<SafeOutcome> outcomes = drive_apart(works, lost);
+  for (std::size_t part = 0; part < parts; ++part)
+    if (outcomes[part] == SafeOutcome::unasked)
+      outcomes[part] = workload.drive_safe(part) ? SafeOutcome::safe : SafeOutcome::failed;
+  const auto is_safe = [](SafeOutcome outcome) { return outcome == SafeOutcome::safe; };
+  const bool safe = std::all_of(outcomes.begin(), outcomes.end(), is_safe);
+  outcomes.resize(parts);
+  if (!workload.went_safe(outcomes)) return safe;
+  const std::function<bool()> last = [&] { return workload.end_durations(outcomes); };
+  const SafeOutcome ended = drive_apart({last}, lost).front();
+  const bool any_hangs = std::count(outcomes.begin(), outcomes.end(), SafeOutcome::hangs) != 0;
+  return (ended == SafeOutcome::unasked && !any_hangs ? last() : is_safe(ended)) && safe;
 }
 
 }  // namespace

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "coupler/device/core/log.hpp"
 #include "coupler/device/net/signals.hpp"
+#include "coupler/device/supervisor/safety_processes.hpp"
 #include "coupler/device/supervisor/worker.hpp"
 
 namespace coupler::device {
@@ -33,10 +35,20 @@ class Workload {
   /// they are. Closes those of the clients that have to find out.
   virtual void change(std::vector<OpenConnection>& clients) = 0;
 
-  /// There is no worker process. Drives the outputs to their safe state, in a process of its own, since lines
-  /// can hang; in the supervisor if there is none to be had. False: one of them could not be driven.
-  virtual bool drive_safe() = 0;
-  /// The same for what a firmware's code is behind, never in the supervisor.
+  // There is no worker process, and the outputs go to their safe state: in parts, each in a process of its
+  // own and all at the same time, since lines can hang, and must not keep others from it.
+  /// They are about to go there. Returns how many parts they have.
+  virtual std::size_t begin_safe() = 0;
+  /// Drives one of the parts: in the supervisor, too, if there is no process to be had. False: an output
+  /// could not be driven.
+  virtual bool drive_safe(std::size_t part) = 0;
+  /// In the supervisor: what became of each part, safe, failed or hangs; those that are not safe are logged.
+  /// True: end_durations() is to be called.
+  virtual bool went_safe(const std::vector<SafeOutcome>& parts) = 0;
+  /// Ends what was driven for a duration, and does not touch parts that hang. In a process of its own; in the
+  /// supervisor if there is none to be had, and no part hangs. False: an output could not be driven.
+  virtual bool end_durations(const std::vector<SafeOutcome>& parts) = 0;
+  /// Makes safe what a firmware's code is behind, at the same time as the parts; never in the supervisor.
   virtual bool make_firmware_safe() = 0;
   virtual bool has_firmware() const = 0;
 
