@@ -10,7 +10,6 @@
 #include <cstring>
 #include <utility>
 
-#include "coupler/device/analogue/sampler.hpp"
 #include "coupler/device/node/realtime.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/rights_text.hpp"
@@ -82,9 +81,9 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
   supervisor.watch(loop);
   if (hooks_) waker_ = std::make_unique<LoopWaker>(loop);
   if (hooks_ && !hooks_->begin(waker_.get())) return ServeError::device_failed;
-  std::optional<Sampler> sampler;
   if (context_->channels)
-    sampler.emplace(*context_->channels, Sampler::period_for(context_->map->polling.rate));
+    sampler_ =
+        std::make_unique<Sampler>(*context_->channels, Sampler::period_for(context_->map->polling.rate));
   IoService service(*context_, loop, log_, tls_ ? tls_->clients() : -1);
   service.take_over(std::move(clients));
   service.run(

@@ -8,6 +8,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "coupler/device/analogue/sampler.hpp"
 #include "coupler/device/node/guarded_hooks.hpp"
 #include "coupler/device/node/io_service.hpp"
 #include "coupler/device/node/loop_waker.hpp"
@@ -70,6 +71,8 @@ class NodeRuntime final : public Workload {
   std::unique_ptr<LoopWaker>
       waker_;  ///< in a process that serves; the firmware's threads may outlive serve()
   std::unique_ptr<ServingContext> context_;
+  /// In a process that serves. It outlives serve(): who waited for a slow conversion would not end in time.
+  std::unique_ptr<Sampler> sampler_;
   std::unique_ptr<ServingContext> next_;    ///< waits for change()
   std::unique_ptr<ServingContext> former_;  ///< waits to be freed
   std::unique_ptr<MapReading> reading_;     ///< null: no map is being read
