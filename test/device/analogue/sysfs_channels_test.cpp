@@ -3,6 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <thread>
 
 #include "coupler/device/analogue/sampler.hpp"
 #include "test/device/analogue/fake_sysfs.hpp"
@@ -148,6 +153,70 @@ TEST_F(ChannelsOfAMap, Have_initial_and_safe_values_that_they_can_be_driven_to) 
               HasSubstr("point 'second': pwmchip0 (fan) channel 0 is already the channel of point 'fan'"));
   EXPECT_THAT(said, HasSubstr("initial value 101; set 'initial' to one in its range, 0 to 100 %"));
   EXPECT_THAT(said, HasSubstr("safe value 101"));
+}
+
+/// For whom files have owners: root may open all of them.
+struct Nobody {
+  Nobody() : was_root(::geteuid() == 0) {
+    constexpr uid_t nobody = 65534;
+    if (was_root && ::setresuid(nobody, nobody, 0) != 0) throw std::runtime_error("still root");
+  }
+  Nobody(const Nobody&) = delete;
+  Nobody& operator=(const Nobody&) = delete;
+  ~Nobody() { EXPECT_TRUE(!was_root || ::setresuid(0, 0, 0) == 0); }
+  bool was_root;
+};
+
+/// Two channels of a PWM chip. Only the first one's files are there, and may not be opened yet.
+struct NewChannels : testing::Test {
+  NewChannels() {
+    sysfs.add_pwm();
+    permit(false);
+  }
+
+  static fakes::MapBuilder fans() {
+    fakes::MapBuilder map;
+    for (const std::uint16_t channel : {std::uint16_t{0}, std::uint16_t{1}})
+      map.add(Table::holding_registers, channel == 0 ? "first" : "second", channel, Type::UINT,
+              [&](Point& p) {
+                p.pwm = {"pwmchip0", channel, microseconds(40)};
+              });
+    return map;
+  }
+  void permit(bool may) const {
+    namespace fs = std::filesystem;
+    fs::permissions(sysfs.root + "/" + FakeSysfs::pwm("duty_cycle"),
+                    may ? fs::perms::owner_read | fs::perms::owner_write : fs::perms::none);
+  }
+  /// Kernel and udev, as soon as the second channel is asked for.
+  void give() const {
+    const auto end = TimePoint::clock::now() + soon;
+    while (sysfs.read("class/pwm/pwmchip0/export") != "1") {
+      if (TimePoint::clock::now() > end) return;
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    sysfs.write("class/pwm/pwmchip0/pwm1/duty_cycle", "0");
+    permit(true);
+  }
+
+  Nobody nobody;
+  FakeSysfs sysfs;
+  FakeLog log;
+  MapPtr map = fans().build();
+};
+
+TEST_F(NewChannels, Are_all_asked_for_before_one_is_waited_for) {
+  std::thread kernel([&] { give(); });
+  const auto opened = open_channels(map->map(), log, sysfs.root, soon);
+  kernel.join();
+  EXPECT_TRUE(opened) << opened.error();
+}
+
+TEST_F(NewChannels, Are_not_waited_for_when_the_time_for_all_of_them_is_over) {
+  const auto opened = open_channels(map->map(), log, sysfs.root, milliseconds(1));
+  ASSERT_FALSE(opened);
+  EXPECT_THAT(opened.error(),
+              HasSubstr("point 'first': pwmchip0 (fan) channel 0 cannot be opened: Permission denied"));
 }
 
 TEST(SamplingPeriod, Is_that_of_the_map_within_limits) {

@@ -15,8 +15,6 @@ namespace {
 using Error = tl::unexpected<std::string>;
 namespace fs = std::filesystem;
 
-/// udev needs a moment to give a new channel's files to the group.
-constexpr std::chrono::milliseconds udev_timeout{2000};
 constexpr std::chrono::milliseconds retry_interval{20};
 
 struct Chip {
@@ -56,10 +54,9 @@ int write_once(const std::string& path, std::int64_t value) {
   return file ? file->write(value) : file.error();
 }
 
-tl::expected<Attribute, int> open_new(const std::string& path) {
+tl::expected<Attribute, int> open_new(const std::string& path, TimePoint until) {
   auto file = Attribute::open(path, Attribute::For::writing);
-  for (auto waited = retry_interval * 0; !file && file.error() == EACCES && waited < udev_timeout;
-       waited += retry_interval) {
+  while (!file && file.error() == EACCES && TimePoint::clock::now() < until) {
     std::this_thread::sleep_for(retry_interval);
     file = Attribute::open(path, Attribute::For::writing);
   }
@@ -68,7 +65,8 @@ tl::expected<Attribute, int> open_new(const std::string& path) {
 
 }  // namespace
 
-tl::expected<PwmOutput, std::string> PwmOutput::open(const std::string& sysfs, const Pwm& wanted) {
+tl::expected<PwmOutput, std::string> PwmOutput::open(const std::string& sysfs, const Pwm& wanted,
+                                                     TimePoint until) {
   const auto chip = find_chip(sysfs, wanted.chip);
   if (!chip) return Error(chip.error());
   if (wanted.channel >= chip->channels)
@@ -81,7 +79,7 @@ tl::expected<PwmOutput, std::string> PwmOutput::open(const std::string& sysfs, c
   if (!fs::exists(folder, missing))
     if (const int error = write_once(chip->folder + "export", wanted.channel); error != 0)
       return Error(failed(name, "exported", error, chip->folder + "export"));
-  auto duty = open_new(folder + "duty_cycle");
+  auto duty = open_new(folder + "duty_cycle", until);
   if (!duty) return Error(failed(name, "opened", duty.error(), folder + "duty_cycle"));
   return PwmOutput(name, folder, *std::move(duty), wanted.period);
 }

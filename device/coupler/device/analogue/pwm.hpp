@@ -8,6 +8,7 @@
 #include <tl/expected.hpp>
 
 #include "coupler/device/analogue/attribute.hpp"
+#include "coupler/device/core/time.hpp"
 #include "coupler/map/hardware.hpp"
 
 namespace coupler::device {
@@ -17,8 +18,10 @@ namespace coupler::device {
 class PwmOutput {
  public:
   /// Finds the channel below `sysfs` (usually "/sys") and asks the kernel for it; nothing of its output
-  /// changes. The error says what is there instead, and the remedy.
-  static tl::expected<PwmOutput, std::string> open(const std::string& sysfs, const Pwm& wanted);
+  /// changes. udev needs a moment to give a new channel's files to the group: it has until then. The error
+  /// says what is there instead, and the remedy.
+  static tl::expected<PwmOutput, std::string> open(const std::string& sysfs, const Pwm& wanted,
+                                                   TimePoint until = {});
 
   /// For the log: "pwmchip0 (fan) channel 0".
   const std::string& name() const { return name_; }

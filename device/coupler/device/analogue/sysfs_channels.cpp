@@ -34,7 +34,11 @@ double initial_value_of(const Point& output) {
 /// Opens channels, and collects the errors so that one run reports all of them.
 class Opener {
  public:
-  Opener(const Map& map, const std::string& sysfs) : sysfs_(sysfs) {
+  Opener(const Map& map, const std::string& sysfs, std::chrono::milliseconds timeout) : sysfs_(sysfs) {
+    const TimePoint until = TimePoint::clock::now() + timeout;
+    // Asks for all channels before it waits for one: udev cares for them meanwhile.
+    for (const Point& point : map.points)
+      if (point.pwm.present()) (void)PwmOutput::open(sysfs_, point.pwm);
     for (const Point& point : map.points) {
       if (!is_analogue(point)) continue;
       if (point.table == Table::input_registers)
@@ -42,7 +46,7 @@ class Opener {
       else if (point.iio.present())
         take(point, outputs_, open_iio_output(sysfs_, point.iio));
       else
-        take(point, outputs_, PwmOutput::open(sysfs_, point.pwm));
+        take(point, outputs_, PwmOutput::open(sysfs_, point.pwm, until));
     }
     for (const WiredOutput& output : outputs_) check(output);
   }
@@ -181,8 +185,9 @@ std::vector<const Point*> SysfsChannels::reconnect() {
 }
 
 tl::expected<std::unique_ptr<SysfsChannels>, std::string> open_channels(const Map& map, Log& log,
-                                                                        const std::string& sysfs) {
-  return Opener(map, sysfs).finish(log);
+                                                                        const std::string& sysfs,
+                                                                        std::chrono::milliseconds timeout) {
+  return Opener(map, sysfs, timeout).finish(log);
 }
 
 }  // namespace coupler::device

@@ -95,8 +95,8 @@ class SysfsChannels : public Channels {
   /// Drives outputs that `successor` (may be null) does not have to their safe state.
   void hand_over(const SysfsChannels* successor);
 
-  /// Opens channels again whose device was unplugged and is plugged in again; returns their points. Processes
-  /// that were forked before still have the old ones.
+  /// Opens channels again whose device was unplugged and is plugged in again; returns their points. Waits for
+  /// nothing. Processes that were forked before still have the old ones.
   std::vector<const Point*> reconnect();
 
   std::deque<Sampled>& inputs() { return inputs_; }
@@ -114,10 +114,14 @@ class SysfsChannels : public Channels {
   std::vector<Driven> outputs_;
 };
 
+/// How long all new PWM channels of a map together may wait for udev: nobody else is attended to meanwhile.
+constexpr std::chrono::milliseconds udev_timeout{800};
+
 /// The channels behind the map's registers, with outputs as they are; null if it has none. The error says for
 /// each channel that cannot be opened what there is instead, and what to do; it may have several lines. `map`
 /// and `log` outlive the result.
-tl::expected<std::unique_ptr<SysfsChannels>, std::string> open_channels(const Map& map, Log& log,
-                                                                        const std::string& sysfs = "/sys");
+tl::expected<std::unique_ptr<SysfsChannels>, std::string> open_channels(
+    const Map& map, Log& log, const std::string& sysfs = "/sys",
+    std::chrono::milliseconds timeout = udev_timeout);
 
 }  // namespace coupler::device
