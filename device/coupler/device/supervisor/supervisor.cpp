@@ -125,8 +125,12 @@ Worker::End Supervisor::watch_over(Worker& process) {
 
 Worker::End Supervisor::wait_for(Worker& process) {
   TimePoint now = TimePoint::clock::now();
-  for (const TimePoint until = now + timeout; now < until && !process.has_ended();)
+  CpuWait cpu_wait(process.pid());
+  Silence silence(now, turn, cpu_wait.sample(now));
+  while (!silence.is_too_long() && !process.has_ended()) {
     now = loop_.run_once(turn);
+    silence.sample(now, false, cpu_wait.sample(now));
+  }
   return end(process);
 }
 

@@ -82,9 +82,6 @@ class Backoff {
 /// has the new ones, while outputs stay as they are.
 class Supervisor {
  public:
-  /// For a worker process that was asked to end. One that does not beat has as long as Silence says.
-  static constexpr std::chrono::seconds timeout{1};
-
   /// All of them outlive it.
   Supervisor(Loop& loop, Signals& signals, Workload& workload, Log& log)
       : loop_(loop), signals_(signals), workload_(workload), log_(log) {}
@@ -101,6 +98,7 @@ class Supervisor {
   bool run_one(Clients& clients);
   /// Until it ends, misses its beat, a signal asks to stop, or it has to make room for another one.
   Worker::End watch_over(Worker& process);
+  /// One that was asked to end, or to make room. It is killed when it is silent for too long.
   Worker::End wait_for(Worker& process);
   Worker::End end(Worker& process);
   bool is_to_change(TimePoint now);
