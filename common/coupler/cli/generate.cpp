@@ -147,9 +147,10 @@ Exit run(const Arguments& arguments) {
   const std::string_view lost =
       argument.node && !arguments.python && !arguments.vectors ? lost_key(argument) : std::string_view();
   if (!lost.empty())
-    return complain("generate", bad_input,
-                    fmt::format("the node's map has '{}', which nothing that is made from a node has", lost),
-                    "give the file of its map");
+    return complain(
+        "generate", bad_input,
+        fmt::format("the node's map has '{}', and what is made from a node would be without it", lost),
+        "give the file of its map");
   const Map map = argument.map();
   const std::string name = arguments.name.empty() ? std::string(map.name) : arguments.name;
   if (arguments.docs) return write(arguments, map_pages(arguments, name, source, map, loaded.point_lines));

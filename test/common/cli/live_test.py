@@ -102,7 +102,7 @@ class ANode(Live):
         for out in (["--out", "made"], ["--docs", "--out", "made"]):
             done = self.coupler("generate", node, *out)
             self.assertEqual((done.returncode, done.stdout), (1, ""))
-            self.assertIn("the node's map has 'security', which nothing that is made from a node has; "
+            self.assertIn("the node's map has 'security', and what is made from a node would be without it; "
                           "give the file of its map", done.stderr)
             self.assertFalse((self.folder / "made").exists())
 
