@@ -2,6 +2,7 @@
 """Services answer when the result is known, and say what it was."""
 import threading
 import time
+from concurrent import futures
 from concurrent.futures import ThreadPoolExecutor
 
 from coupler_driver.msg import PointStatus
@@ -13,7 +14,7 @@ from support import process, testing
 from support.device import ILLEGAL_ADDRESS, Device, Refuse
 from support.latest import LatestDiagnostics, LatestStatus, values
 from support.patience import NO_TIMEOUT, PATIENCE, QUIET
-from support.topics import response_of
+from support.topics import response_of, wait_until
 
 MAP = """
 name: served
@@ -156,6 +157,25 @@ class Services(ServicesTest):
             time.sleep(QUIET)  # nothing tells that the driver has the call
             may_come.set()
             self.assertEqual(read.result().value, "21.5")
+
+    def test_a_read_that_waits_holds_up_no_write(self):
+        wait_until(lambda: any(request.address == 30 for request in self.device.seen(3)), "the read of seldom at the beginning")
+        ended = []
+
+        def call(name, *arguments):
+            answer = self.call(name, *arguments)
+            ended.append(name)
+            return answer
+
+        with ThreadPoolExecutor() as pool:
+            read = pool.submit(call, "read", Read, "seldom")  # which is read every 1000 s
+            time.sleep(QUIET)  # nothing tells that the driver has the call
+            calls = [pool.submit(call, "write", Write, "level", "7"), pool.submit(call, "lamp/set", SetBool, True)]
+            futures.wait(calls, PATIENCE)
+            self.device.stop()  # this ends it
+        self.assertIn("no value of seldom: the device is offline", read.result().message)
+        self.assertEqual([done.result().success for done in calls], [True, True])
+        self.assertEqual(ended[-1], "read")
 
 
 class ServicesOffline(ServicesTest):

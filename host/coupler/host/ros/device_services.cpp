@@ -37,11 +37,12 @@ void DeviceServices::start(Node& node, Device device) {
   device_ = std::move(device);
   calls_ = node.make_service_thread();
   urgent_calls_ = node.make_service_thread();
+  read_calls_ = node.make_service_thread();
   const auto name = [this](std::string_view service) { return fmt::format("{}/{}", map_.name, service); };
   calls_->offer_write(name("write"), [this](const std::string& point, const std::string& value) {
     return answer_write(point, value);
   });
-  calls_->offer_read(name("read"), [this](const std::string& point) { return answer_read(point); });
+  read_calls_->offer_read(name("read"), [this](const std::string& point) { return answer_read(point); });
   if (map_.coupler_watchdog.present())
     calls_->offer_trigger(name("reset_watchdog"), [this] { return answer_call(&Device::reset); });
   urgent_calls_->offer_trigger(name("safe"), [this] { return answer_call(&Device::make_safe); });
@@ -58,10 +59,11 @@ void DeviceServices::start(Node& node, Device device) {
                         [this, i](bool on) { return answer_set(i, on); });
   calls_->start();
   urgent_calls_->start();
+  read_calls_->start();
 }
 
 void DeviceServices::stop() {
-  for (ServiceThread* thread : {calls_.get(), urgent_calls_.get(), timed_calls_.get()})
+  for (ServiceThread* thread : {calls_.get(), urgent_calls_.get(), read_calls_.get(), timed_calls_.get()})
     if (thread != nullptr) thread->stop();
   value_waiter_.cancel();
   const std::lock_guard lock(mutex_);

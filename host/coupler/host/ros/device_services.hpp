@@ -19,8 +19,9 @@ bool can_schedule(const Map& map);
 
 /// The services of a device: `<name>/write`, `<name>/read`, `<name>/<point>/set` for each writable bit,
 /// `<name>/reset_watchdog` if the driver uses the coupler's own watchdog, `<name>/schedule` if a point can be
-/// written, and `<name>/safe`. They answer when the result is known, in a thread of their own. `safe` and
-/// `schedule` have other threads: they do not wait for the others.
+/// written, and `<name>/safe`. They answer when the result is known, in a thread of their own. `safe`,
+/// `schedule` and `read`, which may wait for long, have a thread each: none of them waits for the others, nor
+/// they for it.
 class DeviceServices {
  public:
   /// What `map` views, and the counts, must outlive it.
@@ -68,6 +69,7 @@ class DeviceServices {
   WallTime wall_;                         ///< for the thread of timed_calls_
   std::unique_ptr<ServiceThread> calls_;  // last: they use the others
   std::unique_ptr<ServiceThread> urgent_calls_;
+  std::unique_ptr<ServiceThread> read_calls_;
   std::unique_ptr<ServiceThread> timed_calls_;
 };
 
