@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <future>
+#include <thread>
 
 #include "coupler/host/core/write.hpp"
 #include "test/fakes/map_builder.hpp"
@@ -125,6 +128,41 @@ TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {
     device.await_idle();
   }
   EXPECT_TRUE(device.woken_by_call);
+}
+
+/// Connects a moment after somebody wants the thread to do something else.
+struct SlowToConnect : FakeDevice {
+  std::promise<void> connects;
+  std::promise<void> called;
+  std::atomic<bool> is_called{false};
+  std::atomic<bool> is_interrupted{false};
+  Result<> connect() override {
+    connects.set_value();
+    called.get_future().wait();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return is_interrupted ? fail(NotConnected{"interrupted"}) : FakeDevice::connect();
+  }
+  void wake() override {
+    FakeDevice::wake();
+    if (!is_called.exchange(true)) called.set_value();
+  }
+  void interrupt() override { is_interrupted = true; }
+};
+
+TEST(DeviceThread, Who_connects_just_when_it_ends_gets_its_safe_values) {
+  auto builder = MapBuilder().command("a", 1);
+  builder.head().on_shutdown = OnShutdown::safe;
+  const auto owned = builder.build();
+  const auto is_made_safe = [&owned] {
+    SlowToConnect device;
+    WaitingSink sink;
+    DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    device.connects.get_future().wait();
+    return thread.end() && device.requests.back() == "write coil 1";
+  };
+  bool made_safe = false;
+  for (int i = 0; i < 20 && !made_safe; ++i) made_safe = is_made_safe();  // a busy machine may be late
+  EXPECT_TRUE(made_safe);
 }
 
 }  // namespace

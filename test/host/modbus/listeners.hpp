@@ -18,6 +18,12 @@ struct DeafSink : Sink {
   void on_report(Level, const std::string&) override {}
 };
 
+/// Knows when the device is online.
+struct OnlineSink : DeafSink {
+  std::atomic<bool> is_online{false};
+  void on_online(bool online) override { is_online = online; }
+};
+
 /// Counts results from any thread.
 struct Tally : WriteListener {
   std::atomic<int> all{0};

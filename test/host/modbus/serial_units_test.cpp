@@ -5,9 +5,14 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <future>
 #include <string>
+#include <thread>
 
+#include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/modbus/make_transports.hpp"
+#include "test/fakes/map_builder.hpp"
+#include "test/host/modbus/listeners.hpp"
 #include "test/host/modbus/serial_line.hpp"
 
 namespace coupler::host {
@@ -38,8 +43,14 @@ class SerialUnits : public ::testing::Test {
   }
 
   std::atomic<int> silent{0};
+  std::atomic<int> unanswered{0};  ///< so many requests to it have come
   test::SerialLine line{[this](const test::Octets& request) {
-    if (request[0] == silent) return test::Octets();
+    if (request[0] == silent) {
+      ++unanswered;
+      return test::Octets();
+    }
+    if (request[1] == 1) return test::rtu(request[0], {1, 1, 1});
+    if (request[1] != 3) return test::Octets(request.begin(), request.begin() + 8);
     return test::rtu(request[0], {3, 2, 0, request[0]});
   }};
   std::vector<std::unique_ptr<Transport>> transports;
@@ -69,6 +80,28 @@ TEST_F(SerialUnits, Go_on_without_a_new_connection_when_one_is_silent) {
     again = read(*transports[1]);
   }
   EXPECT_EQ(again, 2);
+}
+
+TEST_F(SerialUnits, At_the_end_one_that_is_silent_keeps_no_other_from_its_safe_values) {
+  std::vector<MapPtr> owned;
+  for (std::uint8_t unit = 1; unit <= 2; ++unit) {
+    fakes::MapBuilder builder;
+    builder.coil("valve", 1).holding("level", 0);
+    builder.head().connection = line.connection(unit, milliseconds(20000));
+    builder.head().on_shutdown = OnShutdown::safe;
+    owned.push_back(builder.build());
+  }
+  transports = make_transports({owned[0]->map(), owned[1]->map()});
+  OnlineSink sink;
+  DeafSink deaf;
+  DeviceThread healthy(owned[0]->map(), Verify::off, MapLoader(), *transports[0], sink);
+  while (!sink.is_online) std::this_thread::sleep_for(milliseconds(1));
+  silent = 2;
+  DeviceThread dead(owned[1]->map(), Verify::require, MapLoader(), *transports[1], deaf);
+  while (unanswered == 0) std::this_thread::sleep_for(milliseconds(1));
+  auto dead_ends = std::async(std::launch::async, [&] { return dead.end(); });
+  EXPECT_TRUE(healthy.end());
+  EXPECT_FALSE(dead_ends.get());
 }
 
 TEST_F(SerialUnits, Are_all_lost_when_the_port_goes) {

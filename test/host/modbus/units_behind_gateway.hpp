@@ -24,12 +24,14 @@ namespace coupler::host {
 class Gateway {
  public:
   std::atomic<int> silent{-1};             ///< the unit that never answers
+  std::atomic<int> unanswered{0};          ///< so many requests to it have come
   std::atomic<int> away{-1};               ///< the unit that is answered for with exception 0B
   std::atomic<bool> ends{false};           ///< hangs up instead of the next answer
   std::atomic<int> ends_each{0};           ///< hangs up after so many requests, again and again; 0: never
   std::atomic<int> held{-1};               ///< the unit whose reads are not answered for now
   std::atomic<bool> holds{false};          ///< a read of it has come
   std::atomic<int> reads{0};               ///< so many have come
+  std::atomic<int> written{-1};            ///< the unit that was written to last
   std::atomic<int> reads_before_write{0};  ///< `reads` when the last write came
 
   std::uint16_t port() const { return server_.port(); }
@@ -50,10 +52,16 @@ class Gateway {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     holds = false;
-    if (unit == silent) return true;
+    if (unit == silent) {
+      ++unanswered;
+      return true;
+    }
     const auto refused = static_cast<std::uint8_t>(query[7] | 0x80U);
     if (unit == away) return reply(fd, query, {unit, refused, 0x0B});
-    if (query[7] != 3) return ::send(fd, query.data(), query.size(), MSG_NOSIGNAL) > 0;
+    if (query[7] != 3) {
+      written = unit;
+      return ::send(fd, query.data(), query.size(), MSG_NOSIGNAL) > 0;
+    }
     const unsigned value = 100U * unit;
     return reply(fd, query,
                  {unit, 3, 2, static_cast<std::uint8_t>(value >> 8U), static_cast<std::uint8_t>(value)});
@@ -73,7 +81,12 @@ struct UnitTransportTest : testing::Test {
 
   MapPtr make_map(std::uint8_t unit, std::uint16_t connections = 1) const {
     fakes::MapBuilder builder;
-    builder.add(Table::holding_registers, "level", 1, codec::Type::UINT);
+    const auto safe = builder.keep({7});
+    builder.add(Table::holding_registers, "level", 1, codec::Type::UINT, [&](Point& point) {
+      point.safe = Safe::on;
+      point.safe_value = safe;
+    });
+    builder.head().on_shutdown = on_shutdown;
     const auto known = patience.find(unit);
     builder.head().connection = {"localhost", port, unit,
                                  known == patience.end() ? std::chrono::milliseconds(20000) : known->second};
@@ -99,6 +112,7 @@ struct UnitTransportTest : testing::Test {
   Gateway gateway;
   std::uint16_t port = gateway.port();
   std::map<std::uint8_t, std::chrono::milliseconds> patience;  ///< of a unit's transport, where it is to end
+  OnShutdown on_shutdown = OnShutdown::hold;
   std::uint16_t word = 0;
   std::vector<MapPtr> owned;
   std::vector<std::unique_ptr<Transport>> transports;

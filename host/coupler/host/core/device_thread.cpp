@@ -6,8 +6,12 @@
 namespace coupler::host {
 namespace {
 
+using std::chrono::milliseconds;
+
 /// For safe values at the end: the program is to be gone within a second.
-constexpr auto longest_shutdown = std::chrono::milliseconds(700);
+constexpr milliseconds longest_shutdown(700);
+/// For the attempt to connect that is being made then.
+constexpr milliseconds longest_attempt(100);
 
 }  // namespace
 
@@ -25,12 +29,20 @@ bool DeviceThread::end() {
   if (!thread_.joinable()) return ended_safely_;
   stopping_ = true;
   transport_.wake();
-  if (ends_safely_ || device_.has_to_end()) stopped_.get_future().wait_for(longest_shutdown);
+  if (ends_safely_ || device_.has_to_end()) await_stop();
   clock_.stop();
   device_.end_comes();
   transport_.interrupt();
   thread_.join();
   return ended_safely_;
+}
+
+/// A device that is offline has nothing to make safe, unless the attempt to connect that is being made
+/// succeeds. That has a moment only: it may hold a connection that other units need for their safe values.
+void DeviceThread::await_stop() {
+  const auto stopped = stopped_.get_future();
+  if (stopped.wait_for(longest_attempt) == std::future_status::ready) return;
+  if (is_ending_ || device_.statistics().online) stopped.wait_for(longest_shutdown - longest_attempt);
 }
 
 void DeviceThread::write(const Write& write) {
@@ -81,6 +93,7 @@ void DeviceThread::run() {
     // message leaves before the node is asked for more.
     std::this_thread::yield();
   }
+  is_ending_ = true;
   {
     const std::lock_guard turn(turn_);
     ended_safely_ = device_.stop();

@@ -52,7 +52,7 @@ class DeviceThread {
   DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink,
                Poll poll = Poll::all);
   /// Ends the request in progress and waits for the thread: milliseconds, or, where outputs are to go to
-  /// their safe values, most of a second at the worst.
+  /// their safe values, most of a second at the worst; a tenth for a device that is offline.
   ~DeviceThread() { end(); }
   DeviceThread(const DeviceThread&) = delete;
   DeviceThread& operator=(const DeviceThread&) = delete;
@@ -86,6 +86,7 @@ class DeviceThread {
  private:
   void run();
   Time step();
+  void await_stop();
 
   Transport& transport_;
   SteadyClock clock_;
@@ -94,6 +95,7 @@ class DeviceThread {
   bool ends_safely_;  ///< writes safe values at the end
   std::mutex turn_;   ///< held by whoever uses the connection; only the owner waits for it
   std::atomic<bool> stopping_{false};
+  std::atomic<bool> is_ending_{false};  ///< the thread makes no more steps, but puts outputs into safe states
   std::atomic<std::thread::id> owner_{};  ///< has its turn while it calls the sink
   std::promise<void> stopped_;
   bool ended_safely_ = true;  ///< once the thread has ended

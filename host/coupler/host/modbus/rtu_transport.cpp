@@ -23,6 +23,10 @@ namespace {
 /// After a broadcast, for the units to do what it says: 100 to 200 ms (MSL 2.4.1).
 constexpr std::chrono::milliseconds turnaround{100};
 
+/// The reply to a request that was given up may still come, and meet the next request to another unit. But
+/// who waits for the whole time of a unit that is dead cannot write its own safe values at the end.
+constexpr std::chrono::milliseconds rest_after_hang_up{100};
+
 /// A line on which something babbles is asked all the same.
 constexpr int most_discarded_pieces = 64;
 
@@ -150,7 +154,11 @@ Result<> RtuTransport::send_frame(modbus::Bytes pdu) {
 Result<modbus::Bytes> RtuTransport::receive_pdu() {
   for (;;) {
     switch (wait(fd_, answer_by_)) {
-      case Woken::by_call: return fail(NotConnected{"interrupted"});
+      case Woken::by_call:
+        busy_until_ = std::min(busy_until_, now() + rest_after_hang_up);
+        late_unit_ = unit_;
+        late_until_ = answer_by_;
+        return fail(NotConnected{"interrupted"});
       case Woken::by_time:
         framer_.silent();
         discarded_ += framer_.skipped();

@@ -77,7 +77,7 @@ class RtuTransport : public MultiUnitTransport {
   bool damaged_ = false;   ///< something has come since the request, and is no reply
   Time last_character_{};  ///< on the line, of either side
   Time answer_by_{};
-  Time busy_until_{};           ///< the reply to a request that was given up may come until then
+  Time busy_until_{};           ///< the reply to a request that was given up is awaited until then
   std::uint8_t late_unit_ = 0;  ///< did not reply in time, and may still
   Time late_until_{};
   std::atomic<std::uint64_t> discarded_{0};
