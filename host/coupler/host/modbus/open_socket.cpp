@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -80,30 +81,52 @@ int connect_to(int fd, const addrinfo& address, const Deadline& deadline, const 
   return error;
 }
 
-Result<Descriptor> try_address(const addrinfo& address, const Deadline& deadline, const Event& interrupt,
-                               const std::string& where) {
+tl::expected<Descriptor, std::string> try_address(const addrinfo& address, const Deadline& deadline,
+                                                  const Event& interrupt) {
   Descriptor fd(::socket(address.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, IPPROTO_TCP));
   // libmodbus waits with select(), which knows no descriptor above FD_SETSIZE.
-  if (fd.get() >= FD_SETSIZE) return fail(NotConnected{fmt::format("{}: too many open files", where)});
+  if (fd.get() >= FD_SETSIZE) return tl::make_unexpected("too many open files");
   const int error = fd.get() < 0 ? errno : connect_to(fd.get(), address, deadline, interrupt);
-  if (error != 0) return fail(NotConnected{fmt::format("{}: {}", where, std::strerror(error))});
+  if (error != 0) return tl::make_unexpected(std::strerror(error));
   const int on = 1;
   ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   return fd;
 }
 
+std::string text_of(const addrinfo& address) {
+  std::array<char, NI_MAXHOST> text{};
+  ::getnameinfo(address.ai_addr, address.ai_addrlen, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST);
+  return text.data();
+}
+
 }  // namespace
+
+Result<Descriptor> connect_to_one(const addrinfo* addresses, const std::string& where,
+                                  const Deadline& deadline, const Event& interrupt) {
+  int untried = 0;
+  for (const addrinfo* address = addresses; address != nullptr; address = address->ai_next) ++untried;
+  // In their own order: a name server may turn that of the addresses, and a text that has changed is news.
+  std::set<std::string> reasons{};
+  std::set<std::string> by_address{};
+  for (const addrinfo* address = addresses; address != nullptr; address = address->ai_next) {
+    const Deadline share(std::chrono::milliseconds(deadline.left() / untried--));
+    auto connected = try_address(*address, share, interrupt);
+    if (connected) return std::move(*connected);
+    if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
+    reasons.insert(connected.error());
+    by_address.insert(fmt::format("{}: {}", text_of(*address), connected.error()));
+  }
+  if (reasons.empty()) return fail(NotConnected{where + ": no address"});
+  return fail(
+      NotConnected{fmt::format("{}: {}", where, fmt::join(reasons.size() > 1 ? by_address : reasons, "; "))});
+}
 
 Result<Descriptor> open_socket(const std::string& host, std::uint16_t port, std::chrono::milliseconds timeout,
                                const Event& interrupt) {
   const Deadline deadline(timeout);
   const auto addresses = resolve(host, port, deadline, interrupt);
   if (!addresses) return tl::make_unexpected(addresses.error());
-  const std::string where = fmt::format("{} port {}", host, port);
-  Result<Descriptor> result = fail(NotConnected{where + ": no address"});
-  for (const addrinfo* address = addresses->get(); address != nullptr && !result; address = address->ai_next)
-    result = try_address(*address, deadline, interrupt, where);
-  return result;
+  return connect_to_one(addresses->get(), fmt::format("{} port {}", host, port), deadline, interrupt);
 }
 
 }  // namespace coupler::host
