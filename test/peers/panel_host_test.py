@@ -138,12 +138,12 @@ def who_is_not_there_is_told(checks):
         checks.equal("nobody there", (panel.wait(), panel.url), (3, None))
         checks.equal("nobody there: why, and what to do",
                      ["refused" in panel.text(), "check that the device is on" in panel.text()], [True, True])
-    for place, status, why in (("press.invalid", 3, "no such file, and as a device: unknown host"),
+    for place, status, why in (("press.invalid", 3, "no such file, and as a device: (unknown host|the name) 'press.invalid'"),
                                ("10.0.0.7:99999", 2, "the port '99999' is not 1 to 65535"),
                                ("10.0.0.7", 2, "certificates are for a place with TLS")):
         with Panel(place, *(["--pin", "x"] if status == 2 else [])) as panel:
             checks.equal(f"{place}: exit status", panel.wait(), status)
-            checks.equal(f"{place}: why", why in panel.text(), True)
+            checks.equal(f"{place}: why", bool(re.search(why, panel.text())), True)
 
 
 def ctrl_c_ends_the_search(checks):

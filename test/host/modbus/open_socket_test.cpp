@@ -16,6 +16,9 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::minutes;
 using test::LoopbackSocket;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 /// What getaddrinfo() would have found.
@@ -112,6 +115,15 @@ TEST(OpenSocket, An_interrupt_ends_the_attempt_and_no_other_is_made) {
   const auto connected = connect_to_one(addresses.list(), "", Deadline(minutes(1)), interrupt);
   ASSERT_FALSE(connected);
   EXPECT_EQ(to_string(connected.error()), "interrupted");
+}
+
+TEST(OpenSocket, A_name_that_nobody_could_look_up_is_not_called_unknown) {
+  for (const auto& status : {std::optional<int>(), std::optional<int>(EAI_AGAIN)})
+    EXPECT_THAT(lookup_failure("cell", status).why,
+                AllOf(HasSubstr("'cell' could not be looked up"), HasSubstr("name server"),
+                      HasSubstr("give the IP address"), Not(HasSubstr("map"))));
+  EXPECT_THAT(lookup_failure("cell", EAI_NONAME).why,
+              AllOf(HasSubstr("unknown host 'cell'"), HasSubstr("check the map's address")));
 }
 
 }  // namespace

@@ -41,10 +41,6 @@ struct Lookup {
   }
 };
 
-tl::unexpected<Error> unknown_host(const std::string& host, const char* why) {
-  return fail(NotConnected{fmt::format("unknown host '{}' ({}); check the map's address", host, why)});
-}
-
 /// The addresses of a host name or of a numeric address. Asking a name server cannot be interrupted, so a
 /// thread of its own does it; that thread is left behind when `interrupt` or the deadline comes first.
 Result<Addresses> resolve(const std::string& host, std::uint16_t port, Deadline deadline,
@@ -61,9 +57,9 @@ Result<Addresses> resolve(const std::string& host, std::uint16_t port, Deadline 
     std::array<pollfd, 2> wanted{{{lookup->done.fd(), POLLIN, 0}, {interrupt.fd(), POLLIN, 0}}};
     ::poll(wanted.data(), wanted.size(), deadline.left());
     if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
-    if (!lookup->done.is_set()) return unknown_host(host, "no answer from the name server");
+    if (!lookup->done.is_set()) return fail(lookup_failure(host, std::nullopt));
   }
-  if (lookup->status != 0) return unknown_host(host, ::gai_strerror(lookup->status));
+  if (lookup->status != 0) return fail(lookup_failure(host, lookup->status));
   return std::move(lookup->found);
 }
 
@@ -100,6 +96,16 @@ std::string text_of(const addrinfo& address) {
 }
 
 }  // namespace
+
+NotConnected lookup_failure(const std::string& host, std::optional<int> status) {
+  const char* why = status ? ::gai_strerror(*status) : "no answer from the name server";
+  // Nobody has said that there is no such host.
+  const bool is_open = !status || *status == EAI_AGAIN || *status == EAI_FAIL || *status == EAI_SYSTEM;
+  return {is_open ? fmt::format("the name '{}' could not be looked up ({}); check this machine's network and "
+                                "its name server, or give the IP address",
+                                host, why)
+                  : fmt::format("unknown host '{}' ({}); check the map's address", host, why)};
+}
 
 Result<Descriptor> connect_to_one(const addrinfo* addresses, const std::string& where,
                                   const Deadline& deadline, const Event& interrupt) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "coupler/host/core/error.hpp"
@@ -16,10 +17,15 @@ namespace coupler::host {
 Result<Descriptor> open_socket(const std::string& host, std::uint16_t port, std::chrono::milliseconds timeout,
                                const Event& interrupt);
 
+// Parts of it.
+
 /// The same for addresses that are known, one after the other: each has an equal share of the time that is
 /// left, so that one which is silent does not keep the others from being tried. Errors begin with `where`;
 /// addresses that fail for different reasons are named, each with its own.
 Result<Descriptor> connect_to_one(const addrinfo* addresses, const std::string& where,
                                   const Deadline& deadline, const Event& interrupt);
+
+/// Why there is no address of a host, and what to do. `status`: getaddrinfo()'s; nullopt: no answer.
+NotConnected lookup_failure(const std::string& host, std::optional<int> status);
 
 }  // namespace coupler::host
