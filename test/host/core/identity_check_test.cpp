@@ -103,6 +103,31 @@ TEST_F(IdentityCheck, A_node_that_does_not_serve_its_map_cannot_be_compared) {
   EXPECT_THAT(identity->differences, ElementsAre(HasSubstr("clients that may read every point")));
 }
 
+TEST_F(IdentityCheck, A_node_that_is_busy_or_away_when_its_map_is_asked_for_is_asked_again) {
+  using modbus::Exception;
+  Exception code{};
+  device.serve(MapBuilder().text("a: 1").coil("a", 1).build()->map());
+  device.refuses = [&](const std::string& request) {
+    return request.find("read file") == 0 ? std::optional(code) : std::nullopt;
+  };
+  for (const Exception passing :
+       {Exception::acknowledge, Exception::server_device_busy, Exception::gateway_path_unavailable,
+        Exception::gateway_target_failed_to_respond}) {
+    code = passing;
+    const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+    ASSERT_FALSE(identity) << modbus::to_string(passing);
+    EXPECT_EQ(exception_in(identity.error())->code, passing);
+  }
+  for (const Exception lasting : {Exception::illegal_function, Exception::illegal_data_address,
+                                  Exception::illegal_data_value, Exception::server_device_failure}) {
+    code = lasting;
+    const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+    ASSERT_TRUE(identity) << modbus::to_string(lasting);
+    EXPECT_EQ(identity->verdict, Verdict::different);
+    EXPECT_THAT(identity->differences, ElementsAre(HasSubstr("cannot be compared")));
+  }
+}
+
 constexpr auto identity_start = identity::reserved.start();
 
 /// What the device has behind the statistics.

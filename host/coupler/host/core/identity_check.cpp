@@ -15,6 +15,12 @@ Identity unreadable(std::uint64_t fingerprint, const std::string& why) {
   return {Verdict::different, fingerprint, {"the node's map cannot be compared: " + why}, {}};
 }
 
+/// The node does not give its map. Other exceptions pass: it is busy, or behind a gateway and away.
+bool is_refusal(const Error& error) {
+  const ExceptionReply* exception = exception_in(error);
+  return exception != nullptr && exception->code <= modbus::Exception::server_device_failure;
+}
+
 Identity compare(const Map& known, const Map& device, std::uint64_t fingerprint) {
   Identity identity{Verdict::superset, fingerprint, {}, diff(known, device)};
   for (const Difference& difference : identity.points) {
@@ -65,7 +71,7 @@ Result<Identity> check_identity(Transport& transport, const Map& known, const Ma
 
   const auto text = fetch_map_text(transport, head.map_size);
   if (!text) {
-    if (exception_in(text.error()) == nullptr) return tl::make_unexpected(text.error());
+    if (!is_refusal(text.error())) return tl::make_unexpected(text.error());
     return unreadable(
         head.fingerprint,
         to_string(text.error()) +

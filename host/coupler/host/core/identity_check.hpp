@@ -37,7 +37,7 @@ std::string line_remedy(const Connection& line);
 /// that cannot reach it), and what to do.
 std::string silence_text(const Map& known, const Error& error);
 
-/// Asks the device. An error is a broken connection, never a difference.
+/// Asks the device. An error is a broken connection, or a node that is busy or away: never a difference.
 Result<Identity> check_identity(Transport& transport, const Map& known, const MapLoader& load);
 
 }  // namespace coupler::host
