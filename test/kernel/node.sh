@@ -9,8 +9,10 @@ cd "$(dirname "$0")"
 . ./plant.sh
 plant_chip
 
-echo "# lines follow, both ways"
-plant_node plant.yaml
+echo "# lines follow, both ways; a link to the chip, as Raspberry Pi OS has one, is no second chip"
+ln -s "$(sim_chip plant)" /dev/gpiochip99
+sed 's#chip: plant, offset: 0#chip: /dev/gpiochip99, offset: 0#' plant.yaml >"$check_folder/linked.yaml"
+plant_node "$check_folder/linked.yaml"
 for level in up down up; do
   sim_pull plant 2 "$level"
   check "pulling a line $level shows in its input" wait_until input_is 0 "$([ "$level" = up ] && echo 1 || echo 0)"

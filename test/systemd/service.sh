@@ -35,6 +35,18 @@ check "the chip that was there is given to group gpio" wait_until mode_is "root:
 sim_unplug plant
 sim_plug plant
 check "and so is one that comes later" wait_until mode_is "root:gpio 660"
+# That of Raspberry Pi OS, for gpiochip4: one event of the chip makes the link, the next one takes it away.
+mkdir -p /run/udev/rules.d
+echo 'SUBSYSTEM=="gpio", KERNEL=="gpiochip*", PROGRAM="/usr/bin/test ! -c /dev/gpiochip99", SYMLINK+="gpiochip99"' \
+  >/run/udev/rules.d/60-link.rules
+udevadm settle
+udevadm control --reload
+udevadm trigger "/dev/$(sim_chip plant)"
+udevadm settle
+check "a rule links to the chip" test -c /dev/gpiochip99
+check "dpkg installs the package once more" quietly dpkg -i "$package"
+udevadm settle
+check "the link stays" test -c /dev/gpiochip99
 expect "the service is not enabled" disabled "$(systemctl is-enabled "$unit" || true)"
 systemctl start "$unit"
 expect "without a map it does not start" "inactive no" "$(property ActiveState) $(property ConditionResult)"

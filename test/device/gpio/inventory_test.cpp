@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
 
 #include "coupler/device/gpio/inventory.hpp"
 
@@ -56,6 +62,37 @@ TEST_F(Finding, Where_no_line_has_a_name_the_other_way_is_told) {
       nameless.find(named("board/1")).error(),
       HasSubstr(
           "'board' (2 lines); none of their lines has a name: write 'line: {chip: \"board\", offset: 0}'"));
+}
+
+/// As the kernel does: a link is the chip that it leads to.
+std::optional<Chip> read_as_the_kernel(const std::string& path) {
+  return Chip{path, std::filesystem::canonical(path).filename(), "board", {"GPIO17"}};
+}
+
+/// A folder in place of /dev, with one chip and a link to it.
+class Linked : public testing::Test {
+ protected:
+  Linked() {
+    std::filesystem::create_directory(folder_);
+    std::ofstream(folder_ / "gpiochip0").flush();
+    std::filesystem::create_symlink("gpiochip0", folder_ / "gpiochip4");
+  }
+  ~Linked() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("coupler-inventory-" + std::to_string(::getpid()));
+};
+
+TEST_F(Linked, A_chip_with_a_link_to_it_is_one_chip_and_found_by_either) {
+  const Inventory inventory(read_as_the_kernel, folder_);
+  const std::string link = folder_ / "gpiochip4";
+  for (const Line& line :
+       {named("GPIO17"), by_offset("board", 0), by_offset("gpiochip0", 0), by_offset(link, 0)}) {
+    const auto found = inventory.find(line);
+    ASSERT_TRUE(found.has_value()) << found.error();
+    EXPECT_EQ(to_string(*found), "gpiochip0 line 0 (GPIO17)");
+    EXPECT_EQ(found->chip->path, folder_ / "gpiochip0");
+  }
 }
 
 }  // namespace

@@ -47,11 +47,13 @@ std::string to_string(const FoundLine& found) {
   return fmt::format("{} line {}{}", found.chip->name, found.offset, name.empty() ? "" : " (" + name + ")");
 }
 
-Inventory::Inventory(ReadChip read) {
+Inventory::Inventory(ReadChip read, const std::string& folder) {
   std::vector<std::string> paths;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator("/dev", error))
-    if (entry.path().filename().string().rfind("gpiochip", 0) == 0) paths.push_back(entry.path().string());
+  // Raspberry Pi OS has a link gpiochip4 to gpiochip0: followed, each of its names would belong to two lines.
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().filename().string().rfind("gpiochip", 0) == 0 && !entry.is_symlink(error))
+      paths.push_back(entry.path().string());
   std::sort(paths.begin(), paths.end(), shorter_first);
   for (const std::string& path : paths) {
     if (auto chip = read(path))

@@ -34,8 +34,8 @@ class Inventory {
   /// Reads one chip; nullopt with errno set if it cannot be opened.
   using ReadChip = std::optional<Chip> (*)(const std::string& path);
 
-  /// Those of /dev/gpiochip*.
-  explicit Inventory(ReadChip read);
+  /// Those of /dev/gpiochip*, or of another folder. A link beside them leads to a chip that is listed anyway.
+  explicit Inventory(ReadChip read, const std::string& folder = "/dev");
   explicit Inventory(std::vector<Chip> chips) : chips_(std::move(chips)) {}
 
   /// The line that the map means. The error says what there is instead.
