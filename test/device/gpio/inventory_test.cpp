@@ -48,6 +48,17 @@ TEST_F(Finding, A_name_that_two_lines_have_is_refused_with_both) {
   EXPECT_THAT(found.error(), HasSubstr("gpiochip0 line 2 (TWICE) and to gpiochip1 line 0 (TWICE)"));
 }
 
+TEST(FindingByLabel, A_label_that_two_chips_have_is_refused_with_both) {
+  const Inventory twins{{Chip{"/dev/gpiochip1", "gpiochip1", "expander", {"", ""}},
+                         Chip{"/dev/gpiochip2", "gpiochip2", "expander", {"", ""}}}};
+  const auto found = twins.find(by_offset("expander", 1));
+  ASSERT_FALSE(found.has_value());
+  EXPECT_EQ(found.error(),
+            "the label 'expander' belongs to gpiochip1 and to gpiochip2; choose one by path or by name");
+  EXPECT_EQ(to_string(twins.find(by_offset("gpiochip2", 1)).value()), "gpiochip2 line 1");
+  EXPECT_THAT(twins.find(named("A")).error(), HasSubstr("write 'line: {chip: \"gpiochip1\", offset: 0}'"));
+}
+
 TEST_F(Finding, What_is_not_there_is_answered_with_what_is) {
   EXPECT_THAT(inventory_.find(named("C")).error(), HasSubstr("named on gpiochip0: 'A', 'TWICE'"));
   EXPECT_THAT(inventory_.find(by_offset("gpiochip7", 0)).error(),

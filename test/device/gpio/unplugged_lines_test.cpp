@@ -46,6 +46,20 @@ TEST_F(Wires, A_chip_that_comes_back_has_its_outputs_driven_as_before_wherever_i
   EXPECT_THAT(log_.lines, Contains(HasSubstr("gpiochip3 line 0, gpiochip3 line 1 works again")));
 }
 
+TEST_F(Wires, Of_two_chips_with_the_label_that_come_back_none_is_driven) {
+  EXPECT_EQ(change_to(two_lamps()), "");
+  std::vector<Chip> chips = unplug();
+  EXPECT_TRUE(wiring_->reconnect(false));
+  chips.push_back(chips[0]);
+  chips[1].name = "gpiochip1";
+  plug(chips);
+  news();
+  EXPECT_FALSE(wiring_->reconnect(false));
+  EXPECT_THAT(news(), IsEmpty());
+  machine.chips.pop_back();
+  EXPECT_TRUE(wiring_->reconnect(false)) << "there is one";
+}
+
 TEST_F(Wires, An_output_is_known_to_be_unplugged_from_the_first_call_that_says_so) {
   EXPECT_EQ(change_to(two_lamps()), "");
   const auto are_plugged = [&] { return wiring_->lines().are_plugged(modbus::Range::of(0, 2)); };

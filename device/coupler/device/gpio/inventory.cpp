@@ -92,10 +92,13 @@ tl::expected<FoundLine, std::string> Inventory::find_by_name(std::string_view na
   for (const Chip& chip : chips_)
     if (const std::string names = names_of_lines(chip); !names.empty())
       named += fmt::format("; named on {}: {}", chip.name, names);
-  if (named.empty() && !chips_.empty() && unopened_.empty())
+  if (named.empty() && !chips_.empty() && unopened_.empty()) {
+    const Chip& first = chips_.front();
+    const bool by_label = !first.label.empty() && find_chip(first.label) == &first;
     named = fmt::format(
         "; none of their lines has a name: write 'line: {{chip: \"{}\", offset: 0}}' for the first one",
-        chips_.front().label.empty() ? chips_.front().name : chips_.front().label);
+        by_label ? first.label : first.name);
+  }
   return tl::unexpected(fmt::format("no GPIO line is named '{}'{}{}", name, contents(), named));
 }
 
@@ -117,7 +120,14 @@ tl::expected<const Chip*, std::string> Inventory::find_chip(const std::string& w
                                ? wanted
                                : std::filesystem::canonical(wanted, error).filename().string();
   for (const Chip& chip : chips_)
-    if (chip.name == real || chip.label == wanted) return &chip;
+    if (chip.name == real) return &chip;
+  std::vector<const Chip*> labelled;
+  for (const Chip& chip : chips_)
+    if (chip.label == wanted) labelled.push_back(&chip);
+  if (labelled.size() == 1) return labelled.front();
+  if (labelled.size() > 1)
+    return tl::unexpected(fmt::format("the label '{}' belongs to {} and to {}; choose one by path or by name",
+                                      wanted, labelled[0]->name, labelled[1]->name));
   return tl::unexpected(
       fmt::format("there is no GPIO chip '{}' (by name, path or label){}", wanted, contents()));
 }
