@@ -182,12 +182,43 @@ def a_generated_node(folder, checks):
     checks.equal("generated: the node ends well", node.process.returncode, 0)
 
 
+def a_start_that_fails(folder, checks):
+    """A service is started again after exit status 3, and not after 1: what may work the next time is not a wrong map."""
+    beside = folder / "beside"
+    beside.mkdir()
+    node = shutil.copy(NODE, beside)
+    tls = beside / "coupler-node-tls"
+
+    def start(program):
+        ended = subprocess.run([program, "cell.yaml", "--sim", "--listen", "127.0.0.1", "--port", "0", "--tls-port", "0"],
+                               cwd=folder, stderr=subprocess.PIPE, text=True, timeout=peer.PATIENCE)
+        return ended.returncode, ended.stderr
+
+    # How it ended is seen only if the kernel is done with it soon.
+    for script, problem in (("kill -KILL $$", "error: the TLS process "),
+                            ("exec sleep 1000", "error: coupler-node-tls did not answer within 5 s")):
+        tls.write_text(f"#!/bin/sh\n{script}\n")
+        tls.chmod(0o755)
+        status, said = start(node)
+        checks.equal(f"a TLS process that does '{script}' ends the start with 3", status, 3)
+        checks.equal(f"and is told: {said}", problem in said, True)
+    text = (folder / "cell.yaml").read_text()
+    (folder / "not_a.pem").write_text("no certificate\n")
+    for file in ("no_such.pem", "not_a.pem"):
+        (folder / "cell.yaml").write_text(text.replace("certificate: node.pem", f"certificate: {file}"))
+        status, said = start(NODE)
+        checks.equal(f"the certificate {file} ends it with 1", status, 1)
+        checks.equal(f"and is told: {said}", "error: 'security': " in said, True)
+    (folder / "cell.yaml").write_text(text)
+
+
 def main():
     checks = peer.Checks()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         ca = make_certificates(folder)
         shutil.copy(MAP, folder / "cell.yaml")
+        a_start_that_fails(folder, checks)
         node = Node(folder, NODE, "cell.yaml")
         try:
             who_is_let_in(node, checks)

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 class Reading : public testing::Test {
  protected:
-  tl::expected<MapPtr, std::string> read(std::function<MapPtr()> work) {
+  tl::expected<MapPtr, ServeError> read(std::function<MapPtr()> work) {
     auto reading = MapReading::start(loop_, {std::move(work)}, {});
     EXPECT_TRUE(reading.has_value());
     while (!(*reading)->is_over({})) loop_.run_once(std::chrono::milliseconds(100));
@@ -49,7 +49,8 @@ TEST_F(Reading, The_map_is_here_when_the_process_that_read_it_is_gone) {
 TEST_F(Reading, What_the_process_has_told_is_not_told_again) {
   const auto none = read([]() -> MapPtr { return nullptr; });
   ASSERT_FALSE(none.has_value());
-  EXPECT_EQ(none.error(), "");
+  EXPECT_EQ(none.error().errors, "");
+  EXPECT_EQ(none.error().reason, ServeError::map_is_wrong);
 }
 
 TEST_F(Reading, A_process_that_dies_is_told) {
@@ -58,7 +59,8 @@ TEST_F(Reading, A_process_that_dies_is_told) {
     return nullptr;
   });
   ASSERT_FALSE(none.has_value());
-  EXPECT_THAT(none.error(), HasSubstr("was killed by signal 9"));
+  EXPECT_THAT(none.error().errors, HasSubstr("was killed by signal 9"));
+  EXPECT_EQ(none.error().reason, ServeError::device_failed) << "nothing is known of the map";
 }
 
 TEST_F(Reading, A_map_that_needs_more_memory_than_any_is_refused) {
@@ -67,7 +69,8 @@ TEST_F(Reading, A_map_that_needs_more_memory_than_any_is_refused) {
     return nullptr;
   });
   ASSERT_FALSE(none.has_value());
-  EXPECT_THAT(none.error(), HasSubstr("more than 256 MiB"));
+  EXPECT_THAT(none.error().errors, HasSubstr("more than 256 MiB"));
+  EXPECT_EQ(none.error().reason, ServeError::map_is_wrong);
 }
 
 TEST_F(Reading, One_that_takes_too_long_is_killed) {
@@ -80,7 +83,7 @@ TEST_F(Reading, One_that_takes_too_long_is_killed) {
   EXPECT_TRUE((*reading)->is_over(TimePoint() + MapReading::timeout));
   const auto none = (*reading)->take();
   ASSERT_FALSE(none.has_value());
-  EXPECT_THAT(none.error(), HasSubstr("could not be read in 60 s"));
+  EXPECT_THAT(none.error().errors, HasSubstr("could not be read in 60 s"));
 }
 
 TEST_F(Reading, The_process_has_none_of_the_descriptors_but_the_log) {

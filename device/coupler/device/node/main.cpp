@@ -13,7 +13,7 @@
 #include "coupler/device/node/options.hpp"
 #include "coupler/device/node/program.hpp"
 #include "coupler/device/node/reload.hpp"
-#include "coupler/device/node/serving_context.hpp"
+#include "coupler/device/node/serve_error.hpp"
 #include "coupler/device/replay/replay.hpp"
 #include "coupler/map/loader/load.hpp"
 
@@ -88,8 +88,8 @@ int main(int argc, char** argv) {
   const MapInput input(std::get<Options>(options).map, log);
   auto first = read_first(input.first());
   if (!first) {
-    if (!first.error().empty()) log.fail(first.error());
-    return ServeError::map_is_wrong;
+    log_errors(log, first.error());
+    return first.error().reason;
   }
   if (!replay.file.empty()) return play(std::get<Options>(options), first->map, log);
   const coupler::MapPtr map = first->map;

@@ -39,10 +39,12 @@ MapReading::~MapReading() {
   if (is_watched_) loop_.forget(child_->descriptor(), *this);
 }
 
-tl::expected<std::unique_ptr<MapReading>, std::string> MapReading::start(Loop& loop, const ReadMap& source,
-                                                                         TimePoint now) {
+tl::expected<std::unique_ptr<MapReading>, ServeError> MapReading::start(Loop& loop, const ReadMap& source,
+                                                                        TimePoint now) {
   const auto failed = [](const char* why) {
-    return tl::unexpected(fmt::format("the map cannot be read: no process can be started for it: {}", why));
+    return tl::unexpected(
+        ServeError{ServeError::device_failed,
+                   fmt::format("the map cannot be read: no process can be started for it: {}", why)});
   };
   try {
     std::unique_ptr<MapReading> reading(new MapReading(loop, now));
@@ -97,23 +99,30 @@ bool MapReading::is_over(TimePoint now) {
   return status_ || now >= deadline_;
 }
 
-tl::expected<MapRead, std::string> MapReading::take() {
+tl::expected<MapRead, ServeError> MapReading::take() {
+  const auto failed = [](ServeError::Reason reason, std::string why) {
+    return tl::unexpected(ServeError{reason, std::move(why)});
+  };
   if (!status_)
-    return tl::unexpected(fmt::format(
-        "the map could not be read in {} s; check the disk or the network file system that it is on",
-        timeout.count()));
+    return failed(ServeError::device_failed,
+                  fmt::format("the map could not be read in {} s; check the disk or the network file system "
+                              "that it is on",
+                              timeout.count()));
   if (*status_ == 0) {
     arena_->give_back_rest();
     return MapRead{MapPtr(arena_, made_[0].map), std::move(settings_)};
   }
-  if (!WIFEXITED(*status_)) return tl::unexpected("the process that read the map " + describe_end(*status_));
-  if (WEXITSTATUS(*status_) == no_settings) return tl::unexpected("'security': " + text_in(settings_.get()));
+  if (!WIFEXITED(*status_))
+    return failed(ServeError::device_failed, "the process that read the map " + describe_end(*status_));
+  if (WEXITSTATUS(*status_) == no_settings)
+    return failed(ServeError::map_is_wrong, "'security': " + text_in(settings_.get()));
   if (WEXITSTATUS(*status_) == too_large)
-    return tl::unexpected(fmt::format("the map needs more than {} MiB of memory; remove points", room >> 20));
-  return tl::unexpected(std::string());
+    return failed(ServeError::map_is_wrong,
+                  fmt::format("the map needs more than {} MiB of memory; remove points", room >> 20));
+  return failed(ServeError::map_is_wrong, {});
 }
 
-tl::expected<MapRead, std::string> read_first(const ReadMap& source) {
+tl::expected<MapRead, ServeError> read_first(const ReadMap& source) {
   Loop loop;
   auto reading = MapReading::start(loop, source, TimePoint::clock::now());
   if (!reading) return tl::unexpected(std::move(reading).error());

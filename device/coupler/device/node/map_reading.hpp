@@ -3,11 +3,11 @@
 
 #include <functional>
 #include <memory>
-#include <string>
 #include <tl/expected.hpp>
 
 #include "coupler/device/net/descriptor.hpp"
 #include "coupler/device/net/loop.hpp"
+#include "coupler/device/node/serve_error.hpp"
 #include "coupler/device/supervisor/child.hpp"
 #include "coupler/device/supervisor/shared_memory.hpp"
 #include "coupler/map/owned_map.hpp"
@@ -38,16 +38,16 @@ class MapReading final : public EventHandler {
   static constexpr std::chrono::seconds timeout{60};
 
   /// `loop` wakes up when it is done. The error says why it cannot be done.
-  static tl::expected<std::unique_ptr<MapReading>, std::string> start(Loop& loop, const ReadMap& source,
-                                                                      TimePoint now);
+  static tl::expected<std::unique_ptr<MapReading>, ServeError> start(Loop& loop, const ReadMap& source,
+                                                                     TimePoint now);
   MapReading(const MapReading&) = delete;
   MapReading& operator=(const MapReading&) = delete;
   ~MapReading();
 
   /// It has ended, or its time is over.
   bool is_over(TimePoint now);
-  /// Once it is over. The error says what went wrong; it is empty if it is logged already.
-  tl::expected<MapRead, std::string> take();
+  /// Once it is over. The error says what went wrong, with the map or with reading it.
+  tl::expected<MapRead, ServeError> take();
 
   /// In a process that was forked meanwhile: forgets what is being read.
   void leave() { settings_.close(); }
@@ -78,6 +78,6 @@ class MapReading final : public EventHandler {
 
 /// The first map of a node, read in the same way, so that this process keeps none of the memory that it took;
 /// but for as long as it takes: nothing is served yet, and a signal ends both.
-tl::expected<MapRead, std::string> read_first(const ReadMap& source);
+tl::expected<MapRead, ServeError> read_first(const ReadMap& source);
 
 }  // namespace coupler::device

@@ -15,6 +15,13 @@
 #include "coupler/map/rights_text.hpp"
 
 namespace coupler::device {
+namespace {
+
+ServeError error_of(const TlsProcess::Answer& answer) {
+  return {answer.has_failed ? ServeError::device_failed : ServeError::map_is_wrong, answer.problem};
+}
+
+}  // namespace
 
 NodeRuntime::NodeRuntime(Loop& loop, const Options& options, ReadMap again, ServiceManager& manager, Log& log,
                          Hooks* hooks)
@@ -35,7 +42,7 @@ tl::expected<void, ServeError> NodeRuntime::start(const Map& map, Descriptor set
     for (TimePoint now = TimePoint::clock::now(); awaits_tls_;) {
       now = loop_.run_once(std::chrono::milliseconds(100));
       if (const auto answer = next_tls_->answer(now)) {
-        if (!answer->empty()) return tl::unexpected(ServeError{ServeError::map_is_wrong, *answer});
+        if (!answer->problem.empty()) return tl::unexpected(error_of(*answer));
         awaits_tls_ = false;
       }
     }
@@ -159,7 +166,7 @@ void NodeRuntime::begin_reading(TimePoint now) {
   if (reading)
     reading_ = *std::move(reading);
   else
-    refuse({ServeError::device_failed, std::move(reading).error()});
+    refuse(reading.error());
 }
 
 bool NodeRuntime::look_after(TimePoint now) {
@@ -181,7 +188,7 @@ bool NodeRuntime::look_after(TimePoint now) {
 bool NodeRuntime::take_map() {
   auto read = std::exchange(reading_, nullptr)->take();
   if (!read) {
-    refuse({ServeError::map_is_wrong, std::move(read).error()});
+    refuse(read.error());
     return false;
   }
   if (read->map) {
@@ -220,11 +227,11 @@ bool NodeRuntime::tls_is_ready(TimePoint now) {
   const auto answer = (tls_ ? tls_ : next_tls_)->answer(now);
   if (!answer) return false;
   awaits_tls_ = false;
-  if (answer->empty() && next_) return true;
-  if (!answer->empty()) {
+  if (answer->problem.empty() && next_) return true;
+  if (!answer->problem.empty()) {
     next_ = nullptr;
     next_tls_ = nullptr;
-    refuse({ServeError::map_is_wrong, *answer});
+    refuse(error_of(*answer));
     return false;
   }
   // A map that is built in stays as it is.

@@ -26,8 +26,8 @@ int run(const Map& map, Hooks* hooks, int argc, char** argv) {
   const ReadMap files{{}, log.descriptor(), &map};
   auto read = read_first(files);
   if (!read) {
-    log.fail("error: " + read.error());
-    return ServeError::map_is_wrong;
+    log_errors(log, read.error());
+    return read.error().reason;
   }
   return serve(map, std::move(read->settings), std::get<Options>(options), log, files, hooks);
 }

@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "coupler/device/node/this_machine.hpp"
@@ -103,14 +101,6 @@ bool ServingContext::reconnect_channels(bool safe) {
   for (const Point* point : reconnected)
     if (is_writable(point->table)) (void)analogue->drive(*point, safe);
   return !reconnected.empty();
-}
-
-void log_errors(Log& log, const ServeError& error) {
-  for (std::string_view errors = error.errors; !errors.empty();) {
-    const auto end = std::min(errors.find('\n'), errors.size());
-    log.fail(fmt::format("error: {}", errors.substr(0, end)));
-    errors.remove_prefix(std::min(end + 1, errors.size()));
-  }
 }
 
 tl::expected<void, std::string> check_servable(const Map& map) {

@@ -12,20 +12,11 @@
 #include "coupler/device/gpio/wiring.hpp"
 #include "coupler/device/net/listener.hpp"
 #include "coupler/device/node/options.hpp"
+#include "coupler/device/node/serve_error.hpp"
 #include "coupler/device/node/shared_state.hpp"
 #include "coupler/map/owned_map.hpp"
 
 namespace coupler::device {
-
-/// Why a map is not served.
-struct ServeError {
-  enum Reason : int { map_is_wrong = 1, device_failed = 3 };
-  Reason reason;       ///< also the exit status
-  std::string errors;  ///< one a line
-};
-
-/// Logs each of the errors.
-void log_errors(Log& log, const ServeError& error);
 
 /// Whether a node can serve this map, which is stricter than a map of any other coupler. The error names the
 /// points that prevent it, one a line, and what to do.

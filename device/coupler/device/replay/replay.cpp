@@ -86,7 +86,7 @@ tl::expected<int, ReplayError> serve_replay(const Options& options, const MapPtr
   Player player(*recording, played, *std::move(understood));
   const ReadMap files{{}, log.descriptor(), &played.map};
   auto read = read_first(files);
-  if (!read) return problem(ServeError::map_is_wrong, read.error());
+  if (!read) return problem(read.error().reason, read.error().errors);
   log.write(fmt::format("playing {}: {:.0f} s{}, from the first request on", path,
                         std::chrono::duration<double>(recording->length()).count(),
                         recording->is_foreign() ? " of a foreign coupler, without a node's identity" : ""));

@@ -134,10 +134,11 @@ void TlsProcess::prepare(Descriptor settings) {
   if (child_) send(tls_messages::prepare, prepared_.get());
 }
 
-std::optional<std::string> TlsProcess::answer(TimePoint now) {
+std::optional<TlsProcess::Answer> TlsProcess::answer(TimePoint now) {
   if (waits_ && now >= answer_by_) {
     end_process();  // it hangs; another one is started
-    refuse(fmt::format("{} did not answer within {} s", tls_messages::program_name, timeout.count()));
+    give_up(
+        {fmt::format("{} did not answer within {} s", tls_messages::program_name, timeout.count()), true});
   }
   return std::exchange(answer_, std::nullopt);
 }
@@ -197,7 +198,7 @@ void TlsProcess::ready(TimePoint) {
     constexpr std::chrono::milliseconds soon{
         200};  // its end of the channel is closed, so it is about to be gone
     const std::string how = how_it_ended(soon);
-    refuse(fmt::format("the TLS process {}", how.empty() ? "closed its channel" : how));
+    give_up({fmt::format("the TLS process {}", how.empty() ? "closed its channel" : how), true});
     return;
   }
   if (size < 0) return;
@@ -210,15 +211,16 @@ void TlsProcess::ready(TimePoint) {
   if (!std::exchange(waits_, false)) return;
   const std::string_view text(reinterpret_cast<const char*>(room.data()), static_cast<std::size_t>(size));
   if (text[0] == tls_messages::refused)
-    refuse(std::string(text.substr(1)));
+    give_up({std::string(text.substr(1))});
   else
-    answer_ = std::string();
+    answer_ = Answer{};
 }
 
-void TlsProcess::refuse(std::string why) {
+/// What was prepared does not come into force.
+void TlsProcess::give_up(Answer answer) {
   waits_ = false;
   prepared_.close();
-  answer_ = std::move(why);
+  answer_ = std::move(answer);
 }
 
 }  // namespace coupler::device

@@ -33,8 +33,12 @@ class TlsProcess final : public EventHandler {
 
   /// Has it look at settings, which are not in force by that.
   void prepare(Descriptor settings);
-  /// Whether it has: nothing yet, or what is wrong with them (empty: they are good).
-  std::optional<std::string> answer(TimePoint now);
+  struct Answer {
+    std::string problem;      ///< empty: the settings are good
+    bool has_failed = false;  ///< the process itself; the settings may be good
+  };
+  /// Whether it has: nothing yet, or what came of it.
+  std::optional<Answer> answer(TimePoint now);
   /// What was prepared is in force: it listens at a copy of that socket.
   void commit(int listener);
 
@@ -55,7 +59,7 @@ class TlsProcess final : public EventHandler {
   std::string how_it_ended(std::chrono::milliseconds at_most);
   void end_process();
   bool is_silent(TimePoint now);
-  void refuse(std::string why);
+  void give_up(Answer answer);
   void send(std::uint8_t what, int descriptor);
 
   Loop& loop_;
@@ -73,7 +77,7 @@ class TlsProcess final : public EventHandler {
   Descriptor prepared_;
   bool waits_ = false;       ///< for the answer to what was prepared
   int answers_to_skip_ = 0;  ///< to settings that are in force
-  std::optional<std::string> answer_;
+  std::optional<Answer> answer_;
   TimePoint answer_by_{};
   Backoff backoff_;
   TimePoint started_{};
