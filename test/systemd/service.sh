@@ -19,6 +19,8 @@ supervisor() { property MainPID; }
 worker() { pgrep -P "$(supervisor)" -x coupler-node-io; }
 of_process() { sed -nE "s/^$2:[[:space:]]*(.*)/\1/p" "/proc/$1/status"; }
 serves() { answered client -t 1 -r 0 -c 1 127.0.0.1 >/dev/null; }
+times_made_safe() { journalctl -u "$unit" -o cat --no-pager | grep -c '^Terminated: outputs are in their safe state' || true; }
+made_safe() { [ "$(times_made_safe)" = "$1" ]; }
 is_another() { [ "$(property MainPID)" != "$1" ] && is ActiveState active && serves; }
 mode_of_chip() { stat -c '%U:%G %a' "/dev/$(sim_chip plant)"; }
 mode_is() { [ "$(mode_of_chip)" = "$1" ]; }
@@ -198,8 +200,10 @@ expect "outputs are safe" "1 0" "$(sim_value plant 0) $(sim_value plant 1)"
 
 echo "# the supervisor dies"
 check "an output is written" set_coil 0 0
+said=$(times_made_safe)
 kill -KILL "$before"
 check "systemd starts both again" wait_until is_another "$before"
+check "the worker process has driven the safe state before" wait_until made_safe $((said + 1))
 expect "once" 1 "$(property NRestarts)"
 
 echo "# the supervisor is stopped: nobody watches the worker process any more"
@@ -212,9 +216,10 @@ check "the journal tells why" in_journal '^the supervisor, process [0-9]+, was s
 echo "# stopped"
 check "an output is written" set_coil 0 0
 sim_pull plant 0 down
+said=$(times_made_safe)
 check "systemctl stop succeeds" systemctl stop "$unit"
 expect "with success" "inactive success 0" "$(property ActiveState) $(property Result) $(property ExecMainStatus)"
-check "it says that outputs are in their safe state" in_journal 'Terminated: outputs are in their safe state'
+check "it says that outputs are in their safe state, once" wait_until made_safe $((said + 1))
 refuse "no process is left" pgrep coupler-node
 refuse "no line in the journal repeats name or priority" in_journal '^(<[0-9]>|coupler-node: )'
 check "what is wrong is in the journal as an error" in_journal 'error: ' -p err

@@ -259,6 +259,17 @@ TEST_F(Supervised, An_end_that_was_asked_for_leaves_the_firmware_to_the_process_
   EXPECT_EQ(firmware_calls_[0], 0);
 }
 
+TEST_F(Supervised, A_process_that_is_asked_to_end_twice_ends_in_order) {
+  make_firmware_safe_ = [] { return true; };
+  EXPECT_TRUE(supervise([](SupervisorLink& supervisor) {
+    const int status = beat_for_ever(supervisor);
+    ::raise(SIGTERM);  // by a service manager that asks all processes of a service
+    return status;
+  }));
+  EXPECT_EQ(safe_calls_[0], 1);
+  EXPECT_EQ(firmware_calls_[0], 0) << "it was taken for one that died";
+}
+
 TEST_F(Supervised, A_process_that_died_has_its_firmware_made_safe_by_another_one) {
   const pid_t self = ::getpid();
   make_firmware_safe_ = [&] { return ::getpid() != self; };

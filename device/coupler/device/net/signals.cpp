@@ -25,7 +25,7 @@ Signals::Signals(Loop& loop) : loop_(loop), has_terminal_(has_terminal()) {
   sigaddset(&signals_, SIGTERM);
   sigaddset(&signals_, SIGTSTP);
   if (!is_ignored(SIGHUP)) sigaddset(&signals_, SIGHUP);
-  ::sigprocmask(SIG_BLOCK, &signals_, nullptr);
+  ::sigprocmask(SIG_BLOCK, &signals_, &blocked_before_);
   std::signal(SIGPIPE, SIG_IGN);
   descriptor_ = Descriptor(::signalfd(-1, &signals_, SFD_NONBLOCK | SFD_CLOEXEC));
   [[maybe_unused]] const bool watched = loop_.watch(descriptor_.get(), Interest::read, *this);
@@ -34,7 +34,7 @@ Signals::Signals(Loop& loop) : loop_(loop), has_terminal_(has_terminal()) {
 
 Signals::~Signals() {
   loop_.forget(descriptor_.get(), *this);
-  ::sigprocmask(SIG_UNBLOCK, &signals_, nullptr);
+  ::sigprocmask(SIG_SETMASK, &blocked_before_, nullptr);
 }
 
 void Signals::ready(TimePoint) {

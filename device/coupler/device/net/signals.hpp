@@ -17,7 +17,9 @@ bool has_terminal();
 /// Turns SIGINT and SIGTERM into a request to stop and SIGHUP into one to reload, which the loop sees in its
 /// own time. The SIGHUP of a terminal that is closed is a request to stop. A SIGHUP that is ignored at the
 /// start (nohup) stays ignored; SIGPIPE is. SIGTSTP, which Ctrl-Z sends, is only noted. To be made before any
-/// thread is started.
+/// thread is started. The signals are blocked meanwhile, and afterwards if they were before: in a process
+/// that was forked by one with Signals they stay so, and a second request to stop does not kill it at its
+/// end.
 class Signals : public EventHandler {
  public:
   explicit Signals(Loop& loop);
@@ -38,6 +40,7 @@ class Signals : public EventHandler {
   Loop& loop_;
   bool has_terminal_;
   sigset_t signals_{};
+  sigset_t blocked_before_{};
   Descriptor descriptor_;
   int stop_ = 0;
   std::optional<pid_t> reload_;

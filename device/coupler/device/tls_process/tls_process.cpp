@@ -38,7 +38,8 @@ std::string find_program() {
   return {};
 }
 
-/// In the child. Its descriptors are those two and 0 to 2; its memory is its own.
+/// In the child. Its descriptors are those two and 0 to 2; its memory is its own. SIGTERM and SIGINT stay
+/// blocked, as in this process (Signals), which ends it: a service manager signals all at once.
 [[noreturn]] void become(const std::string& program, int control, int clients, pid_t parent) {
   if (!end_with_parent(parent, SIGKILL)) ::_exit(0);
   // Copies above both numbers, then down to them: dup2() clears close-on-exec.
