@@ -105,6 +105,17 @@ expect "outputs are as they were" "0 1" "$(sim_value plant 0) $(sim_value plant 
 expect "by the same supervisor" "$before" "$(supervisor)"
 cp node.yaml /etc/coupler/node.yaml
 
+echo "# upgraded to a version that refuses the map, without udev"
+echo 'name: [' >/etc/coupler/node.yaml
+mv /usr/bin/udevadm /usr/bin/udevadm.away
+check "dpkg installs the package all the same" quietly dpkg -i "$package"
+mv /usr/bin/udevadm.away /usr/bin/udevadm
+expect "it is configured" "install ok installed" "$(dpkg-query -W -f '${Status}' coupler-node)"
+expect "the service has failed" failed "$(property ActiveState)"
+cp node.yaml /etc/coupler/node.yaml
+check "with a good map it starts again" quietly systemctl start "$unit"
+check "and serves" wait_until serves
+
 echo "# the sandbox, from inside"
 install sandbox.sh /usr/local/bin/probe-sandbox # this tree may be in /tmp, which the service does not see
 mknod -m 666 /dev/kernel-log c 1 11
