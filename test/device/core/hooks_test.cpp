@@ -203,6 +203,14 @@ TEST_F(HookedNode, The_code_may_refuse_what_is_read_with_an_exception_of_its_own
   EXPECT_EQ(statistics.hardware_errors, 0U);
 }
 
+TEST_F(HookedNode, A_read_that_the_code_refuses_writes_nothing_in_the_same_request) {
+  hooks.unreadable = 2;
+  EXPECT_EQ(ask(pdu(23, {2, 1, 0, 1}, {2, 0, 7})), (Pdu{0x97, 6}));
+  EXPECT_THAT(hooks.calls, IsEmpty());
+  EXPECT_EQ(ask(pdu(23, {0, 1, 2, 1}, {2, 0, 7})), (Pdu{23, 2, 0, 0}))
+      << "what is written may be another register";
+}
+
 TEST_F(HookedNode, The_code_answers_unless_it_says_otherwise) {
   EXPECT_TRUE(Hardware(lines, nullptr, &hooked).answers());
   EXPECT_TRUE(Hardware(lines).answers()) << "where no code is";

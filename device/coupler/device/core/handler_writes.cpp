@@ -170,6 +170,8 @@ Handler::Answer Handler::carry_out(const modbus::ReadWriteRegisters& both, const
   if (!rights_of(call.session).may(Right::read, Table::holding_registers, both.read) ||
       !rights_of(call.session).may(Right::write, Table::holding_registers, both.write.range))
     return tl::unexpected(no_right);
+  if (const auto refused = hardware_.refuse_read(Table::holding_registers, both.read))
+    return tl::unexpected(*refused);
   put_next(both.write);
   if (const auto stored = store(Table::holding_registers, both.write.range, written, call.now); !stored)
     return tl::unexpected(stored.error());

@@ -49,7 +49,8 @@ class Hooks {
   /// that to a device which has gone.
   [[nodiscard]] virtual bool answers() { return true; }
 
-  /// A client reads these addresses: the exception that it gets in place of them; nullopt: none.
+  /// A client reads these addresses: the exception that it gets in place of them; nullopt: none. What the
+  /// same request (FC 23) would write is not written then.
   [[nodiscard]] virtual std::optional<modbus::Exception> refuse_read(Table /*table*/,
                                                                      modbus::Range /*range*/) {
     return std::nullopt;
