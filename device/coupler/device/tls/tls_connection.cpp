@@ -35,7 +35,6 @@ TlsConnection::TlsConnection(Loop& loop, Observer& observer, const tls::Context&
       socket_(std::move(socket)),
       address_(address),
       origin_(origin_of(address)),
-      began_(now),
       deadline_(now + handshake_timeout),
       verification_(of_a_client()),
       session_(context.connection(socket_.get(), verification_), verification_) {

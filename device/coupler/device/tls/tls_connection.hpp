@@ -46,7 +46,6 @@ class TlsConnection final : public EventHandler {
 
   enum class State { handshake, open, draining, ended };
   State state() const { return state_; }
-  TimePoint began() const { return began_; }
   const IpAddress& origin() const { return origin_; }
   const sockaddr_storage& address() const { return address_; }
   const tls::Peer& peer() const { return verification_.peer; }
@@ -85,7 +84,6 @@ class TlsConnection final : public EventHandler {
   Descriptor plain_;
   sockaddr_storage address_;
   IpAddress origin_;
-  TimePoint began_;
   TimePoint deadline_;
   bool waits_for_client_ = false;  ///< to read
   std::uint64_t sent_ = 0;         ///< when that was looked at
