@@ -172,9 +172,7 @@ std::optional<codec::Value> integer_of(double number) {
 }
 
 /// Published as integers: neither a float nor scaled.
-bool is_integer(const Point& point) {
-  return !point.scale.present() && !codec::is_float(point.format.type);
-}
+bool is_integer(const Point& point) { return !point.scale.present() && !codec::is_float(point.format.type); }
 
 /// A number as the point publishes it; nullopt: none that it could publish.
 std::optional<codec::Value> number_of(const Point& point, double number) {
