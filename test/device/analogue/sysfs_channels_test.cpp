@@ -3,8 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/capability.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <stdexcept>
 #include <thread>
@@ -155,16 +158,22 @@ TEST_F(ChannelsOfAMap, Have_initial_and_safe_values_that_they_can_be_driven_to) 
   EXPECT_THAT(said, HasSubstr("safe value 101"));
 }
 
-/// For whom files have owners: root may open all of them.
-struct Nobody {
-  Nobody() : was_root(::geteuid() == 0) {
-    constexpr uid_t nobody = 65534;
-    if (was_root && ::setresuid(nobody, nobody, 0) != 0) throw std::runtime_error("still root");
+/// This thread may open what a file's mode permits, and root no more than that.
+class WithoutOverride {
+ public:
+  WithoutOverride() {
+    if (::syscall(SYS_capget, &header_, before_.data()) != 0) throw std::runtime_error("capget");
+    auto now = before_;
+    now[0].effective &= ~(1U << CAP_DAC_OVERRIDE | 1U << CAP_DAC_READ_SEARCH);
+    if (::syscall(SYS_capset, &header_, now.data()) != 0) throw std::runtime_error("capset");
   }
-  Nobody(const Nobody&) = delete;
-  Nobody& operator=(const Nobody&) = delete;
-  ~Nobody() { EXPECT_TRUE(!was_root || ::setresuid(0, 0, 0) == 0); }
-  bool was_root;
+  WithoutOverride(const WithoutOverride&) = delete;
+  WithoutOverride& operator=(const WithoutOverride&) = delete;
+  ~WithoutOverride() { EXPECT_EQ(::syscall(SYS_capset, &header_, before_.data()), 0); }
+
+ private:
+  __user_cap_header_struct header_{_LINUX_CAPABILITY_VERSION_3, 0};
+  std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> before_{};
 };
 
 /// Two channels of a PWM chip. Only the first one's files are there, and may not be opened yet.
@@ -199,7 +208,7 @@ struct NewChannels : testing::Test {
     permit(true);
   }
 
-  Nobody nobody;
+  WithoutOverride without_override;
   FakeSysfs sysfs;
   FakeLog log;
   MapPtr map = fans().build();
