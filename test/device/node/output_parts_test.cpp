@@ -86,11 +86,11 @@ struct Outputs : testing::Test {
     return builder;
   }
   std::vector<SafeOutcome> drive_all_safe() {
-    std::vector<std::function<bool()>> works;
-    for (std::size_t part = 0; part < OutputParts(context).size(); ++part)
-      works.emplace_back([this, part] { return OutputParts(context).drive_safe(part); });
     std::vector<Child> lost;
-    return drive_apart(works, lost);
+    SafetyProcesses processes(lost);
+    for (std::size_t part = 0; part < OutputParts(context).size(); ++part)
+      EXPECT_TRUE(processes.start([&] { return OutputParts(context).drive_safe(part); }));
+    return processes.finish();
   }
 
   FakeSysfs sysfs;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <csignal>
+#include <functional>
+#include <vector>
 
 #include "coupler/device/supervisor/safety_processes.hpp"
 #include "coupler/device/supervisor/shared_memory.hpp"
@@ -16,6 +19,13 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
+
+std::vector<SafeOutcome> drive_apart(const std::vector<std::function<bool()>>& works,
+                                     std::vector<Child>& lost) {
+  SafetyProcesses processes(lost);
+  for (const auto& work : works) EXPECT_TRUE(processes.start(work));
+  return processes.finish();
+}
 
 bool hang() {
   for (;;) ::pause();
@@ -33,7 +43,7 @@ TEST(SafetyProcesses, One_that_hangs_keeps_no_other_from_its_work) {
 TEST(SafetyProcesses, They_are_there_at_the_same_time) {
   SharedArray<std::atomic<int>> there(1);
   const auto meet = [&] {
-    for (++there[0]; there[0] < 3;) ::usleep(1000);
+    for (++there[0]; there[0] < 3;) ::sched_yield();  // not asleep: what waits for a processor may
     return true;
   };
   std::vector<Child> lost;

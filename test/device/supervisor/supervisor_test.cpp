@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -327,6 +328,19 @@ TEST_F(Supervised, Durations_end_only_where_there_are_some) {
   EXPECT_TRUE(supervise(beat_for_ever));
   EXPECT_THAT(outcomes_, ElementsAre(SafeOutcome::safe));
   EXPECT_EQ(durations_ended_[0], 0);
+}
+
+TEST_F(Supervised, Durations_end_while_the_firmware_takes_its_time) {
+  has_durations_ = true;
+  make_firmware_safe_ = [&] {
+    while (durations_ended_[0] == 0) ::sched_yield();
+    return true;
+  };
+  supervise([&](SupervisorLink& supervisor) {
+    if (ended_before() == 0) ::kill(::getpid(), SIGKILL);
+    return beat_for_ever(supervisor);
+  });
+  EXPECT_THAT(log_.lines, ElementsAre(HasSubstr("; outputs are in their safe state")));
 }
 
 TEST_F(Supervised, A_supervisor_that_is_stopped_is_silent_to_its_process_until_it_goes_on) {

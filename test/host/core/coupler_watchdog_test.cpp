@@ -159,22 +159,25 @@ TEST_F(CouplerWatchdogTest, With_manual_recovery_it_waits_for_the_call) {
   EXPECT_EQ(valve(), 1);
 }
 
-TEST_F(CouplerWatchdogTest, What_was_refused_while_it_had_expired_is_the_newest_command) {
+TEST_F(CouplerWatchdogTest, What_was_refused_while_it_had_expired_is_not_restored_and_nothing_older) {
   known.recovery = Watchdog::Recovery::manual;
-  start_with_watchdog();
-  push("valve", 1);
-  run_for(milliseconds(50));
-  expire();
-  push("valve", 0);
-  run_for(milliseconds(500));
-  EXPECT_EQ(engine->statistics().written(WriteResult::Outcome::exception), 1U);
+  for (const std::uint16_t refused : {std::uint16_t{0}, std::uint16_t{1}}) {
+    engine.reset();
+    start_with_watchdog();
+    push("valve", 1);
+    run_for(milliseconds(50));
+    expire();
+    push("valve", refused);
+    run_for(milliseconds(500));
+    EXPECT_EQ(engine->statistics().written(WriteResult::Outcome::exception), 1U);
 
-  device.requests.clear();
-  auto answer = engine->reset_watchdog();
-  run_for(milliseconds(10));
-  EXPECT_TRUE(answer.get().success);
-  EXPECT_EQ(device.count("write coil 4"), 1U);
-  EXPECT_EQ(valve(), 0);
+    device.requests.clear();
+    auto answer = engine->reset_watchdog();
+    run_for(milliseconds(10));
+    EXPECT_TRUE(answer.get().success);
+    EXPECT_EQ(device.count("write coil 4"), 0U);
+    EXPECT_EQ(valve(), 0);
+  }
 }
 
 TEST_F(CouplerWatchdogTest, With_manual_recovery_a_new_connection_does_not_reset_it_either) {

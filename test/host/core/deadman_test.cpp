@@ -132,6 +132,7 @@ TEST_F(DeadmanTest, A_deadman_value_that_the_device_does_not_carry_out_is_tried_
   refuse_all(modbus::Exception::server_device_busy);
   run_for(milliseconds(3000));
   EXPECT_EQ(writes(), 3U);
+  EXPECT_EQ(sink->reported("no message for speed in 200 ms"), 1);
   device.refuses = nullptr;
   run_for(milliseconds(1000));
   EXPECT_EQ(speed(), 1);

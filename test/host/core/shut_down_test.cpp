@@ -79,6 +79,14 @@ TEST_F(ShutDownTest, An_output_that_does_not_take_its_safe_value_is_reported_and
   EXPECT_EQ((device.values[{Table::coils, 1}]), 1);
 }
 
+TEST_F(ShutDownTest, A_unit_that_its_gateway_did_not_reach_once_is_tried_again) {
+  start_online(OnShutdown::safe);
+  device.next_errors = {ExceptionReply{modbus::Exception::gateway_target_failed_to_respond}};
+  EXPECT_TRUE(engine->stop());
+  EXPECT_EQ((device.values[{Table::coils, 0}]), 0);
+  EXPECT_EQ((device.values[{Table::holding_registers, 0}]), 500);
+}
+
 TEST_F(ShutDownTest, A_device_that_is_away_at_the_end_is_told_of) {
   device.refuse_connect = NotConnected{"no route"};
   start_online(OnShutdown::safe);

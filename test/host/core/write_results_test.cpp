@@ -100,6 +100,19 @@ TEST_F(WriteResultsTest, An_exception_of_the_gateway_takes_the_unit_offline_and_
   }
 }
 
+TEST_F(WriteResultsTest, What_is_acknowledged_is_so_also_if_the_unit_is_away_when_it_is_read_back) {
+  start_online(nullptr, [](Point& point) { point.host.verify_write = point.address == 0; });
+  sink->online.clear();
+  device.refuses = [](const std::string& request) {
+    return request.rfind("read", 0) == 0 ? std::optional(modbus::Exception::gateway_path_unavailable)
+                                         : std::nullopt;
+  };
+  for (const char* name : {"k0", "k1"}) push(name, 1, &results);
+  engine->step();
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::not_taken, Outcome::ok));
+  EXPECT_THAT(sink->online, ElementsAre(false));
+}
+
 TEST_F(WriteResultsTest, A_device_that_refuses_several_at_once_gets_them_one_by_one) {
   start_online();
   device.next_errors.push_back(ExceptionReply{modbus::Exception::illegal_function});

@@ -116,12 +116,14 @@ class SysfsChannels : public Channels {
 
 /// How long all new PWM channels of a map together may wait for udev: nobody else is attended to meanwhile.
 constexpr std::chrono::milliseconds udev_timeout{800};
+/// The same while nothing is served yet, as when a board starts and udev is busy.
+constexpr std::chrono::milliseconds first_udev_timeout{5000};
 
 /// The channels behind the map's registers, with outputs as they are; null if it has none. The error says for
 /// each channel that cannot be opened what there is instead, and what to do; it may have several lines. `map`
 /// and `log` outlive the result.
 tl::expected<std::unique_ptr<SysfsChannels>, std::string> open_channels(
     const Map& map, Log& log, const std::string& sysfs = "/sys",
-    std::chrono::milliseconds timeout = udev_timeout);
+    std::chrono::milliseconds timeout = first_udev_timeout);
 
 }  // namespace coupler::device

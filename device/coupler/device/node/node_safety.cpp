@@ -65,9 +65,17 @@ bool NodeRuntime::went_safe(const std::vector<SafeOutcome>& parts) {
         "the outputs of {} could not be driven to their safe state{}; they may be as they were",
         outputs.name(part), parts[part] == SafeOutcome::hangs ? ": the call to the kernel hangs" : ""));
   }
-  context_->state->watchdog().disarm();
+  const TimePoint now = TimePoint::clock::now();
+  OutputWatchdog& watchdog = context_->state->watchdog();
+  // It may have expired in the process that hung meanwhile. What failed is tried again; what hangs has its
+  // turn when the call ends.
+  const bool any_failed = std::count(parts.begin(), parts.end(), SafeOutcome::failed) != 0;
+  if (watchdog.state() == OutputWatchdog::State::armed && watchdog.is_due(now))
+    watchdog.expire(!any_failed, now);
+  else
+    watchdog.disarm();
   const auto scheduled = context_->state->scheduled();
-  OutputSchedule(scheduled).outputs_went_safe(all, TimePoint::clock::now());
+  OutputSchedule(scheduled).outputs_went_safe(all, now);
   return std::any_of(scheduled.begin(), scheduled.end(),
                      [](const ScheduledOutput& one) { return one.state == ScheduledOutput::State::begun; });
 }

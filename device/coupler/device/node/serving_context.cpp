@@ -74,7 +74,7 @@ tl::expected<std::unique_ptr<ServingContext>, ServeError> ServingContext::prepar
       map, TimePoint::clock::now(), before == nullptr ? this_machine() : before->state->machine());
   if (before != nullptr) context->state->prepare_take_over(*before->state);
   if (!options.simulated) {
-    auto channels = open_channels(map, log);
+    auto channels = open_channels(map, log, "/sys", before == nullptr ? first_udev_timeout : udev_timeout);
     if (!channels) return failed(ServeError::device_failed, std::move(channels).error());
     context->channels = *std::move(channels);
   }

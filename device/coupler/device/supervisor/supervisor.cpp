@@ -22,29 +22,40 @@ constexpr std::chrono::milliseconds turn{100};
 /// Ten in the time after which a worker process takes its supervisor for dead.
 constexpr std::chrono::milliseconds beat_period = std::chrono::milliseconds(SupervisorLink::timeout) / 10;
 
+bool all_safe(const std::vector<SafeOutcome>& outcomes) {
+  return std::all_of(outcomes.begin(), outcomes.end(),
+                     [](SafeOutcome outcome) { return outcome == SafeOutcome::safe; });
+}
+
+/// False: an output could not be driven back, or it took too long.
+bool end_durations(Workload& workload, const std::vector<SafeOutcome>& parts, std::vector<Child>& lost) {
+  SafetyProcesses last(lost);
+  if (last.start([&] { return workload.end_durations(parts); })) return all_safe(last.finish());
+  const bool any_hangs = std::count(parts.begin(), parts.end(), SafeOutcome::hangs) != 0;
+  return !any_hangs && workload.end_durations(parts);
+}
+
 /// Drives the outputs of the workload to their safe state while nobody else does, and at the same time what
 /// its firmware is behind if that is wanted. False: one could not be driven, or took too long. A process that
 /// cannot be killed is added to `lost`.
 bool make_safe(Workload& workload, bool firmware_too, std::vector<Child>& lost) {
   const std::size_t parts = workload.begin_safe();
-  std::vector<std::function<bool()>> works;
-  works.reserve(parts + 1);
+  SafetyProcesses outputs(lost);
+  std::vector<std::size_t> unasked;
   for (std::size_t part = 0; part < parts; ++part)
-    works.emplace_back([&workload, part] { return workload.drive_safe(part); });
-  if (firmware_too && workload.has_firmware())
-    works.emplace_back([&workload] { return workload.make_firmware_safe(); });
-  std::vector<SafeOutcome> outcomes = drive_apart(works, lost);
-  for (std::size_t part = 0; part < parts; ++part)
-    if (outcomes[part] == SafeOutcome::unasked)
-      outcomes[part] = workload.drive_safe(part) ? SafeOutcome::safe : SafeOutcome::failed;
-  const auto is_safe = [](SafeOutcome outcome) { return outcome == SafeOutcome::safe; };
-  const bool safe = std::all_of(outcomes.begin(), outcomes.end(), is_safe);
-  outcomes.resize(parts);
-  if (!workload.went_safe(outcomes)) return safe;
-  const std::function<bool()> last = [&] { return workload.end_durations(outcomes); };
-  const SafeOutcome ended = drive_apart({last}, lost).front();
-  const bool any_hangs = std::count(outcomes.begin(), outcomes.end(), SafeOutcome::hangs) != 0;
-  return (ended == SafeOutcome::unasked && !any_hangs ? last() : is_safe(ended)) && safe;
+    if (!outputs.start([&] { return workload.drive_safe(part); })) unasked.push_back(part);
+  // It may take its time, which neither outputs nor the ends of durations wait for.
+  SafetyProcesses firmware(lost);
+  if (firmware_too && workload.has_firmware()) firmware.start([&] { return workload.make_firmware_safe(); });
+  std::vector<std::size_t> safe_here;
+  for (const std::size_t part : unasked)
+    if (workload.drive_safe(part)) safe_here.push_back(part);
+  std::vector<SafeOutcome> outcomes = outputs.finish();
+  for (const std::size_t part : unasked) outcomes[part] = SafeOutcome::failed;
+  for (const std::size_t part : safe_here) outcomes[part] = SafeOutcome::safe;
+  bool safe = all_safe(outcomes);
+  if (workload.went_safe(outcomes)) safe &= end_durations(workload, outcomes, lost);
+  return all_safe(firmware.finish()) && safe;
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ Deadmen::Entry* Deadmen::find(std::uint32_t point) {
 bool Deadmen::fed(std::uint32_t point, Time now) {
   Entry* const entry = find(point);
   if (entry == nullptr) return false;
+  entry->again = false;
   return entry->deadline.exchange((now + entry->timeout).time_since_epoch().count()) == disarmed;
 }
 
@@ -33,19 +34,25 @@ Time Deadmen::due() const {
   return Time(Duration(earliest));
 }
 
-std::optional<std::uint32_t> Deadmen::take_expired(Time now) {
+std::optional<Deadmen::Expired> Deadmen::take_expired(Time now) {
   for (Entry& entry : entries_) {
     Time::rep deadline = entry.deadline.load();
     if (deadline > now.time_since_epoch().count()) continue;
-    if (entry.deadline.compare_exchange_strong(deadline, disarmed)) return entry.point;
+    if (entry.deadline.compare_exchange_strong(deadline, disarmed)) return Expired{entry.point, entry.again};
   }
   return std::nullopt;
 }
 
-void Deadmen::put_back(std::uint32_t point, Time when) {
+void Deadmen::put_back(const Expired& expired) {
+  retry(expired.point, Time());
+  if (Entry* const entry = find(expired.point)) entry->again = expired.again;
+}
+
+void Deadmen::retry(std::uint32_t point, Time when) {
+  Entry* const entry = find(point);
   Time::rep expected = disarmed;  // unless a message has armed it meanwhile
-  if (Entry* const entry = find(point))
-    entry->deadline.compare_exchange_strong(expected, when.time_since_epoch().count());
+  if (entry != nullptr && entry->deadline.compare_exchange_strong(expected, when.time_since_epoch().count()))
+    entry->again = true;
 }
 
 }  // namespace coupler::host

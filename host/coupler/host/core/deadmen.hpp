@@ -22,10 +22,16 @@ class Deadmen {
   bool fed(std::uint32_t point, Time now);
   /// The earliest deadline; Time::max() if none is armed.
   Time due() const;
+  struct Expired {
+    std::uint32_t point;
+    bool again;  ///< it was before, since the last message
+  };
   /// A point whose deadline has passed: it is disarmed, and its value is to be written.
-  std::optional<std::uint32_t> take_expired(Time now);
+  std::optional<Expired> take_expired(Time now);
+  /// Nothing has been done about it yet.
+  void put_back(const Expired& expired);
   /// The value could not be written: it is to be tried again from `when` on, unless a message comes first.
-  void put_back(std::uint32_t point, Time when = {});
+  void retry(std::uint32_t point, Time when);
 
  private:
   static constexpr Time::rep disarmed = Time::max().time_since_epoch().count();
@@ -33,6 +39,7 @@ class Deadmen {
     std::uint32_t point;
     Duration timeout;
     std::atomic<Time::rep> deadline{disarmed};
+    std::atomic<bool> again{false};
   };
   Entry* find(std::uint32_t point);
 

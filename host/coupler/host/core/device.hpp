@@ -28,7 +28,7 @@ namespace coupler::host {
 /// A node that tells changes of its bits is asked for them all the time, by a request whose answer it holds
 /// back. Reads are made while one is outstanding only: its answer says which changes are older than they.
 ///
-/// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), schedule(), has_to_end(),
+/// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), schedule(), has_to_end(), answers(),
 /// end_comes(), statistics() and qualities() may be called from any thread. All else is for the thread that
 /// owns the connection; send_now() is also for another that has made sure that the owner only waits.
 class Device {
@@ -55,6 +55,8 @@ class Device {
   std::future<ScheduleAnswer> schedule(const ScheduledWrite& what) { return scheduler_.ask(what); }
   /// stop() has requests to make because of what was scheduled.
   bool has_to_end() const { return scheduler_.is_busy(); }
+  /// It has answered the last request: its outputs may have been written, and can be.
+  bool answers() const { return transport_.unit_answers(); }
 
   /// Sends what is queued without waiting for anything, if that is possible now. If false, step() must be
   /// called.

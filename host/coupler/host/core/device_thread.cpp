@@ -10,7 +10,7 @@ using std::chrono::milliseconds;
 
 /// For safe values at the end: the program is to be gone within a second.
 constexpr milliseconds longest_shutdown(700);
-/// For the attempt to connect that is being made then.
+/// For the first answer of a device that gives none then.
 constexpr milliseconds longest_attempt(100);
 
 }  // namespace
@@ -37,12 +37,12 @@ bool DeviceThread::end() {
   return ended_safely_;
 }
 
-/// A device that is offline has nothing to make safe, unless the attempt to connect that is being made
-/// succeeds. That has a moment only: it may hold a connection that other units need for their safe values.
+/// A device that does not answer has a moment only: it may hold a connection that other units need for their
+/// safe values.
 void DeviceThread::await_stop() {
   const auto stopped = stopped_.get_future();
   if (stopped.wait_for(longest_attempt) == std::future_status::ready) return;
-  if (is_ending_ || device_.statistics().online) stopped.wait_for(longest_shutdown - longest_attempt);
+  if (is_ending_ || device_.answers()) stopped.wait_for(longest_shutdown - longest_attempt);
 }
 
 void DeviceThread::write(const Write& write) {

@@ -25,7 +25,9 @@ Result<> PacedTransport::answered(Result<> result) {
   if (const ExceptionReply* exception = result ? nullptr : exception_in(result.error()))
     seen_.set(static_cast<std::size_t>(exception->code));
   statistics_.answered(answered_ - begun_, result);
-  if (result || exception_in(result.error()) != nullptr) ++replies_;
+  const bool is_reply = result || exception_in(result.error()) != nullptr;
+  if (is_reply) ++replies_;
+  unit_answers_ = is_reply && (result || !is_unit_away(result.error()));
   give(transport_.take_wait_answer());
   return result;
 }
@@ -37,6 +39,7 @@ void PacedTransport::give(const std::optional<WaitAnswer>& answer) {
 }
 
 Result<> PacedTransport::connect() {
+  unit_answers_ = false;
   Result<> result = transport_.connect();
   ended_at(clock_.now(), delay_);
   return result;

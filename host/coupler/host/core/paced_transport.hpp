@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <bitset>
 
 #include "coupler/host/core/clock.hpp"
@@ -74,6 +75,8 @@ class PacedTransport : public Transport {
   Stamp last_write() const { return written_; }
   /// How many requests have been answered, also by an exception.
   std::uint64_t replies() const { return replies_; }
+  /// From any thread: the last request over this connection was answered, and not for a unit that is away.
+  bool unit_answers() const { return unit_answers_; }
 
   /// Whether a request has been answered with it since the last forget_exceptions().
   bool has_seen(modbus::Exception code) const { return seen_[static_cast<std::size_t>(code)]; }
@@ -102,6 +105,7 @@ class PacedTransport : public Transport {
   Time answered_{};
   Stamp written_{};
   std::uint64_t replies_ = 0;
+  std::atomic<bool> unit_answers_{false};
   std::bitset<256> seen_;  ///< exceptions
 };
 

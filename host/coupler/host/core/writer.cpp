@@ -95,19 +95,20 @@ bool Writer::send_now() {
 }
 
 void Writer::fire_deadmen() {
-  while (const auto point = deadmen_.take_expired(clock_.now())) {
-    const HostOptions::Deadman& deadman = map_.points[*point].host.deadman;
-    Write write = make_write(map_, *point, deadman.value);
+  while (const auto expired = deadmen_.take_expired(clock_.now())) {
+    const Point& point = map_.points[expired->point];
+    const HostOptions::Deadman& deadman = point.host.deadman;
+    Write write = make_write(map_, expired->point, deadman.value);
     write.of_deadman = write.ordered = true;
     const WriteQueue::Pushed pushed = queue_.push(write);
     if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
     if (!pushed.accepted) {  // it goes when there is room: the queue is being emptied
-      deadmen_.put_back(*point);
+      deadmen_.put_back(*expired);
       return;
     }
-    sink_.on_report(Level::warning,
-                    fmt::format("no message for {} in {} ms: its deadman value{} is written", name(*point),
-                                deadman.timeout.count(), deadman_value(map_.points[*point])));
+    if (expired->again) continue;
+    sink_.on_report(Level::warning, fmt::format("no message for {} in {} ms: its deadman value{} is written",
+                                                point.name, deadman.timeout.count(), deadman_value(point)));
   }
 }
 
@@ -152,27 +153,28 @@ Result<> Writer::finish(const Result<>& answer) {
                                 name(done_.writes().front().point), to_string(answer.error())));
   } else {
     for (const Write& write : done_.writes())
-      if (const auto finished = finish_one(write, link ? answer : link); !finished) link = finished;
+      if (const auto finished = finish_one(write, answer, link); !finished) link = finished;
   }
   done_.clear();
   return link;
 }
 
-Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
+Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Result<>& link) {
   if (answer) {
     remember(write);
     acknowledged_[write.point] = true;
     if (written_ != nullptr) written_->on_written(write);
-    if (map_.points[write.point].host.verify_write) return verify(write);
+    if (map_.points[write.point].host.verify_write) return verify(write, link);
     settle(write, {Outcome::ok});
     return {};
   }
   const ExceptionReply* exception = exception_in(answer.error());
   const bool is_away = exception == nullptr || is_unit_away(answer.error());
   if (is_away || !is_wrong(exception->code)) {
-    // It is the newest command all the same: nothing older is restored, and a deadman stays due.
-    if (!write.of_schedule) remember(write);
-    if (write.of_deadman) deadmen_.put_back(write.point, is_away ? Time() : clock_.now() + deadman_retry);
+    // It may be carried out, or what it replaced be no more: nothing older is restored, and a deadman is due.
+    last_written_.erase(write.point);
+    if (write.of_deadman || (is_away && !write.of_schedule)) remember(write);
+    if (write.of_deadman) deadmen_.retry(write.point, is_away ? Time() : clock_.now() + deadman_retry);
   }
   if (exception == nullptr) {
     settle(write, {Outcome::lost, std::nullopt, to_string(answer.error())});
@@ -184,11 +186,11 @@ Result<> Writer::finish_one(const Write& write, const Result<>& answer) {
   return is_away ? answer : Result<>{};
 }
 
-Result<> Writer::verify(const Write& write) {
+Result<> Writer::verify(const Write& write, const Result<>& link) {
   ReadBack back;
-  const Result<> read = back.read(write, map_, transport_);
+  const Result<> read = link ? back.read(write, map_, transport_) : link;
   const ExceptionReply* exception = read ? nullptr : exception_in(read.error());
-  if (!read && (exception == nullptr || is_unit_away(read.error()))) return finish_one(write, read);
+  if (!read && exception == nullptr) return finish_one(write, read);
   WriteResult result;
   if (exception != nullptr) {
     result = {Outcome::not_taken, exception->code};
@@ -198,7 +200,7 @@ Result<> Writer::verify(const Write& write) {
     result.found = back.found();
   }
   settle(write, result);
-  return {};
+  return read || !is_unit_away(read.error()) ? Result<>{} : read;
 }
 
 Result<> Writer::make_safe() {
@@ -292,7 +294,7 @@ void Writer::remember(const Write& write) {
 void Writer::drop(const Write& write) {
   const bool keeps = restores(write) && !write.of_schedule;  // that has a time of its own
   if (keeps) remember(write);
-  if (write.of_deadman) deadmen_.put_back(write.point);
+  if (write.of_deadman) deadmen_.retry(write.point, Time());
   const WriteResult result = {keeps ? Outcome::kept : Outcome::dropped, std::nullopt,
                               unconnected_text(map_.points[write.point], write)};
   queue_.settled(write.point);
@@ -310,7 +312,9 @@ bool Writer::shut_down(bool connected) {
     return false;
   }
   if (sent_) finish(transport_.receive(*sent_));
-  const auto rejected = write_safe_values();
+  auto rejected = write_safe_values();
+  // It may be there, behind a line that garbled one frame. There is no later chance.
+  if (!rejected && is_unit_away(rejected.error())) rejected = write_safe_values();
   if (!rejected) {
     sink_.on_report(Level::error,
                     "not all outputs could be set to their safe values: " + to_string(rejected.error()));

@@ -107,8 +107,9 @@ class Writer {
   void fire_deadmen();
   void choose_next();
   Result<> finish(const Result<>& answer);
-  Result<> finish_one(const Write& write, const Result<>& answer);
-  Result<> verify(const Write& write);
+  /// `link`: what has become of the connection since the answer.
+  Result<> finish_one(const Write& write, const Result<>& answer, const Result<>& link = {});
+  Result<> verify(const Write& write, const Result<>& link);
   Result<> make_safe();
   Result<std::vector<RejectedValue>> write_safe_values();
   void tell(const Write& write, const WriteResult& result);
