@@ -122,6 +122,7 @@ TEST_F(DeadmanTest, A_deadman_value_whose_unit_is_away_is_written_when_it_is_bac
     run_for(milliseconds(10000));
     EXPECT_EQ(speed(), 1);
     EXPECT_EQ(std::count(written.begin() + 1, written.end(), 500), 0) << "500 was restored";
+    device.refuses = nullptr;
   }
 }
 
