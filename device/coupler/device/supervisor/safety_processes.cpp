@@ -73,8 +73,9 @@ bool SafetyProcesses::start(const std::function<bool()>& work) {
     ::alarm(2 * static_cast<unsigned>(Silence::limit_in_any_case.count()));
     return work() ? 0 : 1;
   });
-  if (child) processes_.emplace_back(*std::move(child), outcomes_.size() - 1);
-  return child.has_value();
+  if (!child) return false;
+  processes_.emplace_back(*std::move(child), outcomes_.size() - 1);
+  return true;
 }
 
 std::vector<SafeOutcome> SafetyProcesses::finish() {
