@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A generated client, config/examples/pump, against a server that libmodbus makes.
+// A generated client, config/examples/pump: values, connections, schedules.
 #include <gmock/gmock.h>
 
-#include <atomic>
-#include <optional>
+#include <thread>
 
-#include "pump_client.hpp"
-#include "test/host/modbus/modbus_server.hpp"
+#include "test/host/client/pump_client_fixture.hpp"
 
 namespace coupler::client {
 namespace {
@@ -15,29 +13,6 @@ using namespace std::chrono_literals;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Outcome = SetResult::Outcome;
-
-constexpr auto soon = 20s;
-
-struct PumpClient : ::testing::Test {
-  Options options() const {
-    Options options;
-    options.address = "127.0.0.1";
-    options.port = server.port();
-    return options;
-  }
-  /// Whether it comes true.
-  template <class Condition>
-  static bool becomes(Condition condition) {
-    for (const auto end = std::chrono::steady_clock::now() + soon; std::chrono::steady_clock::now() < end;) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(1ms);
-    }
-    return condition();
-  }
-
-  host::test::ModbusServer server;
-  maps::pump::Client pump{options()};
-};
 
 TEST_F(PumpClient, Values_have_the_types_and_units_of_the_map) {
   auto& tables = server.tables();
@@ -105,44 +80,26 @@ TEST_F(PumpClient, Disconnected_it_keeps_its_last_values_as_offline_and_can_conn
   EXPECT_TRUE(pump.valve.set(true).get());
 }
 
-TEST_F(PumpClient, Changes_are_told_and_nothing_else) {
-  std::mutex mutex;
-  std::vector<double> told;
-  pump.pressure.on_change([&](double bar) {
-    const std::lock_guard lock(mutex);
-    told.push_back(bar);
-  });
+TEST_F(PumpClient, Connected_again_it_takes_no_value_from_before_for_a_good_one) {
+  server.tables().tab_input_bits[0] = 1;
   pump.connect();
-  const auto seen = [&](std::size_t count) {
-    return becomes([&] {
-      const std::lock_guard lock(mutex);
-      return told.size() >= count;
-    });
-  };
-  ASSERT_TRUE(seen(1));
-  const int several = server.requests + 20;  // polls of the same value
-  ASSERT_TRUE(becomes([&] { return server.requests >= several; }));
-  server.tables().tab_input_registers[0] = 150;
-  ASSERT_TRUE(seen(2));
+  ASSERT_TRUE(pump.running.wait(soon));
   pump.disconnect();
-  EXPECT_THAT(told, ElementsAre(0, 1.5));
-}
-
-TEST_F(PumpClient, A_change_has_the_time_at_which_it_was_true) {
-  std::mutex mutex;
-  std::optional<host::Stamp> told;
-  pump.running.on_stamped_change([&](bool, host::Stamp stamp) {
-    const std::lock_guard lock(mutex);
-    told = stamp;
-  });
-  const auto before = std::chrono::steady_clock::now();
+  server.tables().tab_input_bits[0] = 0;
   pump.connect();
-  ASSERT_TRUE(becomes([&] {
-    const std::lock_guard lock(mutex);
-    return told.has_value();
-  }));
-  EXPECT_GE(told->at + told->uncertainty, before);
-  EXPECT_LE(told->at - told->uncertainty, std::chrono::steady_clock::now());
+  std::thread other([&] {
+    for (const auto end = std::chrono::steady_clock::now() + soon; std::chrono::steady_clock::now() < end;) {
+      const auto seen = pump.running.get();
+      ASSERT_TRUE(seen);
+      if (seen->quality != Quality::good) continue;
+      EXPECT_FALSE(seen->value);
+      return;
+    }
+  });
+  const auto waited_for = pump.running.wait(soon);
+  other.join();
+  ASSERT_TRUE(waited_for);
+  EXPECT_FALSE(waited_for->value);
 }
 
 /// Accepted in time, on any machine.
@@ -193,16 +150,6 @@ TEST_F(PumpClient, Disconnected_it_drives_nothing_any_more) {
   ASSERT_TRUE(result);
   EXPECT_EQ(result->outcome, ScheduleResult::Outcome::cancelled);
   EXPECT_EQ(result->lateness, host::Duration(0)) << "only of what was carried out";
-}
-
-TEST_F(PumpClient, A_change_may_be_answered_by_setting_a_point) {
-  std::atomic<bool> asked{false};
-  pump.running.on_change([&](bool) {
-    pump.speed.set(12.5);
-    asked = true;
-  });
-  pump.connect();
-  ASSERT_TRUE(becomes([&] { return asked && server.tables().tab_registers[0] == 125; }));
 }
 
 TEST_F(PumpClient, Each_point_can_be_met_with_its_name_and_type) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "coupler/host/core/stamp.hpp"
@@ -24,37 +25,46 @@ class LastValues {
   struct Value {
     std::vector<std::uint16_t> registers;
     host::Time at;
+    bool earlier = false;  ///< read over a connection before this one
   };
 
   /// The map must outlive it.
   explicit LastValues(const Map& map) : map_(map), entries_(map.points.size()) {}
 
+  /// A connection begins.
+  void begin();
   /// Keeps values that were read, all at once. Then calls, in this thread, the listeners of points that have
-  /// another value than before, or their first one.
+  /// another value than before, or their first one. One thread at a time; a listener must not throw.
   void set(const plan::ReadSpan& span, Span<const std::uint16_t> registers, host::Stamp stamp);
+  /// Takes the place of the listener before. Waits while one of this point is being called by another thread.
   void listen(std::uint32_t point, Listener listener);
 
   /// nullopt: none was read yet.
   std::optional<Value> get(std::uint32_t point) const;
-  /// The same after waiting for the first one.
+  /// The same after waiting for the first one of this connection.
   std::optional<Value> wait(std::uint32_t point, std::chrono::milliseconds at_most) const;
 
  private:
   struct Entry {
     std::optional<Value> value;
-    std::shared_ptr<const Listener> listener;  ///< shared: it may be replaced while it is called
+    std::shared_ptr<const Listener> listener;  ///< shared: it may replace itself while it is called
   };
   struct News {
-    std::shared_ptr<const Listener> listener;
+    std::uint32_t point;
     const std::uint16_t* registers;
   };
   /// Whether it is another value.
   static bool keep(Entry& entry, const Point& point, const std::uint16_t* registers, host::Time at);
+  void tell(const News& news, host::Stamp stamp);
 
   const Map& map_;
   mutable std::mutex mutex_;
   mutable std::condition_variable came_;
   std::vector<Entry> entries_;
+  std::optional<std::uint32_t> called_;  ///< the point whose listener is being called
+  std::thread::id caller_;
+  std::uint64_t calls_ = 0;
+  std::condition_variable returned_;
 };
 
 }  // namespace coupler::client

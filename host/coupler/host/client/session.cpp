@@ -2,6 +2,7 @@
 #include "coupler/host/client/session.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <utility>
 
@@ -53,11 +54,20 @@ std::string move_to(Map& map, const Options& options) {
   return {};
 }
 
+/// What a callback throws ends there: the connection's thread has outputs to look after.
+void report(const Options& options, Level level, const std::string& text) {
+  try {
+    if (options.on_report) options.on_report(level, text);
+  } catch (...) {
+    std::fputs((text + '\n').c_str(), stderr);  // nobody else is left to be told
+  }
+}
+
 /// A connection to nowhere if the options cannot be understood; that is reported.
 Map moved(Map map, const Options& options) {
   if (const std::string wrong = move_to(map, options); !wrong.empty()) {
     map.connection = {};
-    if (options.on_report) options.on_report(Level::error, wrong);
+    report(options, Level::error, wrong);
   }
   return map;
 }
@@ -127,8 +137,10 @@ Session::~Session() { disconnect(); }
 void Session::connect() {
   const std::lock_guard whole(connecting_);
   const std::unique_lock lock(engine_mutex_);
+  if (engine_) return;
+  values_.begin();
   host::Sink& news = *this;
-  if (!engine_) engine_ = std::make_unique<Engine>(map_, options_.verify.value_or(map_.verify), news);
+  engine_ = std::make_unique<Engine>(map_, options_.verify.value_or(map_.verify), news);
 }
 
 void Session::disconnect() {
@@ -155,8 +167,9 @@ tl::expected<Session::Sample, NoValue> Session::judge(std::uint32_t point,
                                                       std::optional<LastValues::Value> value) const {
   const host::PointQuality known = quality(point);
   if (!value) return tl::unexpected(NoValue{known.state, known.last_exception});
-  // A value is here a moment before its quality is.
-  const Quality state = known.state == Quality::never_read ? Quality::good : known.state;
+  // A value is here a moment before its quality is. The other way round it is one of a connection before.
+  Quality state = known.state == Quality::never_read ? Quality::good : known.state;
+  if (value->earlier && state == Quality::good) state = Quality::stale;
   // Where a node tells changes, a value is known to be true for longer than since the change.
   const bool was_true_then = (state == Quality::good || state == Quality::offline) && known.last_good;
   const host::Time at = was_true_then ? std::max(value->at, *known.last_good) : value->at;
@@ -203,8 +216,26 @@ void Session::on_online(bool online) {
   came_online_.notify_all();
 }
 
-void Session::on_report(Level level, const std::string& text) {
-  if (options_.on_report) options_.on_report(level, text);
+void Session::on_report(Level level, const std::string& text) { report(options_, level, text); }
+
+void Session::listen(std::uint32_t point, LastValues::Listener listener) {
+  if (!listener) return values_.listen(point, {});
+  auto tell = [this, point, told = false](std::string_view what) mutable {
+    if (std::exchange(told, true)) return;
+    report(options_, Level::error,
+           fmt::format("{}: its callback threw an exception: {}; catch it there (reported once)",
+                       map_.points[point].name, what));
+  };
+  values_.listen(point, [tell = std::move(tell), listener = std::move(listener)](
+                            const std::uint16_t* registers, host::Stamp stamp) mutable {
+    try {
+      listener(registers, stamp);
+    } catch (const std::exception& thrown) {
+      tell(thrown.what());
+    } catch (...) {
+      tell("not a std::exception");
+    }
+  });
 }
 
 host::Write PointHandle::make_write(const std::uint16_t* registers) const {

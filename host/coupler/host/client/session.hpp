@@ -35,7 +35,8 @@ struct Options {
   TlsTexts tls{};
   std::optional<Verify> verify;  ///< what to do if the device has another map; default: the map's
   /// Gets lines for a log: why the device cannot be reached, how two maps differ. Called in the connection's
-  /// thread, or in one that sets a value; it must neither wait nor use the client.
+  /// thread, or in one that sets a value; it must neither wait nor use the client. A line at which it throws
+  /// goes to stderr.
   std::function<void(Level, const std::string&)> on_report{};
 };
 
@@ -70,7 +71,8 @@ PendingWrite refused(std::string_view why);
 /// and identity check.
 ///
 /// All may be called from any thread. Callbacks come in the connection's thread: they may read and set
-/// points, but must neither wait nor connect nor disconnect.
+/// points, but must neither wait nor connect nor disconnect. What they throw is reported
+/// (Options::on_report).
 class Session : private host::Sink {
  public:
   ~Session() override;
@@ -80,7 +82,8 @@ class Session : private host::Sink {
   /// Connects in the background, again and again until disconnect(). Returns at once, or when another
   /// thread's disconnect() has.
   void connect();
-  /// Ends the connection, outputs as the map's `on_shutdown` says. The last values stay, as offline.
+  /// Ends the connection, outputs as the map's `on_shutdown` says. The last values stay, as offline; after
+  /// another connect(), once the device answers, as stale until they are read.
   void disconnect();
 
   /// The device answers, and has this map.
@@ -102,6 +105,7 @@ class Session : private host::Sink {
   };
   tl::expected<Sample, NoValue> judge(std::uint32_t point, std::optional<LastValues::Value> value) const;
   host::PointQuality quality(std::uint32_t point) const;
+  void listen(std::uint32_t point, LastValues::Listener listener);
   PendingWrite write(host::Write& write);
   PendingSchedule schedule(const host::ScheduledWrite& what);
 
@@ -144,7 +148,7 @@ class PointHandle {
   tl::expected<Sample, NoValue> first_sample(std::chrono::milliseconds at_most) const {
     return session_.judge(index_, session_.values_.wait(index_, at_most));
   }
-  void listen(LastValues::Listener listener) { session_.values_.listen(index_, std::move(listener)); }
+  void listen(LastValues::Listener listener) { session_.listen(index_, std::move(listener)); }
   /// `registers` as TypedValue encodes them.
   PendingWrite write(const std::uint16_t* registers);
   PendingSchedule write_at(const std::uint16_t* registers, host::Time due,
