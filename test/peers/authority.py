@@ -19,6 +19,8 @@ default_days = 700
 default_crl_days = 30
 policy = any
 unique_subject = no
+[delta]
+2.5.29.27 = critical,DER:020101
 [any]
 commonName = supplied
 """
@@ -32,13 +34,13 @@ def openssl(folder, *arguments):
 
 
 class Authority:
-    def __init__(self, folder, name="ca"):
+    def __init__(self, folder, name="ca", curve="P-256"):
         self.folder = pathlib.Path(folder)
         self.name = name
         (self.folder / "index.txt").touch()
         (self.folder / "serial").write_text("1000\n")
         (self.folder / f"{name}.cnf").write_text(CONFIG.format(name=name))
-        openssl(folder, "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-keyout",
+        openssl(folder, "req", "-x509", "-newkey", "ec", "-pkeyopt", f"ec_paramgen_curve:{curve}", "-nodes", "-keyout",
                 f"{name}.key", "-out", f"{name}.pem", "-days", "3650", "-subj", f"/CN=authority {name}", "-addext",
                 "keyUsage=critical,keyCertSign,cRLSign")
         self._serial = 0x1000
@@ -60,9 +62,11 @@ class Authority:
     def node(self, name, names="IP:127.0.0.1,DNS:localhost", **how):
         self.issue(name, "extendedKeyUsage=serverAuth", f"subjectAltName={names}", **how)
 
-    def revoke(self, name, to="list.pem"):
+    def revoke(self, name, **how):
         openssl(self.folder, "ca", "-config", f"{self.name}.cnf", "-revoke", f"{name}.pem")
-        self.list(to)
+        self.list(**how)
 
-    def list(self, to="list.pem"):
-        openssl(self.folder, "ca", "-config", f"{self.name}.cnf", "-gencrl", "-out", to)
+    def list(self, to="list.pem", options=()):
+        """Of all that is revoked; `options` of openssl ca -gencrl. Its text."""
+        openssl(self.folder, "ca", "-config", f"{self.name}.cnf", "-gencrl", "-out", to, *options)
+        return (self.folder / to).read_text()

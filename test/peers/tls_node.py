@@ -155,7 +155,9 @@ def make_certificates(folder):
     ca.node("other_name", "IP:192.0.2.1,DNS:press")
     ca.node("expired_node", dates=("-startdate", "20200101000000Z", "-enddate", "20200201000000Z"))
     ca.node("future_node", dates=("-startdate", "20900101000000Z", "-enddate", "20910101000000Z"))
+    ca.node("endless_node", dates=("-startdate", "20200101000000Z", "-enddate", "99991231235959Z"))
     ca.node("weak_node", key=("rsa:1024",))
+    ca.node("small_node", key=("ec", "-pkeyopt", "ec_paramgen_curve:P-224"))
     ca.revoke("revoked")
     other = folder / "other"
     other.mkdir()
@@ -164,9 +166,12 @@ def make_certificates(folder):
     stranger.node("strange_node")
     stranger.list()
     shutil.copy(other / "list.pem", folder / "strange_list.pem")
-    for name in ("stranger", "strange_node"):
-        for ending in ("pem", "key"):
-            shutil.copy(other / f"{name}.{ending}", folder)
+    small = folder / "small"
+    small.mkdir()
+    Authority(small, "small_ca", curve="P-224").node("small_ca_node")
+    for made in (other / "stranger.pem", other / "strange_node.pem", small / "small_ca.pem", small / "small_ca_node.pem"):
+        shutil.copy(made, folder)
+        shutil.copy(made.with_suffix(".key"), folder)
     for key in folder.glob("*.key"):
         key.chmod(0o600)
     return ca

@@ -9,7 +9,9 @@ import contextlib
 import json
 import pathlib
 import re
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -90,6 +92,12 @@ def what_check_says(folder, checks):
     (folder / "cell.yaml").write_text(whole.replace("node.pem", "future_node.pem").replace("node.key", "future_node.key"))
     status, text = check()
     checks.equal(f"one that is not good yet: {text}", (status, "fits its key; begins on 2090-01-01" in text), (0, True))
+    (folder / "cell.yaml").write_text(whole.replace("node.pem", "small_node.pem").replace("node.key", "small_node.key"))
+    status, text = check()
+    checks.equal(f"one with P-224: {text}", (status, "its key is too weak; have it issued again with P-256" in text), (1, True))
+    (folder / "cell.yaml").write_text(whole.replace("node.pem", "endless_node.pem").replace("node.key", "endless_node.key"))
+    status, text = check()
+    checks.equal(f"one that never ends: {text}", (status, "fits its key; good until 2262-" in text), (0, True))
     (folder / "cell.yaml").write_text(whole)
 
 
@@ -120,6 +128,23 @@ def what_certificates_makes(folder, checks):
     shutil.rmtree(folder / "plant")
 
 
+def what_a_killed_call_leaves(folder, checks):
+    """Nothing that stands in the way of the next one, whole files only. It dies when a file becomes longer than this."""
+    call = [COUPLER, "certificates", "cut_short", "--node", "press"]
+    for size in (0, 400, 1000):  # in the authority's key, its certificate, the node's
+        def with_a_limit(size=size):
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+        died = subprocess.run(call, cwd=folder, capture_output=True, preexec_fn=with_a_limit).returncode
+        checks.equal(f"killed at {size} bytes", died, -signal.SIGXFSZ)
+    left = sorted(file.name for file in (folder / "cut_short").rglob("[!.]*.pem"))
+    checks.equal("certificates that are whole", left, ["authority.pem", "authority.pem"])
+    told = subprocess.run(call, cwd=folder, capture_output=True, text=True)
+    checks.equal(f"then it makes all: {told.stderr}", told.returncode, 0)
+    checks.equal("whole", subprocess.run(["openssl", "verify", "-CAfile", "press/authority.pem", "press/press-2.pem"],
+                                         cwd=folder / "cut_short", capture_output=True).returncode, 0)
+
+
 @contextlib.contextmanager
 def s_server(folder, name, *options):
     """Its port; it asks clients for a certificate."""
@@ -136,19 +161,19 @@ def s_server(folder, name, *options):
 
 
 def which_servers_are_believed(folder, checks):
-    def dump(port):
+    def dump(port, ca):
         return subprocess.run([COUPLER, "dump", "cell.yaml", "--at", f"tls://127.0.0.1:{port}", "--certificate", "operator.pem",
-                               "--key", "operator.key", "--ca", "ca.pem"], cwd=folder, capture_output=True, text=True,
+                               "--key", "operator.key", "--ca", ca], cwd=folder, capture_output=True, text=True,
                               timeout=peer.PATIENCE).stderr
 
     old = "-cipher", "DEFAULT@SECLEVEL=0"
     for name, options, says in (
             ("other_name", (), "another name or address"), ("expired_node", (), "its certificate has expired on 2020-02-01"),
             ("strange_node", (), "from another authority"), ("operator", (), "for another purpose"),
-            ("weak_node", old, "weak key"), ("node", ("-tls1_1", *old), "protocol_version"),
+            ("weak_node", old, "weak key"), ("small_ca_node", (), "weak key"), ("node", ("-tls1_1", *old), "protocol_version"),
             ("node", (), "no reply within"), ("node", ("-tls1_2",), "no reply within")):
         with s_server(folder, name, *options) as port:
-            told = dump(port)
+            told = dump(port, "small_ca.pem" if name == "small_ca_node" else "ca.pem")
             checks.equal(f"a server with {name} {' '.join(options)}: {told}", says in told, True)
     with s_server(folder, "node") as port:
         pin = subprocess.run([COUPLER, "pin", f"tls://127.0.0.1:{port}"], cwd=folder, capture_output=True, text=True).stdout
@@ -166,6 +191,7 @@ def main():
         shutil.copy(MAP, folder / "cell.yaml")
         what_check_says(folder, checks)
         what_certificates_makes(folder, checks)
+        what_a_killed_call_leaves(folder, checks)
         node = Node(folder, NODE, "cell.yaml")
         try:
             the_tools(node, checks)

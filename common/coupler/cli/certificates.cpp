@@ -2,6 +2,7 @@
 // coupler certificates: an authority, and what nodes and clients need of it, as files to copy.
 #include <arpa/inet.h>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -101,16 +102,26 @@ tl::expected<tls::Subject, std::string> client_of(const std::string& text) {
   return tls::Subject{name, false, {}, role};
 }
 
-/// A new file; a key can be read by its owner only.
+/// A new file, whole or not at all; a key can be read by its owner only.
 tl::expected<void, std::string> write_new(const fs::path& path, const std::string& text, bool is_secret) {
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, is_secret ? 0600 : 0644);
-  const bool is_written =
-      fd >= 0 && ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  const int error = errno;
+  const fs::path unfinished = path.parent_path() / ("." + path.filename().string());  // no name begins so
+  ::unlink(unfinished.c_str());  // of a call that was killed
+  const int fd = ::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, is_secret ? 0600 : 0644);
+  int error = fd < 0 ? errno : 0;
+  for (std::string_view rest = text; !rest.empty() && error == 0;) {
+    const ssize_t size = ::write(fd, rest.data(), rest.size());
+    if (size > 0)
+      rest.remove_prefix(static_cast<std::size_t>(size));
+    else
+      error = errno;
+  }
+  if (error == 0 && ::fsync(fd) != 0) error = errno;
   if (fd >= 0) ::close(fd);
-  if (!is_written)
-    return tl::unexpected(fmt::format("{} cannot be written: {}", path.string(), std::strerror(error)));
-  return {};
+  if (error == 0 && ::access(path.c_str(), F_OK) == 0) error = EEXIST;
+  if (error == 0 && ::rename(unfinished.c_str(), path.c_str()) != 0) error = errno;
+  if (error == 0) return {};
+  ::unlink(unfinished.c_str());
+  return tl::unexpected(fmt::format("{} cannot be written: {}", path.string(), std::strerror(error)));
 }
 
 tl::expected<void, std::string> make_folder(const fs::path& folder, bool is_secret) {
@@ -119,6 +130,16 @@ tl::expected<void, std::string> make_folder(const fs::path& folder, bool is_secr
   if (!error && is_secret) fs::permissions(folder, fs::perms::owner_all, error);
   if (error) return tl::unexpected(fmt::format("{} cannot be made: {}", folder.string(), error.message()));
   return {};
+}
+
+/// Two calls at once would mix their files. It is held until the program ends.
+tl::expected<void, std::string> lock(const fs::path& folder) {
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0)
+    return tl::unexpected(fmt::format("{} cannot be opened: {}", folder.string(), std::strerror(errno)));
+  if (::flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return {};  // some file systems have none
+  return tl::unexpected(fmt::format(
+      "{}: another 'coupler certificates' works there; call this one when it has ended", folder.string()));
 }
 
 /// Whether what a subject's folder has is of DIR/authority, which may have been put away. `authority`: its
@@ -134,6 +155,23 @@ tl::expected<void, std::string> expect_authority(const fs::path& own, const std:
           ? fmt::format("{} is of an authority that is not here; bring back {}, or begin another folder",
                         own.string(), other)
           : fmt::format("{} is of another authority than {}; begin another folder", own.string(), other));
+}
+
+/// Both files or none: a call that was interrupted leaves nothing that stands in the way of the next.
+tl::expected<void, std::string> place_authority(const fs::path& own, const tls::Pem& made) {
+  const fs::path unfinished = own.parent_path() / ".authority";  // no subject has such a name
+  std::error_code error;
+  fs::remove_all(unfinished, error);
+  if (auto done = make_folder(unfinished, true); !done) return done;
+  if (auto done = write_new(unfinished / "authority.key", made.key, true); !done) return done;
+  if (auto done = write_new(unfinished / "authority.pem", made.certificate, false); !done) return done;
+  fs::rename(unfinished, own, error);
+  if (error)
+    return tl::unexpected(
+        fmt::format("{} cannot be made: {}; if there is a folder without authority.pem, move "
+                    "it away",
+                    own.string(), error.message()));
+  return {};
 }
 
 /// DIR/authority, made if it is not there, and if nothing of these subjects is of another one.
@@ -160,11 +198,7 @@ tl::expected<tls::Pem, std::string> authority_in(const fs::path& folder, tls::Ke
   constexpr std::size_t longest = 48;                         // with the words before it 64 bytes at most
   auto made = tls::make_authority("Authority of " + place.filename().string().substr(0, longest), kind);
   if (!made) return made;
-  if (auto done = make_folder(own, true); !done) return tl::unexpected(std::move(done).error());
-  if (auto done = write_new(own / "authority.key", made->key, true); !done)
-    return tl::unexpected(std::move(done).error());
-  if (auto done = write_new(own / "authority.pem", made->certificate, false); !done)
-    return tl::unexpected(std::move(done).error());
+  if (auto done = place_authority(own, *made); !done) return tl::unexpected(std::move(done).error());
   fmt::print("{}: made; it stays here: whoever has authority.key can make clients of any role\n",
              own.string());
   return made;
@@ -246,6 +280,8 @@ tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subje
                                         const std::vector<std::string>& roles) {
   const fs::path own = folder / subject.name;
   if (auto done = make_folder(own, true); !done) return done;
+  if (!fs::exists(own / "authority.pem"))
+    if (auto done = write_new(own / "authority.pem", authority.certificate, false); !done) return done;
   const Stems stems = stems_in(own, subject.name + (kind == tls::KeyKind::rsa ? "-rsa" : ""), ".pem");
   if (stems.newest) {
     const auto kept = is_kept(own, *stems.newest, subject);
@@ -256,8 +292,6 @@ tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subje
   if (!made) return tl::unexpected(made.error());
   if (auto done = write_new(own / (stems.next + ".key"), made->key, true); !done) return done;
   if (auto done = write_new(own / (stems.next + ".pem"), made->certificate, false); !done) return done;
-  if (!fs::exists(own / "authority.pem"))
-    if (auto done = write_new(own / "authority.pem", authority.certificate, false); !done) return done;
   fmt::print("{}: {}, {}; copy the folder beside its map, and write into that:\n", own.string(),
              stems.newest ? "made anew" : "made", what_it_is(subject));
   fmt::print("{}", lines_for_map(subject, stems.next, roles));
@@ -291,6 +325,9 @@ Exit certificates(const Arguments& arguments) {
   if (subjects.empty())
     return complain("certificates", bad_call, "there is nothing to make",
                     "add --node NAME or --client NAME:ROLE");
+  auto ready = make_folder(arguments.folder, false);
+  if (ready) ready = lock(arguments.folder);
+  if (!ready) return complain("certificates", bad_input, ready.error(), {});
   const auto kind = arguments.rsa ? tls::KeyKind::rsa : tls::KeyKind::p256;
   tls::Pem authority;
   if (!arguments.csr) {

@@ -8,13 +8,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <new>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "coupler/tls/certificate_names.hpp"
+#include "coupler/tls/pem.hpp"
 #include "coupler/tls/socket_bio.hpp"
 
 namespace coupler::tls {
@@ -24,23 +27,12 @@ using Problem = tl::unexpected<std::string>;
 
 Problem problem(std::string text) { return tl::unexpected(std::move(text)); }
 
-std::vector<CertificatePtr> read_certificates(const std::string& pem) {
-  std::vector<CertificatePtr> all;
-  const BioPtr reader = reader_of(pem);
-  while (X509* next = PEM_read_bio_X509(reader.get(), nullptr, no_password, nullptr)) all.emplace_back(next);
-  ERR_clear_error();  // the end is one
-  return all;
-}
-
 tl::expected<std::vector<KeyPtr>, std::string> read_keys(const std::string& pem) {
-  std::vector<KeyPtr> all;
-  const BioPtr reader = reader_of(pem);
-  while (EVP_PKEY* next = PEM_read_bio_PrivateKey(reader.get(), nullptr, no_password, nullptr))
-    all.emplace_back(next);
   if (pem.find("ENCRYPTED") != std::string::npos)
     return problem("the key is protected by a password; 'openssl pkey -in KEY -out NEW' takes it off");
-  ERR_clear_error();
-  if (all.empty())
+  auto all = read_all<KeyPtr, PEM_read_bio_PrivateKey>(
+      pem, "the key's file", {PEM_STRING_PKCS8INF, PEM_STRING_ECPRIVATEKEY, PEM_STRING_RSA});
+  if (all && all->empty())
     return problem(
         "the key's file has no PEM key ('-----BEGIN PRIVATE KEY-----'); 'openssl pkey -inform DER' converts "
         "one");
@@ -50,8 +42,9 @@ tl::expected<std::vector<KeyPtr>, std::string> read_keys(const std::string& pem)
 /// Shows, for each key, the certificate that belongs to it, followed by those of the file that belong to
 /// none.
 tl::expected<void, std::string> use_own(SSL_CTX* context, const Credentials& credentials) {
-  auto certificates = read_certificates(credentials.certificate);
-  if (certificates.empty())
+  auto certificates = read_certificates(credentials.certificate, "the certificate's file");
+  if (!certificates) return problem(std::move(certificates).error());
+  if (certificates->empty())
     return problem(
         "the certificate's file has no PEM certificate ('-----BEGIN CERTIFICATE-----'); 'openssl x509 "
         "-inform "
@@ -60,7 +53,7 @@ tl::expected<void, std::string> use_own(SSL_CTX* context, const Credentials& cre
   if (!keys) return problem(std::move(keys).error());
   std::vector<std::pair<CertificatePtr, KeyPtr>> own;
   for (KeyPtr& key : *keys)
-    for (CertificatePtr& certificate : certificates)
+    for (CertificatePtr& certificate : *certificates)
       if (certificate && X509_check_private_key(certificate.get(), key.get()) == 1) {
         own.emplace_back(std::move(certificate), std::move(key));
         break;
@@ -72,59 +65,128 @@ tl::expected<void, std::string> use_own(SSL_CTX* context, const Credentials& cre
         "was renewed");
   const std::unique_ptr<STACK_OF(X509), void (*)(STACK_OF(X509)*)> chain(
       sk_X509_new_null(), [](STACK_OF(X509) * all) { sk_X509_free(all); });
-  for (const CertificatePtr& certificate : certificates)
+  for (const CertificatePtr& certificate : *certificates)
     if (certificate) sk_X509_push(chain.get(), certificate.get());
-  for (const auto& [certificate, key] : own)
-    if (SSL_CTX_use_cert_and_key(context, certificate.get(), key.get(), chain.get(), 1) != 1)
+  for (const auto& [certificate, key] : own) {
+    const bool is_weak = has_weak_curve(certificate.get());
+    if (is_weak || SSL_CTX_use_cert_and_key(context, certificate.get(), key.get(), chain.get(), 1) != 1)
       return problem(
           fmt::format("the certificate cannot be used: {}; have it issued again with P-256, or RSA with 2048 "
                       "bits or more, and SHA-256",
-                      take_openssl_error()));
+                      is_weak ? "its key is too weak" : take_openssl_error()));
+  }
   return {};
 }
 
-/// By its name and its signature.
-bool is_of_one_of(const std::vector<CertificatePtr>& authorities, X509_CRL* list) {
-  return std::any_of(authorities.begin(), authorities.end(), [list](const CertificatePtr& authority) {
+/// Which of them has made a list, by its name and its signature; null: none.
+const X509* maker_of(const X509_CRL* list, const std::vector<CertificatePtr>& authorities) {
+  const auto has_made = [list](const CertificatePtr& authority) {
     return X509_NAME_cmp(X509_CRL_get_issuer(list), X509_get_subject_name(authority.get())) == 0 &&
-           X509_CRL_verify(list, X509_get0_pubkey(authority.get())) == 1;
-  });
+           X509_CRL_verify(const_cast<X509_CRL*>(list), X509_get0_pubkey(authority.get())) == 1;
+  };
+  const auto found = std::find_if(authorities.begin(), authorities.end(), has_made);
+  return found == authorities.end() ? nullptr : found->get();
 }
 
-tl::expected<void, std::string> believe(SSL_CTX* context, const Credentials& credentials) {
+struct RevocationList {
+  CrlPtr list;
+  const X509* maker;  ///< null: of an authority between, which clients show
+};
+
+/// Of what a list has only one: a number, say. Null: it has none.
+template <class T, auto free>
+std::unique_ptr<T, FreedBy<free>> extension_of(const X509_CRL* list, int which) {
+  return std::unique_ptr<T, FreedBy<free>>(
+      static_cast<T*>(X509_CRL_get_ext_d2i(list, which, nullptr, nullptr)));
+}
+
+/// An authority that was made anew has the same name and another key.
+bool are_of_one_maker(const RevocationList& a, const RevocationList& b) {
+  if (a.maker != nullptr || b.maker != nullptr) return a.maker == b.maker;
+  if (X509_NAME_cmp(X509_CRL_get_issuer(a.list.get()), X509_CRL_get_issuer(b.list.get())) != 0) return false;
+  const auto key_of = [](const CrlPtr& list) {
+    return extension_of<AUTHORITY_KEYID, AUTHORITY_KEYID_free>(list.get(), NID_authority_key_identifier);
+  };
+  const auto one = key_of(a.list);
+  const auto other = key_of(b.list);
+  return one && other && one->keyid != nullptr && other->keyid != nullptr &&
+         ASN1_OCTET_STRING_cmp(one->keyid, other->keyid) == 0;
+}
+
+/// By their times; lists of one second by their numbers.
+bool is_newer(const X509_CRL* a, const X509_CRL* b) {
+  if (const int order = ASN1_TIME_compare(X509_CRL_get0_lastUpdate(a), X509_CRL_get0_lastUpdate(b));
+      order != 0)
+    return order > 0;
+  const auto one = extension_of<ASN1_INTEGER, ASN1_INTEGER_free>(a, NID_crl_number);
+  const auto other = extension_of<ASN1_INTEGER, ASN1_INTEGER_free>(b, NID_crl_number);
+  return one && other && ASN1_INTEGER_cmp(one.get(), other.get()) > 0;
+}
+
+bool has(const CrlPtr& list, int extension) {
+  return X509_CRL_get_ext_by_NID(list.get(), extension, -1) >= 0;
+}
+
+/// A list of some certificates does not.
+bool takes_the_place_of(const RevocationList& newer, const RevocationList& older) {
+  const auto is_of_all = [](const CrlPtr& list) { return !has(list, NID_issuing_distribution_point); };
+  return are_of_one_maker(newer, older) && is_of_all(newer.list) && is_of_all(older.list) &&
+         is_newer(newer.list.get(), older.list.get());
+}
+
+/// Of each authority the newest list counts. OpenSSL would rather take an older one that is in date.
+tl::expected<void, std::string> believe_lists(X509_STORE* store, const std::string& pem,
+                                              const std::vector<CertificatePtr>& authorities) {
+  auto read =
+      read_all<CrlPtr, PEM_read_bio_X509_CRL>(pem, "the list of revoked certificates", {PEM_STRING_X509_CRL});
+  if (!read) return problem(std::move(read).error());
+  if (read->empty())
+    return problem(
+        "the list of revoked certificates has no PEM list ('-----BEGIN X509 CRL-----'); 'openssl crl -inform "
+        "DER' converts one");
+  if (std::any_of(read->begin(), read->end(), [](const CrlPtr& list) { return has(list, NID_delta_crl); }))
+    return problem(
+        "the list of revoked certificates tells only what has changed since another one (a delta CRL); give "
+        "whole lists");
+  std::vector<RevocationList> lists;
+  for (CrlPtr& list : *read) {
+    const X509* maker = maker_of(list.get(), authorities);
+    lists.push_back({std::move(list), maker});
+  }
+  if (std::none_of(lists.begin(), lists.end(), [](const auto& each) { return each.maker != nullptr; }))
+    return problem(
+        "the list of revoked certificates is of none of the authorities in 'ca', so that all of their "
+        "clients would be refused; have it made by each of them");
+  for (const RevocationList& each : lists) {
+    const auto replaces = [&each](const RevocationList& other) { return takes_the_place_of(other, each); };
+    if (std::none_of(lists.begin(), lists.end(), replaces)) X509_STORE_add_crl(store, each.list.get());
+  }
+  ERR_clear_error();
+  X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK | X509_V_FLAG_CRL_CHECK_ALL);
+  return {};
+}
+
+tl::expected<void, std::string> believe(SSL_CTX* context, Side side, const Credentials& credentials) {
   X509_STORE* store = SSL_CTX_get_cert_store(context);
-  const auto authorities = read_certificates(credentials.ca);
-  for (const CertificatePtr& authority : authorities) {
+  const auto authorities = read_certificates(credentials.ca, "the authority's file");
+  if (!authorities) return problem(authorities.error());
+  if (side == Side::server && authorities->empty())
+    return problem(
+        "the authority's file has no PEM certificate ('-----BEGIN CERTIFICATE-----'): no client could be "
+        "believed");
+  for (const CertificatePtr& authority : *authorities) {
     X509_STORE_add_cert(store, authority.get());
     SSL_CTX_add_client_CA(context, authority.get());
   }
   // An authority below another one can be believed by itself: the other may have more below it.
   X509_STORE_set_flags(store, X509_V_FLAG_PARTIAL_CHAIN);
   if (credentials.revoked.empty()) return {};
-  const BioPtr reader = reader_of(credentials.revoked);
-  bool any = false;
-  bool any_fits = false;  // others are of authorities between, which clients show
-  while (const CrlPtr next{PEM_read_bio_X509_CRL(reader.get(), nullptr, no_password, nullptr)}) {
-    any = X509_STORE_add_crl(store, next.get()) == 1 || any;
-    any_fits = any_fits || is_of_one_of(authorities, next.get());
-  }
-  ERR_clear_error();
-  if (!any)
-    return problem(
-        "the list of revoked certificates has no PEM list ('-----BEGIN X509 CRL-----'); 'openssl crl -inform "
-        "DER' converts one");
-  if (!any_fits)
-    return problem(
-        "the list of revoked certificates is of none of the authorities in 'ca', so that all of their "
-        "clients "
-        "would be refused; have it made by each of them");
-  X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK | X509_V_FLAG_CRL_CHECK_ALL);
-  return {};
+  return believe_lists(store, credentials.revoked, *authorities);
 }
 
 void set_rules(SSL_CTX* context) {
   SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
-  SSL_CTX_set_security_level(context, 2);  // 112 bits: P-224, RSA with 2048 bits, no SHA-1
+  SSL_CTX_set_security_level(context, 2);  // 112 bits: RSA with 2048, no SHA-1
   SSL_CTX_set_cipher_list(context, "ECDHE+AESGCM:ECDHE+CHACHA20:ECDHE+AESCCM");
   SSL_CTX_set_options(context, SSL_OP_NO_TICKET | SSL_OP_NO_COMPRESSION | SSL_OP_NO_RENEGOTIATION);
   SSL_CTX_set_num_tickets(context, 0);
@@ -145,12 +207,8 @@ tl::expected<Context, std::string> Context::make(Side side, const Credentials& c
   if (!context) return problem(take_openssl_error());
   set_rules(context.get());
   if (auto used = use_own(context.get(), credentials); !used) return problem(std::move(used).error());
-  if (auto believed = believe(context.get(), credentials); !believed)
+  if (auto believed = believe(context.get(), side, credentials); !believed)
     return problem(std::move(believed).error());
-  if (side == Side::server && read_certificates(credentials.ca).empty())
-    return problem(
-        "the authority's file has no PEM certificate ('-----BEGIN CERTIFICATE-----'): no client could be "
-        "believed");
   return Context(side, std::move(context));
 }
 

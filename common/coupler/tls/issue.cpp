@@ -17,6 +17,7 @@
 #include "coupler/credentials/role_extension.hpp"
 #include "coupler/map/network.hpp"
 #include "coupler/tls/certificate_names.hpp"
+#include "coupler/tls/pem.hpp"
 #include "coupler/tls/verification.hpp"
 
 namespace coupler::tls {

@@ -9,7 +9,6 @@
 
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "coupler/credentials/validity.hpp"
 
@@ -35,13 +34,10 @@ using SslPtr = std::unique_ptr<SSL, FreedBy<SSL_free>>;
 /// The reason of the oldest error that OpenSSL noted in this thread, which then has none; "unknown error".
 std::string take_openssl_error();
 
-/// Of a certificate.
+/// Of a certificate; a time beyond those of std::chrono::system_clock (1970 to 2262) is the last one there.
 Validity validity_of(const X509* certificate);
 
-/// For OpenSSL's readers of PEM text, which would ask for the password of a protected key at the terminal.
-int no_password(char* room, int size, int writes, void* data);
-
-/// To be read by OpenSSL; it outlives that.
-BioPtr reader_of(std::string_view text);
+/// Whether its key is weaker than P-256. Of other kinds of keys the context's security level says enough.
+bool has_weak_curve(const X509* certificate);
 
 }  // namespace coupler::tls

@@ -21,6 +21,7 @@
 #include "coupler/map/security.hpp"
 #include "coupler/tls/certificate_names.hpp"
 #include "coupler/tls/openssl.hpp"
+#include "coupler/tls/pem.hpp"
 
 namespace coupler::tls {
 namespace {
@@ -47,6 +48,10 @@ bool only_role_is_unknown(const X509* certificate) {
   return true;
 }
 
+const char* whose(const X509* certificate) {
+  return X509_check_ca(const_cast<X509*>(certificate)) != 0 ? "its authority's" : "its";
+}
+
 std::string key_kind(const X509* certificate) {
   const EVP_PKEY* const key = X509_get0_pubkey(certificate);
   const char* const name = key == nullptr ? nullptr : EVP_PKEY_get0_type_name(key);
@@ -71,6 +76,13 @@ int judge(int ok, X509_STORE_CTX* store) {
   }
   X509_STORE_CTX_set_error(store, X509_V_OK);
   return 1;
+}
+
+/// Null: none is.
+const X509* weak_one_of(const STACK_OF(X509) * chain) {
+  for (int i = 0; i < sk_X509_num(chain); ++i)
+    if (const X509* one = sk_X509_value(chain, i); has_weak_curve(one)) return one;
+  return nullptr;
 }
 
 bool reject(X509_STORE_CTX* store, Verification& verification, std::string problem) {
@@ -103,6 +115,11 @@ bool believes(X509_STORE_CTX* store, const SSL* ssl, Verification& verification)
     const X509* current = X509_STORE_CTX_get_current_cert(store);
     verification.problem = problem_text(X509_STORE_CTX_get_error(store),
                                         current == nullptr ? certificate : current, SSL_get_certificate(ssl));
+    return false;
+  }
+  if (const X509* weak = weak_one_of(X509_STORE_CTX_get0_chain(store))) {
+    verification.problem = problem_text(X509_V_ERR_EE_KEY_TOO_SMALL, weak, nullptr);
+    X509_STORE_CTX_set_error(store, X509_V_ERR_EE_KEY_TOO_SMALL);
     return false;
   }
   if (verification.wants_role)
@@ -140,13 +157,13 @@ Pin pin_of(const X509* certificate) {
   return pin;
 }
 
-std::vector<PinOfKey> pins_in(const std::string& pem) {
+tl::expected<std::vector<PinOfKey>, std::string> pins_in(std::string_view pem) {
+  const auto certificates = read_certificates(pem, "the certificate's file");
+  if (!certificates) return tl::unexpected(certificates.error());
   std::vector<PinOfKey> pins;
-  const BioPtr reader = reader_of(pem);
-  while (const CertificatePtr next{PEM_read_bio_X509(reader.get(), nullptr, no_password, nullptr)})
-    if (pins.empty() || X509_check_ca(next.get()) == 0)
-      pins.push_back({pin_of(next.get()), key_kind(next.get())});
-  ERR_clear_error();  // the end is one
+  for (const CertificatePtr& each : *certificates)
+    if (pins.empty() || X509_check_ca(each.get()) == 0)
+      pins.push_back({pin_of(each.get()), key_kind(each.get())});
   return pins;
 }
 
@@ -191,8 +208,7 @@ std::optional<std::string> read_role(const X509* certificate, std::optional<std:
 std::string problem_text(int error, const X509* certificate, const X509* own) {
   switch (error) {
     case X509_V_ERR_CERT_HAS_EXPIRED:
-      return fmt::format("{} certificate has expired on {}; renew it",
-                         X509_check_ca(const_cast<X509*>(certificate)) != 0 ? "its authority's" : "its",
+      return fmt::format("{} certificate has expired on {}; renew it", whose(certificate),
                          minute_text(validity_of(certificate).end));
     case X509_V_ERR_CERT_NOT_YET_VALID: {
       const bool is_clock_unset = own != nullptr && X509_cmp_current_time(X509_get0_notBefore(own)) > 0;
@@ -227,8 +243,10 @@ std::string problem_text(int error, const X509* certificate, const X509* own) {
     case X509_V_ERR_EE_KEY_TOO_SMALL:
     case X509_V_ERR_CA_KEY_TOO_SMALL:
     case X509_V_ERR_CA_MD_TOO_WEAK:
-      return "its certificate has a weak key or signature; P-256, or RSA with 2048 bits and SHA-256, is the "
-             "least";
+      return fmt::format(
+          "{} certificate has a weak key or signature; P-256, or RSA with 2048 bits and SHA-256, is the "
+          "least",
+          whose(certificate));
     default: return fmt::format("its certificate is not believed: {}", X509_verify_cert_error_string(error));
   }
 }

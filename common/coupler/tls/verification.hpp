@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include <tl/expected.hpp>
+
 namespace coupler::tls {
 
 using Pin = std::array<std::uint8_t, 32>;  ///< SHA-256 of a certificate's DER
@@ -24,8 +26,9 @@ struct PinOfKey {
   Pin pin;
   std::string key;  ///< kind: "EC", "RSA" …
 };
-/// Of the first certificate in PEM text, and of all others that are no authority's. Empty: there is none.
-std::vector<PinOfKey> pins_in(const std::string& pem);
+/// Of the first certificate in PEM text, and of all others that are no authority's. Empty: there is none. The
+/// error: one is cut or damaged.
+tl::expected<std::vector<PinOfKey>, std::string> pins_in(std::string_view pem);
 
 /// Whom the other side of a connection proved to be.
 struct Peer {

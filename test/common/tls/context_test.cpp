@@ -49,6 +49,21 @@ TEST(Context, Says_which_file_has_what_it_must_not_have) {
   EXPECT_THAT(problem_of(wrong), HasSubstr("no PEM list"));
 }
 
+TEST(Context, A_file_that_is_cut_is_refused_though_its_beginning_is_good) {
+  Credentials cut = credentials_of(test_node());
+  cut.certificate.resize(cut.certificate.size() - 40);  // of the authority's, behind the node's own
+  EXPECT_THAT(problem_of(cut), HasSubstr("the certificate's file: block 2 of 2 is cut or damaged"));
+  cut = credentials_of(test_node());
+  cut.ca += cut.ca.substr(0, cut.ca.size() / 2);
+  EXPECT_THAT(problem_of(cut), HasSubstr("the authority's file: block 2 of 2 is cut"));
+  cut = credentials_of(test_node());
+  cut.key += cut.key.substr(0, cut.key.size() / 2);
+  EXPECT_THAT(problem_of(cut), HasSubstr("the key's file: block 2 of 2 is cut"));
+  cut = credentials_of(test_node());
+  cut.revoked = "-----BEGIN X509 CRL-----\r\nMIIB";
+  EXPECT_THAT(problem_of(cut), HasSubstr("the list of revoked certificates: block 1 of 1 is cut"));
+}
+
 TEST(Context, A_protected_key_is_refused_and_nobody_is_asked_for_a_password) {
   Credentials wrong = credentials_of(test_node());
   wrong.key = "-----BEGIN ENCRYPTED PRIVATE KEY-----\nMIG=\n-----END ENCRYPTED PRIVATE KEY-----\n";

@@ -100,24 +100,25 @@ TEST(Verification, A_pin_stands_for_authority_and_name) {
   const Credentials node = credentials_of(test_node(), other);
   Verification pinned;
   pinned.server = "elsewhere";
-  pinned.pin = pins_in(node.certificate).at(0).pin;
+  pinned.pin = pins_in(node.certificate)->at(0).pin;
   ASSERT_TRUE(pinned.pin);
   // The client knows nothing of the node's authority, and the node believes the client's.
   EXPECT_EQ(problems_of(node, credentials_of(test_client()), pinned).second, "");
-  pinned.pin = pins_in(credentials_of(test_node()).certificate).at(0).pin;
+  pinned.pin = pins_in(credentials_of(test_node()).certificate)->at(0).pin;
   EXPECT_THAT(problems_of(node, credentials_of(test_client()), pinned).second, HasSubstr("pin sha256:"));
 }
 
 TEST(Verification, Every_certificate_of_a_file_that_is_no_authority_has_a_pin) {
   const std::string both = credentials_of(test_node()).certificate +
                            credentials_of(test_node(), test_authority(), KeyKind::rsa).certificate;
-  const auto pins = pins_in(both);
+  const auto pins = pins_in(both).value();
   ASSERT_EQ(pins.size(), 2U);
   EXPECT_EQ(pins[0].key, "EC");
   EXPECT_EQ(pins[1].key, "RSA");
   EXPECT_NE(pins[0].pin, pins[1].pin);
-  EXPECT_EQ(pins_in(test_authority().certificate).size(), 1U);
-  EXPECT_TRUE(pins_in("no certificate").empty());
+  EXPECT_EQ(pins_in(test_authority().certificate)->size(), 1U);
+  EXPECT_TRUE(pins_in("no certificate")->empty());
+  EXPECT_FALSE(pins_in(both.substr(0, both.size() - 40))) << "one that is cut";
 }
 
 TEST(Verification, Pins_have_one_form) {
@@ -148,7 +149,7 @@ TEST(Verification, Who_only_looks_sees_any_certificate) {
     if (client.state() == Session::State::handshake) client.shake_hands();
     if (server.state() == Session::State::handshake) server.shake_hands();
   }
-  EXPECT_EQ(looks.seen, pins_in(node.certificate).at(0).pin);
+  EXPECT_EQ(looks.seen, pins_in(node.certificate)->at(0).pin);
   EXPECT_THAT(server.problem(), HasSubstr("shows no certificate"));
 }
 

@@ -38,10 +38,11 @@ Exit pin_of_file(const std::string& path) {
   const auto text = read_pem_file("certificate", path, {});
   if (!text) return complain("pin", bad_input, text.error(), {});
   const auto pins = tls::pins_in(*text);
-  if (pins.empty())
+  if (!pins) return complain("pin", bad_input, path + ": " + pins.error(), {});
+  if (pins->empty())
     return complain("pin", bad_input, path + " has no PEM certificate", "give the file of a certificate");
-  for (const auto& [pin, key] : pins)
-    fmt::print("{}{}\n", tls::pin_text(pin), pins.size() == 1 ? "" : fmt::format("  # with {}", key));
+  for (const auto& [pin, key] : *pins)
+    fmt::print("{}{}\n", tls::pin_text(pin), pins->size() == 1 ? "" : fmt::format("  # with {}", key));
   return ok;
 }
 
