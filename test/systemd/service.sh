@@ -186,6 +186,7 @@ check "with one that the service's group may read it succeeds" systemctl reload 
 check "a client with a certificate is answered on port 802" wait_until serves_tls
 tls=$(pgrep -P "$(supervisor)" -x coupler-tls)
 expect "the process that does TLS is the user coupler" coupler "$(stat -c %U "/proc/$tls")"
+expect "it may not even bind port 502" 0000000000000000 "$(of_process "$tls" CapEff)"
 expect "it has a filter of system calls and can gain nothing" "2 1" "$(of_process "$tls" Seccomp) $(of_process "$tls" NoNewPrivs)"
 check "clients without TLS are served, too" serves
 chown root:root /etc/coupler/node.key

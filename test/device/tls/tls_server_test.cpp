@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 
 #include <list>
@@ -114,6 +115,23 @@ TEST_F(TlsServerTest, Hands_over_a_client_with_its_name_role_and_address) {
   tls::put(handed_over_[0].socket.get(), "answer");
   settle();
   EXPECT_EQ(tls::received(one.side[1]), "answer");
+}
+
+TEST_F(TlsServerTest, Without_room_for_a_descriptor_it_waits_before_it_tries_again) {
+  const TlsClient& one = client();
+  rlimit descriptors{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &descriptors), 0);
+  const rlimit none{0, descriptors.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  const TimePoint now = loop_.run_once(std::chrono::seconds(20));
+  server_.tick(now);
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &descriptors), 0);
+  EXPECT_THAT(log_.lines, Contains(HasSubstr("Too many open files; trying again")));
+  EXPECT_GT(server_.time_until_due(now), std::chrono::milliseconds(0)) << "not at once";
+  server_.tick(now + std::chrono::seconds(1));
+  EXPECT_EQ(server_.time_until_due(now), std::nullopt);
+  settle();
+  EXPECT_TRUE(one.is_open());
 }
 
 TEST_F(TlsServerTest, Ends_a_client_that_the_other_process_closes_and_the_other_way_round) {

@@ -110,7 +110,6 @@ int run() {
   ::prctl(PR_SET_NAME, "coupler-tls");
   ::prctl(PR_SET_DUMPABLE, 0);  // no core file has the key, and no other process of this user reads it
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-  ::prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);  // the supervisor opens ports below 1024
   (void)!::nice(politeness);
   for (const int inherited : {tls_messages::control_descriptor, tls_messages::clients_descriptor})
     ::fcntl(inherited, F_SETFD, FD_CLOEXEC);

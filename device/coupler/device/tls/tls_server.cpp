@@ -19,7 +19,7 @@ namespace coupler::device {
 namespace {
 
 constexpr int accepts_per_turn = 16;
-constexpr std::chrono::milliseconds sweep_period{250};
+constexpr std::chrono::milliseconds pause_without_room{250};
 
 bool is_outside(const TlsConnection& one) {
   return one.state() == TlsConnection::State::handshake || one.state() == TlsConnection::State::draining;
@@ -84,7 +84,7 @@ bool TlsServer::accept_one(TimePoint now) {
                       fmt::format("cannot accept connections with TLS: {}; trying again until it works",
                                   std::strerror(errno)));
     loop_.change(listener_.socket.get(), Interest::nothing, *this);
-    paused_ = true;
+    accepts_again_ = now + pause_without_room;
     return false;
   }
   if (!listener_.allowed.admits(peer)) {
@@ -175,8 +175,7 @@ void TlsServer::failed(const TlsConnection& connection, const std::string& probl
 
 std::optional<std::chrono::milliseconds> TlsServer::time_until_due(TimePoint now) const {
   using std::chrono::milliseconds;
-  if (paused_) return sweep_period;
-  TimePoint due = TimePoint::max();
+  TimePoint due = accepts_again_.value_or(TimePoint::max());
   for (const TlsConnection& one : connections_) due = std::min(due, one.deadline());
   if (due == TimePoint::max()) return std::nullopt;
   return std::max(milliseconds(0), std::chrono::ceil<milliseconds>(due - now));
@@ -186,7 +185,8 @@ void TlsServer::tick(TimePoint now) {
   for (TlsConnection& one : connections_)
     if (one.state() != TlsConnection::State::ended) one.tick(now);
   forget_ended();
-  if (!std::exchange(paused_, false)) return;
+  if (!accepts_again_ || now < *accepts_again_) return;
+  accepts_again_.reset();
   loop_.change(listener_.socket.get(), Interest::read, *this);
 }
 

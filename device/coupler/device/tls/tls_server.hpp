@@ -67,7 +67,7 @@ class TlsServer final : public EventHandler, public TlsConnection::Observer {
   Listener listener_;
   std::optional<TlsRules> rules_;
   std::list<TlsConnection> connections_;
-  bool paused_ = false;  ///< out of descriptors or memory
+  std::optional<TimePoint> accepts_again_;  ///< it is out of descriptors or memory
 };
 
 }  // namespace coupler::device

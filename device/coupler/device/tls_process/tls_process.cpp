@@ -48,6 +48,7 @@ std::string find_program() {
   ::dup2(high_control, tls_messages::control_descriptor);
   ::dup2(high_clients, tls_messages::clients_descriptor);
   ::close_range(tls_messages::clients_descriptor + 1, ~0U, 0);
+  ::prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);  // the supervisor opens ports below 1024
   ::execl(program.c_str(), tls_messages::program_name, static_cast<char*>(nullptr));
   ::_exit(no_program);
 }
