@@ -281,14 +281,20 @@ class Panel(PanelCase):
         panel.process.send_signal(signal.SIGCONT)
         self.await_state("online")
 
+    def open_another(self, panel):
+        """A page in a window of its own; the windows before and of it."""
+        driver = self.browser.driver
+        before = driver.current_window_handle
+        driver.switch_to.new_window("window")
+        own = driver.current_window_handle
+        self.addCleanup(lambda: (driver.switch_to.window(own), driver.close(), driver.switch_to.window(before)))
+        self.browser.open(panel.url)
+        return before, own
+
     def test_two_pages_show_the_same(self):
         panel = self.serve("--write")
         driver = self.browser.driver
-        first = driver.current_window_handle
-        driver.switch_to.new_window("window")
-        second = driver.current_window_handle
-        self.addCleanup(lambda: (driver.switch_to.window(second), driver.close(), driver.switch_to.window(first)))
-        self.browser.open(panel.url)
+        first, _ = self.open_another(panel)
         self.await_state("online")
         self.await_value("lamp", "off")
         self.element(self.row("lamp", "[role=switch]")).click()
@@ -297,6 +303,22 @@ class Panel(PanelCase):
         driver.switch_to.window(first)
         self.await_value("lamp", "on")
         self.assertEqual(self.text(self.row("lamp", "output.outcome")), "", "the outcome is the other page's")
+
+    def test_a_browser_s_fifth_page_waits_so_that_the_others_can_write(self):
+        panel = self.serve("--write")
+        first = self.browser.driver.current_window_handle
+        for _ in range(3):
+            self.open_another(panel)
+            self.await_state("online")
+        _, fifth = self.open_another(panel)
+        self.browser.await_true(lambda: "close one of them" in self.element("#device").text)
+        self.browser.driver.switch_to.window(first)
+        self.element(self.row("lamp", "[role=switch]")).click()
+        self.await_outcome("lamp", "ok")
+        self.browser.open("about:blank")
+        self.browser.driver.switch_to.window(fifth)
+        self.await_state("online")
+        self.await_value("lamp", "on")
 
 
 if __name__ == "__main__":

@@ -29,7 +29,8 @@ namespace {
 
 using host::WriteTicket;
 
-/// With the 2 s in which a page's request comes, no click is written that is older than 5 s.
+/// A page gives a click up after 5 s, until when its request may come: none is written that is older than 8
+/// s.
 constexpr std::chrono::seconds longest_wait{3};
 constexpr std::chrono::milliseconds judge_period{100};
 constexpr int judgements_a_told = 10;  ///< so often the head's numbers are new: once a second

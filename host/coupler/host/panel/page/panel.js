@@ -5,6 +5,7 @@
 const STEPS = 300; // of two seconds
 const ALIVE_EVERY = 500; // ms, once this page has written
 const ANSWER_WITHIN = 5000; // ms; the stream has something to say each second
+const STREAMS = 4; // of one browser, which opens six connections to an address: the others write and ask
 const element = (id) => document.getElementById(id);
 const rows = new Map(); // by point: what its row shows
 
@@ -214,6 +215,10 @@ async function drawAll() {
   const answer = await ask(`history.json?steps=${wanted}`);
   const step = Number(answer.headers.get("Step"));
   const passed = Math.min(STEPS, step - lastStep);
+  if (passed > wanted) { // this machine has slept, and its clock with it
+    drawAll.at = -Infinity;
+    return drawAll();
+  }
   for (const [name, news] of Object.entries(await answer.json())) {
     const entry = rows.get(name);
     if (!entry) continue;
@@ -222,6 +227,7 @@ async function drawAll() {
     if (!entry.row.hidden) entry.path.setAttribute("d", drawing(entry, entry.steps));
   }
   lastStep = step;
+  return undefined;
 }
 drawAll.at = -Infinity;
 
@@ -249,6 +255,25 @@ async function write(entry, value) {
 }
 
 // The stream.
+
+/// Waits until this page is one of those of this browser that have a stream. Otherwise a write, or the word that this
+/// page is alive, would wait for a connection. Returns what ends that. Without a secure context there are no locks, nor is
+/// there anything to write.
+async function takeAPlace() {
+  if (!navigator.locks) return () => {};
+  const take = (place) => new Promise((done) => {
+    const hold = (lock) => (lock ? new Promise((end) => { done(end); }) : done(null));
+    navigator.locks.request(`stream ${place}`, { ifAvailable: true }, hold).catch(() => done(() => {}));
+  });
+  for (;;) {
+    for (let place = 0; place < STREAMS; ++place) {
+      const leave = await take(place);
+      if (leave) return leave;
+    }
+    say("offline", `This browser shows ${STREAMS} pages of this panel and has no connections for more: close one of them.`);
+    await new Promise((done) => { setTimeout(done, 1000); });
+  }
+}
 
 /// Server-sent events by fetch: EventSource can show no token.
 async function follow() {
@@ -317,11 +342,15 @@ async function begin() {
   element("save").addEventListener("click", save);
   element("print").addEventListener("click", () => window.print());
   setInterval(() => { for (const entry of rows.values()) if (entry.shown && !entry.row.hidden) show(entry); }, 1000);
-  drawOn();
   setInterval(() => { if (hasWritten) ask("alive", { method: "POST" }).catch(() => {}); }, ALIVE_EVERY);
+  const leave = await takeAPlace();
+  drawOn();
   for (;;) {
     const error = await follow().catch((why) => why);
-    if (error.status === 401) return loseAll("This page is not known any more: open the address that the terminal shows now.");
+    if (error.status === 401) {
+      leave();
+      return loseAll("This page is not known any more: open the address that the terminal shows now.");
+    }
     loseAll(`${error.message}; trying again`);
     await new Promise((done) => { setTimeout(done, 1000); });
   }
