@@ -5,6 +5,7 @@ killed and when the disk is full, in files that begin with all that is known, of
 
     record_files_test.py NODE COUPLER MAP
 """
+import functools
 import itertools
 import os
 import pathlib
@@ -115,22 +116,32 @@ def the_oldest_files_are_deleted(coupler, fast_map, port, folder, checks):
         checks.equal("all that is known", {*head["periods"]} - {line.get("point") for line in lines[:20]}, set())
 
 
-def a_full_disk(coupler, fast_map, port, checks):
+def on_a_disk(size, use, checks):
+    """`use(folder, checks)`, where the folder is a disk of this size."""
     with tempfile.TemporaryDirectory() as point:
-        mounted = Program("unshare", "-m", "sh", "-c", f"mount -t tmpfs -o size=2M full {point} && echo ok; exec cat",
+        mounted = Program("unshare", "-m", "sh", "-c", f"mount -t tmpfs -o size={size} full {point} && echo ok; exec cat",
                           stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         with mounted:
             if os.getuid() != 0 or not mounted.process.stdout.readline():
                 mounted.process.stdin.close()
                 print(f"remark: no full disk, which needs root and a mount namespace: {mounted.text().strip()}")
                 return
-            disk = pathlib.Path(f"/proc/{mounted.process.pid}/root{point}")
-            fill(coupler, fast_map, port, disk, checks)
+            use(pathlib.Path(f"/proc/{mounted.process.pid}/root{point}"), checks)
             mounted.process.stdin.close()
             mounted.wait()
 
 
-def fill(coupler, fast_map, port, disk, checks):
+def a_small_disk(coupler, fast_map, port, disk, checks):
+    """It has less room than --keep."""
+    with Recorder(coupler, fast_map, port, disk / "small.jsonl") as recorder:
+        peer.await_true("files are deleted", lambda: numbers(disk, "small")[:1] > [2], checks)
+        checks.equal("status", recorder.end(), 0)
+        checks.equal("nothing is missing", "No space left" in recorder.text(), False)
+    checks.equal("the last one has its head", whole_lines(disk / "small.jsonl")[0]["record"], 1)
+    checks.equal("others are there", len(numbers(disk, "small")) >= 3, True)
+
+
+def a_full_disk(coupler, fast_map, port, disk, checks):
     with Recorder(coupler, fast_map, port, disk / "full.jsonl") as recorder:
         recorder.await_lines("a beginning", lambda lines: len(values(lines, "curve")) > 3, checks)
         with open(disk / "other", "wb", buffering=0) as other:
@@ -145,9 +156,9 @@ def fill(coupler, fast_map, port, disk, checks):
         (disk / "other").unlink()
         recorder.await_lines("it goes on", lambda lines: len(values(lines, "curve")) > 1, checks)
         checks.equal("status", recorder.end(), 0)
-    last = whole_lines(disk / "full.jsonl")
-    checks.equal("a head", last[0]["record"], 1)
-    missing = [line for line in last if "missing_since" in line]
+    all_lines = [whole_lines(file) for file in disk.glob("full*.jsonl") if is_there(file)]
+    checks.equal("heads", {lines[0]["record"] for lines in all_lines}, {1})
+    missing = [line for lines in all_lines for line in lines if "missing_since" in line]
     checks.equal("what is missing is said", len(missing), 1)
     checks.equal("with the reason", ["No space left" in line["why"] and line["missing_since"] < line["t"]
                                      for line in missing], [True])
@@ -166,7 +177,8 @@ def main():
         with Node(node, map_file) as device, Busy(device.port):
             a_killed_recorder_leaves_whole_lines(coupler, fast_map, device.port, folder, checks)
             the_oldest_files_are_deleted(coupler, fast_map, device.port, folder, checks)
-            a_full_disk(coupler, fast_map, device.port, checks)
+            on_a_disk("2M", functools.partial(a_full_disk, coupler, fast_map, device.port), checks)
+            on_a_disk("640k", functools.partial(a_small_disk, coupler, fast_map, device.port), checks)
     checks.done("coupler record leaves whole lines, in files that can be used alone, and no more than it may")
 
 

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 using Problem = tl::unexpected<std::string>;
 
 constexpr std::uint64_t smallest_share = 64 << 10;
-constexpr std::uint64_t largest_share = 128 << 20;
 /// So many files are kept at least, so that little is lost when the oldest is deleted.
 constexpr std::uint64_t shares = 8;
 
@@ -86,10 +85,7 @@ std::string problem_text(const fs::path& path, int error) {
 
 }  // namespace
 
-RecordFile::RecordFile(fs::path path, Limits limits)
-    : path_(std::move(path)),
-      limits_(limits),
-      share_(std::clamp(limits.keep / shares, smallest_share, largest_share)) {}
+RecordFile::RecordFile(fs::path path, Limits limits) : path_(std::move(path)), limits_(limits) {}
 
 RecordFile::RecordFile(RecordFile&& other) noexcept
     : path_(std::move(other.path_)),
@@ -154,6 +150,7 @@ tl::expected<void, std::string> RecordFile::create() {
 tl::expected<void, std::string> RecordFile::begin(std::string_view lines) {
   if (size_ > 0 && !is_stream_)
     if (auto created = create(); !created) return created;
+  share_ = share();
   auto done = append(lines, 1);  // not what has just got its number
   begin_size_ = size_;
   if (done && !is_stream_) delete_what_is_too_much();
@@ -188,6 +185,22 @@ int RecordFile::write_all(std::string_view lines) {
   if (error != 0 && !is_stream_ && ::ftruncate(fd_, static_cast<off_t>(size_)) != 0)
     close();  // what follows goes to another file
   return error;
+}
+
+/// Of what is to be kept, or of the room that a small disk has for it: one file that fills the disk could not
+/// make room for the next.
+std::uint64_t RecordFile::share() const {
+  std::uint64_t most = limits_.keep;
+  std::error_code error;
+  const fs::path folder = path_.parent_path();
+  const fs::space_info disk = fs::space(folder.empty() ? "." : folder, error);
+  if (!error && !is_stream_) {
+    std::uint64_t own = 0;
+    for (const auto& [number, file] : former(path_))
+      if (const auto size = fs::file_size(file, error); !error) own += size;
+    most = std::min<std::uint64_t>(most, disk.available + own);
+  }
+  return std::clamp(most / shares, smallest_share, largest_share);
 }
 
 bool RecordFile::delete_oldest(std::size_t kept) {

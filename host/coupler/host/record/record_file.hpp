@@ -41,9 +41,12 @@ class RecordFile {
   std::uint64_t written() const { return written_; }  ///< bytes, in all files of this run
 
  private:
+  static constexpr std::uint64_t largest_share = 128 << 20;
+
   RecordFile(std::filesystem::path path, Limits limits);
   tl::expected<void, std::string> create();
   void close();
+  std::uint64_t share() const;
   int write_all(std::string_view lines);
   tl::expected<void, std::string> append(std::string_view lines, std::size_t kept);
   bool delete_oldest(std::size_t kept);
@@ -51,8 +54,8 @@ class RecordFile {
 
   std::filesystem::path path_;
   Limits limits_;
-  std::uint64_t share_;
-  bool is_stream_ = false;  ///< nothing that is written can be taken back
+  std::uint64_t share_ = largest_share;  ///< bytes of one file; begin() says how many
+  bool is_stream_ = false;               ///< nothing that is written can be taken back
   int fd_ = -1;
   std::uint64_t size_ = 0;
   std::uint64_t begin_size_ = 0;  ///< what it began with, which may be much where there are many points
