@@ -65,6 +65,14 @@ class SeveralDevices(levels.LevelsTest):
         self.assertEqual(self.topic("/belt/level", Int16).next(), 22)
         self.assertEqual(self.topic("/press/level", Int16).next(), 11)
 
+    def test_what_is_said_of_all_is_weaker_than_what_is_said_of_one(self):
+        rospy.set_param("/press_driver", {"belt": {"rate": 50}})
+        self.addCleanup(rospy.delete_param, "/press_driver")
+        maps = [write_map("press", self.peer(11).port), write_map("belt", self.peer(22).port)]
+        self.driver(f"_maps:=[{','.join(maps)}]", "--rate", "0.001")
+        level = self.topic("/belt/level", Int16)
+        wait_until(lambda: len(level.values) > 10, "values at the device's own rate")
+
     def test_devices_of_one_kind_share_a_map(self):
         left, right = self.peer(11), self.peer(22)
         path = write_map("io", free_port())

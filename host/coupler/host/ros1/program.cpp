@@ -108,7 +108,7 @@ std::string unknown_devices(const std::vector<MapSource>& sources, const Argumen
   return text;
 }
 
-/// Precedence: map < parameter ~key < parameter ~NAME/key, where there are several devices < argument <
+/// Precedence: map < parameter ~key < argument < parameter ~NAME/key, where there are several devices <
 /// argument for the device. The error is the exit code.
 tl::expected<Devices, int> configure_all(std::vector<MapSource> sources, const Arguments& arguments) {
   if (const std::string wrong = unknown_devices(sources, arguments); !wrong.empty()) {
@@ -120,16 +120,16 @@ tl::expected<Devices, int> configure_all(std::vector<MapSource> sources, const A
   if (XmlRpc::XmlRpcValue tree; ros::param::get(node, tree))
     warn_of_unknown(tree, node, several ? names_of(sources) : std::vector<std::string_view>());
   const auto common = read_parameters(ros::NodeHandle("~"));
-  const auto settings_of = [&](std::string_view name) {
-    auto settings = common;
-    if (settings && several) {
+  const auto settings_of = [&](std::string_view name) -> tl::expected<Settings, std::string> {
+    if (!common) return tl::make_unexpected(common.error());
+    Settings settings = overlay(*common, arguments.settings);
+    if (several) {
       const auto own = read_parameters(ros::NodeHandle("~" + std::string(name)));
-      settings = own ? overlay(*settings, *own) : own;
+      if (!own) return own;
+      settings = overlay(settings, *own);
     }
-    if (!settings) return settings;
-    settings = overlay(*settings, arguments.settings);
     const auto own = arguments.of_devices.find(std::string(name));
-    if (own != arguments.of_devices.end()) settings = overlay(*settings, own->second);
+    if (own != arguments.of_devices.end()) settings = overlay(settings, own->second);
     return settings;
   };
   auto devices = configure(std::move(sources), settings_of);
