@@ -4,6 +4,8 @@
 
     watchdog_test.py NODE_COMMAND…
 """
+import os
+import signal
 import sys
 import time
 
@@ -69,6 +71,20 @@ def outputs_stay_until_the_reset(client, checks):
         silence.ask(lambda: state(client))]), [False, [True, True, True], ARMED])
 
 
+def it_expires_also_where_nobody_looks(port, checks):
+    """The process that answers stands still; the supervisor ends it, and drives the outputs."""
+    client = peer.pymodbus_client(port)
+    checks.equal("the code", client.write_register(RESET, 0xAA55, 1).isError(), False)
+    checks.equal("a write", client.write_coils(0, DRIVEN, 1).isError(), False)
+    os.kill(peer.the_worker(), signal.SIGSTOP)
+    client.close()
+    other = peer.pymodbus_client(port)
+    checks.equal("the next process knows", state(other), EXPIRED)
+    checks.equal("the wires are safe", levels(other), SAFE)
+    checks.equal("a write to an output", other.write_coil(0, True, 1).exception_code, 4)
+    other.close()
+
+
 def main():
     checks = peer.Checks()
     with peer.running_node(sys.argv[1:]) as port:
@@ -79,6 +95,7 @@ def main():
         a_monitor_does_not(monitor, checks)
         outputs_stay_until_the_reset(monitor, checks)
         monitor.close()
+        it_expires_also_where_nobody_looks(port, checks)
     checks.done("a dead client's outputs go to their safe state, and stay until the reset")
 
 

@@ -91,9 +91,13 @@ class Shutdown(unittest.TestCase):
         device = Device().start()
         self.addCleanup(device.stop)
         device.answer = answer
-        with process.Driver(f"_map:={path}", f"_port:={device.port}") as driver:
-            driver.wait_for("connected")
-            self.assert_ends_soon(driver, NOT_SAFE)
+        with contextlib.ExitStack() as stack:
+            def start():
+                device.tables["coils"][7] = 0
+                return stack.enter_context(process.Driver(f"_map:={path}", f"_port:={device.port}"))
+
+            driver, code = process.interrupted_in_time(start)
+            self.assertEqual(code, NOT_SAFE, driver.output)
             self.assertIn("lamp could not be set to its safe value: exception 04", driver.output)
             self.assertEqual(device.tables["coils"][7], 1)
         with process.Driver(f"_map:={path}", f"_port:={free_port()}") as driver:

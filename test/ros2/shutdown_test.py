@@ -99,19 +99,21 @@ class Safe(testing.RosTest):
     def setUp(self):
         self.device = Device().start()
         self.addCleanup(self.device.stop)
-        self.device.tables["coils"][3] = 1
         self.path = process.write_map(SAFE)
 
     def start(self, port=None):
         return self.driver("--map", self.path, "--port", port or self.device.port)
 
+    def start_unsafe(self):
+        """At a device whose outputs have other values than their safe ones."""
+        self.device.tables["coils"][3], self.device.tables["coils"][7] = 1, 0
+        return self.start()
+
     def test_outputs_get_their_safe_values_by_either_signal(self):
         for by in SIGNALS:
             with self.subTest(by.name):
-                self.device.tables["coils"][3], self.device.tables["coils"][7] = 1, 0
-                driver = self.start()
-                driver.wait_for("connected")
-                self.assertEqual(driver.interrupt(by), 0, driver.output)
+                driver, code = process.interrupted_in_time(self.start_unsafe, by)
+                self.assertEqual(code, 0, driver.output)
                 self.assertEqual((self.device.tables["coils"][3], self.device.tables["coils"][7]), (0, 1))
 
     def test_an_output_that_refuses_is_told_though_ros_ends(self):
@@ -121,9 +123,8 @@ class Safe(testing.RosTest):
             return self.device.serve(request)
 
         self.device.answer = answer
-        driver = self.start()
-        driver.wait_for("connected")
-        self.assertEqual(driver.interrupt(), NOT_SAFE, driver.output)
+        driver, code = process.interrupted_in_time(self.start_unsafe)
+        self.assertEqual(code, NOT_SAFE, driver.output)
         self.assertIn("lamp could not be set to its safe value: exception 04", driver.output)
         self.assertEqual(self.device.tables["coils"][7], 1)
 
