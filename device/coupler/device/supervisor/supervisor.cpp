@@ -41,18 +41,17 @@ bool end_durations(Workload& workload, const std::vector<SafeOutcome>& parts, st
 bool make_safe(Workload& workload, bool firmware_too, std::vector<Child>& lost) {
   const std::size_t parts = workload.begin_safe();
   SafetyProcesses outputs(lost);
-  std::vector<std::size_t> unasked;
+  std::vector<std::pair<std::size_t, SafeOutcome>> without;  // parts for which there is no process
   for (std::size_t part = 0; part < parts; ++part)
-    if (!outputs.start([&] { return workload.drive_safe(part); })) unasked.push_back(part);
+    if (!outputs.start([&] { return workload.drive_safe(part); }))
+      without.emplace_back(part, SafeOutcome::unasked);
   // It may take its time, which neither outputs nor the ends of durations wait for.
   SafetyProcesses firmware(lost);
   if (firmware_too && workload.has_firmware()) firmware.start([&] { return workload.make_firmware_safe(); });
-  std::vector<std::size_t> safe_here;
-  for (const std::size_t part : unasked)
-    if (workload.drive_safe(part)) safe_here.push_back(part);
+  for (auto& [part, outcome] : without)
+    outcome = workload.drive_safe(part) ? SafeOutcome::safe : SafeOutcome::failed;
   std::vector<SafeOutcome> outcomes = outputs.finish();
-  for (const std::size_t part : unasked) outcomes[part] = SafeOutcome::failed;
-  for (const std::size_t part : safe_here) outcomes[part] = SafeOutcome::safe;
+  for (const auto& [part, outcome] : without) outcomes[part] = outcome;
   bool safe = all_safe(outcomes);
   if (workload.went_safe(outcomes)) safe &= end_durations(workload, outcomes, lost);
   return all_safe(firmware.finish()) && safe;
