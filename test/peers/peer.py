@@ -35,6 +35,21 @@ def freeze(process):
     os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
 
 
+def freeze_other(process):
+    """The same for a process id that is no child's. SIGKILL ends it still."""
+    os.kill(process, signal.SIGSTOP)
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        try:
+            stats = [(task / "stat").read_text(encoding="utf-8") for task in pathlib.Path(f"/proc/{process}/task").iterdir()]
+        except OSError:
+            return  # it has been ended meanwhile
+        if all(stat.rpartition(")")[2].split()[0] == "T" for stat in stats):
+            return
+        time.sleep(0.01)
+    raise TimeoutError(f"process {process} runs on after SIGSTOP")
+
+
 class Checks:
     """Collects comparisons, so that one run tells everything."""
 

@@ -141,6 +141,7 @@ def what_a_killed_call_leaves(folder, checks):
     checks.equal("certificates that are whole", left, ["authority.pem", "authority.pem"])
     told = subprocess.run(call, cwd=folder, capture_output=True, text=True)
     checks.equal(f"then it makes all: {told.stderr}", told.returncode, 0)
+    checks.equal("nothing else is left", [file.name for file in (folder / "cut_short").rglob(".*")], [])
     checks.equal("whole", subprocess.run(["openssl", "verify", "-CAfile", "press/authority.pem", "press/press-2.pem"],
                                          cwd=folder / "cut_short", capture_output=True).returncode, 0)
 

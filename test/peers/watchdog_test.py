@@ -4,8 +4,6 @@
 
     watchdog_test.py NODE_COMMAND…
 """
-import os
-import signal
 import sys
 import time
 
@@ -76,7 +74,7 @@ def it_expires_also_where_nobody_looks(port, checks):
     client = peer.pymodbus_client(port)
     checks.equal("the code", client.write_register(RESET, 0xAA55, 1).isError(), False)
     checks.equal("a write", client.write_coils(0, DRIVEN, 1).isError(), False)
-    os.kill(peer.the_worker(), signal.SIGSTOP)
+    peer.freeze_other(peer.the_worker())
     client.close()
     other = peer.pymodbus_client(port)
     checks.equal("the next process knows", state(other), EXPIRED)

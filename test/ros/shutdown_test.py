@@ -96,7 +96,7 @@ class Shutdown(unittest.TestCase):
                 device.tables["coils"][7] = 0
                 return stack.enter_context(process.Driver(f"_map:={path}", f"_port:={device.port}"))
 
-            driver, code = process.interrupted_in_time(start)
+            driver, code = process.interrupted_in_time(start, lambda driver, _: "exception 04" in driver.output)
             self.assertEqual(code, NOT_SAFE, driver.output)
             self.assertIn("lamp could not be set to its safe value: exception 04", driver.output)
             self.assertEqual(device.tables["coils"][7], 1)

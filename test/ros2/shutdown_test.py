@@ -112,7 +112,7 @@ class Safe(testing.RosTest):
     def test_outputs_get_their_safe_values_by_either_signal(self):
         for by in SIGNALS:
             with self.subTest(by.name):
-                driver, code = process.interrupted_in_time(self.start_unsafe, by)
+                driver, code = process.interrupted_in_time(self.start_unsafe, lambda _, code: code == 0, by)
                 self.assertEqual(code, 0, driver.output)
                 self.assertEqual((self.device.tables["coils"][3], self.device.tables["coils"][7]), (0, 1))
 
@@ -123,7 +123,7 @@ class Safe(testing.RosTest):
             return self.device.serve(request)
 
         self.device.answer = answer
-        driver, code = process.interrupted_in_time(self.start_unsafe)
+        driver, code = process.interrupted_in_time(self.start_unsafe, lambda driver, _: "exception 04" in driver.output)
         self.assertEqual(code, NOT_SAFE, driver.output)
         self.assertIn("lamp could not be set to its safe value: exception 04", driver.output)
         self.assertEqual(self.device.tables["coils"][7], 1)

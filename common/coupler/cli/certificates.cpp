@@ -124,6 +124,16 @@ tl::expected<void, std::string> write_new(const fs::path& path, const std::strin
   return tl::unexpected(fmt::format("{} cannot be written: {}", path.string(), std::strerror(error)));
 }
 
+/// What write_new() left in a call that was killed.
+void forget_unfinished(const fs::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const fs::path ending = entry.path().extension();
+    const bool is_of_ours = ending == ".pem" || ending == ".key" || ending == ".csr";
+    if (is_of_ours && entry.path().filename().string().front() == '.') fs::remove(entry.path(), ignored);
+  }
+}
+
 tl::expected<void, std::string> make_folder(const fs::path& folder, bool is_secret) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -280,8 +290,7 @@ tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subje
                                         const std::vector<std::string>& roles) {
   const fs::path own = folder / subject.name;
   if (auto done = make_folder(own, true); !done) return done;
-  if (!fs::exists(own / "authority.pem"))
-    if (auto done = write_new(own / "authority.pem", authority.certificate, false); !done) return done;
+  forget_unfinished(own);
   const Stems stems = stems_in(own, subject.name + (kind == tls::KeyKind::rsa ? "-rsa" : ""), ".pem");
   if (stems.newest) {
     const auto kept = is_kept(own, *stems.newest, subject);
@@ -290,6 +299,8 @@ tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subje
   }
   const auto made = tls::issue(subject, kind, authority);
   if (!made) return tl::unexpected(made.error());
+  if (!fs::exists(own / "authority.pem"))  // first: who has a certificate has this
+    if (auto done = write_new(own / "authority.pem", authority.certificate, false); !done) return done;
   if (auto done = write_new(own / (stems.next + ".key"), made->key, true); !done) return done;
   if (auto done = write_new(own / (stems.next + ".pem"), made->certificate, false); !done) return done;
   fmt::print("{}: {}, {}; copy the folder beside its map, and write into that:\n", own.string(),
@@ -303,6 +314,7 @@ tl::expected<void, std::string> ask_for(const fs::path& folder, const tls::Subje
                                         tls::KeyKind kind) {
   const fs::path own = folder / subject.name;
   if (auto done = make_folder(own, true); !done) return done;
+  forget_unfinished(own);
   const Stems stems = stems_in(own, subject.name + (kind == tls::KeyKind::rsa ? "-rsa" : ""), ".csr");
   const auto made = tls::request(subject, kind);
   if (!made) return tl::unexpected(made.error());

@@ -42,6 +42,12 @@ Exit run(const Arguments& arguments) {
                     "give --page-certificate FILE and --page-key FILE; or leave --listen out, give --port "
                     "8502, and on the other machine run `ssh -L 8502:127.0.0.1:8502 USER@THIS_MACHINE` and "
                     "open the address there");
+  if (options.write && options.certificate.empty() && !options.name.empty() && options.name != "localhost")
+    return complain(
+        "panel", bad_call,
+        "--write with --name needs HTTPS: by plain HTTP and a name, a browser's pages cannot tell how "
+        "many they are, and of too many none can write",
+        "leave --name out, or give --page-certificate FILE and --page-key FILE");
   return panel(arguments.device, options);
 }
 

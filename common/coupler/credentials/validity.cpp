@@ -2,8 +2,9 @@
 #include "coupler/credentials/validity.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 namespace coupler {
@@ -27,8 +28,23 @@ std::optional<std::string> time_problem(const Validity& validity, system_clock::
                      minute_text(now));
 }
 
+/// Without std::time_t, which ends in 2038 where it has 32 bits. The calendar is that of eras of 400 years
+/// from March on, whose leap day is the last one.
 std::string minute_text(system_clock::time_point time) {
-  return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(system_clock::to_time_t(time)));
+  using std::chrono::minutes;
+  const std::int64_t total = std::chrono::floor<minutes>(time.time_since_epoch()).count();
+  constexpr std::int64_t a_day = 1440;           // minutes
+  constexpr std::int64_t before_1970 = 719'468;  // days since 0000-03-01
+  const std::int64_t days = total / a_day + before_1970;
+  const std::int64_t era = days / 146'097;
+  const std::int64_t of_era = days % 146'097;
+  const std::int64_t year_of_era = (of_era - of_era / 1460 + of_era / 36'524 - of_era / 146'096) / 365;
+  const std::int64_t of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+  const std::int64_t month_from_march = (5 * of_year + 2) / 153;
+  const std::int64_t day = of_year - (153 * month_from_march + 2) / 5 + 1;
+  const std::int64_t month = month_from_march < 10 ? month_from_march + 3 : month_from_march - 9;
+  const std::int64_t year = year_of_era + era * 400 + (month <= 2 ? 1 : 0);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02} UTC", year, month, day, total % a_day / 60, total % 60);
 }
 
 }  // namespace coupler

@@ -109,8 +109,10 @@ bool are_of_one_maker(const RevocationList& a, const RevocationList& b) {
   };
   const auto one = key_of(a.list);
   const auto other = key_of(b.list);
-  return one && other && one->keyid != nullptr && other->keyid != nullptr &&
-         ASN1_OCTET_STRING_cmp(one->keyid, other->keyid) == 0;
+  const ASN1_OCTET_STRING* one_id = one ? one->keyid : nullptr;
+  const ASN1_OCTET_STRING* other_id = other ? other->keyid : nullptr;
+  if (one_id == nullptr || other_id == nullptr) return one_id == other_id;
+  return ASN1_OCTET_STRING_cmp(one_id, other_id) == 0;
 }
 
 /// By their times; lists of one second by their numbers.
@@ -170,10 +172,11 @@ tl::expected<void, std::string> believe(SSL_CTX* context, Side side, const Crede
   X509_STORE* store = SSL_CTX_get_cert_store(context);
   const auto authorities = read_certificates(credentials.ca, "the authority's file");
   if (!authorities) return problem(authorities.error());
-  if (side == Side::server && authorities->empty())
+  if (authorities->empty() && (side == Side::server || !credentials.ca.empty()))
     return problem(
-        "the authority's file has no PEM certificate ('-----BEGIN CERTIFICATE-----'): no client could be "
-        "believed");
+        "the authority's file has no PEM certificate ('-----BEGIN CERTIFICATE-----'), so that nobody could "
+        "be "
+        "believed; 'openssl x509 -inform DER' converts one");
   for (const CertificatePtr& authority : *authorities) {
     X509_STORE_add_cert(store, authority.get());
     SSL_CTX_add_client_CA(context, authority.get());

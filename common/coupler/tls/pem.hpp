@@ -2,7 +2,6 @@
 // Reading PEM text (RFC 7468): all blocks of a kind, or why not.
 #pragma once
 
-#include <openssl/err.h>
 #include <openssl/pem.h>
 
 #include <cstddef>
@@ -29,17 +28,19 @@ BioPtr reader_of(std::string_view text);
 std::size_t blocks_in(std::string_view pem, std::initializer_list<std::string_view> names);
 
 /// What `read`, one of OpenSSL's readers, takes for blocks with these names: all of them. The error says
-/// which of `file` is cut or damaged: more may be missing behind it.
+/// which of `file` cannot be read: more may be missing behind it.
 template <class Pointer, auto read>
 tl::expected<std::vector<Pointer>, std::string> read_all(std::string_view pem, std::string_view file,
                                                          std::initializer_list<std::string_view> names) {
   std::vector<Pointer> all;
   const BioPtr reader = reader_of(pem);
   while (Pointer next{read(reader.get(), nullptr, no_password, nullptr)}) all.push_back(std::move(next));
-  ERR_clear_error();  // the end is one
+  const std::string why = take_openssl_error();  // the end is one
   if (const std::size_t blocks = blocks_in(pem, names); all.size() < blocks)
-    return tl::unexpected(fmt::format("{}: block {} of {} is cut or damaged; copy the file again", file,
-                                      all.size() + 1, blocks));
+    return tl::unexpected(fmt::format(
+        "{}: block {} of {}, or what stands before it, is cut, damaged or of a kind that OpenSSL does "
+        "not know ({}); copy the file again",
+        file, all.size() + 1, blocks, why));
   return all;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/chrono.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -41,6 +42,23 @@ TEST(Validity, Before_its_beginning_the_clocks_are_to_be_compared) {
                            "clocks")));
   EXPECT_EQ(time_problem(a_day, start), std::nullopt);
   EXPECT_EQ(time_problem(a_day, start + day), expiry_text(a_day, start + day));
+}
+
+TEST(MinuteText, Is_right_for_each_day_that_the_clock_knows) {
+  using std::chrono::seconds;
+  using Time = std::chrono::system_clock::time_point;
+  const auto last = std::chrono::duration_cast<seconds>(Time::duration::max());
+  for (const auto& [since, text] :
+       {std::pair(seconds(0), "1970-01-01 00:00 UTC"),
+        std::pair(seconds(951'868'799), "2000-02-29 23:59 UTC"),
+        std::pair(seconds(951'868'800), "2000-03-01 00:00 UTC"),
+        std::pair(seconds(2'147'483'648), "2038-01-19 03:14 UTC"),
+        std::pair(seconds(4'107'542'399), "2100-02-28 23:59 UTC"),
+        std::pair(seconds(4'107'542'400), "2100-03-01 00:00 UTC"), std::pair(last, "2262-04-11 23:47 UTC")})
+    EXPECT_EQ(minute_text(Time(since)), text);
+  for (auto time = Time(); time < Time(last - 13 * day); time += 13 * day)
+    ASSERT_EQ(minute_text(time),
+              fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::chrono::system_clock::to_time_t(time))));
 }
 
 }  // namespace

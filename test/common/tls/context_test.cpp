@@ -44,6 +44,8 @@ TEST(Context, Says_which_file_has_what_it_must_not_have) {
   wrong.ca = "";
   EXPECT_THAT(problem_of(wrong), HasSubstr("authority's file has no PEM certificate"));
   EXPECT_EQ(problem_of(wrong, Side::client), "") << "it may know the server's pin";
+  wrong.ca = "nothing";
+  EXPECT_THAT(problem_of(wrong, Side::client), HasSubstr("authority's file has no PEM certificate"));
   wrong = credentials_of(test_node());
   wrong.revoked = "nothing";
   EXPECT_THAT(problem_of(wrong), HasSubstr("no PEM list"));
@@ -52,16 +54,16 @@ TEST(Context, Says_which_file_has_what_it_must_not_have) {
 TEST(Context, A_file_that_is_cut_is_refused_though_its_beginning_is_good) {
   Credentials cut = credentials_of(test_node());
   cut.certificate.resize(cut.certificate.size() - 40);  // of the authority's, behind the node's own
-  EXPECT_THAT(problem_of(cut), HasSubstr("the certificate's file: block 2 of 2 is cut or damaged"));
+  EXPECT_THAT(problem_of(cut), HasSubstr("the certificate's file: block 2 of 2, or"));
   cut = credentials_of(test_node());
   cut.ca += cut.ca.substr(0, cut.ca.size() / 2);
-  EXPECT_THAT(problem_of(cut), HasSubstr("the authority's file: block 2 of 2 is cut"));
+  EXPECT_THAT(problem_of(cut), HasSubstr("the authority's file: block 2 of 2, or"));
   cut = credentials_of(test_node());
   cut.key += cut.key.substr(0, cut.key.size() / 2);
-  EXPECT_THAT(problem_of(cut), HasSubstr("the key's file: block 2 of 2 is cut"));
+  EXPECT_THAT(problem_of(cut), HasSubstr("the key's file: block 2 of 2, or"));
   cut = credentials_of(test_node());
   cut.revoked = "-----BEGIN X509 CRL-----\r\nMIIB";
-  EXPECT_THAT(problem_of(cut), HasSubstr("the list of revoked certificates: block 1 of 1 is cut"));
+  EXPECT_THAT(problem_of(cut), HasSubstr("the list of revoked certificates: block 1 of 1, or"));
 }
 
 TEST(Context, A_protected_key_is_refused_and_nobody_is_asked_for_a_password) {

@@ -96,8 +96,8 @@ TEST_F(PumpClient, What_a_callback_throws_is_reported_once) {
     reports.push_back(text);
     throw std::runtime_error("nor is this one's end the connection's");
   };
-  maps::pump::Client other(listening);
   std::atomic<int> calls{0};
+  maps::pump::Client other(listening);
   other.pressure.on_change([&](double) {
     ++calls;
     throw std::out_of_range("of the table");

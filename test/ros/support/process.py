@@ -132,15 +132,16 @@ class Driver(Process):
         """ROS 2 waits here until its graph has no driver but those that run."""
 
 
-def interrupted_in_time(start, by=signal.SIGINT):
+def interrupted_in_time(start, is_right, by=signal.SIGINT):
     """What `start` returns, a driver, once it was connected and ended by a signal, and its exit code. On a busy machine the
-    time for safe values may be over before the driver or the device has had a processor: then another one is started."""
+    time for safe values may be over before the driver or the device has had a processor: where the end took that long and
+    `is_right(driver, code)` is false, another one is started, twenty at most."""
     for _ in range(20):
         driver = start()
         driver.wait_for("connected")
         begun = time.monotonic()
         code = driver.interrupt(by)
-        if time.monotonic() - begun < SAFE_WITHIN:
+        if time.monotonic() - begun < SAFE_WITHIN or is_right(driver, code):
             break
     return driver, code
 

@@ -54,12 +54,14 @@ std::string move_to(Map& map, const Options& options) {
   return {};
 }
 
+void print(const std::string& text) { std::fputs((text + '\n').c_str(), stderr); }
+
 /// What a callback throws ends there: the connection's thread has outputs to look after.
 void report(const Options& options, Level level, const std::string& text) {
   try {
     if (options.on_report) options.on_report(level, text);
   } catch (...) {
-    std::fputs((text + '\n').c_str(), stderr);  // nobody else is left to be told
+    print(text);  // nobody else is left to be told
   }
 }
 
@@ -222,9 +224,11 @@ void Session::listen(std::uint32_t point, LastValues::Listener listener) {
   if (!listener) return values_.listen(point, {});
   auto tell = [this, point, told = false](std::string_view what) mutable {
     if (std::exchange(told, true)) return;
-    report(options_, Level::error,
-           fmt::format("{}: its callback threw an exception: {}; catch it there (reported once)",
-                       map_.points[point].name, what));
+    const std::string text =
+        fmt::format("{}: its callback threw an exception: {}; catch it there (reported once)",
+                    map_.points[point].name, what);
+    report(options_, Level::error, text);
+    if (!options_.on_report) print(text);
   };
   values_.listen(point, [tell = std::move(tell), listener = std::move(listener)](
                             const std::uint16_t* registers, host::Stamp stamp) mutable {

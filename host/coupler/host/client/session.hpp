@@ -71,8 +71,8 @@ PendingWrite refused(std::string_view why);
 /// and identity check.
 ///
 /// All may be called from any thread. Callbacks come in the connection's thread: they may read and set
-/// points, but must neither wait nor connect nor disconnect. What they throw is reported
-/// (Options::on_report).
+/// points, but must neither wait nor connect nor disconnect. What they throw is reported, once
+/// for each of them: to Options::on_report, or on stderr if there is none.
 class Session : private host::Sink {
  public:
   ~Session() override;

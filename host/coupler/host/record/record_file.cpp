@@ -150,7 +150,7 @@ tl::expected<void, std::string> RecordFile::create() {
 tl::expected<void, std::string> RecordFile::begin(std::string_view lines) {
   if (size_ > 0 && !is_stream_)
     if (auto created = create(); !created) return created;
-  share_ = share();
+  if (!is_stream_) share_ = share();
   auto done = append(lines, 1);  // not what has just got its number
   begin_size_ = size_;
   if (done && !is_stream_) delete_what_is_too_much();
@@ -194,7 +194,7 @@ std::uint64_t RecordFile::share() const {
   std::error_code error;
   const fs::path folder = path_.parent_path();
   const fs::space_info disk = fs::space(folder.empty() ? "." : folder, error);
-  if (!error && !is_stream_) {
+  if (!error) {
     std::uint64_t own = 0;
     for (const auto& [number, file] : former(path_))
       if (const auto size = fs::file_size(file, error); !error) own += size;

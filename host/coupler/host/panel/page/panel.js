@@ -261,13 +261,13 @@ async function write(entry, value) {
 /// there anything to write.
 async function takeAPlace() {
   if (!navigator.locks) return () => {};
-  const take = (place) => new Promise((done) => {
+  const tryPlace = (place) => new Promise((done) => {
     const hold = (lock) => (lock ? new Promise((end) => { done(end); }) : done(null));
     navigator.locks.request(`stream ${place}`, { ifAvailable: true }, hold).catch(() => done(() => {}));
   });
   for (;;) {
     for (let place = 0; place < STREAMS; ++place) {
-      const leave = await take(place);
+      const leave = await tryPlace(place);
       if (leave) return leave;
     }
     say("offline", `This browser shows ${STREAMS} pages of this panel and has no connections for more: close one of them.`);
@@ -343,7 +343,9 @@ async function begin() {
   element("print").addEventListener("click", () => window.print());
   setInterval(() => { for (const entry of rows.values()) if (entry.shown && !entry.row.hidden) show(entry); }, 1000);
   setInterval(() => { if (hasWritten) ask("alive", { method: "POST" }).catch(() => {}); }, ALIVE_EVERY);
+  element("points").inert = true;
   const leave = await takeAPlace();
+  element("points").inert = false;
   drawOn();
   for (;;) {
     const error = await follow().catch((why) => why);
