@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // coupler certificates: an authority, and what nodes and clients need of it, as files to copy.
 #include <arpa/inet.h>
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -22,6 +16,7 @@
 #include <fmt/ranges.h>
 #include <tl/expected.hpp>
 
+#include "coupler/cli/certificate_files.hpp"
 #include "coupler/cli/commands.hpp"
 #include "coupler/codec/text.hpp"
 #include "coupler/credentials/credentials.hpp"
@@ -102,56 +97,6 @@ tl::expected<tls::Subject, std::string> client_of(const std::string& text) {
   return tls::Subject{name, false, {}, role};
 }
 
-/// A new file, whole or not at all; a key can be read by its owner only.
-tl::expected<void, std::string> write_new(const fs::path& path, const std::string& text, bool is_secret) {
-  const fs::path unfinished = path.parent_path() / ("." + path.filename().string());  // no name begins so
-  ::unlink(unfinished.c_str());  // of a call that was killed
-  const int fd = ::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, is_secret ? 0600 : 0644);
-  int error = fd < 0 ? errno : 0;
-  for (std::string_view rest = text; !rest.empty() && error == 0;) {
-    const ssize_t size = ::write(fd, rest.data(), rest.size());
-    if (size > 0)
-      rest.remove_prefix(static_cast<std::size_t>(size));
-    else
-      error = errno;
-  }
-  if (error == 0 && ::fsync(fd) != 0) error = errno;
-  if (fd >= 0) ::close(fd);
-  if (error == 0 && ::access(path.c_str(), F_OK) == 0) error = EEXIST;
-  if (error == 0 && ::rename(unfinished.c_str(), path.c_str()) != 0) error = errno;
-  if (error == 0) return {};
-  ::unlink(unfinished.c_str());
-  return tl::unexpected(fmt::format("{} cannot be written: {}", path.string(), std::strerror(error)));
-}
-
-/// What write_new() left in a call that was killed.
-void forget_unfinished(const fs::path& folder) {
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const fs::path ending = entry.path().extension();
-    const bool is_of_ours = ending == ".pem" || ending == ".key" || ending == ".csr";
-    if (is_of_ours && entry.path().filename().string().front() == '.') fs::remove(entry.path(), ignored);
-  }
-}
-
-tl::expected<void, std::string> make_folder(const fs::path& folder, bool is_secret) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!error && is_secret) fs::permissions(folder, fs::perms::owner_all, error);
-  if (error) return tl::unexpected(fmt::format("{} cannot be made: {}", folder.string(), error.message()));
-  return {};
-}
-
-/// Two calls at once would mix their files. It is held until the program ends.
-tl::expected<void, std::string> lock(const fs::path& folder) {
-  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0)
-    return tl::unexpected(fmt::format("{} cannot be opened: {}", folder.string(), std::strerror(errno)));
-  if (::flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return {};  // some file systems have none
-  return tl::unexpected(fmt::format(
-      "{}: another 'coupler certificates' works there; call this one when it has ended", folder.string()));
-}
-
 /// Whether what a subject's folder has is of DIR/authority, which may have been put away. `authority`: its
 /// certificate; empty: it is not there.
 tl::expected<void, std::string> expect_authority(const fs::path& own, const std::string& authority) {
@@ -167,7 +112,7 @@ tl::expected<void, std::string> expect_authority(const fs::path& own, const std:
           : fmt::format("{} is of another authority than {}; begin another folder", own.string(), other));
 }
 
-/// Both files or none: a call that was interrupted leaves nothing that stands in the way of the next.
+/// Both files or none.
 tl::expected<void, std::string> place_authority(const fs::path& own, const tls::Pem& made) {
   const fs::path unfinished = own.parent_path() / ".authority";  // no subject has such a name
   std::error_code error;
@@ -178,8 +123,7 @@ tl::expected<void, std::string> place_authority(const fs::path& own, const tls::
   fs::rename(unfinished, own, error);
   if (error)
     return tl::unexpected(
-        fmt::format("{} cannot be made: {}; if there is a folder without authority.pem, move "
-                    "it away",
+        fmt::format("{} cannot be made: {}; if there is a folder without authority.pem, move it away",
                     own.string(), error.message()));
   return {};
 }
@@ -290,7 +234,6 @@ tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subje
                                         const std::vector<std::string>& roles) {
   const fs::path own = folder / subject.name;
   if (auto done = make_folder(own, true); !done) return done;
-  forget_unfinished(own);
   const Stems stems = stems_in(own, subject.name + (kind == tls::KeyKind::rsa ? "-rsa" : ""), ".pem");
   if (stems.newest) {
     const auto kept = is_kept(own, *stems.newest, subject);
@@ -314,7 +257,6 @@ tl::expected<void, std::string> ask_for(const fs::path& folder, const tls::Subje
                                         tls::KeyKind kind) {
   const fs::path own = folder / subject.name;
   if (auto done = make_folder(own, true); !done) return done;
-  forget_unfinished(own);
   const Stems stems = stems_in(own, subject.name + (kind == tls::KeyKind::rsa ? "-rsa" : ""), ".csr");
   const auto made = tls::request(subject, kind);
   if (!made) return tl::unexpected(made.error());
@@ -338,7 +280,7 @@ Exit certificates(const Arguments& arguments) {
     return complain("certificates", bad_call, "there is nothing to make",
                     "add --node NAME or --client NAME:ROLE");
   auto ready = make_folder(arguments.folder, false);
-  if (ready) ready = lock(arguments.folder);
+  if (ready) ready = lock_folder(arguments.folder);
   if (!ready) return complain("certificates", bad_input, ready.error(), {});
   const auto kind = arguments.rsa ? tls::KeyKind::rsa : tls::KeyKind::p256;
   tls::Pem authority;
