@@ -58,9 +58,15 @@ std::string key_kind(const X509* certificate) {
   return name == nullptr ? "a key of an unknown kind" : name;
 }
 
-/// Called by OpenSSL for each error. True: it is none here.
+/// Called by OpenSSL for each error, and for each certificate of the chain that has none. True: it has none
+/// here either.
 int judge(int ok, X509_STORE_CTX* store) {
-  if (ok == 1) return 1;
+  if (ok == 1) {
+    const X509* const certificate = X509_STORE_CTX_get_current_cert(store);
+    if (certificate == nullptr || !has_weak_curve(certificate)) return 1;
+    X509_STORE_CTX_set_error(store, X509_V_ERR_EE_KEY_TOO_SMALL);
+    return 0;
+  }
   switch (X509_STORE_CTX_get_error(store)) {
     // What a list names stays revoked, however old the list is.
     case X509_V_ERR_CRL_HAS_EXPIRED:
@@ -76,13 +82,6 @@ int judge(int ok, X509_STORE_CTX* store) {
   }
   X509_STORE_CTX_set_error(store, X509_V_OK);
   return 1;
-}
-
-/// Null: none is.
-const X509* weak_one_of(const STACK_OF(X509) * chain) {
-  for (int i = 0; i < sk_X509_num(chain); ++i)
-    if (const X509* one = sk_X509_value(chain, i); has_weak_curve(one)) return one;
-  return nullptr;
 }
 
 bool reject(X509_STORE_CTX* store, Verification& verification, std::string problem) {
@@ -115,11 +114,6 @@ bool believes(X509_STORE_CTX* store, const SSL* ssl, Verification& verification)
     const X509* current = X509_STORE_CTX_get_current_cert(store);
     verification.problem = problem_text(X509_STORE_CTX_get_error(store),
                                         current == nullptr ? certificate : current, SSL_get_certificate(ssl));
-    return false;
-  }
-  if (const X509* weak = weak_one_of(X509_STORE_CTX_get0_chain(store))) {
-    verification.problem = problem_text(X509_V_ERR_EE_KEY_TOO_SMALL, weak, nullptr);
-    X509_STORE_CTX_set_error(store, X509_V_ERR_EE_KEY_TOO_SMALL);
     return false;
   }
   if (verification.wants_role)
