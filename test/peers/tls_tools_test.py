@@ -89,15 +89,13 @@ def what_check_says(folder, checks):
     status, text = check()
     checks.equal(f"everybody's key: {text}", (status, "everybody may read it; 'chmod 600 " in text), (1, True))
     (folder / "node.key").chmod(0o600)
-    (folder / "cell.yaml").write_text(whole.replace("node.pem", "future_node.pem").replace("node.key", "future_node.key"))
-    status, text = check()
-    checks.equal(f"one that is not good yet: {text}", (status, "fits its key; begins on 2090-01-01" in text), (0, True))
-    (folder / "cell.yaml").write_text(whole.replace("node.pem", "small_node.pem").replace("node.key", "small_node.key"))
-    status, text = check()
-    checks.equal(f"one with P-224: {text}", (status, "its key is too weak; have it issued again with P-256" in text), (1, True))
-    (folder / "cell.yaml").write_text(whole.replace("node.pem", "endless_node.pem").replace("node.key", "endless_node.key"))
-    status, text = check()
-    checks.equal(f"one that never ends: {text}", (status, "fits its key; good until 2262-" in text), (0, True))
+    for what, name, wanted, says in (
+            ("one that is not good yet", "future_node", 0, "fits its key; begins on 2090-01-01"),
+            ("one that never ends", "endless_node", 0, "fits its key; good until 2262-"),
+            ("one with P-224", "small_node", 1, "its key is too weak; have it issued again with P-256")):
+        (folder / "cell.yaml").write_text(whole.replace("node.pem", f"{name}.pem").replace("node.key", f"{name}.key"))
+        status, text = check()
+        checks.equal(f"{what}: {text}", (status, says in text), (wanted, True))
     (folder / "cell.yaml").write_text(whole)
 
 

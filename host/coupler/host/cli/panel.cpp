@@ -29,8 +29,7 @@ namespace {
 
 using host::WriteTicket;
 
-/// A page gives a click up after 5 s, until when its request may come: none is written that is older than 8
-/// s.
+/// Until a page gives a click up, after 5 s, its request may come: none is written that is older than 8 s.
 constexpr std::chrono::seconds longest_wait{3};
 constexpr std::chrono::milliseconds judge_period{100};
 constexpr int judgements_a_told = 10;  ///< so often the head's numbers are new: once a second
