@@ -4,6 +4,7 @@ import contextlib
 import signal
 import socket
 
+from coupler_driver.msg import Status
 from std_msgs.msg import Bool
 
 from support import process, testing
@@ -89,6 +90,7 @@ class Shutdown(testing.RosTest):
         with Peer() as peer:
             driver = self.driver("--map", process.write_map(MAP), "--port", peer.port)
             driver.wait_for("connected")
+            self.topic("/shutdown/status", Status).next()  # all has been started: until then a second one exits at once
             with driver.frozen():
                 for _ in range(3):
                     driver._child.send_signal(signal.SIGTERM)  # pylint: disable=protected-access
