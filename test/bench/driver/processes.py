@@ -6,16 +6,14 @@ import pathlib
 import random
 import re
 import signal
-import socket
 import subprocess
+import sys
 import tempfile
 import time
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2]))
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+from support.ports import free_port  # noqa: E402
 
 
 class Child:
