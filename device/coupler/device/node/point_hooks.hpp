@@ -51,7 +51,7 @@ struct NewValues {
 /// sets.
 class PointHooks : public Hooks {
  public:
-  void put_new_values(Image& image, Changes& changes) final;
+  void put_new_values(Image& image, Changes& changes) override;
   void allow_setting(Waker* waker) final;
   [[nodiscard]] bool accept(std::uint32_t, const std::uint16_t*) override { return true; }
 

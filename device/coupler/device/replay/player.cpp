@@ -30,7 +30,8 @@ Player::Player(const Recording& recording, const PlayedMap& played, ReplayOption
       options_(std::move(options)),
       supervisor_(::getpid()),
       differences_(recording, options_.tolerance, options_.compared),
-      exceptions_(played.index.size()) {
+      exceptions_(played.index.size()),
+      shown_exceptions_(exceptions_) {
   for (std::uint32_t i = 0; i < played.index.size(); ++i) recorded_[played.index[i]] = i;
 }
 
@@ -53,12 +54,18 @@ bool Player::answers() {
   return !is_lost_;
 }
 
-std::optional<modbus::Exception> Player::refuse_read(Table table, modbus::Range wanted) {
-  if (failing_ == 0) return std::nullopt;
+/// Whoever reads a point whose exception has ended gets the value that it has then, and none from before.
+void Player::put_new_values(Image& image, Changes& changes) {
   const std::lock_guard lock(mutex_);
-  for (std::size_t i = 0; i < exceptions_.size(); ++i) {
+  PointHooks::put_new_values(image, changes);
+  if (std::exchange(are_new_exceptions_, false)) shown_exceptions_ = exceptions_;
+}
+
+std::optional<modbus::Exception> Player::refuse_read(Table table, modbus::Range wanted) {
+  for (std::size_t i = 0; i < shown_exceptions_.size(); ++i) {
+    if (!shown_exceptions_[i]) continue;
     const Point& read = played_.map.points[played_.mirror[i].value_or(played_.index[i])];
-    if (exceptions_[i] && read.table == table && range(read).overlaps(wanted)) return exceptions_[i];
+    if (read.table == table && range(read).overlaps(wanted)) return shown_exceptions_[i];
   }
   return std::nullopt;
 }
@@ -146,10 +153,11 @@ bool Player::play_once(Clock::time_point began) {
   const auto when = [&](Nanoseconds at) { return began + real(at); };
   round_began_ = began.time_since_epoch().count();
   const auto events = recording_.events();
-  for (std::size_t i = std::exchange(applied_, 0); i < events.size(); ++i) {
-    if (!wait_and_tell(events[i].at, when(events[i].at))) return false;
+  for (std::size_t i = std::exchange(applied_, 0); i < events.size();) {
+    const Nanoseconds at = events[i].at;
+    if (!wait_and_tell(at, when(at))) return false;
     const std::lock_guard lock(mutex_);
-    apply(events[i]);
+    while (i < events.size() && events[i].at == at) apply(events[i++]);
   }
   if (!wait_and_tell(recording_.length(), when(recording_.length()))) return false;
   if (options_.loop) return true;
@@ -185,16 +193,11 @@ void Player::apply(const Recording::Event& event) {
     is_lost_ = options_.faults && event.kind == Kind::lost;
     return;
   }
-  std::optional<modbus::Exception>& exception = exceptions_[event.point];
-  const auto set_exception = [&](std::optional<modbus::Exception> now) {
-    if (exception.has_value() != now.has_value()) failing_ += now ? 1 : static_cast<std::uint32_t>(-1);
-    exception = now;
-  };
-  if (event.kind == Kind::exception) {
-    if (options_.faults) set_exception(event.exception);
-    return;
+  if (event.kind == Kind::value || options_.faults) {
+    are_new_exceptions_ |= exceptions_[event.point] != event.exception;
+    exceptions_[event.point] = event.exception;
   }
-  set_exception(std::nullopt);
+  if (event.kind == Kind::exception) return;
   const std::uint16_t* const registers = recording_.registers(event);
   if (is_writable(played_.map.points[played_.index[event.point]]))
     differences_.recorded(event.point, registers, event.at);

@@ -30,7 +30,8 @@ struct ReplayOptions {
 
 /// Plays a recording in place of a firmware: each point has the value that it had, from the first request on
 /// that the node gets. A point that a client writes is the client's from then on, and what it writes is
-/// compared with the recording. At the end the node is stopped, and the differences have been told on stderr.
+/// compared with the recording. What has the same time in it becomes true at once for clients. At the end the
+/// node is stopped, and the differences have been told on stderr.
 class Player final : public PointHooks {
  public:
   /// All of them outlive it. What it counts is shared with forked processes.
@@ -38,6 +39,7 @@ class Player final : public PointHooks {
   ~Player() override;
 
   void serving_began() override;
+  void put_new_values(Image& image, Changes& changes) override;
   [[nodiscard]] bool accept(std::uint32_t point, const std::uint16_t* registers) override;
   [[nodiscard]] bool shows_identity() const noexcept override { return !recording_.is_foreign(); }
   [[nodiscard]] bool answers() override;
@@ -80,11 +82,13 @@ class Player final : public PointHooks {
   const ReplayOptions options_;
   const pid_t supervisor_;  ///< the process in which this was made
   SharedArray<Shared> shared_{1};
-  std::mutex mutex_;  ///< of those below, which the thread of the requests uses too
+  std::mutex mutex_;  ///< of the next four, which the thread of the requests uses too
   Differences differences_;
   std::vector<std::uint16_t> masked_;
   std::vector<std::optional<modbus::Exception>> exceptions_;  ///< by point
-  std::atomic<std::uint32_t> failing_{0};                     ///< how many points have one
+  bool are_new_exceptions_ = false;                           ///< since they were shown
+  /// As the image shows the points, for the thread of the requests.
+  std::vector<std::optional<modbus::Exception>> shown_exceptions_;
   Clock::time_point told_at_{};
   std::atomic<bool> is_lost_{false};
   std::atomic<Clock::rep> round_began_{0};
