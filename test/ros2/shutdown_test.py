@@ -86,16 +86,6 @@ class Shutdown(testing.RosTest):
             driver.wait_for("waiting for the map of 127.0.0.1")
             self.assert_ends_soon(driver, by=by)
 
-    def test_a_second_signal_does_no_harm(self):
-        with Peer() as peer:
-            driver = self.driver("--map", process.write_map(MAP), "--port", peer.port)
-            driver.wait_for("connected")
-            self.topic("/shutdown/status", Status).next()  # all has been started: until then a second one exits at once
-            with driver.frozen():
-                for _ in range(3):
-                    driver._child.send_signal(signal.SIGTERM)  # pylint: disable=protected-access
-            self.assert_ends_soon(driver)
-
 
 class Safe(testing.RosTest):
     def setUp(self):
@@ -111,10 +101,16 @@ class Safe(testing.RosTest):
         self.device.tables["coils"][3], self.device.tables["coils"][7] = 1, 0
         return self.start()
 
-    def test_outputs_get_their_safe_values_by_either_signal(self):
-        for by in SIGNALS:
-            with self.subTest(by.name):
-                driver, code = process.interrupted_in_time(self.start_unsafe, lambda _, code: code == 0, by)
+    def start_whole(self):
+        """Until everything has been started, a second signal ends it at once."""
+        driver = self.start_unsafe()
+        self.topic("/shutdown/status", Status).next()
+        return driver
+
+    def test_outputs_get_their_safe_values_by_either_signal_and_by_both(self):
+        for by in (*((one,) for one in SIGNALS), SIGNALS):
+            with self.subTest([one.name for one in by]):
+                driver, code = process.interrupted_in_time(self.start_whole, lambda _, code: code == 0, *by)
                 self.assertEqual(code, 0, driver.output)
                 self.assertEqual((self.device.tables["coils"][3], self.device.tables["coils"][7]), (0, 1))
 

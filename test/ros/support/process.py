@@ -91,10 +91,12 @@ class Process:
         self._reader.join(PATIENCE)
         return code
 
-    def interrupt(self, by=signal.SIGINT):
-        """The exit code."""
-        if self.running:
-            self._child.send_signal(by)
+    def interrupt(self, *by):
+        """The exit code, after these signals (SIGINT), all of them before it does anything about the first."""
+        with self.frozen() if by[1:] else contextlib.nullcontext():
+            for number in by or [signal.SIGINT]:
+                if self.running:
+                    self._child.send_signal(number)
         return self.wait()
 
     def end(self):
@@ -132,15 +134,15 @@ class Driver(Process):
         """ROS 2 waits here until its graph has no driver but those that run."""
 
 
-def interrupted_in_time(start, is_right, by=signal.SIGINT):
-    """What `start` returns, a driver, once it was connected and ended by a signal, and its exit code. On a busy machine the
+def interrupted_in_time(start, is_right, *by):
+    """What `start` returns, a driver, once it was connected and ended as interrupt() does, and its exit code. On a busy machine the
     time for safe values may be over before the driver or the device has had a processor: where the end took that long and
     `is_right(driver, code)` is false, another one is started, twenty at most."""
     for _ in range(20):
         driver = start()
         driver.wait_for("connected")
         begun = time.monotonic()
-        code = driver.interrupt(by)
+        code = driver.interrupt(*by)
         if time.monotonic() - begun < SAFE_WITHIN or is_right(driver, code):
             break
     return driver, code

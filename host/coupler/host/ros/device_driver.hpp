@@ -58,6 +58,7 @@ class DeviceDriver : public Sink {
 
  private:
   void log(Level level, const std::string& text);
+  DeviceThread& driven();
   std::vector<std::unique_ptr<Follower>> start_followers(const Followed& followed);
   void publish(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp);
   void measure_wall();

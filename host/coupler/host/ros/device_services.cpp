@@ -11,6 +11,7 @@
 #include "coupler/host/core/health.hpp"
 #include "coupler/host/core/named_write.hpp"
 #include "coupler/host/core/value_text.hpp"
+#include "coupler/host/ros/program.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::host {
@@ -53,7 +54,7 @@ void DeviceServices::start(Node& node, Device device) {
     });
     timed_calls_->start();
   }
-  for (std::uint32_t i = 0; i < map_.points.size(); ++i)
+  for (std::uint32_t i = 0; i < map_.points.size() && !Shutdown::requested; ++i)
     if (is_writable(map_.points[i]) && is_bit(map_.points[i]))
       calls_->offer_set(name(fmt::format("{}/set", map_.points[i].name)),
                         [this, i](bool on) { return answer_set(i, on); });
