@@ -17,6 +17,7 @@ import peer
 logging.getLogger("pymodbus").setLevel(logging.CRITICAL + 1)
 
 TAPE_MAP = """name: tape
+timeout: 20s
 mapping:
   coils: {valve: 0}
   discrete_inputs: {door: 0}

@@ -111,14 +111,15 @@ def faults_are_played(node, folder, checks):
 
     def play(silence):
         other = peer.Silence()
-        with Node(node, "--replay", file) as device, concurrent.futures.ThreadPoolExecutor() as pool:
+        with Node(node, "--replay", file) as device, waits_noted(silence, device), \
+                concurrent.futures.ThreadPoolExecutor() as pool:
             quiet = pool.submit(outcomes, device.port, 9, "closed", other)
             seen = outcomes(device.port, 0, 3, silence), quiet.result(), device.wait()
         silence.note(other.longest)
         return seen
 
     def play_none(silence):
-        with Node(node, "--replay", file, "--no-faults") as device:
+        with Node(node, "--replay", file, "--no-faults") as device, waits_noted(silence, device):
             return outcomes(device.port, 0, 3, silence), device.wait()
 
     faults, others, status = peer.undisturbed(FAULT, play)
@@ -135,11 +136,11 @@ def a_part_and_the_whole_again_and_again(node, folder, checks):
     file = tape.add(4 * STEP, end=True).write(folder / "steps.jsonl")
 
     def play_a_part(silence):
-        with Node(node, "--replay", file, "--from", Tape.utc(2 * STEP + 0.1)) as device:
+        with Node(node, "--replay", file, "--from", Tape.utc(2 * STEP + 0.1)) as device, waits_noted(silence, device):
             return outcomes(device.port, 0, 3, silence), device.wait()
 
     def play_again_and_again(silence):
-        with Node(node, "--replay", file, "--loop") as device:
+        with Node(node, "--replay", file, "--loop") as device, waits_noted(silence, device):
             return outcomes(device.port, 0, 3, silence, times=3), device.end()
 
     checks.equal("--from: from the first request on, and the status", peer.undisturbed(STEP - 0.1, play_a_part),

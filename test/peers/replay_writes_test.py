@@ -18,7 +18,7 @@ try:
     import pymodbus  # noqa: F401
 except ImportError as error:
     peer.skip(f"python3-pymodbus is missing ({error}); run scripts/install-packages test")
-from recording import TAPE_MAP, Node, Program, Tape, outcomes, read, utc, wait_until
+from recording import TAPE_MAP, Node, Program, Tape, outcomes, read, utc, wait_until, waits_noted
 
 
 def a_client_is_compared(node, folder, checks):
@@ -60,7 +60,7 @@ def a_client_is_compared(node, folder, checks):
 
 def play_a_client(node, file, writes, options):
     def play(silence):
-        with Node(node, "--replay", file, "--tolerance", 1, *options) as device:
+        with Node(node, "--replay", file, "--tolerance", 1, *options) as device, waits_noted(silence, device):
             client = peer.pymodbus_client(device.port)
             began = time.monotonic()
             for t, point, value in writes:
@@ -81,7 +81,7 @@ def what_a_client_writes_stays(node, folder, checks):
         .add(1.5, end=True).write(folder / "stays.jsonl")
 
     def play(silence):
-        with Node(node, "--replay", file) as device:
+        with Node(node, "--replay", file) as device, waits_noted(silence, device):
             client = peer.pymodbus_client(device.port, retries=0)
             failed = silence.ask(lambda: client.write_register(0, 77, 1).isError())
             others, kept = outcomes(device.port, 1, 2, silence), silence.ask(lambda: read(client, 0))
@@ -101,7 +101,7 @@ def another_map_plays_the_rest(node, folder, checks):
                                                                "quiet: {address: 9, type: REAL}"), encoding="utf-8")
 
     def play(silence):
-        with Node(node, other, "--replay", folder / "stays.jsonl") as device:
+        with Node(node, other, "--replay", folder / "stays.jsonl") as device, waits_noted(silence, device):
             played, rest = outcomes(device.port, 0, 2, silence), outcomes(device.port, 1, 0, silence)
             return played, rest, device.wait(), device.text()
 
@@ -135,7 +135,7 @@ def what_cannot_be_played_is_told(node, folder, checks):
     cut.write_text("".join(good)[:-9], encoding="utf-8")  # as of a recorder that was killed
 
     def play(silence):
-        with Node(node, "--replay", cut) as device:
+        with Node(node, "--replay", cut) as device, waits_noted(silence, device):
             return outcomes(device.port, 1, 2, silence), device.wait()
 
     checks.equal("one that is cut short is played, and its status", peer.undisturbed(0.5, play), ([1, 2], 0))

@@ -67,7 +67,7 @@ class Node:
     def child(self, name):
         """The process of that name below the node."""
         listed = subprocess.run(["ps", "-o", "pid=,comm=", "--ppid", str(self.process.pid)], capture_output=True, text=True)
-        return next((int(line.split()[0]) for line in listed.stdout.splitlines() if line.split()[1] == name), None)
+        return next((int(line.split()[0]) for line in listed.stdout.splitlines() if line.split()[1:] == [name]), None)
 
     def end(self):
         self.process.terminate()

@@ -9,6 +9,8 @@ import rospy
 import rostest
 from std_msgs.msg import Bool
 
+from support.patience import PATIENCE
+
 
 class LampFollows(unittest.TestCase):
     def test_the_feedback_follows_the_lamp(self):
@@ -26,7 +28,7 @@ class LampFollows(unittest.TestCase):
             with changed:
                 seen.clear()
                 lamp.publish(wanted)
-                self.assertTrue(changed.wait_for(lambda w=wanted: w in seen, 60), f"the feedback did not become {wanted}")
+                self.assertTrue(changed.wait_for(lambda w=wanted: w in seen, PATIENCE), f"the feedback did not become {wanted}")
 
 
 if __name__ == "__main__":

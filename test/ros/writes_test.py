@@ -156,11 +156,15 @@ class Writes(testing.RosTest):
 
     def test_outputs_go_to_their_safe_values_at_the_end(self):
         with Peer() as peer:
-            peer.set("coils", 3, [1, 0])
             text = ("name: writes\naddress: 127.0.0.1\non_shutdown: safe\nmapping:\n  coils:\n    lamp: 3\n"
                     "    horn: 4\n")
-            driver = self.drive(text, peer.port)
-            self.assertEqual(driver.interrupt(), 0)
+
+            def start():
+                peer.set("coils", 3, [1, 0])
+                return self.drive(text, peer.port)
+
+            driver, code = process.interrupted_in_time(start, lambda _, code: code == 0)
+            self.assertEqual(code, 0, driver.output)
             self.assertEqual([int(bit) for bit in peer.get("coils", 3, 2)], [0, 0])
 
 

@@ -136,15 +136,6 @@ TEST(Recording, Silence_of_the_device_is_part_of_it) {
       ElementsAre("0: online", "0: level=1", "2000: lost", "3000: online"));
 }
 
-TEST(Recording, What_is_read_first_after_silence_was_so_since_the_device_is_there_again) {
-  EXPECT_THAT(events_of(recording_of_lines(words_at(0, "level", {1}) + lost_line(played_at(2), "timeout") +
-                                           online_line(played_at(3), true) + words_at(3.25, "level", {2}) +
-                                           no_value_line(played_at(3.5), "speed", "exception", 4) +
-                                           words_at(3.75, "level", {3}) + words_at(4, "speed", {5}))),
-              ElementsAre("0: level=1", "2000: lost", "3000: online", "3000: level=2", "3000: speed!4",
-                          "3750: level=3", "4000: speed=5"));
-}
-
 TEST(Recording, The_device_was_foreign_if_a_line_says_so) {
   EXPECT_TRUE(recording_of_lines(online_line(played_at(0), false)).is_foreign());
   EXPECT_FALSE(recording_of_lines(online_line(played_at(0), true)).is_foreign());

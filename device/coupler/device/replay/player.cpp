@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
@@ -134,6 +135,7 @@ void Player::play() {
       const std::lock_guard lock(mutex_);
       found = differences_.take_all();
       differences_.begin_again();
+      begin_again();
     }
     tell(found);
     if (!options_.loop || round.count() == 0) break;
@@ -141,6 +143,13 @@ void Player::play() {
   }
   tell_unwritten();
   end();
+}
+
+/// What the recording begins without is not as at its end.
+void Player::begin_again() {
+  is_lost_ = false;
+  exceptions_.assign(exceptions_.size(), std::nullopt);
+  are_new_exceptions_ = true;
 }
 
 /// Stops the node.

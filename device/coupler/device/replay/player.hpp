@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -68,6 +67,7 @@ class Player final : public PointHooks {
   void apply(const Recording::Event& event);
   void tell(const std::vector<Differences::Difference>& found);
   void tell_unwritten();
+  void begin_again();
   void end() const;
   bool wait_and_tell(Nanoseconds recorded, Clock::time_point real_time);
   Nanoseconds now() const;  ///< of the recording
@@ -82,7 +82,7 @@ class Player final : public PointHooks {
   const ReplayOptions options_;
   const pid_t supervisor_;  ///< the process in which this was made
   SharedArray<Shared> shared_{1};
-  std::mutex mutex_;  ///< of the next four, which the thread of the requests uses too
+  UrgentMutex mutex_;  ///< of the next four, which the thread of the requests uses too
   Differences differences_;
   std::vector<std::uint16_t> masked_;
   std::vector<std::optional<modbus::Exception>> exceptions_;  ///< by point

@@ -74,28 +74,6 @@ void forget_first_connect(std::vector<Recording::Event>& events) {
       online);
 }
 
-void sort_by_time(std::vector<Recording::Event>& events) {
-  std::stable_sort(events.begin(), events.end(),
-                   [](const auto& left, const auto& right) { return left.at < right.at; });
-}
-
-/// What is read first of a device that is there again was so from that moment on, as far as anybody knows:
-/// nobody reads a value from before its silence.
-void date_back_first_reads(std::vector<Recording::Event>& events, std::size_t points) {
-  using Kind = Recording::Event::Kind;
-  std::vector<bool> are_unread(points);
-  Nanoseconds online{};
-  for (Recording::Event& event : events) {
-    if (event.kind == Kind::lost || event.kind == Kind::online) {
-      are_unread.assign(points, event.kind == Kind::online);
-      online = event.at;
-    } else if (are_unread[event.point]) {
-      are_unread[event.point] = false;
-      event.at = online;
-    }
-  }
-}
-
 /// Makes events of what lines say.
 class EventMaker {
  public:
@@ -175,9 +153,9 @@ tl::expected<Recording, std::string> Recording::read(std::istream& text, const s
         "{} values are not played: of points that the recording's map does not have, or too short or long",
         dropped));
   forget_first_connect(recording.events_);
-  sort_by_time(recording.events_);  // changes that the device has told come late, with their own times
-  date_back_first_reads(recording.events_, map.points.size());
-  sort_by_time(recording.events_);
+  // Changes that the device has told come late, with their own times.
+  std::stable_sort(recording.events_.begin(), recording.events_.end(),
+                   [](const Event& a, const Event& b) { return a.at < b.at; });
   return recording;
 }
 
