@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ROS master starts again: the driver is found again, and the device notices nothing."""
+"""The ROS master starts again: the driver is found again, and the device notices nothing. It hangs while the driver starts: what
+has been driven is made safe."""
 import os
 import pathlib
+import socket
 import subprocess
 import sys
+import threading
 import unittest
 import xmlrpc.client
 
@@ -11,9 +14,12 @@ from support import process
 from support.device import Device
 from support.patience import NO_TIMEOUT, PATIENCE
 from support.ports import free_port
+from support.relay import Relay
 from support.topics import wait_until
 
 MASTER = pathlib.Path(__file__).resolve().parents[1] / "support/ros-master"
+FIRST = "name: first\naddress: 127.0.0.1\nport: {port}\non_shutdown: safe\nmapping:\n  coils: {{lamp: 3}}\n"
+COUNT = 4000  # topics: the master hears of them for longer than a write takes
 MAP = f"""
 name: kept
 address: 127.0.0.1
@@ -24,6 +30,29 @@ mapping:
   holding_registers: {{goal: {{address: 4, type: INT, access: write}}}}
 """
 NODE = "/kept_driver"
+
+
+class MasterThatHangs(Relay):
+    """It answers no more where `answers` is not set."""
+
+    def __init__(self, port):
+        self.answers = threading.Event()
+        super().__init__(port)
+
+    def serve(self, client, node):
+        back = threading.Thread(target=self.forward, args=(node, client), daemon=True)
+        back.start()
+        self.forward(client, node)
+        back.join(PATIENCE)
+
+    def forward(self, source, sink):
+        try:
+            while data := source.recv(65536):
+                self.answers.wait()
+                sink.sendall(data)
+            sink.shutdown(socket.SHUT_WR)
+        except OSError:  # one of both has ended
+            pass
 
 
 class MasterRestart(unittest.TestCase):
@@ -90,6 +119,31 @@ class MasterRestart(unittest.TestCase):
             self.assertIn("success: True", answer)
             self.assertEqual(driver.output.count("has started again"), 1)
             self.assertEqual(self.device.accepted, 1, "the device has noticed nothing")
+
+    def test_a_signal_makes_outputs_safe_while_a_master_that_hangs_holds_up_the_start(self):
+        points = "".join(f"    p{i}: {i}\n" for i in range(COUNT))
+        large = process.write_map(f"name: large\naddress: 127.0.0.1\nport: {free_port()}\nmapping:\n  coils:\n{points}")
+        self.device = Device().start()
+        self.addCleanup(self.device.stop)
+        first = process.write_map(FIRST.format(port=self.device.port))
+        _, uri = self.start_master(free_port())
+        self.environment = {**os.environ, "ROS_MASTER_URI": uri}
+        relay = MasterThatHangs(int(uri.rstrip("/").rsplit(":", 1)[1]))
+        self.addCleanup(relay.stop)
+        environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{relay.port}/"}
+
+        def start():
+            relay.answers.set()
+            driver = process.Process("coupler_driver", f"_maps:=[{first},{large}]", environment=environment)
+            driver.wait_for("first: connected")
+            wait_until(lambda: "True" in self.in_ros("rosservice", "call", "/first/lamp/set", "true").communicate()[0], "a write")
+            self.assertEqual(self.device.tables["coils"][3], 1)
+            relay.answers.clear()
+            return driver
+
+        driver, code = process.interrupted_in_time(start, lambda _, code: code == 0)
+        self.assertEqual(code, 0, driver.output)
+        self.assertEqual(self.device.tables["coils"][3], 0)
 
 
 if __name__ == "__main__":

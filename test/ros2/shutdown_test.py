@@ -102,7 +102,7 @@ class Safe(testing.RosTest):
         return self.start()
 
     def start_whole(self):
-        """Until everything has been started, a second signal ends it at once."""
+        """Until everything has been started, a second signal ends a driver that has written nothing at once."""
         driver = self.start_unsafe()
         self.topic("/shutdown/status", Status).next()
         return driver

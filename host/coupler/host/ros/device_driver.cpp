@@ -67,22 +67,25 @@ DeviceDriver::DeviceDriver(Node& node, const Map& map, const Followed& followed,
       transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport), node)),
       thread_(map, map.verify, load_served_map, *transport_, *this, map.poll),
       writes_{[this](const Write& write) { driven().write(write); },
-              [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {
+              [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {}
+
+void DeviceDriver::begin() {
   for (std::uint32_t i = 0; i < map_.points.size() && !Shutdown::requested; ++i)
     if (is_writable(map_.points[i]))
-      subscriptions_.push_back(node.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
+      subscriptions_.push_back(
+          node_.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
   services_.start(
-      node, {writes_, [this] { return driven().reset_watchdog(); }, [this] { return driven().make_safe(); },
-             [this](const ScheduledWrite& what) { return driven().schedule(what); },
-             [this] { return thread_.statistics(); }});
-  if (map.poll == Poll::subscribed)
+      node_, {writes_, [this] { return driven().reset_watchdog(); }, [this] { return driven().make_safe(); },
+              [this](const ScheduledWrite& what) { return driven().schedule(what); },
+              [this] { return thread_.statistics(); }});
+  if (map_.poll == Poll::subscribed)
     subscribers_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
   subscribers_.on_each([this](std::uint32_t point) { thread_.want(point, true); });
 }
 
 /// The thread, for what drives outputs. ROS may ask for that while other devices are still started.
 DeviceThread& DeviceDriver::driven() {
-  Shutdown::driving = true;
+  Shutdown::begin_driving();
   return thread_;
 }
 
@@ -102,7 +105,7 @@ void DeviceDriver::end_followers() {
 bool DeviceDriver::stop() {
   services_.stop();
   for (const auto& follower : followers_) follower->end_comes();
-  return thread_.end();
+  return stop_device();
 }
 
 bool DeviceDriver::report(Time now, bool force) {

@@ -32,10 +32,13 @@ class DeviceDriver : public Sink {
     std::optional<unsigned> panel;         ///< the port of one
   };
 
-  /// The map's views must outlive it. Callbacks of the node refer to it: the node must be shut down before it
-  /// is destroyed, and publish no more diagnostics.
+  /// Connects to the device; drives nothing before begin(). The map's views must outlive it. Callbacks of the
+  /// node refer to it: the node must be shut down before it is destroyed, and publish no more diagnostics.
   DeviceDriver(Node& node, const Map& map, const Followed& followed, std::unique_ptr<Transport> transport);
   ~DeviceDriver() override { services_.stop(); }
+
+  /// Listens to what is to be written, and offers services, which takes as long as ROS takes.
+  void begin();
 
   /// After stop(): its outputs are safe, however long the disk takes.
   void end_followers();
@@ -43,6 +46,9 @@ class DeviceDriver : public Sink {
   /// Stops the device's thread; what comes from ROS afterwards does nothing. False if an output should have
   /// its safe value and has not.
   bool stop();
+
+  /// Of that, what the device needs. In any thread, also while another is in begin().
+  bool stop_device() { return thread_.end(); }
 
   /// Publishes the status if it is due, and updates the diagnostics: true if they are to be published at
   /// once. To be called about ten times a second; without news and without `force` it does nothing.

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/drive.hpp"
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <condition_variable>
 #include <future>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <thread>
 #include <utility>
@@ -19,12 +24,63 @@ constexpr auto report_interval = std::chrono::milliseconds(100);
 
 using Drivers = std::vector<std::unique_ptr<DeviceDriver>>;
 
-Drivers start_all(const Devices& devices, Node& node) {
+/// At the same time: each may take most of a second for its safe values. False if one has not all of them.
+bool stop_all(const Drivers& drivers, bool (DeviceDriver::*stop)()) {
+  std::vector<std::future<bool>> stops;
+  stops.reserve(drivers.size());
+  for (const auto& driver : drivers)
+    stops.push_back(std::async(std::launch::async, [&driver, stop] { return (driver.get()->*stop)(); }));
+  bool safe = true;
+  for (auto& one : stops) safe &= one.get();
+  return safe;
+}
+
+/// The start waits for ROS, and a master that hangs may let it wait for ever. If a signal comes once
+/// something has been driven, and the start is not over soon, this ends the program with safe outputs.
+class StartWatch {
+ public:
+  explicit StartWatch(Drivers& drivers) : drivers_(drivers), thread_([this] { watch(); }) {}
+  StartWatch(const StartWatch&) = delete;
+  StartWatch& operator=(const StartWatch&) = delete;
+  ~StartWatch() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_over_ = true;
+    }
+    over_.notify_one();
+    thread_.join();
+  }
+
+  DeviceDriver& add(std::unique_ptr<DeviceDriver> driver) {
+    const std::lock_guard lock(mutex_);
+    return *drivers_.emplace_back(std::move(driver));
+  }
+
+ private:
+  void watch() {
+    constexpr auto soon = std::chrono::seconds(1);
+    std::unique_lock lock(mutex_);
+    for (Time ended = Time::max(); !over_.wait_for(lock, report_interval, [this] { return is_over_; });) {
+      if (!Shutdown::requested || !Shutdown::is_driving()) continue;
+      const Time now = std::chrono::steady_clock::now();
+      ended = std::min(ended, now);
+      if (now - ended > soon) ::_exit(stop_all(drivers_, &DeviceDriver::stop_device) ? 0 : not_safe);
+    }
+  }
+
+  Drivers& drivers_;
+  std::mutex mutex_;
+  std::condition_variable over_;
+  bool is_over_ = false;
+  std::thread thread_;  // last: it uses the others
+};
+
+void start_all(const Devices& devices, Node& node, Drivers& drivers) {
+  StartWatch watch(drivers);
   std::vector<Map> maps;
   for (const auto& [settings, source] : devices) maps.push_back(source.map);
   auto transports = make_transports(maps);
   auto transport = transports.begin();
-  Drivers drivers;
   std::set<unsigned> panels;  // their ports: of devices with the same setting each has the next one
   for (const auto& [settings, source] : devices) {
     if (Shutdown::requested) break;
@@ -32,27 +88,16 @@ Drivers start_all(const Devices& devices, Node& node) {
     if (followed.recording)
       followed.recording = recording_path(*followed.recording, source.map.name, devices.size() == 1);
     while (followed.panel && !panels.insert(*followed.panel).second) ++*followed.panel;
-    drivers.push_back(std::make_unique<DeviceDriver>(node, source.map, followed, std::move(*transport++)));
+    watch.add(std::make_unique<DeviceDriver>(node, source.map, followed, std::move(*transport++))).begin();
   }
-  return drivers;
-}
-
-/// At the same time: each may take most of a second for its safe values. False if one has not all of them.
-bool stop_all(const Drivers& drivers) {
-  std::vector<std::future<bool>> stops;
-  stops.reserve(drivers.size());
-  for (const auto& driver : drivers)
-    stops.push_back(std::async(std::launch::async, [&driver] { return driver->stop(); }));
-  bool safe = true;
-  for (auto& stop : stops) safe &= stop.get();
-  return safe;
 }
 
 }  // namespace
 
 int drive(const Devices& devices, Node& node) {
-  const Drivers drivers = start_all(devices, node);
-  Shutdown::driving = true;
+  Drivers drivers;
+  start_all(devices, node, drivers);
+  Shutdown::begin_driving();
   if (!Shutdown::requested) node.start();
   for (Time diagnosed = Time::min(); node.is_running() && !Shutdown::requested;
        std::this_thread::sleep_for(report_interval)) {
@@ -64,7 +109,8 @@ int drive(const Devices& devices, Node& node) {
     diagnosed = now;
     node.publish_diagnostics();
   }
-  const bool safe = stop_all(drivers);  // first: a ROS or a disk that hangs may hold up what follows
+  const bool safe =
+      stop_all(drivers, &DeviceDriver::stop);  // first: a ROS or a disk that hangs may hold up what follows
   for (const auto& driver : drivers) driver->end_followers();
   node.shut_down();
   return safe ? 0 : not_safe;

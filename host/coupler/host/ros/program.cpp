@@ -14,6 +14,9 @@
 namespace coupler::host {
 namespace {
 
+enum class Stage { starting, driving, exiting };
+std::atomic<Stage> stage{Stage::starting};
+
 void on_signals(void (*handler)(int)) {
   std::signal(SIGINT, handler);
   std::signal(SIGTERM, handler);
@@ -22,7 +25,14 @@ void on_signals(void (*handler)(int)) {
 }  // namespace
 
 std::atomic<bool> Shutdown::requested{false};
-std::atomic<bool> Shutdown::driving{false};
+
+void Shutdown::begin_driving() {
+  Stage now = Stage::starting;
+  if (stage.compare_exchange_strong(now, Stage::driving) || now == Stage::driving) return;
+  for (;;) ::pause();
+}
+
+bool Shutdown::is_driving() { return stage == Stage::driving; }
 
 void Shutdown::exit_on_signals() {
   on_signals([](int) { ::_exit(0); });
@@ -30,7 +40,8 @@ void Shutdown::exit_on_signals() {
 
 void Shutdown::request_on_signals() {
   on_signals([](int) {
-    if (requested.exchange(true) && !driving) ::_exit(0);
+    Stage now = Stage::starting;
+    if (requested.exchange(true) && stage.compare_exchange_strong(now, Stage::exiting)) ::_exit(0);
   });
 }
 

@@ -21,12 +21,17 @@ int main_with(const Map* built_in, int argc, char** argv);
 /// How SIGINT and SIGTERM end a driver.
 struct Shutdown {
   static std::atomic<bool> requested;  ///< by a signal; every wait looks at it
-  static std::atomic<bool> driving;    ///< outputs may have been driven: the shutdown must be orderly
+
+  /// Before an output may be driven: from now on the shutdown must be orderly. Does not return if a second
+  /// signal ends the program at this moment.
+  static void begin_driving();
+  /// Whether that was called.
+  static bool is_driving();
 
   /// A signal exits with status 0, as long as nothing has been started that would have to be stopped.
   static void exit_on_signals();
-  /// A signal sets `requested`. While nothing is driven a second one exits at once, so that nobody has to
-  /// wait for a device or a ROS master that does not answer.
+  /// A signal sets `requested`. While nothing has been driven a second one exits at once, so that nobody has
+  /// to wait for a device or a ROS master that does not answer.
   static void request_on_signals();
 };
 
