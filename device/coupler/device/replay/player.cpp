@@ -135,11 +135,11 @@ void Player::play() {
       const std::lock_guard lock(mutex_);
       found = differences_.take_all();
       differences_.begin_again();
-      begin_again();
     }
     tell(found);
     if (!options_.loop || round.count() == 0) break;
     began += round;
+    begin_again();
   }
   tell_unwritten();
   end();
@@ -147,6 +147,7 @@ void Player::play() {
 
 /// What the recording begins without is not as at its end.
 void Player::begin_again() {
+  const std::lock_guard lock(mutex_);
   is_lost_ = false;
   exceptions_.assign(exceptions_.size(), std::nullopt);
   are_new_exceptions_ = true;
