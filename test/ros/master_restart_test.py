@@ -3,6 +3,7 @@
 has been driven is made safe."""
 import os
 import pathlib
+import signal
 import socket
 import subprocess
 import sys
@@ -18,7 +19,7 @@ from support.relay import Relay
 from support.topics import wait_until
 
 MASTER = pathlib.Path(__file__).resolve().parents[1] / "support/ros-master"
-FIRST = "name: first\naddress: 127.0.0.1\nport: {port}\non_shutdown: safe\nmapping:\n  coils: {{lamp: 3}}\n"
+FIRST = "name: first\naddress: 127.0.0.1\nport: {port}\non_shutdown: safe\nmapping:\n  coils: {lamp: 3}\n"
 COUNT = 4000  # topics: the master hears of them for longer than a write takes
 MAP = f"""
 name: kept
@@ -120,12 +121,12 @@ class MasterRestart(unittest.TestCase):
             self.assertEqual(driver.output.count("has started again"), 1)
             self.assertEqual(self.device.accepted, 1, "the device has noticed nothing")
 
-    def test_a_signal_makes_outputs_safe_while_a_master_that_hangs_holds_up_the_start(self):
-        points = "".join(f"    p{i}: {i}\n" for i in range(COUNT))
-        large = process.write_map(f"name: large\naddress: 127.0.0.1\nport: {free_port()}\nmapping:\n  coils:\n{points}")
+    def starts_and_then_the_master_hangs(self, *others, first=FIRST):
+        """A function: it starts a driver, has it write to the first of its devices, and then the master answers no more. `others`:
+        maps of further devices, which are still started then."""
         self.device = Device().start()
         self.addCleanup(self.device.stop)
-        first = process.write_map(FIRST.format(port=self.device.port))
+        maps = [process.write_map(text) for text in (first.replace("{port}", str(self.device.port)), *others)]
         _, uri = self.start_master(free_port())
         self.environment = {**os.environ, "ROS_MASTER_URI": uri}
         relay = MasterThatHangs(int(uri.rstrip("/").rsplit(":", 1)[1]))
@@ -134,16 +135,35 @@ class MasterRestart(unittest.TestCase):
 
         def start():
             relay.answers.set()
-            driver = process.Process("coupler_driver", f"_maps:=[{first},{large}]", environment=environment)
+            driver = process.Process("coupler_driver", f"_maps:=[{','.join(maps)}]", environment=environment)
             driver.wait_for("first: connected")
             wait_until(lambda: "True" in self.in_ros("rosservice", "call", "/first/lamp/set", "true").communicate()[0], "a write")
             self.assertEqual(self.device.tables["coils"][3], 1)
+            if not others:
+                wait_until(lambda: "/first/safe" in self.in_ros("rosservice", "list").communicate()[0], "the last service")
             relay.answers.clear()
             return driver
 
-        driver, code = process.interrupted_in_time(start, lambda _, code: code == 0)
+        return start
+
+    def test_a_signal_makes_outputs_safe_while_a_master_that_hangs_holds_up_the_start(self):
+        points = "".join(f"    p{i}: {i}\n" for i in range(COUNT))
+        large = f"name: large\naddress: 127.0.0.1\nport: {free_port()}\nmapping:\n  coils:\n{points}"
+        driver, code = process.interrupted_in_time(self.starts_and_then_the_master_hangs(large), lambda _, code: code == 0)
         self.assertEqual(code, 0, driver.output)
         self.assertEqual(self.device.tables["coils"][3], 0)
+
+    def test_where_a_master_that_hangs_holds_up_the_end_a_later_signal_ends_it(self):
+        points = "".join(f"    p{i}: {{address: {i}, type: INT}}\n" for i in range(400))  # a signal ends what waits for one of them
+        with self.starts_and_then_the_master_hangs(first=f"{FIRST}  holding_registers:\n{points}")() as driver:
+            driver.signal(signal.SIGINT)
+            wait_until(lambda: self.device.tables["coils"][3] == 0, "the safe value")
+
+            for _ in range(20):
+                driver.signal(signal.SIGINT)
+                if driver.ends_within(3):
+                    break
+            self.assertEqual(driver.wait(), 0, driver.output)
 
 
 if __name__ == "__main__":

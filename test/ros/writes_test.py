@@ -134,9 +134,9 @@ class Writes(testing.RosTest):
 
     def test_a_command_that_falls_silent_is_replaced(self):
         with Device() as device:
-            driver = self.drive(one(", deadman: {timeout: 500ms, value: 1}"), device.port)
+            driver = self.drive(one(", deadman: {timeout: 2s, value: 1}"), device.port)
             self.speed().publish(500)
-            driver.wait_for("no message for speed in 500 ms")
+            driver.wait_for("no message for speed in 2000 ms")
             wait_until(lambda: registers(device, 5, 1) == [1], "the deadman's value")
             self.assertEqual([int.from_bytes(write.data[3:5], "big") for write in device.seen(SINGLE)], [500, 1])
 

@@ -31,10 +31,11 @@ def freeze(child):
 class Process:
     """A program of the build, and everything it prints."""
 
-    def __init__(self, name, *arguments, environment=None):
+    def __init__(self, name, *arguments, environment=None, under=()):
+        """`under`: a command that runs it."""
         self._lines = []
         self._child = subprocess.Popen(
-            [str(BUILD / "bin" / name), *map(str, arguments)],
+            [*under, str(BUILD / "bin" / name), *map(str, arguments)],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", env=environment)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -85,18 +86,26 @@ class Process:
                 raise AssertionError(f"{what} was not printed, but:\n{self.output}")
             time.sleep(0.02)
 
+    def ends_within(self, seconds):
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._child.wait(seconds)
+        return not self.running
+
     def wait(self):
         """The exit code, once the program ends by itself."""
         code = self._child.wait(PATIENCE)
         self._reader.join(PATIENCE)
         return code
 
+    def signal(self, number):
+        if self.running:
+            self._child.send_signal(number)
+
     def interrupt(self, *by):
         """The exit code, after these signals (SIGINT), all of them before it does anything about the first."""
         with self.frozen() if by[1:] else contextlib.nullcontext():
             for number in by or [signal.SIGINT]:
-                if self.running:
-                    self._child.send_signal(number)
+                self.signal(number)
         return self.wait()
 
     def end(self):
@@ -123,15 +132,29 @@ class Process:
 class Driver(Process):
     _started = []
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments, **options):
         running = Driver._started = [driver for driver in Driver._started if driver.running]
         self.await_graph(len(running))
-        super().__init__("coupler_driver", *driver_arguments(arguments))
+        super().__init__("coupler_driver", *driver_arguments(arguments), **options)
         running.append(self)
 
     @staticmethod
     def await_graph(running):
         """ROS 2 waits here until its graph has no driver but those that run."""
+
+
+class LimitedDriver(Driver):
+    """One that can be kept from starting threads. The kernel does not keep root's programs from it, so it is nobody's."""
+    _AS_NOBODY = ("setpriv", "--reuid=54321", "--keep-groups", "--inh-caps=+dac_override", "--ambient-caps=+dac_override")
+
+    def __init__(self, *arguments):
+        self._under = self._AS_NOBODY if os.geteuid() == 0 else ()
+        # Its report at the end takes a thread.
+        options = f"{os.environ.get('ASAN_OPTIONS', '')}:detect_leaks=0"
+        super().__init__(*arguments, under=self._under, environment={**os.environ, "ASAN_OPTIONS": options})
+
+    def start_no_more_threads(self):
+        subprocess.run([*self._under, "prlimit", "--pid", str(self._child.pid), "--nproc=1"], check=True)
 
 
 def interrupted_in_time(start, is_right, *by):

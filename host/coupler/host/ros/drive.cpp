@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <exception>
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -24,12 +27,14 @@ constexpr auto report_interval = std::chrono::milliseconds(100);
 
 using Drivers = std::vector<std::unique_ptr<DeviceDriver>>;
 
-/// At the same time: each may take most of a second for its safe values. False if one has not all of them.
+/// At the same time, as far as there are threads: each may take most of a second for its safe values. False
+/// if one has not all of them.
 bool stop_all(const Drivers& drivers, bool (DeviceDriver::*stop)()) {
   std::vector<std::future<bool>> stops;
   stops.reserve(drivers.size());
   for (const auto& driver : drivers)
-    stops.push_back(std::async(std::launch::async, [&driver, stop] { return (driver.get()->*stop)(); }));
+    stops.push_back(std::async(std::launch::async | std::launch::deferred,
+                               [&driver, stop] { return (driver.get()->*stop)(); }));
   bool safe = true;
   for (auto& one : stops) safe &= one.get();
   return safe;
@@ -92,13 +97,7 @@ void start_all(const Devices& devices, Node& node, Drivers& drivers) {
   }
 }
 
-}  // namespace
-
-int drive(const Devices& devices, Node& node) {
-  Drivers drivers;
-  start_all(devices, node, drivers);
-  Shutdown::begin_driving();
-  if (!Shutdown::requested) node.start();
+void report_until_the_end(Node& node, const Drivers& drivers) {
   for (Time diagnosed = Time::min(); node.is_running() && !Shutdown::requested;
        std::this_thread::sleep_for(report_interval)) {
     const Time now = std::chrono::steady_clock::now();
@@ -109,11 +108,29 @@ int drive(const Devices& devices, Node& node) {
     diagnosed = now;
     node.publish_diagnostics();
   }
+}
+
+}  // namespace
+
+int drive(const Devices& devices, Node& node) {
+  Drivers drivers;
+  std::optional<std::string> failure;
+  try {
+    start_all(devices, node, drivers);
+    Shutdown::begin_driving();
+    if (!Shutdown::requested) node.start();
+    report_until_the_end(node, drivers);
+  } catch (const std::exception& error) {  // no thread or no memory is left, or ROS 2 refuses
+    failure = error.what();
+  }
   const bool safe =
       stop_all(drivers, &DeviceDriver::stop);  // first: a ROS or a disk that hangs may hold up what follows
+  const int exit_code = !safe ? not_safe : failure ? wrong_input : 0;
+  Shutdown::outputs_are_safe(exit_code);
+  if (failure) node.log(Level::error, "the driver has to end: " + *failure);
   for (const auto& driver : drivers) driver->end_followers();
   node.shut_down();
-  return safe ? 0 : not_safe;
+  return exit_code;
 }
 
 }  // namespace coupler::host

@@ -6,8 +6,8 @@
 
 namespace coupler::host {
 
-/// Drives the devices until Shutdown::requested or the node's own end, then shuts the node down. Returns 0,
-/// or not_safe.
+/// Drives the devices until Shutdown::requested, the node's own end or a failure, which is logged; then makes
+/// outputs safe and shuts the node down. Returns 0, not_safe, or wrong_input after a failure.
 int drive(const Devices& devices, Node& node);
 
 }  // namespace coupler::host

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 
@@ -14,8 +15,14 @@
 namespace coupler::host {
 namespace {
 
-enum class Stage { starting, driving, exiting };
+enum class Stage { starting, exiting, driving, ending };
 std::atomic<Stage> stage{Stage::starting};
+
+// Of the last one; set before it begins.
+std::chrono::steady_clock::rep patient_until = 0;  // of ticks()
+int end_code = 0;
+
+auto ticks() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
 
 void on_signals(void (*handler)(int)) {
   std::signal(SIGINT, handler);
@@ -28,8 +35,15 @@ std::atomic<bool> Shutdown::requested{false};
 
 void Shutdown::begin_driving() {
   Stage now = Stage::starting;
-  if (stage.compare_exchange_strong(now, Stage::driving) || now == Stage::driving) return;
+  if (stage.compare_exchange_strong(now, Stage::driving) || now != Stage::exiting) return;
   for (;;) ::pause();
+}
+
+void Shutdown::outputs_are_safe(int exit_code) {
+  begin_driving();  // a signal may be exiting
+  patient_until = ticks() + std::chrono::steady_clock::duration(std::chrono::seconds(2)).count();
+  end_code = exit_code;
+  stage = Stage::ending;
 }
 
 bool Shutdown::is_driving() { return stage == Stage::driving; }
@@ -42,6 +56,7 @@ void Shutdown::request_on_signals() {
   on_signals([](int) {
     Stage now = Stage::starting;
     if (requested.exchange(true) && stage.compare_exchange_strong(now, Stage::exiting)) ::_exit(0);
+    if (stage == Stage::ending && ticks() >= patient_until) ::_exit(end_code);
   });
 }
 

@@ -10,7 +10,7 @@
 namespace coupler::host {
 
 // The exit codes of a driver, besides 0.
-constexpr int wrong_input = 1;  ///< the map or a parameter is wrong
+constexpr int wrong_input = 1;  ///< the map or a parameter is wrong, or something else has failed
 constexpr int wrong_call = 2;   ///< the arguments are wrong
 constexpr int not_safe = 3;     ///< an output should have its safe value at the end and has not
 
@@ -27,6 +27,10 @@ struct Shutdown {
   static void begin_driving();
   /// Whether that was called.
   static bool is_driving();
+
+  /// What is left to do takes as long as ROS and disks take. From two seconds on a signal exits with this
+  /// code: not sooner, since a launch tool may pass on a signal that the terminal has sent, too.
+  static void outputs_are_safe(int exit_code);
 
   /// A signal exits with status 0, as long as nothing has been started that would have to be stopped.
   static void exit_on_signals();
