@@ -63,6 +63,17 @@ TEST_F(RecognitionTest, Each_register_is_asked_for_alone_and_there_are_eight) {
   EXPECT_THAT(device_.reads, Each(Property(&Range::count, 1U)));
 }
 
+TEST_F(RecognitionTest, A_late_reply_does_not_make_it_a_stranger) {
+  for (std::size_t late = 1; late <= 8; ++late) {
+    device_.requests = 0;
+    device_.fails = [late](std::size_t request) -> std::optional<host::Error> {
+      if (request != late) return std::nullopt;
+      return host::Timeout{std::chrono::milliseconds(1000)};
+    };
+    EXPECT_TRUE(look().has_value()) << late;
+  }
+}
+
 TEST_F(RecognitionTest, Its_map_has_a_point_for_each_channel_and_its_preset_reads_outputs_back) {
   const LoadResult loaded = map_of(look().value());
   ASSERT_NE(loaded.map, nullptr) << text_;

@@ -51,7 +51,7 @@ std::string object_name(std::uint8_t id) {
 std::optional<identity::Head> read_node_identity(Prober& prober) {
   std::array<std::uint16_t, identity::head_size> area{};
   const auto range = modbus::Range::of(identity::reserved.start(), identity::head_size);
-  if (!prober.try_read(Table::input_registers, range, area.data()).is_given()) return std::nullopt;
+  if (!prober.read(Table::input_registers, range, area.data()).is_given()) return std::nullopt;
   return identity::read_head(area);
 }
 

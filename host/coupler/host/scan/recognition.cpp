@@ -45,8 +45,7 @@ class Registers {
   std::uint16_t operator[](std::uint16_t address) {
     std::uint16_t value = 0;
     if (are_there_)
-      are_there_ =
-          prober_.try_read(Table::holding_registers, modbus::Range::of(address, 1), &value).is_given();
+      are_there_ = prober_.read(Table::holding_registers, modbus::Range::of(address, 1), &value).is_given();
     return are_there_ ? value : std::uint16_t{0};
   }
   bool are_there() const { return are_there_; }
