@@ -38,6 +38,8 @@ std::string find_program() {
   return {};
 }
 
+bool is_over(const Silence& silence) { return silence.lasted() - silence.starved() >= TlsProcess::timeout; }
+
 /// In the child. Its descriptors are those two and 0 to 2; its memory is its own. SIGTERM and SIGINT stay
 /// blocked, as in this process (Signals), which ends it: a service manager signals all at once.
 [[noreturn]] void become(const std::string& program, int control, int clients, pid_t parent) {
@@ -132,12 +134,14 @@ void TlsProcess::prepare(Descriptor settings) {
   answer_.reset();
   // An answer to something before is not one to this.
   if (std::exchange(waits_, true)) ++answers_to_skip_;
-  answer_by_ = TimePoint::clock::now() + timeout;
+  const TimePoint now = TimePoint::clock::now();
+  unanswered_.emplace(now, longest_turn, cpu_wait_->sample(now));
   if (child_) send(tls_messages::prepare, prepared_.get());
 }
 
 std::optional<TlsProcess::Answer> TlsProcess::answer(TimePoint now) {
-  if (waits_ && now >= answer_by_) {
+  if (waits_) unanswered_->sample(now, false, cpu_wait_->sample(now));
+  if (waits_ && is_over(*unanswered_)) {
     end_process();  // it hangs; another one is started
     give_up(
         {fmt::format("{} did not answer within {} s", tls_messages::program_name, timeout.count()), true});
@@ -178,7 +182,7 @@ bool TlsProcess::is_silent(TimePoint now) {
     send(tls_messages::alive, -1);
     ask_at_ = now + heartbeat_period;
   }
-  return silence_->lasted() - silence_->starved() >= timeout;
+  return is_over(*silence_);
 }
 
 void TlsProcess::leave() {

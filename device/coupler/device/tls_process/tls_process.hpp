@@ -22,7 +22,8 @@ namespace coupler::device {
 /// outlives both. If it dies or hangs its clients lose their connections, and it is started again.
 class TlsProcess final : public EventHandler {
  public:
-  /// For an answer; it reads no files. So long, too, it may be silent.
+  /// For an answer; it reads no files. So long, too, it may be silent. Time that it waits for the CPU does
+  /// not count.
   static constexpr std::chrono::seconds timeout{5};
 
   /// Both outlive it. The error says why it cannot be: no program, no descriptors.
@@ -78,7 +79,7 @@ class TlsProcess final : public EventHandler {
   bool waits_ = false;       ///< for the answer to what was prepared
   int answers_to_skip_ = 0;  ///< to settings that are in force
   std::optional<Answer> answer_;
-  TimePoint answer_by_{};
+  std::optional<Silence> unanswered_;  ///< while it waits for that
   Backoff backoff_;
   TimePoint started_{};
   TimePoint start_again_{};
