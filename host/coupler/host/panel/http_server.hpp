@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "coupler/host/panel/incoming_requests.hpp"
 #include "coupler/host/panel/page_tls.hpp"
 #include "coupler/host/panel/request_stream.hpp"
+#include "coupler/host/panel/workers.hpp"
 
 namespace coupler::host {
 
@@ -25,8 +27,7 @@ class HttpServer final : public httplib::Server {
   /// `workers`: requests that are answered at a time. The others outlive it; `tls` is null for HTTP.
   HttpServer(std::size_t workers, const std::atomic<bool>& ending, const PageTls* tls)
       : ending_(ending), tls_(tls), workers_(workers) {
-    // All it does is to hand the connections on.
-    new_task_queue = [] { return new httplib::ThreadPool(1); };
+    new_task_queue = [] { return new HandsOn; };
   }
 
   /// Once it is bound: so many connections may wait until they are accepted. Of httplib's five some would be
@@ -42,12 +43,14 @@ class HttpServer final : public httplib::Server {
   /// ms; a phone that has gone without a word is not taken for a page much longer.
   static constexpr unsigned unheard = 10'000;
 
-  struct Workers {
-    explicit Workers(std::size_t number) : pool(number) {}
-    Workers(const Workers&) = delete;
-    Workers& operator=(const Workers&) = delete;
-    ~Workers() { pool.shutdown(); }
-    httplib::ThreadPool pool;
+  /// In the thread that accepts connections: they are only handed on.
+  struct HandsOn : httplib::TaskQueue {
+    using Taken = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));  // void until 0.14, then bool
+    Taken enqueue(std::function<void()> task) override {
+      task();
+      return Taken(true);
+    }
+    void shutdown() override {}
   };
 
   bool process_and_close_socket(socket_t socket) override {
@@ -91,7 +94,7 @@ class HttpServer final : public httplib::Server {
   const PageTls* tls_;
   Workers workers_;
   IncomingRequests incoming_{[this](std::unique_ptr<RequestStream> stream) {
-    workers_.pool.enqueue([this, shared = std::shared_ptr(std::move(stream))] { answer(*shared); });
+    workers_.add([this, shared = std::shared_ptr(std::move(stream))] { answer(*shared); });
   }};
 };
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -22,11 +23,15 @@ class DevicePanel final : public Follower {
   /// Empty, or why not.
   std::string serve(const Map& map, unsigned port) {
     if (port > std::numeric_limits<std::uint16_t>::max()) return fmt::format("there is no port {}", port);
-    auto server = PanelServer::start({"127.0.0.1", static_cast<int>(port)}, nullptr,
-                                     panel_points(map, false, {}), values_, device_);
-    if (!server) return server.error();
-    server_ = *std::move(server);
-    return {};
+    try {
+      auto server = PanelServer::start({"127.0.0.1", static_cast<int>(port)}, nullptr,
+                                       panel_points(map, false, {}), values_, device_);
+      if (!server) return server.error();
+      server_ = *std::move(server);
+      return {};
+    } catch (const std::system_error& error) {  // the device can do without
+      return fmt::format("its threads cannot be started: {}", error.what());
+    }
   }
   std::string url() const { return server_->url(); }
 
