@@ -190,7 +190,7 @@ def main():
         folder = pathlib.Path(name)
         make_certificates(folder)
         shutil.copy(MAP, folder / "cell.yaml")
-        (folder / HASTY).write_text(re.sub("timeout: .*", "timeout: 1s", pathlib.Path(MAP).read_text()))
+        (folder / HASTY).write_text(re.sub("timeout: .*", "timeout: 5s", pathlib.Path(MAP).read_text()))
         what_check_says(folder, checks)
         what_certificates_makes(folder, checks)
         what_a_killed_call_leaves(folder, checks)

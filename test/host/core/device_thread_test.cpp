@@ -45,6 +45,7 @@ TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
   FakeDevice device;
   WaitingSink sink;
   DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+  thread.start();
   ASSERT_EQ(sink.first.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
   Write on;
   on.registers[0] = 1;
@@ -57,6 +58,7 @@ TEST(DeviceThread, What_is_scheduled_is_written_though_nothing_else_is_due) {
   FakeDevice device;
   WaitingSink sink;
   DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+  thread.start();
   ScheduledWrite what;
   what.write.registers[0] = 1;
   do what.due = std::chrono::steady_clock::now() + std::chrono::milliseconds(50);
@@ -74,6 +76,7 @@ TEST(DeviceThread, With_subscribed_nothing_is_read_before_somebody_wants_it) {
   WaitingSink sink;
   {
     DeviceThread thread(owned->map(), Verify::off, no_map, device, sink, Poll::subscribed);
+    thread.start();
     thread.want(0, true);
     ASSERT_EQ(sink.first.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
   }
@@ -89,6 +92,7 @@ TEST(DeviceThread, A_write_to_an_idle_device_is_sent_by_the_one_who_makes_it) {
   write.listener = &ticket;
   {
     DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    thread.start();
     for (;;) {  // until it is connected
       WriteTicket first;
       Write warm_up;
@@ -113,6 +117,7 @@ TEST(DeviceThread, Every_write_has_a_result_when_it_ends) {
   write.listener = &ticket;
   {
     DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    thread.start();
     thread.write(write);
   }
   EXPECT_EQ(ticket.wait().outcome, WriteResult::Outcome::dropped);
@@ -124,7 +129,8 @@ TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {
   device.refuse_connect = NotConnected{"refused"};
   WaitingSink sink;
   {
-    const DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    thread.start();
     device.await_idle();
   }
   EXPECT_TRUE(device.woken_by_call);
@@ -157,6 +163,7 @@ TEST(DeviceThread, Who_connects_just_when_it_ends_gets_its_safe_values) {
     SlowToConnect device;
     WaitingSink sink;
     DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    thread.start();
     device.connects.get_future().wait();
     return thread.end() && device.requests.back() == "write coil 1";
   };

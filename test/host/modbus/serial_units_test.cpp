@@ -96,10 +96,12 @@ TEST_F(SerialUnits, At_the_end_one_that_is_silent_keeps_no_other_from_its_safe_v
     OnlineSink sink;
     DeafSink deaf;
     DeviceThread healthy(owned[0]->map(), Verify::off, MapLoader(), *transports[0], sink);
+    healthy.start();
     while (!sink.is_online) std::this_thread::sleep_for(milliseconds(1));
     silent = 2;
     const int before = unanswered;
     DeviceThread dead(owned[1]->map(), Verify::require, MapLoader(), *transports[1], deaf);
+    dead.start();
     while (unanswered == before) std::this_thread::sleep_for(milliseconds(1));
     auto dead_ends = std::async(std::launch::async, [&] { return dead.end(); });
     const bool made_safe = healthy.end();

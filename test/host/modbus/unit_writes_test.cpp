@@ -27,6 +27,7 @@ TEST_F(UnitTransportTest, A_write_waits_for_the_request_in_flight_and_for_no_oth
   for (std::size_t i = 0; i < units; ++i)
     devices.push_back(
         std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *transports[i], sink));
+  for (const auto& device : devices) device->start();
   while (gateway.reads < 10 * units) std::this_thread::sleep_for(milliseconds(10));
   // A write of unit 1 while a read of unit 2 is in flight, which takes so long: its thread has to come
   // meanwhile.
@@ -55,10 +56,12 @@ TEST_F(UnitTransportTest, At_the_end_a_unit_that_is_silent_keeps_no_other_from_i
     OnlineSink sink;
     DeafSink deaf;
     DeviceThread healthy(owned[0]->map(), Verify::off, MapLoader(), unit(1), sink);
+    healthy.start();
     while (!sink.is_online) std::this_thread::sleep_for(milliseconds(1));
     gateway.silent = 2;
     const int unanswered = gateway.unanswered;
     DeviceThread silent(owned[1]->map(), Verify::require, MapLoader(), unit(2), deaf);
+    silent.start();
     while (gateway.unanswered == unanswered)
       std::this_thread::sleep_for(milliseconds(1));  // for its identity, 20 s long
     auto silent_ends = std::async(std::launch::async, [&] { return silent.end(); });
@@ -83,6 +86,7 @@ TEST_F(UnitTransportTest, Every_write_has_one_result_while_all_units_write_and_t
     for (std::size_t i = 0; i < units; ++i)
       devices.push_back(
           std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *transports[i], sink));
+    for (const auto& device : devices) device->start();
     std::vector<std::thread> writers;
     writers.reserve(units);
     for (const auto& device : devices)

@@ -58,6 +58,7 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
   std::atomic<int> written{0};
   {
     DeviceThread device(owned->map(), Verify::off, {}, transport, sink);
+    device.start();
     wait_until_connected(device);
     std::vector<std::thread> writers;
     writers.reserve(threads);
@@ -86,6 +87,7 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
 TEST_F(WriteStorm, What_was_written_last_stands_in_the_device) {
   {
     DeviceThread device(owned->map(), Verify::off, {}, transport, sink);
+    device.start();
     wait_until_connected(device);
     for (std::uint16_t value = 1; value < 100; ++value)
       for (std::uint32_t point = 32; point < 40; ++point) write(device, point, value, nullptr);

@@ -119,6 +119,14 @@ TEST_F(SurveyTest, A_node_of_this_project_is_known_by_its_identity) {
   const Findings findings = look();
   ASSERT_TRUE(findings.node.has_value());
   EXPECT_EQ(findings.node->fingerprint, 42U);
+  for (std::size_t late = 2; late <= 6; ++late) {  // one reply; the first one says that the unit is there
+    device_.requests = 0;
+    device_.fails = [late](std::size_t request) -> std::optional<host::Error> {
+      if (request != late) return std::nullopt;
+      return host::Timeout{std::chrono::milliseconds(1000)};
+    };
+    EXPECT_TRUE(look().node.has_value()) << late;
+  }
 }
 
 TEST_F(SurveyTest, Whoever_ends_it_gets_what_was_found_so_far) {

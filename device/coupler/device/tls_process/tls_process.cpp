@@ -93,6 +93,7 @@ int TlsProcess::start_process(TimePoint now) {
   started_ = now;
   cpu_wait_.emplace(child_->pid());
   silence_.emplace(now, longest_turn, cpu_wait_->sample(now));
+  if (waits_) unanswered_ = silence_;
   if (!loop_.watch(control_.get(), Interest::read, *this)) return errno;
   answers_to_skip_ = 0;
   if (settings_.is_open()) {

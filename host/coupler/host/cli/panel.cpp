@@ -80,7 +80,9 @@ class LookedAtDevice final : public host::PanelDevice {
    public:
     Connection(const Map& map, host::Sink& sink)
         : transport_(host::make_transport(map.connection)),
-          thread_(map, map.verify, load_served_map, *transport_, sink) {}
+          thread_(map, map.verify, load_served_map, *transport_, sink) {
+      thread_.start();
+    }
 
     /// False: it has ended. Otherwise the listener hears of it, at the end at the latest.
     bool write(const host::Write& write) {

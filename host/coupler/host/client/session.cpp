@@ -111,7 +111,9 @@ std::future<host::ScheduleAnswer> known(host::ScheduleAnswer answer) {
 
 struct Session::Engine {
   Engine(const Map& map, Verify verify, host::Sink& sink)
-      : transport(make_transport(map)), thread(map, verify, load_served_map, *transport, sink) {}
+      : transport(make_transport(map)), thread(map, verify, load_served_map, *transport, sink) {
+    thread.start();
+  }
 
   std::unique_ptr<host::Transport> transport;
   host::DeviceThread thread;

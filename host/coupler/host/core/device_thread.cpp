@@ -22,12 +22,17 @@ DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Transp
       ends_safely_(map.on_shutdown == OnShutdown::safe) {
   if (poll == Poll::subscribed)
     for (std::uint32_t i = 0; i < map.points.size(); ++i) device_.want(i, false);
-  thread_ = std::thread([this] { run(); });
+}
+
+void DeviceThread::start() {
+  const std::lock_guard life(life_);
+  if (!stopping_) thread_ = std::thread([this] { run(); });
 }
 
 bool DeviceThread::end() {
-  if (!thread_.joinable()) return ended_safely_;
+  const std::lock_guard life(life_);
   stopping_ = true;
+  if (!thread_.joinable()) return ended_safely_;
   transport_.wake();
   if (ends_safely_ || device_.has_to_end()) await_stop();
   clock_.stop();

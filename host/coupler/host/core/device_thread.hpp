@@ -48,7 +48,7 @@ class ReadDemand {
 /// So a write to an idle device needs no switch of threads.
 class DeviceThread {
  public:
-  /// With Poll::subscribed no point is wanted at first.
+  /// With Poll::subscribed no point is wanted at first. Nothing is asked of the device before start().
   DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink,
                Poll poll = Poll::all);
   /// Ends the request in progress and waits for the thread: milliseconds, or, where outputs are to go to
@@ -56,10 +56,13 @@ class DeviceThread {
   ~DeviceThread() { end(); }
   DeviceThread(const DeviceThread&) = delete;
   DeviceThread& operator=(const DeviceThread&) = delete;
-  /// What the destructor does, once. False if an output should have its safe value but does not.
+  /// Once, in any thread; after end() it does nothing. Throws std::system_error if no thread can be had.
+  void start();
+  /// What the destructor does, once, in any thread. False if an output should have its safe value but does
+  /// not.
   bool end();
 
-  // From any thread; none of them waits for a request.
+  // From any thread, after start(); none of them waits for a request.
 
   /// Sends a write at once if the connection is idle, otherwise queues it. The sink may call it.
   void write(const Write& write);
@@ -99,6 +102,7 @@ class DeviceThread {
   std::atomic<std::thread::id> owner_{};  ///< has its turn while it calls the sink
   std::promise<void> stopped_;
   bool ended_safely_ = true;  ///< once the thread has ended
+  std::mutex life_;           ///< held to start and to end it
   std::thread thread_;        // last: it uses the others
 };
 

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <memory>
 #include <set>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -50,10 +51,14 @@ Result<Addresses> resolve(const std::string& host, std::uint16_t port, Deadline 
   lookup->service = fmt::to_string(port);
   lookup->run(AI_NUMERICHOST | AI_NUMERICSERV);
   if (lookup->status == EAI_NONAME) {
-    std::thread([lookup] {
-      lookup->run(AI_NUMERICSERV);
-      lookup->done.set();
-    }).detach();
+    try {
+      std::thread([lookup] {
+        lookup->run(AI_NUMERICSERV);
+        lookup->done.set();
+      }).detach();
+    } catch (const std::system_error& error) {  // not the end of a driver: the next attempt may have one
+      return fail(NotConnected{error.what()});
+    }
     std::array<pollfd, 2> wanted{{{lookup->done.fd(), POLLIN, 0}, {interrupt.fd(), POLLIN, 0}}};
     ::poll(wanted.data(), wanted.size(), deadline.left());
     if (interrupt.is_set()) return fail(NotConnected{"interrupted"});

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -64,7 +65,11 @@ class Link final : public TlsLink {
     certificates_.has_pin = verification_.pin.has_value();
     session_.carry(carried_.get());
     // From here on the session is that thread's.
-    thread_ = std::thread([this] { run(); });
+    try {
+      thread_ = std::thread([this] { run(); });
+    } catch (const std::system_error& error) {
+      return error.what();
+    }
     return {};
   }
 

@@ -51,8 +51,7 @@ std::function<void(bool)> advertise_online(Node& node, const Map& map) {
 
 }  // namespace
 
-DeviceDriver::DeviceDriver(Node& node, const Map& map, const Followed& followed,
-                           std::unique_ptr<Transport> transport)
+DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Transport> transport)
     : node_(node),
       map_(map),
       subscribers_(map.points.size()),
@@ -63,13 +62,15 @@ DeviceDriver::DeviceDriver(Node& node, const Map& map, const Followed& followed,
       publish_scheduled_(advertise_scheduled(node, map_, wall_)),
       diagnostics_(map, node),
       services_(map, subscribers_),
-      followers_(start_followers(followed)),
       transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport), node)),
       thread_(map, map.verify, load_served_map, *transport_, *this, map.poll),
       writes_{[this](const Write& write) { driven().write(write); },
               [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {}
 
-void DeviceDriver::begin() {
+void DeviceDriver::begin(const Followed& followed) {
+  if (Shutdown::requested) return;
+  start_followers(followed);
+  thread_.start();
   for (std::uint32_t i = 0; i < map_.points.size() && !Shutdown::requested; ++i)
     if (is_writable(map_.points[i]))
       subscriptions_.push_back(
@@ -89,13 +90,13 @@ DeviceThread& DeviceDriver::driven() {
   return thread_;
 }
 
-std::vector<std::unique_ptr<Follower>> DeviceDriver::start_followers(const Followed& followed) {
+void DeviceDriver::start_followers(const Followed& followed) {
   const auto report = [this](Level level, const std::string& text) { log(level, text); };
-  std::vector<std::unique_ptr<Follower>> followers;
-  if (followed.recording) followers.push_back(DeviceRecording::start(map_, *followed.recording, report));
-  if (followed.panel) followers.push_back(start_panel(map_, *followed.panel, report));
-  followers.erase(std::remove(followers.begin(), followers.end(), nullptr), followers.end());
-  return followers;
+  const auto add = [this](std::unique_ptr<Follower> follower) {
+    if (follower) followers_.push_back(std::move(follower));
+  };
+  if (followed.recording) add(DeviceRecording::start(map_, *followed.recording, report));
+  if (followed.panel) add(start_panel(map_, *followed.panel, report));
 }
 
 void DeviceDriver::end_followers() {
@@ -145,7 +146,6 @@ void DeviceDriver::publish(const ReadSpan& span, Span<const std::uint16_t> regis
   for (const std::uint32_t index : span.points) {
     const modbus::Range place = read_range(map_.points[index]);
     const std::uint16_t* value = &registers[place.start() - std::size_t{span.range.start()}];
-    if (!publishers_[index]) continue;  // the driver ends before it has begun
     publishers_[index]->publish(value, stamp);
     if (stamped_[index]) {
       if (!std::exchange(is_measured, true)) measure_wall();

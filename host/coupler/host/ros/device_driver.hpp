@@ -32,13 +32,14 @@ class DeviceDriver : public Sink {
     std::optional<unsigned> panel;         ///< the port of one
   };
 
-  /// Connects to the device; drives nothing before begin(). The map's views must outlive it. Callbacks of the
-  /// node refer to it: the node must be shut down before it is destroyed, and publish no more diagnostics.
-  DeviceDriver(Node& node, const Map& map, const Followed& followed, std::unique_ptr<Transport> transport);
+  /// Offers its topics; starts nothing before begin(). The map's views must outlive it. Callbacks of the node
+  /// refer to it: the node must be shut down before it is destroyed, and publish no more diagnostics.
+  DeviceDriver(Node& node, const Map& map, std::unique_ptr<Transport> transport);
   ~DeviceDriver() override { services_.stop(); }
 
-  /// Listens to what is to be written, and offers services, which takes as long as ROS takes.
-  void begin();
+  /// Connects to the device, listens to what is to be written, and offers services, which takes as long as
+  /// ROS takes. Nothing, if Shutdown::requested. Throws std::system_error if no thread can be had.
+  void begin(const Followed& followed);
 
   /// After stop(): its outputs are safe, however long the disk takes.
   void end_followers();
@@ -65,7 +66,7 @@ class DeviceDriver : public Sink {
  private:
   void log(Level level, const std::string& text);
   DeviceThread& driven();
-  std::vector<std::unique_ptr<Follower>> start_followers(const Followed& followed);
+  void start_followers(const Followed& followed);
   void publish(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp);
   void measure_wall();
   void refuse(std::optional<std::uint32_t> point, const std::string& what);
@@ -83,7 +84,7 @@ class DeviceDriver : public Sink {
   Node::PublishScheduled publish_scheduled_;  ///< empty if no point can be written
   Diagnostics diagnostics_;
   DeviceServices services_;
-  const std::vector<std::unique_ptr<Follower>> followers_;
+  std::vector<std::unique_ptr<Follower>> followers_;  ///< as they are when the thread starts
   std::unique_ptr<TracedTransport> transport_;
   DeviceThread thread_;
   std::uint64_t reported_ = 0;  ///< the thread's revision

@@ -12,9 +12,12 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "coupler/host/modbus/make_transports.hpp"
 #include "coupler/host/ros/device_driver.hpp"
@@ -24,6 +27,8 @@ namespace coupler::host {
 namespace {
 
 constexpr auto report_interval = std::chrono::milliseconds(100);
+
+constexpr unsigned longest_end_after_failure = 10;  // s
 
 using Drivers = std::vector<std::unique_ptr<DeviceDriver>>;
 
@@ -93,7 +98,7 @@ void start_all(const Devices& devices, Node& node, Drivers& drivers) {
     if (followed.recording)
       followed.recording = recording_path(*followed.recording, source.map.name, devices.size() == 1);
     while (followed.panel && !panels.insert(*followed.panel).second) ++*followed.panel;
-    watch.add(std::make_unique<DeviceDriver>(node, source.map, followed, std::move(*transport++))).begin();
+    watch.add(std::make_unique<DeviceDriver>(node, source.map, std::move(*transport++))).begin(followed);
   }
 }
 
@@ -120,13 +125,20 @@ int drive(const Devices& devices, Node& node) {
     Shutdown::begin_driving();
     if (!Shutdown::requested) node.start();
     report_until_the_end(node, drivers);
-  } catch (const std::exception& error) {  // no thread or no memory is left, or ROS 2 refuses
+  } catch (const std::system_error& error) {
+    failure = fmt::format(
+        "no thread can be started: {}; look at its limits (ulimit -u, TasksMax= of a service)", error.what());
+  } catch (const std::exception& error) {  // no memory is left, or ROS 2 refuses
     failure = error.what();
+  } catch (...) {  // XmlRpc's, which has no base
+    failure = "ROS gave an answer that is none";
   }
+  Shutdown::begin_to_end(not_safe, std::chrono::seconds(5));
   const bool safe =
       stop_all(drivers, &DeviceDriver::stop);  // first: a ROS or a disk that hangs may hold up what follows
   const int exit_code = !safe ? not_safe : failure ? wrong_input : 0;
-  Shutdown::outputs_are_safe(exit_code);
+  Shutdown::begin_to_end(exit_code, std::chrono::seconds(2));
+  if (failure) ::alarm(longest_end_after_failure);  // nobody sends a signal then
   if (failure) node.log(Level::error, "the driver has to end: " + *failure);
   for (const auto& driver : drivers) driver->end_followers();
   node.shut_down();

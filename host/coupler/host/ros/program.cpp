@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 
@@ -19,14 +18,13 @@ enum class Stage { starting, exiting, driving, ending };
 std::atomic<Stage> stage{Stage::starting};
 
 // Of the last one; set before it begins.
-std::chrono::steady_clock::rep patient_until = 0;  // of ticks()
-int end_code = 0;
+std::atomic<std::chrono::steady_clock::rep> patient_until{0};  // of ticks()
+std::atomic<int> end_code{0};
 
 auto ticks() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
 
 void on_signals(void (*handler)(int)) {
-  std::signal(SIGINT, handler);
-  std::signal(SIGTERM, handler);
+  for (const int number : {SIGINT, SIGTERM, SIGALRM}) std::signal(number, handler);
 }
 
 }  // namespace
@@ -39,10 +37,10 @@ void Shutdown::begin_driving() {
   for (;;) ::pause();
 }
 
-void Shutdown::outputs_are_safe(int exit_code) {
+void Shutdown::begin_to_end(int exit_code, std::chrono::seconds patience) {
   begin_driving();  // a signal may be exiting
-  patient_until = ticks() + std::chrono::steady_clock::duration(std::chrono::seconds(2)).count();
   end_code = exit_code;
+  patient_until = ticks() + std::chrono::steady_clock::duration(patience).count();
   stage = Stage::ending;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <string_view>
 
 #include "coupler/host/ros/options.hpp"
@@ -28,9 +29,10 @@ struct Shutdown {
   /// Whether that was called.
   static bool is_driving();
 
-  /// What is left to do takes as long as ROS and disks take. From two seconds on a signal exits with this
-  /// code: not sooner, since a launch tool may pass on a signal that the terminal has sent, too.
-  static void outputs_are_safe(int exit_code);
+  /// What is left to do takes as long as devices, ROS and disks take. After `patience` a signal, SIGALRM too,
+  /// exits with this code: not sooner, since a launch tool may pass on a signal that the terminal has sent,
+  /// too.
+  static void begin_to_end(int exit_code, std::chrono::seconds patience);
 
   /// A signal exits with status 0, as long as nothing has been started that would have to be stopped.
   static void exit_on_signals();

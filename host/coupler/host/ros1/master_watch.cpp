@@ -2,6 +2,7 @@
 #include "coupler/host/ros1/master_watch.hpp"
 
 #include <XmlRpcClient.h>
+#include <XmlRpcException.h>
 #include <ros/connection_manager.h>
 #include <ros/init.h>
 #include <ros/master.h>
@@ -142,7 +143,18 @@ bool Registrations::restore() const {
   return all;
 }
 
-MasterWatch::MasterWatch(Node& log) : log_(log), thread_(interval, [this] { check(); }) {}
+MasterWatch::MasterWatch(Node& log) : log_(log), thread_(interval, [this] { try_check(); }) {}
+
+/// A master of another make may answer in a shape that is none of ROS's.
+void MasterWatch::try_check() {
+  try {
+    check();
+  } catch (const XmlRpc::XmlRpcException& error) {
+    if (std::exchange(told_, true)) return;
+    log_.log(Level::warning,
+             fmt::format("the answer of {} cannot be read: {}", master_uri(), error.getMessage()));
+  }
+}
 
 /// What the master knows changes seldom, and may be much.
 void MasterWatch::update() {

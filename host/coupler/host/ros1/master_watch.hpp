@@ -50,12 +50,14 @@ class MasterWatch {
   explicit MasterWatch(Node& log);
 
  private:
+  void try_check();
   void check();
   void update();
 
   Node& log_;
   Registrations registrations_;
   unsigned updates_ = 0;
+  bool told_ = false;  ///< that an answer cannot be read
   DuplicateWarnings duplicates_;
   Registrations::Known known_ = Registrations::Known::yes;
   PeriodicThread thread_;  // last: it uses the others

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <exception>
 #include <optional>
 #include <string>
 #include <utility>
@@ -138,12 +139,8 @@ tl::expected<Devices, int> configure_all(std::vector<MapSource> sources, const A
   return tl::make_unexpected(wrong_input);
 }
 
-}  // namespace
-
-int main_with(const Map* built_in, int argc, char** argv) {
-  begin_program();
-  const Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
-  if (arguments.exit_code) return end_of(arguments);
+/// One driver, from its arguments to its end.
+int run(const Map* built_in, const Arguments& arguments) {
   Settings settings = arguments.settings;
   // A node that was given its name (by roslaunch, say) may have its map in its parameters. Otherwise the map
   // gives the name, and the parameters are those of that name.
@@ -171,6 +168,20 @@ int main_with(const Map* built_in, int argc, char** argv) {
   Shutdown::request_on_signals();
   if (!node) node.emplace();
   return drive(*devices, *node);
+}
+
+}  // namespace
+
+int main_with(const Map* built_in, int argc, char** argv) {
+  begin_program();
+  const Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
+  if (arguments.exit_code) return end_of(arguments);
+  try {
+    return run(built_in, arguments);
+  } catch (const std::exception& error) {  // no thread or no memory is left
+    print_message(error.what());
+    return wrong_input;
+  }
 }
 
 }  // namespace coupler::host

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/program.hpp"
 
+#include <exception>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -131,6 +132,9 @@ int main_with(const Map* built_in, int argc, char** argv) {
     const std::string_view remedy = is_wrong_call ? remedy_of(error.what()) : std::string_view();
     print_message(fmt::format("{}{}{}", error.what(), remedy.empty() ? "" : "; ", remedy));
     return is_wrong_call ? wrong_call : wrong_input;
+  } catch (const std::exception& error) {  // no thread or no memory is left
+    print_message(error.what());
+    return wrong_input;
   }
 }
 
