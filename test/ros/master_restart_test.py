@@ -122,6 +122,9 @@ class MasterRestart(unittest.TestCase):
             self.assertEqual(driver.output.count("has started again"), 1)
             self.assertEqual(self.device.accepted, 1, "the device has noticed nothing")
 
+    def call_until_it_works(self, *service):
+        wait_until(lambda: "True" in self.in_ros("rosservice", "call", *service).communicate()[0], f"an answer of {service[0]}")
+
     def starts_and_then_the_master_hangs(self, *others, first=FIRST):
         """A function: it starts a driver, has it write to the first of its devices, and then the master answers no more. `others`:
         maps of further devices, which are still started then."""
@@ -138,10 +141,10 @@ class MasterRestart(unittest.TestCase):
             relay.answers.set()
             driver = process.Process("coupler_driver", f"_maps:=[{','.join(maps)}]", environment=environment)
             driver.wait_for("first: connected")
-            wait_until(lambda: "True" in self.in_ros("rosservice", "call", "/first/lamp/set", "true").communicate()[0], "a write")
-            self.assertEqual(self.device.tables["coils"][3], 1)
             if not others:
-                wait_until(lambda: "/first/safe" in self.in_ros("rosservice", "list").communicate()[0], "the last service")
+                self.call_until_it_works("/first/safe")  # the last of them: it has started
+            self.call_until_it_works("/first/lamp/set", "true")
+            self.assertEqual(self.device.tables["coils"][3], 1)
             relay.answers.clear()
             return driver
 

@@ -136,6 +136,19 @@ TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {
   EXPECT_TRUE(device.woken_by_call);
 }
 
+TEST(DeviceThread, Before_it_starts_and_after_it_has_ended_nothing_is_asked) {
+  auto builder = MapBuilder().coil("a", 1);
+  builder.head().on_shutdown = OnShutdown::safe;
+  const auto owned = builder.build();
+  FakeDevice device;
+  WaitingSink sink;
+  DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+  EXPECT_TRUE(thread.end());
+  thread.start();
+  EXPECT_TRUE(thread.end());
+  EXPECT_TRUE(device.requests.empty());
+}
+
 /// Connects a moment after somebody wants the thread to do something else.
 struct SlowToConnect : FakeDevice {
   std::promise<void> connects;

@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "coupler/base/thread_shortage.hpp"
 #include "coupler/credentials/credentials.hpp"
 #include "coupler/tls/alert.hpp"
 #include "coupler/tls/context.hpp"
@@ -68,7 +69,7 @@ class Link final : public TlsLink {
     try {
       thread_ = std::thread([this] { run(); });
     } catch (const std::system_error& error) {
-      return error.what();
+      return thread_shortage(error);
     }
     return {};
   }

@@ -5,6 +5,7 @@
 
 #include <netinet/tcp.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstddef>
@@ -29,6 +30,12 @@ class HttpServer final : public httplib::Server {
       : ending_(ending), tls_(tls), workers_(workers) {
     new_task_queue = [] { return new HandsOn; };
   }
+  /// httplib leaves the socket open where it was bound only.
+  ~HttpServer() override {
+    if (const socket_t socket = svr_sock_.exchange(INVALID_SOCKET); socket != INVALID_SOCKET) ::close(socket);
+  }
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
 
   /// Once it is bound: so many connections may wait until they are accepted. Of httplib's five some would be
   /// lost, and made again a second later.

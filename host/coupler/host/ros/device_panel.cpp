@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/thread_shortage.hpp"
 #include "coupler/host/panel/panel_points.hpp"
 #include "coupler/host/panel/panel_server.hpp"
 
@@ -30,7 +31,7 @@ class DevicePanel final : public Follower {
       server_ = *std::move(server);
       return {};
     } catch (const std::system_error& error) {  // the device can do without
-      return fmt::format("its threads cannot be started: {}", error.what());
+      return thread_shortage(error);
     }
   }
   std::string url() const { return server_->url(); }

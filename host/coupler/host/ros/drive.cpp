@@ -17,8 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "coupler/base/thread_shortage.hpp"
 #include "coupler/host/modbus/make_transports.hpp"
 #include "coupler/host/ros/device_driver.hpp"
 #include "coupler/host/ros/program.hpp"
@@ -126,19 +125,20 @@ int drive(const Devices& devices, Node& node) {
     if (!Shutdown::requested) node.start();
     report_until_the_end(node, drivers);
   } catch (const std::system_error& error) {
-    failure = fmt::format(
-        "no thread can be started: {}; look at its limits (ulimit -u, TasksMax= of a service)", error.what());
+    failure = thread_shortage(error);
   } catch (const std::exception& error) {  // no memory is left, or ROS 2 refuses
     failure = error.what();
   } catch (...) {  // XmlRpc's, which has no base
     failure = "ROS gave an answer that is none";
   }
-  Shutdown::begin_to_end(not_safe, std::chrono::seconds(5));
+  const std::chrono::seconds patience(5 + drivers.size());
+  Shutdown::begin_to_end(not_safe, patience);
+  if (failure)
+    ::alarm(static_cast<unsigned>(patience.count()) + longest_end_after_failure);  // no signal comes
   const bool safe =
       stop_all(drivers, &DeviceDriver::stop);  // first: a ROS or a disk that hangs may hold up what follows
   const int exit_code = !safe ? not_safe : failure ? wrong_input : 0;
   Shutdown::begin_to_end(exit_code, std::chrono::seconds(2));
-  if (failure) ::alarm(longest_end_after_failure);  // nobody sends a signal then
   if (failure) node.log(Level::error, "the driver has to end: " + *failure);
   for (const auto& driver : drivers) driver->end_followers();
   node.shut_down();

@@ -149,10 +149,13 @@ MasterWatch::MasterWatch(Node& log) : log_(log), thread_(interval, [this] { try_
 void MasterWatch::try_check() {
   try {
     check();
+    told_ = false;
   } catch (const XmlRpc::XmlRpcException& error) {
     if (std::exchange(told_, true)) return;
     log_.log(Level::warning,
-             fmt::format("the answer of {} cannot be read: {}", master_uri(), error.getMessage()));
+             fmt::format("the answer of {} cannot be read: {}; if it has started again, new subscribers do "
+                         "not find this node",
+                         master_uri(), error.getMessage()));
   }
 }
 

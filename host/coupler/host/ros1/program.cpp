@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/program.hpp"
 
+#include <XmlRpcException.h>
 #include <ros/console.h>
 #include <ros/exceptions.h>
 #include <ros/init.h>
@@ -180,8 +181,10 @@ int main_with(const Map* built_in, int argc, char** argv) {
     return run(built_in, arguments);
   } catch (const std::exception& error) {  // no thread or no memory is left
     print_message(error.what());
-    return wrong_input;
+  } catch (const XmlRpc::XmlRpcException& error) {  // the master's answer is none
+    print_message(error.getMessage());
   }
+  return wrong_input;
 }
 
 }  // namespace coupler::host
