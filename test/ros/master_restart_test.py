@@ -140,6 +140,7 @@ class MasterRestart(unittest.TestCase):
         def start():
             relay.answers.set()
             driver = process.Process("coupler_driver", f"_maps:=[{','.join(maps)}]", environment=environment)
+            self.addCleanup(driver.end)
             driver.wait_for("first: connected")
             if not others:
                 self.call_until_it_works("/first/safe")  # the last of them: it has started
@@ -162,7 +163,6 @@ class MasterRestart(unittest.TestCase):
         start = self.starts_and_then_the_master_hangs(first=f"{FIRST}  holding_registers:\n{points}")
         for _ in range(20):  # on a busy machine the time for safe values may be over
             driver = start()
-            self.addCleanup(driver.end)
             for _ in range(20):
                 driver.signal(signal.SIGINT)
                 if driver.ends_within(3):
