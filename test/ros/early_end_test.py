@@ -11,7 +11,6 @@ from support.ports import free_port
 
 FIRST = "name: first\naddress: 127.0.0.1\nport: {port}\non_shutdown: safe\nmapping:\n  coils: {{lamp: 3}}\n"
 OTHER = "name: {name}\naddress: 127.0.0.1\nport: {port}\nmapping:\n  coils:\n{points}"
-NOT_SAFE = 3  # the exit status
 COUNT = 4000  # topics: they take longer than a write does
 
 
@@ -48,7 +47,7 @@ class EarlyEnd(testing.RosTest):
                                                              lambda driver: driver.start_no_more_threads())
                 if not driver.ends_within(PATIENCE / 5):
                     driver.interrupt()  # the last one had its threads already
-                elif driver.wait() != NOT_SAFE:  # on a busy machine the time for safe values may be over
+                elif driver.wait() != process.NOT_SAFE:  # on a busy machine the time for safe values may be over
                     break
             self.assertEqual(driver.wait(), 1, driver.output)
             self.assertIn("the driver has to end: no thread can be started: Resource temporarily unavailable", driver.output)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ROS master starts again: the driver is found again, and the device notices nothing. It hangs while the driver starts: what
-has been driven is made safe."""
+"""The ROS master starts again: the driver is found again, and the device notices nothing. It hangs while the driver starts or
+ends: what has been driven is made safe."""
 import os
 import pathlib
 import signal
@@ -20,7 +20,6 @@ from support.topics import wait_until
 
 MASTER = pathlib.Path(__file__).resolve().parents[1] / "support/ros-master"
 FIRST = "name: first\naddress: 127.0.0.1\nport: {port}\non_shutdown: safe\nmapping:\n  coils: {lamp: 3}\n"
-NOT_SAFE = 3  # the exit status
 COUNT = 4000  # topics: the master hears of them for longer than a write takes
 MAP = f"""
 name: kept
@@ -168,7 +167,7 @@ class MasterRestart(unittest.TestCase):
                 if driver.ends_within(3):
                     break
             code = driver.wait()
-            if code != NOT_SAFE:
+            if code != process.NOT_SAFE:
                 break
         self.assertEqual(code, 0, driver.output)
         self.assertEqual(self.device.tables["coils"][3], 0)

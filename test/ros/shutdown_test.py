@@ -23,9 +23,6 @@ mapping:
 """
 
 
-NOT_SAFE = 3  # the exit status
-
-
 def silent_server():
     server = socket.create_server(("127.0.0.1", 0))
     server.settimeout(PATIENCE)  # of accept()
@@ -77,7 +74,7 @@ class Shutdown(unittest.TestCase):
             driver = stack.enter_context(process.Driver(f"_maps:=[{','.join(maps)}]"))
             for server in silent:
                 stack.enter_context(server.accept()[0]).recv(12)
-            self.assert_ends_soon(driver, NOT_SAFE)
+            self.assert_ends_soon(driver, process.NOT_SAFE)
 
     def test_what_becomes_of_safe_values_is_told_though_ros_has_ended(self):
         path = process.write_map("name: shutdown\naddress: 127.0.0.1\non_shutdown: safe\nmapping:\n"
@@ -97,12 +94,12 @@ class Shutdown(unittest.TestCase):
                 return stack.enter_context(process.Driver(f"_map:={path}", f"_port:={device.port}"))
 
             driver, code = process.interrupted_in_time(start, lambda driver, _: "exception 04" in driver.output)
-            self.assertEqual(code, NOT_SAFE, driver.output)
+            self.assertEqual(code, process.NOT_SAFE, driver.output)
             self.assertIn("lamp could not be set to its safe value: exception 04", driver.output)
             self.assertEqual(device.tables["coils"][7], 1)
         with process.Driver(f"_map:={path}", f"_port:={free_port()}") as driver:
             driver.wait_for("Connection refused")
-            self.assert_ends_soon(driver, NOT_SAFE)
+            self.assert_ends_soon(driver, process.NOT_SAFE)
             self.assertIn("no output could be set to its safe value: not connected", driver.output)
 
     def test_while_it_waits_for_a_nodes_map(self):

@@ -22,7 +22,6 @@ mapping:
   coils: {{lamp: 3}}
 """
 SAFE = "name: shutdown\naddress: 127.0.0.1\non_shutdown: safe\nmapping:\n  coils: {lamp: 3, valve: {address: 7, safe: on}}\n"
-NOT_SAFE = 3  # the exit status
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -78,7 +77,7 @@ class Shutdown(testing.RosTest):
             driver = self.driver("--maps", ",".join(maps))
             for server in silent:
                 stack.enter_context(server.accept()[0]).recv(12)
-            self.assert_ends_soon(driver, NOT_SAFE)
+            self.assert_ends_soon(driver, process.NOT_SAFE)
 
     def test_while_it_waits_for_a_nodes_map(self):
         for by in SIGNALS:
@@ -122,14 +121,14 @@ class Safe(testing.RosTest):
 
         self.device.answer = answer
         driver, code = process.interrupted_in_time(self.start_unsafe, lambda driver, _: "exception 04" in driver.output)
-        self.assertEqual(code, NOT_SAFE, driver.output)
+        self.assertEqual(code, process.NOT_SAFE, driver.output)
         self.assertIn("lamp could not be set to its safe value: exception 04", driver.output)
         self.assertEqual(self.device.tables["coils"][7], 1)
 
     def test_a_device_that_is_away_is_told(self):
         driver = self.start(free_port())
         driver.wait_for("Connection refused")
-        self.assertEqual(driver.interrupt(), NOT_SAFE, driver.output)
+        self.assertEqual(driver.interrupt(), process.NOT_SAFE, driver.output)
         self.assertIn("no output could be set to its safe value: not connected", driver.output)
 
 

@@ -13,6 +13,7 @@ import time
 from support.patience import PATIENCE
 
 BUILD = pathlib.Path(os.environ["COUPLER_BUILD_DIR"])
+NOT_SAFE = 3  # the driver's exit status where an output should have got its safe value and has not
 SAFE_WITHIN = 0.7  # seconds: those that the driver has at its end for safe values
 SERVING = re.compile(r"serving .* on \S+:(\d+)")
 TLS = re.compile(r"TLS at \S+:(\d+)")
