@@ -28,12 +28,13 @@ def skip_if_left_out(coupler):
 
 
 class Panel(Program):
-    """`coupler panel` of what is on that loopback port; None: where its map says. `trust`: an ssl.SSLContext, for HTTPS."""
+    """`coupler panel` of what is on that loopback port; None: where its map says. `trust`: an ssl.SSLContext, for HTTPS.
+    `under`: a command that runs it."""
 
-    def __init__(self, coupler, what, device_port, *options, trust=None):
+    def __init__(self, coupler, what, device_port, *options, trust=None, under=(), env=None):
         self.trust = trust
         at = ["--at", f"127.0.0.1:{device_port}"] if device_port else []
-        super().__init__(coupler, "panel", what, *at, *options, stdout=subprocess.PIPE)
+        super().__init__(*under, coupler, "panel", what, *at, *options, stdout=subprocess.PIPE, env=env)
         self.url = self.process.stdout.readline().strip()
         found = re.fullmatch(r"https?://(\[?[\w.:]+?\]?):(\d+)/#([0-9a-f]{32})", self.url)
         if not found:

@@ -9,6 +9,7 @@ import csv
 import io
 import pathlib
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -21,6 +22,9 @@ try:
 except ImportError as error:
     peer.skip(f"python3-pymodbus is missing ({error}); run scripts/install-packages test")
 from recording import Node
+
+sys.path.append(str(pathlib.Path(__file__).parents[1] / "ros"))
+from support.process import LIMITABLE, limit_threads, limitable_environment
 
 POINTS = ["lamp", "valves", "door", "level", "setpoint", "pressure", "label", "word", "mode", "gain", "curve"]
 
@@ -182,6 +186,26 @@ def a_thousand_points(node, coupler, folder, checks):
         checks.equal("status", panel.end(), 0)
 
 
+def a_thread_that_cannot_be_had(node, coupler, map_file, checks):
+    """The connection's own, which begins with the first page."""
+    why = "no thread can be started: Resource temporarily unavailable; look at its limits"
+    with Node(node, map_file) as device, \
+            Panel(coupler, map_file, device.port, under=LIMITABLE, env=limitable_environment()) as panel:
+        token = panel.token()
+        limit_threads(panel.process.pid, 1)
+        status, _, text = panel.ask("GET", "/events", token=token)
+        checks.equal("a page is told why", (status, text[:len(why)]), (503, why))
+        limit_threads(panel.process.pid)
+        with Page(panel, token) as page:
+            page.await_value("level", -2, checks)
+        checks.equal("status", panel.end(), 0)
+    if not peer.is_sanitized():  # a sanitizer may want a thread of its own
+        start = subprocess.run([*LIMITABLE, "prlimit", "--nproc=1", coupler, "panel", map_file, "--at", "127.0.0.1"],
+                               capture_output=True, text=True, timeout=peer.PATIENCE, check=False)
+        checks.equal("without any there is no panel", (start.returncode, start.stderr[:len(why) + 16]),
+                     (3, "coupler: error: " + why))
+
+
 def main():
     node, coupler, map_file = sys.argv[1:]
     skip_if_left_out(coupler)
@@ -189,6 +213,7 @@ def main():
     values_come_and_change(node, coupler, map_file, checks)
     a_device_goes_and_comes_back(node, coupler, map_file, checks)
     nobody_looks_nobody_reads(coupler, map_file, checks)
+    a_thread_that_cannot_be_had(node, coupler, map_file, checks)
     the_end_writes_nothing(coupler, map_file, checks)
     with tempfile.TemporaryDirectory() as name:
         a_thousand_points(node, coupler, pathlib.Path(name), checks)

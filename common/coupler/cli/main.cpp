@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // coupler: what a person or a build does with maps at the command line.
+#include <cstdio>
+#include <exception>
 #include <string>
+
+#include <fmt/format.h>
 
 #include "coupler/base/standard_files.hpp"
 #include "coupler/base/version.hpp"
+#include "coupler/base/what_failed.hpp"
 #include "coupler/cli/commands.hpp"
 
 static_assert(coupler::version == COUPLER_VERSION, "coupler/base/version.hpp and CMakeLists.txt differ");
@@ -33,6 +38,11 @@ int main(int argc, char** argv) {
   coupler::cli::add_record(program, exit);
   coupler::cli::add_schema(program, exit);
   coupler::cli::add_status(program, exit);
-  if (const auto done = program.parse(argc, argv)) return *done;
+  try {
+    if (const auto done = program.parse(argc, argv)) return *done;
+  } catch (const std::exception& error) {  // no thread or no memory is left
+    fmt::print(stderr, "coupler: error: {}\n", coupler::what_failed(error));
+    return coupler::cli::failed;
+  }
   return exit;
 }

@@ -4,6 +4,7 @@ import contextlib
 import os
 import pathlib
 import re
+import resource
 import signal
 import subprocess
 import tempfile
@@ -18,6 +19,9 @@ SAFE_WITHIN = 0.7  # seconds: those that the driver has at its end for safe valu
 SERVING = re.compile(r"serving .* on \S+:(\d+)")
 TLS = re.compile(r"TLS at \S+:(\d+)")
 NAME = "__name:="  # gives the node its name
+# What runs a program that can be kept from starting threads. The kernel does not keep root's from it, so it is nobody's.
+LIMITABLE = () if os.geteuid() else (
+    "setpriv", "--reuid=54321", "--keep-groups", "--inh-caps=+dac_override", "--ambient-caps=+dac_override")
 
 # `nohup ./check` leaves it ignored, and a node that is started so takes no SIGHUP.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
@@ -27,6 +31,17 @@ def freeze(child):
     """SIGSTOP to a child, until none of its threads runs: on a busy machine some run on for a while."""
     child.send_signal(signal.SIGSTOP)
     os.waitid(os.P_PID, child.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+
+
+def limitable_environment():
+    """The report of leaks at the end takes a thread."""
+    return {**os.environ, "ASAN_OPTIONS": f"{os.environ.get('ASAN_OPTIONS', '')}:detect_leaks=0"}
+
+
+def limit_threads(pid, number=resource.getrlimit(resource.RLIMIT_NPROC)[0]):
+    """Of a program that runs under LIMITABLE: with as many as that, or more, it can start none. Without a number as before."""
+    soft = "unlimited" if number == resource.RLIM_INFINITY else number
+    subprocess.run([*LIMITABLE, "prlimit", "--pid", str(pid), f"--nproc={soft}:"], check=True)
 
 
 class Process:
@@ -145,17 +160,13 @@ class Driver(Process):
 
 
 class LimitedDriver(Driver):
-    """One that can be kept from starting threads. The kernel does not keep root's programs from it, so it is nobody's."""
-    _AS_NOBODY = ("setpriv", "--reuid=54321", "--keep-groups", "--inh-caps=+dac_override", "--ambient-caps=+dac_override")
+    """One that can be kept from starting threads."""
 
     def __init__(self, *arguments):
-        self._under = self._AS_NOBODY if os.geteuid() == 0 else ()
-        # Its report at the end takes a thread.
-        options = f"{os.environ.get('ASAN_OPTIONS', '')}:detect_leaks=0"
-        super().__init__(*arguments, under=self._under, environment={**os.environ, "ASAN_OPTIONS": options})
+        super().__init__(*arguments, under=LIMITABLE, environment=limitable_environment())
 
     def start_no_more_threads(self):
-        subprocess.run([*self._under, "prlimit", "--pid", str(self._child.pid), "--nproc=1"], check=True)
+        limit_threads(self._child.pid, 1)
 
 
 def interrupted_in_time(start, is_right, *by):

@@ -19,7 +19,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/base/thread_shortage.hpp"
+#include "coupler/base/what_failed.hpp"
 
 namespace coupler::host {
 namespace {
@@ -59,7 +59,7 @@ Result<Addresses> resolve(const std::string& host, std::uint16_t port, Deadline 
         lookup->done.set();
       }).detach();
     } catch (const std::system_error& error) {  // not the end of a driver: the next attempt may have one
-      return fail(NotConnected{thread_shortage(error), true});
+      return fail(NotConnected{what_failed(error), true});
     }
     std::array<pollfd, 2> wanted{{{lookup->done.fd(), POLLIN, 0}, {interrupt.fd(), POLLIN, 0}}};
     ::poll(wanted.data(), wanted.size(), deadline.left());

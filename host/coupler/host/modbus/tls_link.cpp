@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "coupler/base/thread_shortage.hpp"
+#include "coupler/base/what_failed.hpp"
 #include "coupler/credentials/credentials.hpp"
 #include "coupler/tls/alert.hpp"
 #include "coupler/tls/context.hpp"
@@ -69,7 +69,7 @@ class Link final : public TlsLink {
     try {
       thread_ = std::thread([this] { run(); });
     } catch (const std::system_error& error) {
-      return thread_shortage(error);
+      return what_failed(error);
     }
     return {};
   }

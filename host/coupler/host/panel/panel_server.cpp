@@ -8,6 +8,7 @@
 #include <atomic>
 #include <charconv>
 #include <chrono>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -16,6 +17,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "coupler/base/what_failed.hpp"
 #include "coupler/host/panel/access.hpp"
 #include "coupler/host/panel/http_server.hpp"
 #include "coupler/host/panel/page.hpp"
@@ -221,8 +223,7 @@ class Server final : public PanelServer {
   /// Server-sent events: what is new, and a heartbeat each second. A page that does not read loses what was
   /// between.
   void stream(const Request& request, Response& response) {
-    if (!enter())
-      return answer(response, 503, fmt::format("{} pages are open already; close one", most_pages));
+    if (const std::string why_not = enter(); !why_not.empty()) return answer(response, 503, why_not);
     auto seen = std::make_shared<std::uint64_t>(0);
     response.set_chunked_content_provider(
         "text/event-stream",
@@ -237,12 +238,17 @@ class Server final : public PanelServer {
         [this, token = page_of(request).token](bool) { leave(token); });
   }
 
-  bool enter() {
+  /// Empty, or why not.
+  std::string enter() {
     const std::lock_guard lock(mutex_);
-    if (pages_ >= most_pages) return false;
-    if (pages_ == 0) device_.look(true);
+    if (pages_ >= most_pages) return fmt::format("{} pages are open already; close one", most_pages);
+    try {
+      if (pages_ == 0) device_.look(true);
+    } catch (const std::exception& error) {  // no thread is left: another time there may be one
+      return what_failed(error);
+    }
     ++pages_;
-    return true;
+    return {};
   }
   void leave(const std::string& token) {
     const std::lock_guard lock(mutex_);

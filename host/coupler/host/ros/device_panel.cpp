@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/base/thread_shortage.hpp"
+#include "coupler/base/what_failed.hpp"
 #include "coupler/host/panel/panel_points.hpp"
 #include "coupler/host/panel/panel_server.hpp"
 
@@ -31,7 +31,7 @@ class DevicePanel final : public Follower {
       server_ = *std::move(server);
       return {};
     } catch (const std::system_error& error) {  // the device can do without
-      return thread_shortage(error);
+      return what_failed(error);
     }
   }
   std::string url() const { return server_->url(); }

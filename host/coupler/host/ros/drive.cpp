@@ -12,12 +12,11 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "coupler/base/thread_shortage.hpp"
+#include "coupler/base/what_failed.hpp"
 #include "coupler/host/modbus/make_transports.hpp"
 #include "coupler/host/ros/device_driver.hpp"
 #include "coupler/host/ros/program.hpp"
@@ -124,10 +123,8 @@ int drive(const Devices& devices, Node& node) {
     Shutdown::begin_driving();
     if (!Shutdown::requested) node.start();
     report_until_the_end(node, drivers);
-  } catch (const std::system_error& error) {
-    failure = thread_shortage(error);
-  } catch (const std::exception& error) {  // no memory is left, or ROS 2 refuses
-    failure = error.what();
+  } catch (const std::exception& error) {  // no thread or no memory is left, or ROS 2 refuses
+    failure = what_failed(error);
   } catch (...) {  // XmlRpc's, which has no base
     failure = "ROS gave an answer that is none";
   }

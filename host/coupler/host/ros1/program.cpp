@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "coupler/base/what_failed.hpp"
 #include "coupler/host/ros/configuration.hpp"
 #include "coupler/host/ros/drive.hpp"
 #include "coupler/host/ros1/arguments.hpp"
@@ -180,7 +181,7 @@ int main_with(const Map* built_in, int argc, char** argv) {
   try {
     return run(built_in, arguments);
   } catch (const std::exception& error) {  // no thread or no memory is left
-    print_message(error.what());
+    print_message(what_failed(error));
   } catch (const XmlRpc::XmlRpcException& error) {  // the master's answer is none
     print_message(error.getMessage());
   }

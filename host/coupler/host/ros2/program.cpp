@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/what_failed.hpp"
 #include "coupler/host/ros/configuration.hpp"
 #include "coupler/host/ros/drive.hpp"
 #include "coupler/host/ros2/arguments.hpp"
@@ -133,7 +134,7 @@ int main_with(const Map* built_in, int argc, char** argv) {
     print_message(fmt::format("{}{}{}", error.what(), remedy.empty() ? "" : "; ", remedy));
     return is_wrong_call ? wrong_call : wrong_input;
   } catch (const std::exception& error) {  // no thread or no memory is left
-    print_message(error.what());
+    print_message(what_failed(error));
     return wrong_input;
   }
 }

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <exception>
+#include <string>
+#include <system_error>
+
+namespace coupler {
+
+/// What an exception says. Where std::thread has thrown it because there was none to be had, with what to do
+/// about it.
+inline std::string what_failed(const std::exception& error) {
+  const auto* of_system = dynamic_cast<const std::system_error*>(&error);
+  if (of_system == nullptr || of_system->code() != std::errc::resource_unavailable_try_again)
+    return error.what();
+  return "no thread can be started: " + of_system->code().message() +
+         "; look at its limits (ulimit -u, TasksMax= of a service)";
+}
+
+}  // namespace coupler
