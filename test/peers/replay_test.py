@@ -157,6 +157,7 @@ def no_pulse_is_too_short(node, coupler, folder, checks):
     again = folder / "pulses_again.jsonl"
     with Node(node, "--replay", file) as device, Recorder(coupler, f"tcp://127.0.0.1:{device.port}", device.port, again) as recorder:
         checks.equal("status", device.wait(), 0)
+        recorder.await_lines("its end", lambda lines: lines[-1].get("device") == "lost", checks)
         recorder.end()
     checks.equal("pulses of a microsecond are told", values(until_lost(recorder.lines()), "valve"), [False] + 10 * [True, False])
 

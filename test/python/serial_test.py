@@ -99,10 +99,13 @@ class OnALine(Rtu):
 
     def late_answer_comes_in_the_pause(self, belt):
         """However slow this machine is: the pause before the next request ends when the answer is there."""
+        later = []
+
         def pause(seconds):
-            if seconds < SHORT / 2:
+            if later:
                 time.sleep(seconds)
             else:
+                later.append(True)
                 self.line.release()
                 wait_until(lambda: belt._modbus.socket.in_waiting, "the late answer", made.PATIENCE)
         clock = types.SimpleNamespace(monotonic=time.monotonic, sleep=pause)

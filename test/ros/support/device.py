@@ -132,6 +132,9 @@ class Device:
             except OSError:
                 return
             with self._lock:
+                if self._listener is not listener:  # stopped meanwhile
+                    connection.close()
+                    return
                 if self._limit is not None and len(self._connections) >= self._limit:
                     connection.close()
                     continue
