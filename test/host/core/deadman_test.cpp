@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <future>
+#include <utility>
+
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/device_fixture.hpp"
 
@@ -16,9 +19,12 @@ struct DeadmanTest : test::DeviceTest {
     fakes::MapBuilder builder;
     builder.head().on_reconnect = on_reconnect;
     const auto stop = builder.keep({1});
+    const auto crawl = builder.keep({2});
     builder.add(Table::holding_registers, "speed", 5, Type::UINT, [&](Point& point) {
       point.access = Access::write;
       point.host.deadman = {milliseconds(200), stop};
+      point.safe = Safe::on;
+      point.safe_value = crawl;
       point.values = names;
     });
     owned = builder.build();
@@ -100,6 +106,30 @@ TEST_F(DeadmanTest, A_deadman_value_that_was_lost_is_written_again) {
   device.next_errors.push_back(Timeout{milliseconds(3000)});
   run_for(milliseconds(500));
   EXPECT_EQ(speed(), 1);
+}
+
+TEST_F(DeadmanTest, A_deadman_value_that_a_safe_value_supersedes_is_written_if_that_fails) {
+  const Error rejected = ExceptionReply{modbus::Exception::illegal_data_value};
+  const Error lost = Timeout{milliseconds(3000)};
+  for (const Error& error : {rejected, lost}) {
+    engine.reset();
+    start_online();
+    push("speed", 500);
+    run_for(milliseconds(100));
+    std::future<Calls::Answer> asked;
+    bool is_first = true;
+    device.await_write = [&] {
+      if (!std::exchange(is_first, false)) return;
+      asked = engine->make_safe();
+      device.next_errors.push_back(error);
+    };
+    run_for(milliseconds(200));
+    ASSERT_TRUE(asked.valid());
+    EXPECT_FALSE(asked.get().success);
+    run_for(milliseconds(2000));
+    EXPECT_EQ(speed(), 1);
+    device.await_write = nullptr;
+  }
 }
 
 TEST_F(DeadmanTest, A_deadman_value_whose_unit_is_away_is_written_when_it_is_back) {

@@ -151,6 +151,7 @@ Result<> FakeDevice::read_registers(Table table, modbus::Range range, std::uint1
 
 Result<> FakeDevice::send(const modbus::WriteRequest&) {
   if (!connected) return fail(NotConnected{"not connected"});
+  if (fail_send) return tl::make_unexpected(*fail_send);
   const std::lock_guard lock(mutex_);
   senders.push_back(std::this_thread::get_id());
   answered_ = true;

@@ -34,6 +34,8 @@ class FakeDevice : public Transport {
   std::function<void()> await_write;     ///< what happens while a write waits for its turn
   std::function<void()> during_read;     ///< what happens while a read waits for its answer
   bool refuse_send = false;              ///< it is somebody else's turn
+  std::size_t given_back = 0;            ///< turns
+  std::optional<Error> fail_send;        ///< of each request
   bool woken_by_call = false;            ///< how the last wait_until() ended
   bool missing_for_reads_only = false;   ///< writes to what is missing are acknowledged
   bool can_wait_for_changes = true;      ///< it does not share its connection
@@ -78,10 +80,11 @@ class FakeDevice : public Transport {
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
   Turn await_turn(Time, bool) override { return !await_read || await_read() ? Turn::read : Turn::none; }
-  void await_turn_to_write() override {
+  void await_turn_to_write(const std::function<bool()>&) override {
     if (await_write) await_write();
   }
   bool reserve() override { return !refuse_send; }
+  void give_back() override { ++given_back; }
   Result<> send(const modbus::WriteRequest&) override;
   /// Requests take effect when their answer is fetched.
   Result<> receive(const modbus::WriteRequest& request) override;

@@ -36,6 +36,16 @@ TEST_F(NodeOutputsTest, The_node_gets_the_time_on_its_clock_the_value_and_the_du
   EXPECT_EQ(device.count("write register 2"), 0U);
 }
 
+TEST_F(NodeOutputsTest, A_call_right_after_the_connect_is_for_the_node_too) {
+  serve(press());
+  device.schedule_outputs();
+  start(press());
+  engine->step();
+  auto asked = engine->schedule(wanted("speed", 7, seconds(3), milliseconds(70)));
+  run_for(milliseconds(10));
+  EXPECT_EQ(asked.get().text, "accepted: the node does it");
+}
+
 TEST_F(NodeOutputsTest, What_the_node_tells_is_the_outcome) {
   begin_node(press());
   for (int i = 0; i < 3; ++i) schedule("lamp", 1, milliseconds(500));

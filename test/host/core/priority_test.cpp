@@ -64,6 +64,22 @@ TEST_F(PriorityTest, They_go_before_one_that_waits_for_its_units_turn) {
   EXPECT_THAT(device.requests, ElementsAre("write coil 50", "write coil 5"));
 }
 
+TEST_F(PriorityTest, A_deadman_that_expires_meanwhile_goes_with_them) {
+  const auto zero = builder.keep({0});
+  builder.add(Table::coils, "crane", 200, Type::BOOL, [&](Point& point) {
+    point.host.deadman = {milliseconds(60), zero};
+    high(point);
+  });
+  start_online();
+  push("crane", 1);
+  step(1);
+  device.requests.clear();
+  push("lamp", 1);
+  device.await_write = [&] { clock.advance(milliseconds(100)); };
+  step(1);
+  EXPECT_THAT(device.requests, ElementsAre("write coil 200"));
+}
+
 TEST_F(PriorityTest, A_read_that_is_overdue_by_a_period_still_gets_every_second_transaction) {
   start_online();
   clock.advance(milliseconds(200));

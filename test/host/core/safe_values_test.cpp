@@ -69,6 +69,30 @@ TEST_F(SafeValuesTest, They_go_before_what_was_to_be_sent_next) {
   EXPECT_EQ((device.values[{Table::coils, 0}]), 0);
 }
 
+TEST_F(SafeValuesTest, They_go_before_what_waits_for_its_units_turn) {
+  start_online();
+  push("lamp", 1);
+  std::future<Calls::Answer> asked;
+  device.await_write = [&] {
+    if (!asked.valid()) asked = engine->make_safe();
+  };
+  engine->step();
+  ASSERT_TRUE(asked.valid() && is_ready(asked));
+  EXPECT_TRUE(asked.get().success);
+  EXPECT_THAT(device.requests, ElementsAre("write coils 0+2", "write register 0"));
+  EXPECT_EQ(engine->statistics().written(Outcome::superseded), 1U);
+}
+
+TEST_F(SafeValuesTest, Without_any_no_turn_is_kept) {
+  fakes::MapBuilder builder;
+  builder.add(Table::coils, "hold", 2, Type::BOOL, [](Point& point) { point.safe = Safe::hold; });
+  start(builder, Verify::off);
+  run_for(milliseconds(50));
+  engine->make_safe();
+  engine->step();
+  EXPECT_EQ(device.given_back, 1U);
+}
+
 TEST_F(SafeValuesTest, The_next_message_drives_again) {
   start_online();
   engine->make_safe();

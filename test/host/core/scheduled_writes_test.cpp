@@ -219,6 +219,18 @@ TEST_F(ScheduledWritesTest, Safe_values_cancel_it) {
   EXPECT_EQ(lamp(), 0);
 }
 
+TEST_F(ScheduledWritesTest, Safe_values_refuse_a_call_that_waits) {
+  begin_foreign(press());
+  auto asked = engine->schedule(wanted("lamp", 1, seconds(1)));
+  auto safe = engine->make_safe();
+  run_for(seconds(5));
+  EXPECT_TRUE(safe.get().success);
+  const ScheduleAnswer answer = asked.get();
+  EXPECT_EQ(answer.number, 0U);
+  EXPECT_THAT(answer.text, HasSubstr("safe values have been written meanwhile"));
+  EXPECT_EQ(lamp(), 0);
+}
+
 TEST_F(ScheduledWritesTest, At_the_end_of_the_driver_what_waits_is_cancelled) {
   begin_foreign(press());
   schedule("lamp", 1, seconds(10));

@@ -73,6 +73,53 @@ TEST_F(WriteResultsTest, A_value_that_a_newer_one_overtakes_is_superseded) {
   EXPECT_EQ((device.values[{Table::holding_registers, 0}]), 2);
 }
 
+TEST_F(WriteResultsTest, Of_a_number_that_waits_for_its_units_turn_the_newest_is_sent) {
+  start_online();
+  device.refuse_send = true;  // a transport whose turn it is not
+  push("r0", 1, &results);
+  EXPECT_FALSE(engine->send_now());
+  push("r0", 2);
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::superseded));
+  engine->step();
+  EXPECT_EQ((device.values[{Table::holding_registers, 0}]), 2);
+  EXPECT_THAT(device.requests, ElementsAre("write register 0"));
+}
+
+TEST_F(WriteResultsTest, What_was_never_sent_is_not_lost) {
+  for (const bool at_once : {true, false}) {
+    for (const OnReconnect on_reconnect : {OnReconnect::drop, OnReconnect::restore}) {
+      engine.reset();
+      builder = fakes::MapBuilder();
+      builder.head().on_reconnect = on_reconnect;
+      start_online();
+      results.outcomes.clear();
+      device.fail_send = TransportFailure{"the gateway has closed the connection"};
+      push("r0", 1, &results);
+      EXPECT_FALSE(at_once && engine->send_now());
+      engine->step();
+      const bool is_kept = on_reconnect == OnReconnect::restore;
+      EXPECT_THAT(results.outcomes, ElementsAre(is_kept ? Outcome::kept : Outcome::dropped));
+      EXPECT_EQ(written(Outcome::lost), 0U);
+      device.fail_send.reset();
+      device.values.clear();
+      run_for(milliseconds(500));
+      EXPECT_EQ((device.values[{Table::holding_registers, 0}]), is_kept ? 1 : 0);
+    }
+  }
+}
+
+TEST_F(WriteResultsTest, What_takes_a_read_before_waits_for_the_owner) {
+  builder.add(Table::holding_registers, "bit", 9, Type::BOOL, [](Point& point) { point.format.bit = 3; });
+  builder.head().limits.mask_write = false;
+  start_online();
+  push("bit", 1);
+  EXPECT_FALSE(engine->send_now());
+  EXPECT_EQ(device.given_back, 1U);
+  EXPECT_TRUE(device.requests.empty());
+  engine->step();
+  EXPECT_THAT(device.requests, ElementsAre("read holding_registers 9+1", "write register 9"));
+}
+
 TEST_F(WriteResultsTest, An_exception_is_told_with_its_code_whatever_it_is) {
   start_online();
   for (const int code : {4, 5, 6, 0x60}) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <future>
 
@@ -15,6 +16,8 @@ namespace {
 using modbus::Range;
 using modbus::WriteRequest;
 using std::chrono::milliseconds;
+
+bool never() { return false; }
 
 TEST_F(UnitTransportTest, Units_behind_one_gateway_share_its_connection) {
   connect_all();
@@ -116,7 +119,7 @@ TEST_F(UnitTransportTest, Who_has_awaited_its_turn_to_write_is_the_next_to_write
   connect_all();
   const auto request = WriteRequest::register_value(1, 7);
   ASSERT_TRUE(unit(1).send(request));
-  auto waiting = std::async(std::launch::async, [this] { unit(2).await_turn_to_write(); });
+  auto waiting = std::async(std::launch::async, [this] { unit(2).await_turn_to_write(never); });
   EXPECT_EQ(waiting.wait_for(milliseconds(20)), std::future_status::timeout);
   EXPECT_TRUE(unit(1).receive(request));
   waiting.get();
@@ -126,11 +129,39 @@ TEST_F(UnitTransportTest, Who_has_awaited_its_turn_to_write_is_the_next_to_write
   EXPECT_TRUE(read(3));
 }
 
+TEST_F(UnitTransportTest, Who_waits_to_write_gives_up_when_asked_to_and_is_woken) {
+  connect_all();
+  const auto request = WriteRequest::register_value(1, 7);
+  ASSERT_TRUE(unit(1).send(request));
+  std::atomic<bool> is_enough{false};
+  auto waiting =
+      std::async(std::launch::async, [&] { unit(2).await_turn_to_write([&] { return is_enough.load(); }); });
+  unit(2).wake();
+  EXPECT_EQ(waiting.wait_for(milliseconds(20)), std::future_status::timeout);
+  is_enough = true;
+  unit(2).wake();
+  waiting.get();
+  EXPECT_TRUE(unit(1).receive(request));
+  EXPECT_TRUE(read(3));
+}
+
+TEST_F(UnitTransportTest, A_turn_that_is_given_back_is_for_others) {
+  connect_all();
+  ASSERT_TRUE(unit(1).reserve());
+  EXPECT_FALSE(unit(2).reserve());
+  unit(1).give_back();
+  unit(2).await_turn_to_write(never);
+  EXPECT_FALSE(unit(1).reserve());
+  unit(2).give_back();
+  unit(2).give_back();  // nothing is left
+  EXPECT_TRUE(read(1));
+}
+
 TEST_F(UnitTransportTest, An_interrupt_ends_the_wait_for_a_turn_to_write) {
   connect_all();
   const auto request = WriteRequest::register_value(1, 7);
   ASSERT_TRUE(unit(1).send(request));
-  auto waiting = std::async(std::launch::async, [this] { unit(2).await_turn_to_write(); });
+  auto waiting = std::async(std::launch::async, [this] { unit(2).await_turn_to_write(never); });
   unit(2).interrupt();
   waiting.get();
   EXPECT_FALSE(unit(2).send(request));

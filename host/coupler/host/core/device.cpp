@@ -60,8 +60,8 @@ Result<> Device::do_what_is_due(Time now) {
   if (!writer_.awaits_answer()) answer = listener_.step();
   if (!answer) return answer;
   scheduler_.queue_due(now);
-  const bool schedules = scheduler_.has_request();
-  const Time write_due = std::min({writer_.due(), watchdog_.due(), scheduler_.due()});
+  const bool schedules = scheduler_.has_request(listener_);
+  const Time write_due = std::min({writer_.due(), watchdog_.due(), scheduler_.due(listener_)});
   transport_.rank(schedules || write_due <= now ? Rank::write : Rank::read);
   if (writer_.awaits_answer() || writer_.is_safe_asked())
     answer = write();
@@ -121,8 +121,8 @@ Result<> Device::serve_watchdog() {
 
 Time Device::due() const {
   const Time read_due = listener_.lets_read() ? poller_.due() : Time::max();
-  return std::min(
-      {writer_.due(), watchdog_.due(), scheduler_.due(), read_due, listener_.due(), keep_alive_due()});
+  return std::min({writer_.due(), watchdog_.due(), scheduler_.due(listener_), read_due, listener_.due(),
+                   keep_alive_due()});
 }
 
 void Device::arrived() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/core/output_scheduler.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -15,6 +16,7 @@ namespace {
 using modbus::Exception;
 
 constexpr auto the_driver_ends = "the driver ends";
+constexpr auto made_safe = "safe values have been written meanwhile; ask again if it is still wanted";
 
 std::string refusal(modbus::Exception code) {
   std::string what = to_string(Error(ExceptionReply{code}));
@@ -182,7 +184,13 @@ void OutputScheduler::on_written(const Write& write) {
   if (by_driver_.size() > 0) by_driver_.on_written(write);
 }
 
+/// A call that waits is cancelled, too: it came before they were acknowledged.
 void OutputScheduler::on_made_safe(const std::vector<Write>& values) {
+  const auto is_of_one = [&values](const AskedSchedule& asked) {
+    return std::any_of(values.begin(), values.end(),
+                       [&](const Write& value) { return value.point == asked.what.write.point; });
+  };
+  while (auto call = calls_.take_one_of(is_of_one)) call->answer.set_value({0, made_safe});
   for (const Write& value : values) by_node_.on_written(value.point);
   if (by_driver_.size() > 0) by_driver_.on_made_safe(values);
 }

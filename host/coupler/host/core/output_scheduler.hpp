@@ -49,15 +49,17 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   void connected(bool by_node);
   /// When queue_due() or step() has something to do; the past if it has now, or will have when the writer has
   /// made the writes before.
-  Time due() const { return calls_.any() ? Time::min() : by_driver_.due(); }
+  Time due(const ChangeListener& listener) const {
+    return calls_.any() && is_ready(listener) ? Time::min() : by_driver_.due();
+  }
   /// Queues the writes whose time has come.
   void queue_due(Time now) {
     if (!busy_) return;
     by_driver_.queue_due(now);
     note();
   }
-  bool has_request() {
-    return calls_.any_of([this](const AskedSchedule& asked) { return is_next(asked); });
+  bool has_request(const ChangeListener& listener) {
+    return is_ready(listener) && calls_.any_of([this](const AskedSchedule& asked) { return is_next(asked); });
   }
   /// Makes one request. An error means that the connection can no longer be used.
   Result<> step(const ChangeListener& listener);
@@ -72,6 +74,10 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   void on_written(const Write& write) override;
   void on_made_safe(const std::vector<Write>& values) override;
 
+  /// A node can be given a time once its clock is known: it answers the first wait for changes at once.
+  bool is_ready(const ChangeListener& listener) const {
+    return !node_can_ || !listener.is_active() || listener.has_heard();
+  }
   std::string why_refused(const ScheduledWrite& what, Time now) const;
   bool can_node(const ScheduledWrite& what, const ChangeListener& listener) const;
   bool is_next(const AskedSchedule& asked) const {

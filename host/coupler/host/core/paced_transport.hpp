@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <bitset>
+#include <functional>
 
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/device_statistics.hpp"
@@ -43,11 +44,12 @@ class PacedTransport : public Transport {
     pause();  // before the turn, which others wait for
     return transport_.await_turn(until, write_waits);
   }
-  void await_turn_to_write() override {
+  void await_turn_to_write(const std::function<bool()>& ends) override {
     pause();
-    transport_.await_turn_to_write();
+    transport_.await_turn_to_write(ends);
   }
   bool reserve() override { return transport_.reserve(); }
+  void give_back() override { transport_.give_back(); }
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;
   Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request) override;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -49,8 +50,9 @@ struct Certificates {
 };
 
 /// The port to one unit of a Modbus device. One request is in flight at a time; its reply is awaited for the
-/// device's timeout at most. It belongs to one thread; another may call send() while it knows, by a lock of
-/// its own, that the owner does nothing but wait_until(). interrupt() and wake() may come from anywhere.
+/// device's timeout at most. It belongs to one thread; another may call reserve(), give_back() and send()
+/// while it knows, by a lock of its own, that the owner does nothing but wait_until(). interrupt() and wake()
+/// may come from anywhere.
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -86,11 +88,14 @@ class Transport {
   /// request or another call must follow. Turn::none after wake(), or at `until`: something else may come
   /// before a read.
   virtual Turn await_turn(Time /*until*/, bool /*write_waits*/ = false) { return Turn::read; }
-  /// Waits until a send() would wait for nobody else's request, or would fail. It or another call must
+  /// Waits until a send() would wait for nobody else's request, or would fail; or until `ends()` is true,
+  /// which is called at first and after each wake(). A request or give_back() must follow.
+  virtual void await_turn_to_write(const std::function<bool()>& /*ends*/) {}
+  /// Whether a send() made now would wait for nobody else's request. If true, send() or give_back() must
   /// follow.
-  virtual void await_turn_to_write() {}
-  /// Whether a send() made now would wait for nobody else's request. If true, send() must follow.
   virtual bool reserve() { return true; }
+  /// No request follows: the turn, if it was this unit's, is for others.
+  virtual void give_back() {}
 
   /// Sends and does not wait for the answer. receive() must follow before any other request.
   virtual Result<> send(const modbus::WriteRequest& request) = 0;

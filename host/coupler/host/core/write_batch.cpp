@@ -17,7 +17,8 @@ bool is_neighbour(Range a, Range b) { return a.end() == b.start() || b.end() == 
 
 Result<> write_batch(const WriteBatch& batch, const Map& map, Transport& transport,
                      std::vector<RejectedValue>& rejected) {
-  Result<> answer = exchange(batch, map, transport);
+  const Result<modbus::WriteRequest> request = send(batch, map, transport);
+  Result<> answer = request ? transport.receive(*request) : Result<>(tl::make_unexpected(request.error()));
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   if (exception == nullptr || is_unit_away(answer.error())) return answer;
   if (batch.writes().size() == 1) {
@@ -33,6 +34,8 @@ Result<> write_batch(const WriteBatch& batch, const Map& map, Transport& transpo
 }
 
 }  // namespace
+
+bool needs_read(const Map& map, const Point& point) { return is_partial(point) && !map.limits.mask_write; }
 
 bool WriteBatch::merges(const Write& write) const {
   const Point& which = point(write);
@@ -55,10 +58,6 @@ bool WriteBatch::add(const Write& write) {
   }
   writes_.push_back(write);
   return true;
-}
-
-bool WriteBatch::needs_read() const {
-  return !empty() && is_partial(point(writes_.front())) && !map_->limits.mask_write;
 }
 
 WriteRequest WriteBatch::part_request(std::uint16_t before) const {
@@ -93,15 +92,15 @@ WriteRequest WriteBatch::request(std::uint16_t before) const {
   return coils ? WriteRequest::coils(range_.start(), used) : WriteRequest::registers(range_.start(), used);
 }
 
-Result<> exchange(const WriteBatch& batch, const Map& map, Transport& transport) {
+Result<modbus::WriteRequest> send(const WriteBatch& batch, const Map& map, Transport& transport) {
   std::uint16_t before = 0;
-  if (batch.needs_read()) {
-    const Point& point = map.points[batch.writes().front().point];
-    if (auto read = transport.read_registers(point.table, read_range(point), &before); !read) return read;
-  }
+  const Point& point = map.points[batch.writes().front().point];
+  if (needs_read(map, point))
+    if (auto read = transport.read_registers(point.table, read_range(point), &before); !read)
+      return tl::make_unexpected(read.error());
   const modbus::WriteRequest request = batch.request(before);
-  if (auto sent = transport.send(request); !sent) return sent;
-  return transport.receive(request);
+  if (auto sent = transport.send(request); !sent) return tl::make_unexpected(sent.error());
+  return request;
 }
 
 Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map,

@@ -13,6 +13,10 @@
 
 namespace coupler::host {
 
+/// A write to the point takes a read before: it is a part of a register, and the device has no FC 22 (mask
+/// write).
+bool needs_read(const Map& map, const Point& point);
+
 /// The writes of one request: one, or several that are neighbours both in the queue and in the device.
 class WriteBatch {
  public:
@@ -29,9 +33,7 @@ class WriteBatch {
   /// In the order of add().
   const std::vector<Write>& writes() const { return writes_; }
 
-  /// The register must be read first: the point is a part of it, and the device has no FC 22 (mask write).
-  bool needs_read() const;
-  /// `before`: the register as it is, where that is needed. Not of an empty batch.
+  /// `before`: the register as it is, where needs_read(). Not of an empty batch.
   modbus::WriteRequest request(std::uint16_t before = 0) const;
 
  private:
@@ -44,8 +46,9 @@ class WriteBatch {
   modbus::Range range_ = modbus::Range::of(0, 1);  ///< of all together
 };
 
-/// Makes the request of a batch, after the read that a part of a register may need, and waits for the answer.
-Result<> exchange(const WriteBatch& batch, const Map& map, Transport& transport);
+/// Sends the request of a batch, after the read that a part of a register may need, and returns it for
+/// Transport::receive(). After an error it was not sent.
+Result<modbus::WriteRequest> send(const WriteBatch& batch, const Map& map, Transport& transport);
 
 /// A value that the device answered with an exception.
 struct RejectedValue {

@@ -78,10 +78,13 @@ WriteQueue::Pushed WriteQueue::push(const Write& write) {
   return pushed;
 }
 
-void WriteQueue::take(WriteBatch& batch, bool merge) {
+void WriteQueue::take(WriteBatch& batch, bool merge, bool may_read) {
   const std::lock_guard lock(mutex_);
   Index& first = high_.first != none ? high_.first : normal_.first;
-  while (first != none && (merge || batch.empty()) && batch.add(places_[first].write)) remove(first);
+  const auto may_go = [&](const Write& write) {
+    return (merge || batch.empty()) && (may_read || !needs_read(map_, map_.points[write.point]));
+  };
+  while (first != none && may_go(places_[first].write) && batch.add(places_[first].write)) remove(first);
 }
 
 std::optional<Write> WriteQueue::take() {
@@ -111,11 +114,6 @@ void WriteQueue::put_back(const std::vector<Write>& writes) {
   const std::lock_guard lock(mutex_);
   for (auto write = writes.rbegin(); write != writes.rend(); ++write)
     insert(*write, true, class_of(*write).first);
-}
-
-bool WriteQueue::overtakes(const Write& taken) const {
-  const std::lock_guard lock(mutex_);
-  return high_.first != none && !goes_first(map_.points[taken.point]);
 }
 
 void WriteQueue::settled(std::uint32_t point) {

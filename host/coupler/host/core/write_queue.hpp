@@ -39,8 +39,8 @@ class WriteQueue {
   Pushed push(const Write& write);
 
   /// Moves the first write, and those of its class behind it that go into the same request, to the empty
-  /// `batch`; only the first if not `merge`.
-  void take(WriteBatch& batch, bool merge = true);
+  /// `batch`; only the first if not `merge`; none that needs a read before, if not `may_read`.
+  void take(WriteBatch& batch, bool merge = true, bool may_read = true);
   std::optional<Write> take();
   /// Takes the first write to one of the points (by index, as long as the map's).
   std::optional<Write> take_one_of(const std::vector<bool>& points);
@@ -48,8 +48,6 @@ class WriteQueue {
   std::optional<Write> take_late(Time now);
   /// Puts writes that were taken and not sent back to the front of their class, in their order.
   void put_back(const std::vector<Write>& writes);
-  /// A write waits that goes before `taken`, which was taken and not sent.
-  bool overtakes(const Write& taken) const;
   bool empty() const { return size_now_.load(std::memory_order_relaxed) == 0; }
 
   /// A write from take() has its result.

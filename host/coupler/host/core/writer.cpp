@@ -86,12 +86,20 @@ std::future<Calls::Answer> Writer::ask_safe() {
 bool Writer::send_now() {
   if (!batch_.empty() || !transport_.is_ready()) return false;
   drop_late();
-  queue_.take(batch_, merges_);
-  if (batch_.empty()) return true;  // the owner was faster
-  if (batch_.needs_read() || !transport_.reserve()) return false;
+  if (queue_.empty()) return true;          // the owner was faster
+  if (!transport_.reserve()) return false;  // first: in the queue a newer value may replace it until its turn
+  queue_.take(batch_, merges_, false);
+  if (batch_.empty()) {
+    transport_.give_back();
+    return false;
+  }
   sent_ = batch_.request();
-  if (const auto sent = transport_.send(*sent_); !sent) send_error_ = sent.error();
-  return !send_error_;
+  const auto sent = transport_.send(*sent_);
+  if (sent) return true;
+  send_error_ = sent.error();
+  sent_.reset();
+  wait_again();
+  return false;
 }
 
 void Writer::fire_deadmen() {
@@ -113,24 +121,37 @@ void Writer::fire_deadmen() {
 }
 
 Result<> Writer::step() {
-  if (send_error_) return finish(tl::make_unexpected(*std::exchange(send_error_, std::nullopt)));
+  if (send_error_) return tl::make_unexpected(*std::exchange(send_error_, std::nullopt));
   if (sent_) return finish(transport_.receive(*sent_));
   if (is_safe_asked()) return make_safe();
   fire_deadmen();
-  if (batch_.empty() && queue_.empty()) return {};
-  transport_.await_turn_to_write();  // first, since a write that goes before all others may come meanwhile
-  choose_next();
-  if (batch_.empty()) return {};  // they were too late
-  return finish(exchange(batch_, map_, transport_));
+  if (queue_.empty()) {
+    transport_.give_back();
+    return {};
+  }
+  // First, since what goes before all others, or replaces them, may come meanwhile.
+  transport_.await_turn_to_write([this] { return is_safe_asked(); });
+  if (is_safe_asked()) return make_safe();
+  fire_deadmen();
+  drop_late();
+  queue_.take(batch_, merges_);
+  if (batch_.empty()) {  // they were too late
+    transport_.give_back();
+    return {};
+  }
+  const auto request = send(batch_, map_, transport_);
+  return request ? finish(transport_.receive(*request)) : not_sent(request.error());
 }
 
-void Writer::choose_next() {
-  if (!batch_.empty() && queue_.overtakes(batch_.writes().front())) {
-    queue_.put_back(batch_.writes());
-    batch_.clear();
-  }
-  drop_late();
-  if (batch_.empty()) queue_.take(batch_, merges_);
+void Writer::wait_again() {
+  queue_.put_back(batch_.writes());
+  batch_.clear();
+}
+
+Result<> Writer::not_sent(const Error& why) {
+  if (exception_in(why) != nullptr) return finish(tl::make_unexpected(why));  // of the read before
+  wait_again();                                                               // until disconnected()
+  return tl::make_unexpected(why);
 }
 
 void Writer::drop_late() {
@@ -204,22 +225,29 @@ Result<> Writer::verify(const Write& write, const Result<>& link) {
 }
 
 Result<> Writer::make_safe() {
-  queue_.put_back(batch_.writes());
-  batch_.clear();
-  while (const auto write = queue_.take_one_of(is_safe_point_)) settle(*write, {Outcome::superseded});
+  std::vector<std::uint32_t> deadmen;  // their values waited
+  while (const auto write = queue_.take_one_of(is_safe_point_)) {
+    if (write->of_deadman) deadmen.push_back(write->point);
+    settle(*write, {Outcome::superseded});
+  }
   const auto rejected = write_safe_values();
   if (!rejected) {
+    for (const std::uint32_t point : deadmen)
+      if (last_written_.count(point) == 0) deadmen_.retry(point, Time());  // nothing is restored
     safe_calls_.answer(
         {false, fmt::format("not all outputs have their safe values: {}", to_string(rejected.error()))});
     return tl::make_unexpected(rejected.error());
   }
   std::string text = fmt::format("{} of {} outputs have their safe values",
                                  safe_values_.size() - rejected->size(), safe_values_.size());
-  for (const auto& [point, code] : *rejected)
+  for (const auto& [point, code] : *rejected) {
     text += fmt::format("; {}: {}", name(point), to_string(Error(ExceptionReply{code})));
+    if (std::count(deadmen.begin(), deadmen.end(), point) > 0)
+      deadmen_.retry(point, clock_.now() + deadman_retry);
+  }
   sink_.on_report(rejected->empty() ? Level::info : Level::error, text);
+  if (written_ != nullptr) written_->on_made_safe(safe_values_);  // before a caller who asks for more
   safe_calls_.answer({rejected->empty(), text});
-  if (written_ != nullptr) written_->on_made_safe(safe_values_);
   return {};
 }
 
@@ -230,6 +258,7 @@ Result<std::vector<RejectedValue>> Writer::write_safe_values() {
   auto rejected = write_values(safe_values_, map_, transport_);
   for (const Write& write : safe_values_) remember(write);  // an older value may have been told meanwhile
   transport_.rank(Rank::write);
+  transport_.give_back();  // where there are none
   return rejected;
 }
 

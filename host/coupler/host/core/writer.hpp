@@ -67,8 +67,8 @@ class Writer {
   /// Sends the next writes without waiting for the answer, if nothing is in flight and no pause or reading
   /// must come first. True if there is nothing else to do until the answer has come.
   bool send_now();
-  /// An answer is to come to what send_now() has sent.
-  bool awaits_answer() const { return sent_.has_value(); }
+  /// An answer is to come to what send_now() has sent, or it could not.
+  bool awaits_answer() const { return sent_ || send_error_; }
 
   /// When step() has something to do; the past if it has now.
   Time due() const {
@@ -105,7 +105,8 @@ class Writer {
 
  private:
   void fire_deadmen();
-  void choose_next();
+  void wait_again();
+  Result<> not_sent(const Error& why);
   Result<> finish(const Result<>& answer);
   /// `link`: what has become of the connection since the answer.
   Result<> finish_one(const Write& write, const Result<>& answer, const Result<>& link = {});
@@ -136,10 +137,10 @@ class Writer {
   std::vector<bool> is_safe_point_;  ///< by point: safe_values_ has one
   Calls safe_calls_;
   std::vector<bool> acknowledged_;            ///< by point: a write, and no value has been shown since
-  WriteBatch batch_;                          ///< in flight, or next
+  WriteBatch batch_;                          ///< in flight
   WriteBatch done_;                           ///< answered; kept for its memory
   std::optional<modbus::WriteRequest> sent_;  ///< batch_, where send_now() has sent it
-  std::optional<Error> send_error_;           ///< it could not be sent
+  std::optional<Error> send_error_;           ///< why send_now() could not send
   bool is_node_ = false;
   bool merges_ = true;  ///< the device takes several values in one request
   std::uint64_t dropped_ = 0;

@@ -74,6 +74,7 @@ void UnitTransport::close() {
     unanswered();
     release();
   }
+  give_back();
   if (!std::exchange(connected_, false) || --shared_->users > 0) return;
   // It does not wait for its turn: a lost unit is to be reported at once. If another unit has the turn, that
   // one goes on with the connection, or closes it.
@@ -170,9 +171,9 @@ Transport::Turn UnitTransport::await_turn(Time until, bool write_waits) {
   return interrupted_.is_set() || is_lost() ? Turn::read : Turn::none;  // the read fails, with the reason
 }
 
-void UnitTransport::await_turn_to_write() {
+void UnitTransport::await_turn_to_write(const std::function<bool()>& ends) {
   if (has_turn_) return;
-  const auto give_up = [this] { return interrupted_.is_set() || is_lost(); };
+  const auto give_up = [&] { return ends() || interrupted_.is_set() || is_lost(); };
   has_turn_ = shared_->turns.take(this, {Rank::write}, Time::max(), give_up).has_value();
 }
 
@@ -183,6 +184,11 @@ bool UnitTransport::reserve() {
   if (!has_turn_) release();
   reserved_ = has_turn_;
   return has_turn_;
+}
+
+void UnitTransport::give_back() {
+  reserved_ = false;
+  if (std::exchange(has_turn_, false)) release();
 }
 
 Result<> UnitTransport::send(const modbus::WriteRequest& request) {

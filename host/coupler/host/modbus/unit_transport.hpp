@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 
 #include "coupler/host/modbus/multi_unit_transport.hpp"
@@ -46,8 +47,9 @@ class UnitTransport : public Transport {
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
   void rank(Rank rank) override;
   Turn await_turn(Time until, bool write_waits = false) override;
-  void await_turn_to_write() override;
+  void await_turn_to_write(const std::function<bool()>& ends) override;
   bool reserve() override;
+  void give_back() override;
   Result<> send(const modbus::WriteRequest& request) override;
   Result<> receive(const modbus::WriteRequest& request) override;
   std::uint64_t discarded() const override { return shared_->transport->discarded(); }

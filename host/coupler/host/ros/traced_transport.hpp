@@ -51,8 +51,11 @@ class TracedTransport : public Transport {
   Turn await_turn(Time until, bool write_waits = false) override {
     return transport_->await_turn(until, write_waits);
   }
-  void await_turn_to_write() override { transport_->await_turn_to_write(); }
+  void await_turn_to_write(const std::function<bool()>& ends) override {
+    transport_->await_turn_to_write(ends);
+  }
   bool reserve() override { return transport_->reserve(); }
+  void give_back() override { transport_->give_back(); }
   Result<> send(const modbus::WriteRequest& request) override {
     write_sent_ = now();
     return transport_->send(request);
