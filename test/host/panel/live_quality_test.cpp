@@ -30,13 +30,12 @@ TEST_F(LiveValuesTest, What_a_lost_device_had_is_shown_as_offline) {
   read_registers({"a", "b"}, 0, {5, 6});
   news();
   values_->on_online(false);
-  values_->on_report(Level::warning, "connection lost: no answer");
+  values_->on_loss("connection lost: no answer");
   const ordered_json told = news();
   EXPECT_EQ(told["device"]["online"], false);
   EXPECT_EQ(told["device"]["why"], "connection lost: no answer");
   for (const char* point : {"a", "b"}) EXPECT_EQ(told["points"][point]["quality"], "offline") << point;
   EXPECT_EQ(told["points"]["a"]["value"], 5) << "its last value";
-  EXPECT_THAT(reports_, testing::ElementsAre("connection lost: no answer"));
 }
 
 TEST_F(LiveValuesTest, What_was_answered_with_an_exception_is_offline_as_well_when_the_device_is_lost) {
@@ -55,7 +54,7 @@ TEST_F(LiveValuesTest, A_value_is_good_again_when_it_is_read_again_even_the_same
   read_registers({"a"}, 0, {5});
   const auto changes = news()["points"]["a"]["changes"].get<int>();
   values_->on_online(false);
-  values_->on_report(Level::error, "lost");
+  values_->on_loss("lost");
   news();
   values_->on_online(true);
   const ordered_json back = news();
@@ -118,14 +117,14 @@ TEST_F(LiveValuesTest, What_is_read_no_more_becomes_stale) {
 
 TEST_F(LiveValuesTest, Why_a_device_does_not_answer_is_told_only_while_it_does_not) {
   show(MapBuilder().holding("a", 0));
-  values_->on_report(Level::info, "connecting");
+  values_->on_report(Level::warning, "a write was dropped");
   EXPECT_EQ(news()["device"]["why"], "");
-  values_->on_report(Level::warning, "connection refused");
+  values_->on_loss("connection refused");
   EXPECT_EQ(news()["device"]["why"], "connection refused");
   values_->on_online(true);
   values_->on_report(Level::warning, "something else");
   EXPECT_EQ(news_again()["device"].value("why", ""), "");
-  EXPECT_THAT(reports_, testing::ElementsAre("connecting", "connection refused", "something else"));
+  EXPECT_THAT(reports_, testing::ElementsAre("a write was dropped", "something else"));
 }
 
 TEST_F(LiveValuesTest, The_device_s_numbers_are_told_with_it) {

@@ -78,10 +78,9 @@ class RecorderTest : public testing::Test {
                       [&](Level, const std::string& text) { reports_.push_back(text); });
   }
 
-  /// The device is lost, and the reason is reported.
   void lose(const std::string& why) {
     recorder_->on_online(false);
-    recorder_->on_report(Level::error, why);
+    recorder_->on_loss(why);
   }
 
   std::uint32_t index_of(std::string_view name) const {

@@ -94,8 +94,7 @@ TEST_F(RecorderTest, After_a_loss_each_value_is_recorded_again) {
   record(MapBuilder().holding("a", 0).holding("b", 1));
   recorder_->on_online(true);
   read_registers({"a", "b"}, 0, {5, 6});
-  recorder_->on_online(false);
-  recorder_->on_report(Level::warning, "connection lost");
+  lose("connection lost");
   recorder_->on_online(true);
   read_registers({"a", "b"}, 0, {5, 7});
   EXPECT_THAT(taken(), ElementsAre("online", "1000: word a=5±0", "1000: word b=6±0", "lost: connection lost",
@@ -108,21 +107,19 @@ TEST_F(RecorderTest, While_the_device_is_lost_no_value_is_known) {
   read_registers({"a"}, 0, {5});
   EXPECT_THAT(lines_of(recorder_->all_values(start_ + seconds(2))),
               ElementsAre("online", "2000: word a=5±0"));
-  recorder_->on_online(false);
-  recorder_->on_report(Level::error, "no route");
+  lose("no route");
   EXPECT_THAT(lines_of(recorder_->all_values(start_ + seconds(3))), ElementsAre("lost: no route"));
 }
 
-TEST_F(RecorderTest, The_reason_of_a_loss_is_the_first_report_behind_it) {
+TEST_F(RecorderTest, Of_the_reasons_why_a_device_is_away_the_first_is_a_line_and_no_other_report_is) {
   record(MapBuilder().holding("a", 0));
-  recorder_->on_report(Level::info, "connecting");
-  recorder_->on_report(Level::error, "refused");
-  recorder_->on_report(Level::error, "refused");
-  recorder_->on_report(Level::error, "no route");
+  recorder_->on_report(Level::warning, "a write was dropped");
+  recorder_->on_loss("refused");
+  recorder_->on_loss("no route");
   recorder_->on_online(true);
-  recorder_->on_report(Level::warning, "the map is another one");
   recorder_->on_online(false);
-  recorder_->on_report(Level::error, "no route");
+  recorder_->on_report(Level::warning, "a write was lost");
+  recorder_->on_loss("no route");
   EXPECT_THAT(taken(), ElementsAre("lost: refused", "online", "lost: no route"));
 }
 
@@ -234,8 +231,7 @@ TEST_F(RecorderTest, What_comes_of_its_own_end_is_no_loss_of_the_device) {
   record(MapBuilder().holding("a", 0));
   recorder_->on_online(true);
   recorder_->end_comes();
-  recorder_->on_online(false);
-  recorder_->on_report(Level::warning, "interrupted");
+  lose("interrupted");
   EXPECT_THAT(taken(), ElementsAre("online"));
   EXPECT_THAT(lines_of(recorder_->all_values(start_ + seconds(2))), ElementsAre("online"));
 }

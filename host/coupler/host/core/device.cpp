@@ -283,8 +283,11 @@ void Device::lost(const Error& error) {
     identity_suffices_ = transport_.replies() > replies_at_connect_;
     sink_.on_online(false);
   }
-  if (!ending_ && (was_online || why != last_error_text_))
-    sink_.on_report(Level::warning, loss_text(map_, error, was_online));
+  if (!ending_ && (was_online || why != last_error_text_)) {
+    const std::string text = loss_text(map_, error, was_online);
+    sink_.on_loss(text);
+    sink_.on_report(Level::warning, text);
+  }
   last_error_text_ = why;
 }
 

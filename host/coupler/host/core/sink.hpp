@@ -30,6 +30,8 @@ class Sink {
   virtual void on_identified(bool /*is_node*/) {}
   /// The device answers (or no longer does). Only changes; it begins offline.
   virtual void on_online(bool online) = 0;
+  /// Why it does not answer; reported, too. Only what is new.
+  virtual void on_loss(const std::string& /*why*/) {}
   virtual void on_report(Level level, const std::string& text) = 0;
   /// What became of a write at a time.
   virtual void on_scheduled(const ScheduledOutcome& /*outcome*/) {}

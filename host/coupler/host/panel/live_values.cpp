@@ -99,13 +99,10 @@ void LiveValues::on_online(bool online) {
   news_.notify_all();
 }
 
-void LiveValues::on_report(Level level, const std::string& text) {
-  report_(level, text);
-  if (level == Level::info) return;
+void LiveValues::on_loss(const std::string& why) {
   {
     const std::lock_guard lock(mutex_);
-    if (online_) return;
-    why_offline_ = text;
+    why_offline_ = why;
     device_revision_ = ++revision_;
   }
   news_.notify_all();

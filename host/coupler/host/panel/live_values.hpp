@@ -27,7 +27,8 @@ class LiveValues : public Sink {
   void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override;
   void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override;
   void on_online(bool online) override;
-  void on_report(Level level, const std::string& text) override;
+  void on_loss(const std::string& why) override;
+  void on_report(Level level, const std::string& text) override { report_(level, text); }
   /// The device's qualities have changed.
   void judge(const std::vector<PointQuality>& qualities, Time now);
   /// Nobody reads any more: nothing is known.

@@ -103,12 +103,11 @@ void Recorder::on_online(bool online) {
   if (online) queue(device_line(moment(std::chrono::steady_clock::now())));
 }
 
-/// The reason of a loss is reported right behind it; other reports, as of a write that failed, are none.
-void Recorder::on_report(Level level, const std::string& text) {
-  report_(level, text);
+/// What makes the next attempts fail is no line of its own.
+void Recorder::on_loss(const std::string& why) {
   const std::lock_guard lock(mutex_);
-  if (ends_ || level == Level::info || !std::exchange(awaits_reason_, false)) return;
-  why_offline_ = text;
+  if (ends_ || !std::exchange(awaits_reason_, false)) return;
+  why_offline_ = why;
   queue(device_line(moment(std::chrono::steady_clock::now())));
 }
 

@@ -30,7 +30,8 @@ class Recorder : public Sink {
   void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override;
   void on_identified(bool is_node) override;
   void on_online(bool online) override;
-  void on_report(Level level, const std::string& text) override;
+  void on_loss(const std::string& why) override;
+  void on_report(Level level, const std::string& text) override { report_(level, text); }
   /// From any thread: who reads is about to end, and a connection that is lost from now on is not the
   /// device's fault.
   void end_comes();

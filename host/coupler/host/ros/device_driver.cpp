@@ -193,6 +193,10 @@ void DeviceDriver::on_scheduled(const ScheduledOutcome& outcome) {
   publish_scheduled_(outcome);
 }
 
+void DeviceDriver::on_loss(const std::string& why) {
+  for (const auto& follower : followers_) follower->sink().on_loss(why);
+}
+
 void DeviceDriver::on_report(Level level, const std::string& text) {
   log(level, text);
   for (const auto& follower : followers_) follower->sink().on_report(level, text);

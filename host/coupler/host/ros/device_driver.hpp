@@ -61,6 +61,7 @@ class DeviceDriver : public Sink {
   void on_identified(bool is_node) override;
   void on_online(bool online) override;
   void on_scheduled(const ScheduledOutcome& outcome) override;
+  void on_loss(const std::string& why) override;
   void on_report(Level level, const std::string& text) override;
 
  private:
