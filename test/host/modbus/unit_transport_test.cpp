@@ -83,6 +83,15 @@ TEST_F(UnitTransportTest, Who_closes_while_its_answer_is_to_come_gives_its_turn_
   EXPECT_TRUE(read(2));
 }
 
+TEST_F(UnitTransportTest, Who_closes_gives_back_a_turn_that_is_not_used) {
+  connect_all();
+  ASSERT_TRUE(unit(1).reserve());
+  unit(1).close();
+  ASSERT_TRUE(unit(2).reserve());
+  unit(2).give_back();
+  EXPECT_TRUE(read(3));
+}
+
 TEST_F(UnitTransportTest, Who_closes_does_not_wait_for_the_requests_of_others) {
   connect_all();
   const auto request = WriteRequest::register_value(1, 7);
