@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the peer tests share: starting a node, and saying what was proved."""
+import concurrent.futures
 import contextlib
 import os
 import pathlib
@@ -115,6 +116,59 @@ def undisturbed(limit, act, again=lambda: None):
         print(f"tried again: this machine was silent for {silence.longest:.1f} s")
         again()
     return seen
+
+
+def waited_for_a_processor(process):
+    """Seconds, by thread of it and of its children."""
+    tasks = [task for one in (process, *children_of(process)) for task in pathlib.Path(f"/proc/{one}/task").iterdir()]
+    return {task.name: int((task / "schedstat").read_text(encoding="ascii").split()[1]) / 1e9 for task in tasks}
+
+
+@contextlib.contextmanager
+def waits_noted(silence, *processes):
+    """Notes how long each of these subprocess.Popen waits for a processor at a time, and this program."""
+    over, turn = threading.Event(), 0.02
+
+    def watch():
+        before, last = {}, time.monotonic()
+        while not over.wait(turn):
+            now = time.monotonic()
+            silence.note(now - last - turn)
+            last = now
+            for process in processes:
+                with contextlib.suppress(OSError):  # it has ended
+                    for thread, seconds in waited_for_a_processor(process.pid).items():
+                        silence.note(seconds - before.get(thread, seconds))
+                        before[thread] = seconds
+
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    try:
+        yield
+    finally:
+        over.set()
+        watcher.join()
+
+
+def run_undisturbed(limit, command, again=lambda: None, **options):
+    """subprocess.run() of a program that gives up waiting after a time that is longer than `limit`."""
+    def run(silence):
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as process, \
+                waits_noted(silence, process):
+            try:
+                out, err = process.communicate(timeout=PATIENCE)
+            finally:
+                process.kill()
+        return subprocess.CompletedProcess(command, process.returncode, out, err)
+
+    return undisturbed(limit, run, again)
+
+
+def side_by_side(*calls):
+    """Each is a function and its arguments. They wait more than they compute: all at once."""
+    with concurrent.futures.ThreadPoolExecutor(len(calls)) as pool:
+        for call in [pool.submit(*call) for call in calls]:
+            call.result()
 
 
 def pymodbus_client(port, **options):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """For the tests of recordings: `coupler record` and a node that plays as they run, and what a recording says."""
-import contextlib
 import datetime
 import json
 import logging
@@ -114,38 +113,6 @@ def until_lost(lines):
     first = next((i for i, line in enumerate(lines) if line.get("device") == "online"), 0)
     last = next((i for i, line in enumerate(lines) if i > first and line.get("device") == "lost"), len(lines))
     return lines[first:last]
-
-
-def waited_for_a_processor(process):
-    """Seconds, by thread of it and of its children."""
-    tasks = [task for one in (process, *peer.children_of(process)) for task in pathlib.Path(f"/proc/{one}/task").iterdir()]
-    return {task.name: int((task / "schedstat").read_text(encoding="ascii").split()[1]) / 1e9 for task in tasks}
-
-
-@contextlib.contextmanager
-def waits_noted(silence, *programs):
-    """Notes how long each of them waits for a processor at a time, and this program."""
-    over, turn = threading.Event(), 0.02
-
-    def watch():
-        before, last = {}, time.monotonic()
-        while not over.wait(turn):
-            now = time.monotonic()
-            silence.note(now - last - turn)
-            last = now
-            for program in programs:
-                with contextlib.suppress(OSError):  # it has ended
-                    for thread, seconds in waited_for_a_processor(program.process.pid).items():
-                        silence.note(seconds - before.get(thread, seconds))
-                        before[thread] = seconds
-
-    watcher = threading.Thread(target=watch)
-    watcher.start()
-    try:
-        yield
-    finally:
-        over.set()
-        watcher.join()
 
 
 def utc(text):

@@ -22,7 +22,7 @@ try:
     import foreign_server
 except ImportError as error:
     peer.skip(f"python3-pymodbus is missing ({error}); run scripts/install-packages test")
-from recording import TAPE_MAP, Node, Recorder, Tape, outcomes, until_lost, values, waits_noted, whole_lines
+from recording import TAPE_MAP, Node, Recorder, Tape, outcomes, until_lost, values, whole_lines
 
 OUTPUTS = ["lamp", "valve"]
 TOLD = [*OUTPUTS, "lamp_burns", "valve_closed"]  # a node tells changes of bits: none is missed, at any speed
@@ -34,18 +34,17 @@ WAIT = 0.3   # seconds: what is read ten times a second, and is there for longer
 
 def record_a_session(node, coupler, map_file, file, checks, silence):
     """pymodbus writes at random, but nothing so often that reading it ten times a second might miss it."""
-    chance = random.Random(5)
+    chance = random.Random(94)
     file.unlink(missing_ok=True)
     with Node(node, map_file) as device, Recorder(coupler, map_file, device.port, file) as recorder, \
-            waits_noted(silence, device, recorder):
+            peer.waits_noted(silence, device.process, recorder.process):
         recorder.await_value("level", -2, checks)
         time.sleep(2)  # who is played it five times as fast reads what was there in the beginning, too
         client = peer.pymodbus_client(device.port)
-        for _ in range(10):
+        for address in chance.sample([0, 1, 3, 8, 9], 5):
             for coil in (0, 1):
                 time.sleep(0.25)
                 client.write_coil(coil, chance.random() < 0.7, 1)
-            address = chance.choice([0, 1, 3, 8, 9])
             client.write_registers(address, [chance.randrange(0x2000, 0x4000) for _ in range(chance.choice([1, 4]))], 1)
         time.sleep(0.5)
         client.write_registers(8, [217, 7], 1)
@@ -72,7 +71,8 @@ def the_session_is_played(node, coupler, map_file, recorded, file, speed, checks
     def play(silence):
         again.unlink(missing_ok=True)
         with Node(node, "--replay", file, "--speed", speed) as device, \
-                Recorder(coupler, map_file, device.port, again) as recorder, waits_noted(silence, device, recorder):
+                Recorder(coupler, map_file, device.port, again) as recorder, \
+                peer.waits_noted(silence, device.process, recorder.process):
             checks.equal(f"speed {speed}: status of the node", device.wait(), 0)
             recorder.await_lines("its end", lambda lines: lines[-1].get("device") == "lost", checks)
             checks.equal(f"speed {speed}: status of the recorder", recorder.end(), 0)
@@ -111,7 +111,7 @@ def faults_are_played(node, folder, checks):
 
     def play(silence):
         other = peer.Silence()
-        with Node(node, "--replay", file) as device, waits_noted(silence, device), \
+        with Node(node, "--replay", file) as device, peer.waits_noted(silence, device.process), \
                 concurrent.futures.ThreadPoolExecutor() as pool:
             quiet = pool.submit(outcomes, device.port, 9, "closed", other)
             seen = outcomes(device.port, 0, 3, silence), quiet.result(), device.wait()
@@ -119,7 +119,7 @@ def faults_are_played(node, folder, checks):
         return seen
 
     def play_none(silence):
-        with Node(node, "--replay", file, "--no-faults") as device, waits_noted(silence, device):
+        with Node(node, "--replay", file, "--no-faults") as device, peer.waits_noted(silence, device.process):
             return outcomes(device.port, 0, 3, silence), device.wait()
 
     faults, others, status = peer.undisturbed(FAULT, play)
@@ -136,11 +136,11 @@ def a_part_and_the_whole_again_and_again(node, folder, checks):
     file = tape.add(4 * STEP, end=True).write(folder / "steps.jsonl")
 
     def play_a_part(silence):
-        with Node(node, "--replay", file, "--from", Tape.utc(2 * STEP + 0.1)) as device, waits_noted(silence, device):
+        with Node(node, "--replay", file, "--from", Tape.utc(2 * STEP + 0.1)) as device, peer.waits_noted(silence, device.process):
             return outcomes(device.port, 0, 3, silence), device.wait()
 
     def play_again_and_again(silence):
-        with Node(node, "--replay", file, "--loop") as device, waits_noted(silence, device):
+        with Node(node, "--replay", file, "--loop") as device, peer.waits_noted(silence, device.process):
             return outcomes(device.port, 0, 3, silence, times=3), device.end()
 
     checks.equal("--from: from the first request on, and the status", peer.undisturbed(STEP - 0.1, play_a_part),
@@ -202,24 +202,20 @@ def the_recorded_is_played(node, coupler, map_file, folder, checks):
     file = folder / "session.jsonl"
     recorded = peer.undisturbed(WAIT, lambda silence: record_a_session(node, coupler, map_file, file, checks, silence))
     checks.equal("a session with changes", min(len(values(recorded, "lamp")), len(values(recorded, "curve"))) > 2, True)
-    for speed in (0.5, 5):  # at the first all that is read is there for half a second at least, and so is seen
-        the_session_is_played(node, coupler, map_file, recorded, file, speed, checks)
+    # At the first all that is read is there for half a second at least, and so is seen.
+    peer.side_by_side(*((the_session_is_played, node, coupler, map_file, recorded, file, speed, checks) for speed in (0.5, 5)))
 
 
 def main():
     node, coupler, map_file = sys.argv[1:]
     checks = peer.Checks()
-    with tempfile.TemporaryDirectory() as name, concurrent.futures.ThreadPoolExecutor() as pool:
+    with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        parts = [  # they wait more than they compute
-            pool.submit(the_recorded_is_played, node, coupler, map_file, folder, checks),
-            pool.submit(faults_are_played, node, folder, checks),
-            pool.submit(no_pulse_is_too_short, node, coupler, folder, checks),
-            pool.submit(a_foreign_coupler_is_played_without_what_nodes_have, node, coupler, folder, checks),
-            pool.submit(a_part_and_the_whole_again_and_again, node, folder, checks),
-        ]
-        for part in parts:
-            part.result()
+        peer.side_by_side((the_recorded_is_played, node, coupler, map_file, folder, checks),
+                          (faults_are_played, node, folder, checks),
+                          (no_pulse_is_too_short, node, coupler, folder, checks),
+                          (a_foreign_coupler_is_played_without_what_nodes_have, node, coupler, folder, checks),
+                          (a_part_and_the_whole_again_and_again, node, folder, checks))
     checks.done("a node that plays a recording is the device that was recorded")
 
 

@@ -18,25 +18,27 @@ try:
     import pymodbus  # noqa: F401
 except ImportError as error:
     peer.skip(f"python3-pymodbus is missing ({error}); run scripts/install-packages test")
-from recording import TAPE_MAP, Node, Program, Tape, outcomes, read, utc, wait_until, waits_noted
+from recording import TAPE_MAP, Node, Program, Tape, outcomes, read, utc, wait_until
+
+TOLERANCE = 0.5  # seconds by which a write may be late
 
 
 def a_client_is_compared(node, folder, checks):
-    """The one that was recorded opens a valve at 0.8 s and closes it at 1.6 s, and sets a speed meanwhile."""
+    """The one that was recorded opens a valve at 0.4 s and closes it at 0.8 s, and sets a speed meanwhile."""
     tape = Tape(TAPE_MAP)
     for point, value in (("door", False), ("valve", False), ("speed", 1), ("count", 0), ("quiet", 0)):
         tape.value(0.01, point, value)
-    tape.value(0.8, "valve", True).value(1.2, "speed", -7).value(1.6, "valve", False).value(1.8, "count", 1)
-    file = tape.add(2, end=True).write(folder / "writes.jsonl")
-    as_recorded = [(0, "valve", 0), (0, "speed", 1), (0.8, "valve", 1), (1.2, "speed", -7), (1.6, "valve", 0)]
+    tape.value(0.4, "valve", True).value(0.6, "speed", -7).value(0.8, "valve", False).value(0.9, "count", 1)
+    file = tape.add(1, end=True).write(folder / "writes.jsonl")
+    as_recorded = [(0, "valve", 0), (0, "speed", 1), (0.4, "valve", 1), (0.6, "speed", -7), (0.8, "valve", 0)]
     wrong = [(t, point, -8 if value == -7 else value) for t, point, value in as_recorded]
     cases = {
         "as recorded": (as_recorded, [], 0, []),
-        "a wrong value": (wrong, [], 1, [("1.200", "speed", "nobody wrote the recorded -7"),
-                                         ("1.2", "speed", "the recording does not have the written -8")]),
-        "one too few": (as_recorded[:-1], [], 1, [("1.600", "valve", "nobody wrote the recorded false")]),
-        "one too many": ([*as_recorded, (1.7, "speed", 9)], [], 1,
-                         [("1.7", "speed", "the recording does not have the written 9")]),
+        "a wrong value": (wrong, [], 1, [("0.600", "speed", "nobody wrote the recorded -7"),
+                                         ("0.6", "speed", "the recording does not have the written -8")]),
+        "one too few": (as_recorded[:-1], [], 1, [("0.800", "valve", "nobody wrote the recorded false")]),
+        "one too many": ([*as_recorded, (0.85, "speed", 9)], [], 1,
+                         [("0.85", "speed", "the recording does not have the written 9")]),
         "a wrong value that does not count": (wrong, ["--points", "v*"], 0, []),
         "nothing": ([(0, "quiet", 0)], [], 0, []),
         "nothing, where something is to be": ([(0, "quiet", 0)], ["--points", "valve"], 1, []),
@@ -60,7 +62,7 @@ def a_client_is_compared(node, folder, checks):
 
 def play_a_client(node, file, writes, options):
     def play(silence):
-        with Node(node, "--replay", file, "--tolerance", 1, *options) as device, waits_noted(silence, device):
+        with Node(node, "--replay", file, "--tolerance", TOLERANCE, *options) as device, peer.waits_noted(silence, device.process):
             client = peer.pymodbus_client(device.port)
             began = time.monotonic()
             for t, point, value in writes:
@@ -73,15 +75,12 @@ def play_a_client(node, file, writes, options):
             client.close()
             return device.wait(), device.text()
 
-    return peer.undisturbed(0.5, play)  # of the second that a write may be late
+    return peer.undisturbed(TOLERANCE / 2, play)
 
 
 def what_a_client_writes_stays(node, folder, checks):
-    file = Tape(TAPE_MAP).value(0, "speed", 1).value(0, "count", 1).value(0.5, "speed", 2).value(0.5, "count", 2) \
-        .add(1.5, end=True).write(folder / "stays.jsonl")
-
     def play(silence):
-        with Node(node, "--replay", file) as device, waits_noted(silence, device):
+        with Node(node, "--replay", folder / "stays.jsonl") as device, peer.waits_noted(silence, device.process):
             client = peer.pymodbus_client(device.port, retries=0)
             failed = silence.ask(lambda: client.write_register(0, 77, 1).isError())
             others, kept = outcomes(device.port, 1, 2, silence), silence.ask(lambda: read(client, 0))
@@ -101,7 +100,7 @@ def another_map_plays_the_rest(node, folder, checks):
                                                                "quiet: {address: 9, type: REAL}"), encoding="utf-8")
 
     def play(silence):
-        with Node(node, other, "--replay", folder / "stays.jsonl") as device, waits_noted(silence, device):
+        with Node(node, other, "--replay", folder / "stays.jsonl") as device, peer.waits_noted(silence, device.process):
             played, rest = outcomes(device.port, 0, 2, silence), outcomes(device.port, 1, 0, silence)
             return played, rest, device.wait(), device.text()
 
@@ -135,7 +134,7 @@ def what_cannot_be_played_is_told(node, folder, checks):
     cut.write_text("".join(good)[:-9], encoding="utf-8")  # as of a recorder that was killed
 
     def play(silence):
-        with Node(node, "--replay", cut) as device, waits_noted(silence, device):
+        with Node(node, "--replay", cut) as device, peer.waits_noted(silence, device.process):
             return outcomes(device.port, 1, 2, silence), device.wait()
 
     checks.equal("one that is cut short is played, and its status", peer.undisturbed(0.5, play), ([1, 2], 0))
@@ -146,10 +145,10 @@ def main():
     checks = peer.Checks()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        a_client_is_compared(node, folder, checks)
-        what_a_client_writes_stays(node, folder, checks)
-        another_map_plays_the_rest(node, folder, checks)
-        what_cannot_be_played_is_told(node, folder, checks)
+        Tape(TAPE_MAP).value(0, "speed", 1).value(0, "count", 1).value(0.5, "speed", 2).value(0.5, "count", 2) \
+            .add(1.5, end=True).write(folder / "stays.jsonl")
+        peer.side_by_side(*((part, node, folder, checks) for part in (
+            a_client_is_compared, what_a_client_writes_stays, another_map_plays_the_rest, what_cannot_be_played_is_told)))
     checks.done("a node that plays a recording tells what is written otherwise, and what it cannot play")
 
 

@@ -5,6 +5,7 @@ frames.
 
     serial_test.py COUPLER
 """
+import contextlib
 import json
 import pathlib
 import subprocess
@@ -58,8 +59,28 @@ def run(*arguments):
                           timeout=peer.PATIENCE, check=False)
 
 
+def run_hasty(*arguments):
+    """Where somebody's silence is waited for: a second, which is enough for an answer if neither side was kept waiting."""
+    return peer.run_undisturbed(0.5, [coupler, *map(str, arguments), "--timeout", "1"], encoding="utf-8")
+
+
 def status(*arguments):
     return run("status", "--timeout", "20", *arguments)
+
+
+@contextlib.contextmanager
+def unit_on_a_line(server_class, *arguments, **options):
+    """The line and the server."""
+    line = SerialLine()
+    try:
+        server = server_class(*arguments, line.device, **options)
+        fill(server)
+        try:
+            yield line, server
+        finally:
+            server.end()
+    finally:
+        line.end()
 
 
 def dumped(*arguments):
@@ -70,43 +91,38 @@ def dumped(*arguments):
 
 
 def libmodbus_is_read(path):
-    line = SerialLine()
-    try:
-        server = LibmodbusServer(UNIT, line.device)
-    except OSError as error:
-        print(f"not tried here: libmodbus as a server ({error})")
-        return
-    fill(server)
-    at = f"rtu:{line.port}/{UNIT}{SETTINGS}"
-    checks.equal("libmodbus: dump", dumped(path, "--at", at), VALUES)
-    found = run("probe", line.port, "--units", "16-17", "--baud", "115200", "--parity", "none", "--to", "120",
-                "--rate", "1000", "--timeout", "5")
-    checks.equal("libmodbus: probe finds the unit", f"units that answer at 115200 8N1: {UNIT}\n" in found.stdout, True)
-    checks.equal("libmodbus: and where its tables end", found.stdout.count("readable: 0 … 99\n"), 4)
-    said = status(at)
-    checks.equal("libmodbus: status", (said.returncode, "is a foreign coupler" in said.stderr), (1, True))
-    server.end()
-    line.end()
+    """It leaves FC 43 unanswered."""
+    with contextlib.ExitStack() as stack:
+        try:
+            line, _ = stack.enter_context(unit_on_a_line(LibmodbusServer, UNIT))
+        except OSError as error:
+            print(f"not tried here: libmodbus as a server ({error})")
+            return
+        at = f"rtu:{line.port}/{UNIT}{SETTINGS}"
+        checks.equal("libmodbus: dump", dumped(path, "--at", at), VALUES)
+        found = run_hasty("probe", line.port, "--units", "16-17", "--baud", "115200", "--parity", "none", "--to", "120",
+                          "--rate", "1000")
+        checks.equal("libmodbus: probe finds the unit", f"units that answer at 115200 8N1: {UNIT}\n" in found.stdout, True)
+        checks.equal("libmodbus: and where its tables end", found.stdout.count("readable: 0 … 99\n"), 4)
+        said = run_hasty("status", at)
+        checks.equal("libmodbus: status", (said.returncode, "is a foreign coupler" in said.stderr), (1, True))
 
 
 def a_node_says_what_it_is():
     """What the registers of a node say, at a unit of a serial line: as a gateway in front of the node has it."""
-    line = SerialLine()
-    server = RtuServer([UNIT], line.device, size=65536)
     command = [pathlib.Path(coupler).with_name("coupler-node"), pathlib.Path(__file__).with_name("watchdog.yaml"), "--sim"]
-    with peer.running_node(list(map(str, command))) as port:
-        client = peer.pymodbus_client(port)
-        server.set(UNIT, 4, IDENTITY, client.read_input_registers(IDENTITY, IDENTITY_SIZE, 1).registers)
-        client.close()
-        there = json.loads(status(f"127.0.0.1:{port}", "--json").stdout)
-    done = status(f"rtu:{line.port}/{UNIT}{SETTINGS}", "--json")
-    checks.equal("status of a node: exit status", (done.returncode, done.stderr), (0, ""))
-    here = json.loads(done.stdout)
-    checks.equal("status of a node: the device", here["device"].startswith(f"rtu:{line.port}/{UNIT}"), True)
-    for key in ("node", "trouble", "fingerprint", "hostname", "serial", "functions", "map"):
-        checks.equal(f"status of a node: {key}", here[key], there[key])
-    server.end()
-    line.end()
+    with unit_on_a_line(RtuServer, [UNIT], size=65536) as (line, server):
+        with peer.running_node(list(map(str, command))) as port:
+            client = peer.pymodbus_client(port)
+            server.set(UNIT, 4, IDENTITY, client.read_input_registers(IDENTITY, IDENTITY_SIZE, 1).registers)
+            client.close()
+            there = json.loads(status(f"127.0.0.1:{port}", "--json").stdout)
+        done = status(f"rtu:{line.port}/{UNIT}{SETTINGS}", "--json")
+        checks.equal("status of a node: exit status", (done.returncode, done.stderr), (0, ""))
+        here = json.loads(done.stdout)
+        checks.equal("status of a node: the device", here["device"].startswith(f"rtu:{line.port}/{UNIT}"), True)
+        for key in ("node", "trouble", "fingerprint", "hostname", "serial", "functions", "map"):
+            checks.equal(f"status of a node: {key}", here[key], there[key])
 
 
 def a_page_shows_the_line(path, server):
@@ -126,19 +142,30 @@ def a_page_shows_the_line(path, server):
     fill(server)
 
 
-line = SerialLine()
-server = RtuServer([UNIT], line.device)
-fill(server)
-with tempfile.TemporaryDirectory() as folder:
-    path = pathlib.Path(folder, "belt.yaml")
-    path.write_text(MAP.format(port=line.port, unit=UNIT))
-    checks.equal("the unit of the map", dumped(path), VALUES)
-    checks.equal("the same by --at", dumped(path, "--at", f"rtu:{line.port}/{UNIT}{SETTINGS}"), VALUES)
+def a_damaged_request_is_told(path):
+    with unit_on_a_line(RtuServer, [UNIT]) as (line, _):
+        line.to_device = lambda data: data[:-1] + bytes([data[-1] ^ 1])
+        impatient = path.with_name("impatient.yaml")  # no answer can come too late
+        impatient.write_text(path.read_text().replace("timeout: 5", "timeout: 0.3"))
+        done = run("dump", impatient, "--at", f"rtu:{line.port}/{UNIT}{SETTINGS}")
+        checks.equal("a request that arrives damaged: the exit status", done.returncode, 3)
+        checks.equal("it says that nothing answers", "no reply within" in done.stderr, True)
 
-    said = status(f"rtu:{line.port}/{UNIT}{SETTINGS}")
+
+def a_unit_is_found_by_its_port():
+    """A line without hardware has one rate; what counts is that units are asked until one answers."""
+    with unit_on_a_line(RtuServer, [UNIT]) as (line, _):
+        found = run_hasty("probe", line.port, "--units", "15-18", "--baud", "9600,115200", "--parity", "none", "--to", "20",
+                          "--rate", "1000")
+        checks.equal("probe by the device's path: the unit", f"units that answer at 9600 8N1: {UNIT}\n" in found.stdout, True)
+
+
+def a_unit_is_read(folder, path, line, server):
+    at = f"rtu:{line.port}/{UNIT}{SETTINGS}"
+    checks.equal("the unit of the map", dumped(path), VALUES)
+    checks.equal("the same by --at", dumped(path, "--at", at), VALUES)
+    said = status(at)
     checks.equal("status of a foreign unit", (said.returncode, "is a foreign coupler" in said.stderr), (1, True))
-    libmodbus_is_read(path)
-    a_node_says_what_it_is()
 
     line.to_port = lambda data: b"\xff\x00\x03" + data
     checks.equal("noise before each piece of a reply", dumped(path), VALUES)
@@ -147,23 +174,10 @@ with tempfile.TemporaryDirectory() as folder:
     checks.equal("a line that hands back what is sent", dumped(path), VALUES)
     line.echoes = False
 
-    line.to_device = lambda data: data[:-1] + bytes([data[-1] ^ 1])
-    impatient = pathlib.Path(folder, "impatient.yaml")
-    impatient.write_text(path.read_text().replace("timeout: 5", "timeout: 1"))
-    done = run("dump", impatient)
-    checks.equal("a request that arrives damaged: the exit status", done.returncode, 3)
-    checks.equal("it says that nothing answers", "no reply within" in done.stderr, True)
-    line.to_device = lambda data: data
-
-    probed = run("probe", f"rtu:{line.port}/{UNIT}{SETTINGS}", "--to", "99", "--rate", "1000", "--timeout", "5", "--out", "-")
+    probed = run("probe", at, "--to", "99", "--rate", "1000", "--timeout", "5", "--out", "-")
     wanted = f'serial: {{device: "{line.port}", baud: 115200, parity: none'
     checks.equal("probe: the draft has the port", wanted in probed.stdout, True)
     checks.equal("probe: the draft has the unit", f"unit: {UNIT}" in probed.stdout, True)
-
-    # A line without hardware has one rate; what counts is that units are asked until one answers.
-    found = run("probe", line.port, "--units", "15-18", "--baud", "9600,115200", "--parity", "none", "--to", "20",
-                "--rate", "1000", "--timeout", "3")
-    checks.equal("probe by the device's path: the unit", f"units that answer at 9600 8N1: {UNIT}\n" in found.stdout, True)
 
     a_page_shows_the_line(path, server)
 
@@ -177,10 +191,20 @@ with tempfile.TemporaryDirectory() as folder:
     checks.equal("RTU over TCP", dumped(path, "--at", f"rtu+tcp://127.0.0.1:{over_tcp.port}/{UNIT}"), VALUES)
     over_tcp.end()
 
-    refused = run("dump", str(path), "--at", f"rtu:{line.port}/{UNIT}?baud=9601")
+    refused = run("dump", path, "--at", f"rtu:{line.port}/{UNIT}?baud=9601")
     checks.equal("a rate that no port has: the exit status", refused.returncode, 2)
-    path.write_text(MAP.format(port="/dev/ttyUSB_none", unit=UNIT))
-    checks.equal("a port that is not there", "there is no such port" in run("dump", str(path)).stderr, True)
-server.end()
-line.end()
-checks.done("dump, probe and status, RTU over a serial line and over TCP")
+    elsewhere = folder / "elsewhere.yaml"
+    elsewhere.write_text(MAP.format(port="/dev/ttyUSB_none", unit=UNIT))
+    checks.equal("a port that is not there", "there is no such port" in run("dump", elsewhere).stderr, True)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name, unit_on_a_line(RtuServer, [UNIT]) as (line, server):
+        path = pathlib.Path(name, "belt.yaml")
+        path.write_text(MAP.format(port=line.port, unit=UNIT))
+        peer.side_by_side((a_unit_is_read, path.parent, path, line, server), (libmodbus_is_read, path),
+                          (a_node_says_what_it_is,), (a_damaged_request_is_told, path), (a_unit_is_found_by_its_port,))
+    checks.done("dump, probe and status, RTU over a serial line and over TCP")
+
+
+main()
