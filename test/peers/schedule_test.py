@@ -5,7 +5,6 @@ them. The node's clock is this machine's, so times can be compared. Nothing is s
 
     schedule_test.py NODE MAP MAP_WITH_WATCHDOG
 """
-import contextlib
 import os
 import pathlib
 import signal
@@ -15,89 +14,14 @@ import tempfile
 import time
 
 import peer
+from scheduling import (BRAKE, BY_CLIENT, CANCELLED, COIL, CONNECTION, DONE, EJECTOR, HOUR, INPUT, LAMP, LOCKED, MOTOR, MS,
+                        NO_ADDRESS, NO_PLACE, NOT_ALLOWED, OFF, ON, OVERWRITTEN, RELOAD, SOON, WATCHDOG, clients, number_of)
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent)]
-from support.raw_client import Listener, wait  # noqa: E402
+from support.raw_client import wait  # noqa: E402
 
-MOTOR, BRAKE, LAMP, EJECTOR = 0, 1, 2, 3
-OFF, ON, DONE, CANCELLED = 0, 1, 3, 4
-BY_CLIENT, OVERWRITTEN, WATCHDOG, RELOAD, CONNECTION = 1, 2, 3, 5, 6
-MS = 1_000_000
-HOUR = 3600 * 1000 * MS
-SOON = 1000 * MS
-LONG, LONGEST = 20_000, 3_600_000  # ms: durations of which the test sees the end, and of which it does not
-COIL, INPUT = 1, 2  # tables
-NO_ADDRESS, NOT_ALLOWED, LOCKED, NO_PLACE = (bytes([0xC2, code]) for code in (2, 3, 4, 6))
-
-
-class Client(Listener):
-    def changes(self, wait=0):
-        """(kind, table or reason, address or number, time) of each that is new."""
-        told = self.take(self.ask(self.request(wait))).changes
-        return [(kind, table, address, at) for table, kind, address, at in told]
-
-    def await_changes(self, count, is_one):
-        """At least so many of those for which it is true."""
-        found = []
-        end = time.monotonic() + peer.PATIENCE
-        while len(found) < count and time.monotonic() < end:
-            found += [change for change in self.changes(1000) if is_one(change)]
-        return found
-
-    def outcomes(self, *numbers):
-        """Of these scheduled outputs, in the order in which they are told: (kind, reason, number, time)."""
-        return self.await_changes(len(numbers), lambda change: change[0] >= DONE and change[2] in numbers)
-
-    def coil_changes(self, coil, count):
-        """The next ones of a coil: (level, time)."""
-        return [(kind, at) for kind, *_, at in
-                self.await_changes(count, lambda change: change[0] <= ON and change[1:3] == (COIL, coil))]
-
-    def schedule(self, due, coil, bits, duration=0, epoch=None):
-        packed = sum(bit << i for i, bit in enumerate(bits)).to_bytes((len(bits) + 7) // 8, "little")
-        epoch = self.epoch if epoch is None else epoch
-        return self.ask(struct.pack(">BBBIQIBHHB", 66, 1, 1, epoch, due, duration, 1, coil, len(bits), len(packed)) + packed)
-
-    def ahead(self, coil, bits, duration=0):
-        """Soon, but not past when the request arrives, however long the machine pauses: the due time, and the reply."""
-        lead = SOON
-        while True:
-            due = time.monotonic_ns() + lead
-            reply = self.schedule(due, coil, bits, duration)
-            if reply != NOT_ALLOWED or lead > HOUR // 2:
-                return due, reply
-            lead *= 2
-
-    def later(self, coil, bits):
-        """Not while a test runs. The reply."""
-        return self.schedule(time.monotonic_ns() + HOUR // 2, coil, bits)
-
-    def schedule_register(self, due, address, value):
-        return self.ask(struct.pack(">BBBIQIBHHBH", 66, 1, 1, self.epoch, due, 0, 3, address, 1, 2, value))
-
-    def cancel(self, number):
-        return self.ask(struct.pack(">BBBIH", 66, 1, 2, self.epoch, number))
-
-    def write(self, coil, bit):
-        return self.ask(struct.pack(">BHH", 5, coil, 0xFF00 if bit else 0))
-
-    def inputs(self):
-        bits = self.ask(struct.pack(">BHH", 2, 0, 3))[2]
-        return [bits >> i & 1 for i in range(3)]
-
-
-def number_of(reply):
-    return struct.unpack(">H", reply[2:4])[0] if reply[0] == 66 else None
-
-
-@contextlib.contextmanager
-def clients(port, count=1):
-    every = [Client(("127.0.0.1", port)) for _ in range(count)]
-    try:
-        yield every[0] if count == 1 else every
-    finally:
-        for client in every:
-            client.close()
+LONGEST = 3_600_000  # ms: a duration of which the test does not see the end
+LENGTHS = (1, 4, 16, 64)  # seconds to try, one after the other, until this machine was in time
 
 
 def they_are_driven_at_their_times_in_their_order(port, checks):
@@ -206,30 +130,38 @@ def two_clients_schedule_the_same_output(port, checks):
 
 
 def a_reload_cancels_and_durations_go_on(port, checks):
-    with clients(port, 2) as (client, other):
+    def is_in_time(duration):
+        """Whether it lasted for longer than the reload took; otherwise it shows nothing."""
         before = client.epoch
-        due, begun = client.ahead(LAMP, [1], LONG)
+        due, begun = client.ahead(LAMP, [1], duration)
         it_burns = {(ON, COIL, LAMP), (ON, INPUT, LAMP), (DONE, 0, number_of(begun))}
         # All three, or else the last ones end the wait.
         told = client.await_changes(3, lambda change: change[:3] in it_burns)
-        checks.equal("it has begun", {change[:3] for change in told}, it_burns)
         number = number_of(client.later(MOTOR, [1]))
         wait(client, other)  # who asks only afterwards asks the next process, which does not know
         os.kill(peer.the_node(), signal.SIGHUP)
-        checks.equal("told before the reload", [change[:3] for change in client.take(client.receive()).changes],
-                     [(RELOAD, CANCELLED, number)])
-        peer.await_true("a new epoch", lambda: client.changes() is not None and client.epoch != before, checks)
-        checks.equal("the epoch before", client.schedule(time.monotonic_ns() + HOUR // 2, MOTOR, [1], epoch=before),
-                     NOT_ALLOWED)
+        heard = client.take(client.receive()).changes
+        peer.await_true("a new epoch", lambda: client.changes() is not None and client.epoch != before, peer.Checks())
+        refused = client.schedule(time.monotonic_ns() + HOUR // 2, MOTOR, [1], epoch=before)
+        in_time = time.monotonic_ns() < due + duration * MS
         peer.await_true("it ends", lambda: client.inputs() == [0, 0, 0], checks)
-        checks.equal("not early", time.monotonic_ns() >= due + LONG * MS, True)
+        if in_time:
+            checks.equal("it has begun", {change[:3] for change in told}, it_burns)
+            checks.equal("told before the reload", [change[:3] for change in heard], [(RELOAD, CANCELLED, number)])
+            checks.equal("a new epoch", client.epoch != before, True)
+            checks.equal("the epoch before", refused, NOT_ALLOWED)
+            checks.equal("not early", time.monotonic_ns() >= due + duration * MS, True)
+        return in_time
+
+    with clients(port, 2) as (client, other):
+        checks.equal("a reload within a duration", any(is_in_time(1000 * seconds) for seconds in LENGTHS), True)
 
 
 def a_killed_worker_process_leaves_nothing_on(port, checks):
     with clients(port) as client:
         _, begun = client.ahead(MOTOR, [1, 0, 1], LONGEST)
         checks.equal("it has begun", [o[0] for o in client.outcomes(number_of(begun))], [DONE])
-        due, _ = client.ahead(BRAKE, [1])
+        due, _ = client.ahead(BRAKE, [1], lead=3 * SOON)
         killed = peer.the_worker()
         os.kill(killed, signal.SIGKILL)
     peer.await_true("another one serves", lambda: peer.the_worker() not in (None, killed), checks)
@@ -257,20 +189,33 @@ def another_map_ends_what_it_has_elsewhere(port, checks, served):
         checks.equal("what has moved is as it was before, the other goes on", client.inputs(), [1, 0, 0])
 
 
-def the_watchdog_cancels(port, checks):
-    with clients(port, 2) as (client, monitor):
-        begun = number_of(client.ahead(LAMP, [1], LONG)[1])
-        told = []
-        end = time.monotonic() + peer.PATIENCE
-        while not told and time.monotonic() < end:
-            client.inputs()  # feeds the watchdog
-            told += [change for change in monitor.changes() if change[0] >= DONE]
-        checks.equal("the monitor hears it", [o[:3] for o in told], [(DONE, 0, begun)])
-        number = number_of(client.later(MOTOR, [1]))
-        checks.equal("then its client is silent", [o[:3] for o in monitor.outcomes(number)], [(CANCELLED, WATCHDOG, number)])
-        checks.equal("the lamp holds", monitor.inputs(), [0, 1, 1])
-        checks.equal("locked", client.later(MOTOR, [1]), LOCKED)
-        peer.await_true("the duration ends all the same", lambda: monitor.inputs() == [0, 1, 0], checks)
+def the_watchdog_cancels(node, guarded, folder, checks):
+    def is_in_time(timeout):
+        """Whether nothing but its client's silence made the watchdog expire, and the duration lasted for longer."""
+        served = folder / f"watchdog_{timeout}s.yaml"
+        served.write_text(guarded.read_text(encoding="utf-8").replace("timeout: 500ms", f"timeout: {timeout}s"), encoding="utf-8")
+        silence = peer.Silence()
+        with peer.running_node([node, str(served), "--sim"]) as port, clients(port, 2) as (client, monitor):
+            silence.ask(client.inputs)
+            due, begun = client.ahead(LAMP, [1], 2000 * timeout)
+            told = []
+            end = time.monotonic() + peer.PATIENCE
+            while not told and time.monotonic() < end:
+                silence.ask(client.inputs)  # feeds the watchdog
+                told += [change for change in monitor.changes() if change[0] >= DONE]
+            number = number_of(silence.ask(lambda: client.later(MOTOR, [1])))
+            cancelled = monitor.outcomes(number) if number else []
+            levels, locked = monitor.inputs(), client.later(MOTOR, [1])
+            in_time = silence.longest < timeout and time.monotonic_ns() < due + 2000 * timeout * MS
+            if in_time:
+                checks.equal("the monitor hears it", [o[:3] for o in told], [(DONE, 0, number_of(begun))])
+                checks.equal("then its client is silent", [o[:3] for o in cancelled], [(CANCELLED, WATCHDOG, number)])
+                checks.equal("the lamp holds", levels, [0, 1, 1])
+                checks.equal("locked", locked, LOCKED)
+                peer.await_true("the duration ends all the same", lambda: monitor.inputs() == [0, 1, 0], checks)
+            return in_time
+
+    checks.equal("a watchdog that expires within a duration", any(is_in_time(seconds) for seconds in LENGTHS), True)
 
 
 def without_watchdog(node, served, checks):
@@ -287,16 +232,12 @@ def without_watchdog(node, served, checks):
 def main():
     node, served, guarded = sys.argv[1:4]
     checks = peer.Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        own = pathlib.Path(folder) / "schedule.yaml"
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        own = folder / "schedule.yaml"
         own.write_text(pathlib.Path(served).read_text(encoding="utf-8"), encoding="utf-8")
         without_watchdog(node, own, checks)
-        # Longer, so that the lamp's duration begins before and ends after it, on any machine.
-        patient = pathlib.Path(folder) / "watchdog.yaml"
-        patient.write_text(pathlib.Path(guarded).read_text(encoding="utf-8").replace("timeout: 500ms", "timeout: 10s"),
-                           encoding="utf-8")
-        with peer.running_node([node, str(patient), "--sim"]) as port:
-            the_watchdog_cancels(port, checks)
+        the_watchdog_cancels(node, pathlib.Path(guarded), folder, checks)
     checks.done("outputs are driven at their times, end, and are cancelled as docs/time.md says")
 
 
