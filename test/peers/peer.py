@@ -150,11 +150,12 @@ def waits_noted(silence, *processes):
         watcher.join()
 
 
-def run_undisturbed(limit, command, again=lambda: None, **options):
-    """subprocess.run() of a program that gives up waiting after a time that is longer than `limit`."""
+def run_undisturbed(limit, command, *others, again=lambda: None, **options):
+    """subprocess.run() of a program that gives up waiting after a time that is longer than `limit`. It waits for this
+    program, or for these processes."""
     def run(silence):
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as process, \
-                waits_noted(silence, process):
+                waits_noted(silence, process, *others):
             try:
                 out, err = process.communicate(timeout=PATIENCE)
             finally:

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import threading
 
-from peer import PATIENCE, Checks, pymodbus_client, running_node, skip
+from peer import PATIENCE, Checks, pymodbus_client, running_node, side_by_side, skip
 
 try:
     from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
@@ -123,10 +123,8 @@ def client_and_a_foreign_server(client, checks):
 def main():
     firmware, client, node, map_file = sys.argv[1:]
     checks = Checks()
-    firmware_obeys_a_foreign_client(firmware, checks)
-    firmware_and_client(firmware, client, checks)
-    client_and_a_node_of_another_map(node, map_file, client, checks)
-    client_and_a_foreign_server(client, checks)
+    side_by_side((firmware_obeys_a_foreign_client, firmware, checks), (firmware_and_client, firmware, client, checks),
+                 (client_and_a_node_of_another_map, node, map_file, client, checks), (client_and_a_foreign_server, client, checks))
     checks.done("the pump: its firmware and its client, with each other and with pymodbus")
 
 

@@ -153,15 +153,36 @@ def a_reload(node, ca, checks):
         client.close()
 
 
-def a_process_that_hangs(node, checks):
-    client = Client(node, "operator")
-    os.kill(node.child("coupler-tls"), signal.SIGSTOP)
-    node.await_line("the TLS process was silent for")
-    checks.equal("its clients lose their connections", client.code(READ_LAMP), "closed")
-    again = Client(node, "operator")
-    checks.equal("another one lets in", again.code(READ_LAMP), 1)
-    client.close()
-    again.close()
+def a_process_that_hangs(folder, checks):
+    node = Node(folder, NODE, "cell.yaml")
+    try:
+        client = Client(node, "operator")
+        os.kill(node.child("coupler-tls"), signal.SIGSTOP)
+        node.await_line("the TLS process was silent for")
+        checks.equal("its clients lose their connections", client.code(READ_LAMP), "closed")
+        again = Client(node, "operator")
+        checks.equal("another one lets in", again.code(READ_LAMP), 1)
+        client.close()
+        again.close()
+    finally:
+        node.end()
+    checks.equal("the node ends well all the same", node.process.returncode, 0)
+
+
+def a_node_and_its_clients(folder, ca, checks):
+    node = Node(folder, NODE, "cell.yaml")
+    try:
+        who_is_let_in(node, checks)
+        a_weak_key_and_old_versions(node, checks)
+        what_each_may_do(node, checks)
+        records_and_frames(node, checks)
+        processes_that_die(node, checks)
+        a_reload(node, ca, checks)
+    finally:
+        node.end()
+    checks.equal("the node ends well", node.process.returncode, 0)
+    if checks.failed:
+        print(node.text())
 
 
 def processes_that_die(node, checks):
@@ -237,22 +258,11 @@ def main():
         folder = pathlib.Path(name)
         ca = make_certificates(folder)
         shutil.copy(MAP, folder / "cell.yaml")
-        a_start_that_fails(folder, checks)
-        node = Node(folder, NODE, "cell.yaml")
-        try:
-            who_is_let_in(node, checks)
-            a_weak_key_and_old_versions(node, checks)
-            what_each_may_do(node, checks)
-            records_and_frames(node, checks)
-            a_process_that_hangs(node, checks)
-            processes_that_die(node, checks)
-            a_reload(node, ca, checks)
-        finally:
-            node.end()
-        checks.equal("the node ends well", node.process.returncode, 0)
-        a_generated_node(folder, checks)
-        if checks.failed:
-            print(node.text())
+        # What is changed by one of them is not there for the others.
+        copies = [shutil.copytree(folder, f"{name}/copy_{i}", ignore=shutil.ignore_patterns("copy_*")) for i in range(3)]
+        starts, hangs, generated = map(pathlib.Path, copies)
+        peer.side_by_side((a_node_and_its_clients, folder, ca, checks), (a_start_that_fails, starts, checks),
+                          (a_process_that_hangs, hangs, checks), (a_generated_node, generated, checks))
     checks.done("a node with TLS against Python's ssl and OpenSSL: who is let in, what each may do, reloads, deaths")
 
 

@@ -20,7 +20,7 @@ import peer
 from tls_node import Node, make_certificates
 
 NODE, COUPLER, MAP = sys.argv[1:4]
-HASTY = "hasty.yaml"  # the same map with a short timeout, where no reply is to be expected
+HASTY = "hasty.yaml"  # the same map with a timeout of a second, where no reply is to be expected
 if shutil.which("openssl") is None:
     peer.skip("the program openssl is missing; apt install openssl")
 
@@ -147,36 +147,35 @@ def what_a_killed_call_leaves(folder, checks):
 
 @contextlib.contextmanager
 def s_server(folder, name, *options):
-    """Its port; it asks clients for a certificate."""
+    """The process and its port; it asks clients for a certificate."""
     with subprocess.Popen(["openssl", "s_server", "-accept", "127.0.0.1:0", "-cert", f"{name}.pem", "-key", f"{name}.key",
                            "-CAfile", "ca.pem", "-Verify", "1", "-verify_return_error", *options], cwd=folder, text=True,
                           stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as server:
         try:
             for line in server.stdout:
                 if line.startswith("ACCEPT"):
-                    yield int(line.split(":")[-1])
+                    yield server, int(line.split(":")[-1])
                     break
         finally:
             server.kill()
 
 
 def which_servers_are_believed(folder, checks):
-    def dump(port, ca, map_file):
-        return subprocess.run([COUPLER, "dump", map_file, "--at", f"tls://127.0.0.1:{port}", "--certificate", "operator.pem",
-                               "--key", "operator.key", "--ca", ca], cwd=folder, capture_output=True, text=True,
-                              timeout=peer.PATIENCE).stderr
+    def is_believed_or_not(name, options, says):
+        with s_server(folder, name, *options) as (server, port):
+            ca = "small_ca.pem" if name == "small_ca_node" else "ca.pem"
+            dump = [COUPLER, "dump", HASTY if says == "no reply within" else "cell.yaml", "--at", f"tls://127.0.0.1:{port}",
+                    "--certificate", "operator.pem", "--key", "operator.key", "--ca", ca]
+            told = peer.run_undisturbed(0.5, dump, server, cwd=folder).stderr
+            checks.equal(f"a server with {name} {' '.join(options)}: {told}", says in told, True)
 
     old = "-cipher", "DEFAULT@SECLEVEL=0"
-    for name, options, says in (
+    peer.side_by_side(*((is_believed_or_not, *each) for each in (
             ("other_name", (), "another name or address"), ("expired_node", (), "its certificate has expired on 2020-02-01"),
             ("strange_node", (), "from another authority"), ("operator", (), "for another purpose"),
             ("weak_node", old, "weak key"), ("small_ca_node", (), "weak key"), ("node", ("-tls1_1", *old), "protocol_version"),
-            ("node", (), "no reply within"), ("node", ("-tls1_2",), "no reply within")):
-        with s_server(folder, name, *options) as port:
-            told = dump(port, "small_ca.pem" if name == "small_ca_node" else "ca.pem",
-                        HASTY if says == "no reply within" else "cell.yaml")
-            checks.equal(f"a server with {name} {' '.join(options)}: {told}", says in told, True)
-    with s_server(folder, "node") as port:
+            ("node", (), "no reply within"), ("node", ("-tls1_2",), "no reply within"))))
+    with s_server(folder, "node") as (_, port):
         pin = subprocess.run([COUPLER, "pin", f"tls://127.0.0.1:{port}"], cwd=folder, capture_output=True, text=True).stdout
         own = subprocess.run(["openssl", "x509", "-in", "node.pem", "-noout", "-fingerprint", "-sha256"], cwd=folder,
                              capture_output=True, text=True).stdout
@@ -190,14 +189,13 @@ def main():
         folder = pathlib.Path(name)
         make_certificates(folder)
         shutil.copy(MAP, folder / "cell.yaml")
-        (folder / HASTY).write_text(re.sub("timeout: .*", "timeout: 5s", pathlib.Path(MAP).read_text()))
+        (folder / HASTY).write_text(re.sub("timeout: .*", "timeout: 1s", pathlib.Path(MAP).read_text()))
         what_check_says(folder, checks)
-        what_certificates_makes(folder, checks)
         what_a_killed_call_leaves(folder, checks)
         node = Node(folder, NODE, "cell.yaml")
         try:
-            the_tools(node, checks)
-            which_servers_are_believed(folder, checks)
+            peer.side_by_side((the_tools, node, checks), (which_servers_are_believed, folder, checks),
+                              (what_certificates_makes, folder, checks))
         finally:
             node.end()
         if checks.failed:
