@@ -38,7 +38,7 @@ def memory_is_bounded(what, panel, known, checks):
         checks.equal(f"{what}, from {known} KiB", panel.resident() - known < BOUND, True)
 
 
-def too_much_is_refused(panel, page, checks):
+def too_much_is_refused(panel, page, client, checks):
     token = f"Authorization: Bearer {page.token}"
     known = panel.resident()
     for path, header in (("/token", "A: b"), ("/write", token), ("/alive", token)):
@@ -57,10 +57,10 @@ def too_much_is_refused(panel, page, checks):
         status = answer_to(panel, text)
         checks.equal(f"{what}: {status}", status is None or 400 <= status < 500, True)
     memory_is_bounded("memory afterwards", panel, known, checks)
-    page.await_event("events go on after that", checks)
+    page.await_change("events go on after that", client, checks)
 
 
-def little_that_becomes_much_is_refused(panel, page, checks):
+def little_that_becomes_much_is_refused(panel, page, client, checks):
     known = panel.resident()
     packed = gzip.compress(bytes(3 << 20))
     for coding in ("gzip", "br", "deflate"):
@@ -71,10 +71,10 @@ def little_that_becomes_much_is_refused(panel, page, checks):
         status, _, text = panel.ask("GET", path, Range=ranges)
         checks.equal(f"{path} in 2,000 ranges: {status}, {len(text)} bytes", len(text) < 100_000, True)
     memory_is_bounded("memory afterwards", panel, known, checks)
-    page.await_event("events go on after that", checks)
+    page.await_change("events go on after that", client, checks)
 
 
-def headers_without_end(panel, page, checks):
+def headers_without_end(panel, page, client, checks):
     """Short lines, as many as it takes."""
     known = panel.resident()
     lines = b"".join(b"H%d: %s\r\n" % (i, b"x" * 50) for i in range(10000))
@@ -85,18 +85,18 @@ def headers_without_end(panel, page, checks):
                 if panel.resident() - known > BOUND:
                     break
         memory_is_bounded("memory while headers come", panel, known, checks)
-    page.await_event("events go on after the headers", checks)
+    page.await_change("events go on after the headers", client, checks)
 
 
-def idle_sockets_stop_nobody(panel, page, checks):
+def idle_sockets_stop_nobody(panel, page, client, checks):
     with contextlib.ExitStack() as sockets:
         for begin in (b"", b"GET /points.json HTTP/1.1\r\nHost: ") * 50:
             sockets.enter_context(raw(panel, begin))
-        page.await_event("events go on beside 100 idle sockets", checks)
+        page.await_change("events go on beside 100 idle sockets", client, checks)
         checks.equal("a request is answered", panel.status("GET", "/points.json", token=page.token), 200)
         with Page(panel) as another:
             another.await_value("level", -2, checks)
-    page.await_event("events go on after 100 idle sockets", checks)
+    page.await_change("events go on after 100 idle sockets", client, checks)
 
 
 @contextlib.contextmanager
@@ -105,17 +105,19 @@ def slow_requests(panel, number):
     ended = threading.Event()
     sockets = [socket.create_connection((panel.host, panel.port), timeout=peer.PATIENCE) for _ in range(number)]
 
+    open_ones = list(sockets)
+
+    def say(text):
+        for each in open_ones[:]:
+            try:
+                each.sendall(text)
+            except OSError:
+                open_ones.remove(each)
+
     def drip():
-        open_ones = list(sockets)
-        text = f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{panel.port}\r\nA: ".encode()
-        while not ended.is_set():
-            for each in open_ones[:]:
-                try:
-                    each.sendall(text)
-                except OSError:
-                    open_ones.remove(each)
-            text = b"x"
-            ended.wait(0.5)
+        while not ended.wait(0.5):
+            say(b"x")
+    say(f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{panel.port}\r\nA: ".encode())
     thread = threading.Thread(target=drip)
     thread.start()
     try:
@@ -138,7 +140,7 @@ def silence_holds_up_nobody(panel, page, checks):
     peer.await_true("a request is answered before 200 that came earlier", is_answered_first, checks)
 
 
-def far_too_many_leave_room(panel, page, checks):
+def far_too_many_leave_room(panel, page, client, checks):
     """More connections than it waits for: the oldest go, and a request that is there at once is answered."""
     def do_the_oldest_go():
         with contextlib.ExitStack() as sockets:
@@ -148,12 +150,12 @@ def far_too_many_leave_room(panel, page, checks):
             closed = select.select(silent, [], [], 0)[0]
             return [each in closed for each in (*silent[:200], *silent[-200:])] == [True] * 200 + [False] * 200
     peer.await_true("of 600 the oldest go, and one that says something is answered", do_the_oldest_go, checks)
-    page.await_event("events go on after that", checks)
+    page.await_change("events go on after that", client, checks)
 
 
-def slow_requests_stop_nobody(panel, page, checks):
+def slow_requests_stop_nobody(panel, page, client, checks):
     with slow_requests(panel, 60):
-        page.await_event("events go on beside 60 slow requests", checks)
+        page.await_change("events go on beside 60 slow requests", client, checks)
         answered = threading.Event()
 
         def ask():
@@ -171,7 +173,7 @@ def the_end_waits_for_nobody(coupler, map_file, port, checks):
         checks.equal("status after SIGINT beside slow requests", panel.end(signal.SIGINT), 0)
 
 
-def nine_pages(panel, checks):
+def nine_pages(panel, client, checks):
     with contextlib.ExitStack() as opened:
         pages = [opened.enter_context(Page(panel)) for _ in range(MOST_PAGES - 1)]  # one is there already
         for page in pages:
@@ -184,7 +186,7 @@ def nine_pages(panel, checks):
             with Page(panel) as next_one:
                 return next_one.status == 200
         peer.await_true("when one has left another one may come", comes_in, checks)
-        pages[0].await_event("the others go on", checks)
+        pages[0].await_change("the others go on", client, checks)
 
 
 def pages_that_do_not_read(node, coupler, folder, checks):
@@ -219,26 +221,29 @@ def pages_that_do_not_read(node, coupler, folder, checks):
         checks.equal("status", panel.end(), 0)
 
 
+def whatever_is_sent(coupler, map_file, port, checks):
+    client = peer.pymodbus_client(port)
+    with Panel(coupler, map_file, port) as panel, Page(panel) as page:
+        page.await_value("level", -2, checks)
+        for part in (too_much_is_refused, little_that_becomes_much_is_refused, headers_without_end, idle_sockets_stop_nobody):
+            part(panel, page, client, checks)
+        silence_holds_up_nobody(panel, page, checks)
+        far_too_many_leave_room(panel, page, client, checks)
+        slow_requests_stop_nobody(panel, page, client, checks)
+        nine_pages(panel, client, checks)
+        page.await_change("the first page sees events", client, checks)
+        checks.equal("status", panel.end(signal.SIGINT), 0)
+    client.close()
+
+
 def main():
     node, coupler, map_file = sys.argv[1:]
     skip_if_left_out(coupler)
     checks = peer.Checks()
-    with Node(node, map_file) as device:
-        with Panel(coupler, map_file, device.port) as panel, Page(panel) as page:
-            page.await_value("level", -2, checks)
-            too_much_is_refused(panel, page, checks)
-            little_that_becomes_much_is_refused(panel, page, checks)
-            headers_without_end(panel, page, checks)
-            idle_sockets_stop_nobody(panel, page, checks)
-            silence_holds_up_nobody(panel, page, checks)
-            far_too_many_leave_room(panel, page, checks)
-            slow_requests_stop_nobody(panel, page, checks)
-            nine_pages(panel, checks)
-            page.await_event("the first page sees events", checks)
-            checks.equal("status", panel.end(signal.SIGINT), 0)
-        the_end_waits_for_nobody(coupler, map_file, device.port, checks)
-    with tempfile.TemporaryDirectory() as name:
-        pages_that_do_not_read(node, coupler, pathlib.Path(name), checks)
+    with tempfile.TemporaryDirectory() as name, Node(node, map_file) as device:
+        peer.side_by_side((whatever_is_sent, coupler, map_file, device.port, checks),
+                          (the_end_waits_for_nobody, coupler, map_file, device.port, checks),
+                          (pages_that_do_not_read, node, coupler, pathlib.Path(name), checks))
     checks.done("whatever is sent to it, the pages of coupler panel go on and its memory is bounded")
 
 

@@ -138,6 +138,12 @@ class Page:
         known = self.events
         peer.await_true(what, lambda: self.events > known + 1, checks)
 
+    def await_change(self, what, client, checks):
+        """What `client`, one of pymodbus, does now to the setpoint of panel.yaml is shown."""
+        value = (client.read_holding_registers(0, 1, 1).registers[0] + 1) % 100
+        client.write_register(0, value, 1)
+        peer.await_true(what, lambda: self.value("setpoint") == value, checks)
+
     def stay_alive(self):
         """Says twice a second that it is there, as a page does that has written. A busy machine may silence it, too: see
         longest_silence."""

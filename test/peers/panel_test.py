@@ -134,7 +134,7 @@ def nobody_looks_nobody_reads(coupler, map_file, checks):
             checks.equal("with its code", page.points["pressure"]["exception"], 4)
             device.is_broken = False
             page.await_value("pressure", -40.0, checks)
-        peer.await_true("without a page, requests end", lambda: stands_still(device.functions), checks)
+        await_standstill("without a page, requests end", device.functions, checks)
         known = len(device.functions)
         with Page(panel) as page:
             device.tables["input_registers"][0] = 8
@@ -144,25 +144,27 @@ def nobody_looks_nobody_reads(coupler, map_file, checks):
     checks.equal("functions that pymodbus was asked for", {*device.functions} - READS, set())
 
 
-def stands_still(grows):
+def await_standstill(what, grows, checks):
     """For much longer than the second in which a page that has gone is noticed."""
-    known = len(grows)
-    time.sleep(3)
-    return len(grows) == known
+    known, since = -1, 0
+
+    def has_stood_still():
+        nonlocal known, since
+        if len(grows) != known:
+            known, since = len(grows), time.monotonic()
+        return time.monotonic() > since + 3
+    peer.await_true(what, has_stood_still, checks)
 
 
-def the_end_writes_nothing(coupler, map_file, checks):
-    for options in ((), ("--write",)):
-        for number in (signal.SIGINT, signal.SIGTERM):
-            device = Writable(tables())
-            device.tables["coils"][0] = 1
-            with foreign_server.serving(device) as port, Panel(coupler, map_file, port, *options) as panel, \
-                    Page(panel) as page:
-                page.await_value("lamp", True, checks)
-                page.await_event("events go on", checks)
-                checks.equal(f"status after {number.name} with {options}", panel.end(number), 0)
-                checks.equal("what was written", device.written, [])
-                checks.equal("functions", {*device.functions} - READS, set())
+def the_end_writes_nothing(coupler, map_file, options, number, checks):
+    device = Writable(tables())
+    device.tables["coils"][0] = 1
+    with foreign_server.serving(device) as port, Panel(coupler, map_file, port, *options) as panel, Page(panel) as page:
+        page.await_value("lamp", True, checks)
+        page.await_event("events go on, for longer than a dead man's second", checks)
+        checks.equal(f"status after {number.name} with {options}", panel.end(number), 0)
+        checks.equal("what was written", device.written, [])
+        checks.equal("functions", {*device.functions} - READS, set())
 
 
 def a_thousand_points(node, coupler, folder, checks):
@@ -210,13 +212,14 @@ def main():
     node, coupler, map_file = sys.argv[1:]
     skip_if_left_out(coupler)
     checks = peer.Checks()
-    values_come_and_change(node, coupler, map_file, checks)
-    a_device_goes_and_comes_back(node, coupler, map_file, checks)
-    nobody_looks_nobody_reads(coupler, map_file, checks)
-    a_thread_that_cannot_be_had(node, coupler, map_file, checks)
-    the_end_writes_nothing(coupler, map_file, checks)
+    ends = [(the_end_writes_nothing, coupler, map_file, options, number, checks)
+            for options in ((), ("--write",)) for number in (signal.SIGINT, signal.SIGTERM)]
     with tempfile.TemporaryDirectory() as name:
-        a_thousand_points(node, coupler, pathlib.Path(name), checks)
+        peer.side_by_side((values_come_and_change, node, coupler, map_file, checks),
+                          (a_device_goes_and_comes_back, node, coupler, map_file, checks),
+                          (nobody_looks_nobody_reads, coupler, map_file, checks),
+                          (a_thread_that_cannot_be_had, node, coupler, map_file, checks),
+                          (a_thousand_points, node, coupler, pathlib.Path(name), checks), *ends)
     checks.done("coupler panel shows its pages what a device has, and writes nothing to it")
 
 

@@ -32,7 +32,7 @@ def trust(authority, version=None):
     return context
 
 
-def it_shows_and_writes(panel, checks):
+def it_shows_and_writes(panel, client, checks):
     checks.equal("the address", panel.url.startswith("https://bench.local:"), True)
     with Page(panel) as page:
         page.await_value("level", -2, checks)
@@ -45,7 +45,7 @@ def it_shows_and_writes(panel, checks):
         page.await_value("lamp", False, checks)
         status, _, script = panel.ask("GET", "/panel.js")
         checks.equal("a file of several records", (status, len(script) > 1 << 13), (200, True))
-        page.await_event("events go on", checks)
+        page.await_change("events go on", client, checks)
 
 
 def each_version_from_1_2_on_is_spoken(panel, authority, checks):
@@ -69,7 +69,7 @@ def who_is_not_believed_is_not_asked(panel, checks):
     checks.equal("without its authority the certificate is", verdict, "not believed")
 
 
-def what_is_no_tls_stops_nobody(panel, checks):
+def what_is_no_tls_stops_nobody(panel, client, checks):
     with Page(panel) as page:
         for what, text in (("nothing of it", bytes(2000)), ("an alert", b"\x15\x03\x01\x00\x02\x02\x28"),
                            ("a record that is too long", b"\x16\x03\x01\xff\xff" + bytes(100))):
@@ -78,7 +78,7 @@ def what_is_no_tls_stops_nobody(panel, checks):
         with contextlib.ExitStack() as sockets:
             for begin in (b"", hello) * 50:
                 sockets.enter_context(raw(panel, begin))
-            page.await_event("events go on beside 100 that have begun", checks)
+            page.await_change("events go on beside 100 that have begun", client, checks)
             checks.equal("a request is answered", panel.status("GET", "/points.json", token=page.token), 200)
 
 
@@ -119,7 +119,7 @@ def the_certificate_is_looked_at_first(coupler, folder, checks):
         checks.equal("the device was not asked", select.select([device], [], [], 0)[0], [])
 
 
-def who_has_left_makes_room(panel, checks):
+def who_has_left_makes_room(panel, client, checks):
     for _ in range(3):
         with contextlib.ExitStack() as opened:
             pages = []
@@ -131,7 +131,7 @@ def who_has_left_makes_room(panel, checks):
                 return page.status == 200  # pylint: disable=cell-var-from-loop
             for _ in range(MOST_PAGES):
                 peer.await_true("there is room for as many as before", comes_in, checks)
-            pages[-1].await_event("the last of so many has events", checks)
+            pages[-1].await_change("the last of so many has events", client, checks)
             with Page(panel) as one_more:
                 checks.equal("one more", one_more.status, 503)
 
@@ -176,13 +176,15 @@ def main():
         with Node(node, map_file) as device, \
                 Panel(coupler, map_file, device.port, "--write", "--listen", "0.0.0.0", "--name", "bench.local",
                       "--page-certificate", page / "page.pem", "--page-key", page / "page.key", trust=trust(authority)) as panel:
-            it_shows_and_writes(panel, checks)
+            client = peer.pymodbus_client(device.port)
+            it_shows_and_writes(panel, client, checks)
             each_version_from_1_2_on_is_spoken(panel, authority, checks)
             who_is_not_believed_is_not_asked(panel, checks)
-            what_is_no_tls_stops_nobody(panel, checks)
+            what_is_no_tls_stops_nobody(panel, client, checks)
             with Page(panel) as opened:
                 http_is_told_of_https(panel, opened, checks)
-            who_has_left_makes_room(panel, checks)
+            who_has_left_makes_room(panel, client, checks)
+            client.close()
             with Page(panel), raw(panel):
                 checks.equal("status after SIGINT beside a page", panel.end(signal.SIGINT), 0)
     checks.done("coupler panel by HTTPS is HTTPS, and who does not speak it stops nobody")
