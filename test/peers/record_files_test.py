@@ -39,7 +39,7 @@ class Busy:
     def _run(self):
         client = peer.pymodbus_client(self.port)
         for i in itertools.count():
-            if self.stopped.wait(0.005):
+            if self.stopped.wait(0.002):
                 break
             client.write_registers(9, [i * 100 + k & 0xFFFF for k in range(100)], 1)
             client.write_coils(0, [i & 1, i & 2], 1)
@@ -173,13 +173,14 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         fast_map = folder / "fast.yaml"
-        fast_map.write_text(pathlib.Path(map_file).read_text(encoding="utf-8").replace("rate: 10", "rate: 100"),
+        fast_map.write_text(pathlib.Path(map_file).read_text(encoding="utf-8").replace("rate: 10", "rate: 400"),
                             encoding="utf-8")
         with Node(node, map_file) as device, Busy(device.port):
             a_killed_recorder_leaves_whole_lines(coupler, fast_map, device.port, folder, checks)
-            the_oldest_files_are_deleted(coupler, fast_map, device.port, folder, checks)
-            on_a_disk("2M", functools.partial(a_full_disk, coupler, fast_map, device.port), checks)
-            on_a_disk("640k", functools.partial(a_small_disk, coupler, fast_map, device.port), checks)
+            peer.side_by_side(
+                (the_oldest_files_are_deleted, coupler, fast_map, device.port, folder, checks),
+                (on_a_disk, "2M", functools.partial(a_full_disk, coupler, fast_map, device.port), checks),
+                (on_a_disk, "640k", functools.partial(a_small_disk, coupler, fast_map, device.port), checks))
     checks.done("coupler record leaves whole lines, in files that can be used alone, and no more than it may")
 
 

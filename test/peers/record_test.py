@@ -175,11 +175,11 @@ def main():
     checks = peer.Checks()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        changes_are_recorded_in_order(node, coupler, map_file, folder, checks)
-        a_device_goes_and_comes_back(node, coupler, map_file, folder, checks)
-        an_exception_is_a_line(coupler, folder, checks)
         with Node(node, map_file) as device:
-            other_outputs(coupler, map_file, device.port, folder, checks)
+            peer.side_by_side((changes_are_recorded_in_order, node, coupler, map_file, folder, checks),
+                              (a_device_goes_and_comes_back, node, coupler, map_file, folder, checks),
+                              (an_exception_is_a_line, coupler, folder, checks),
+                              (other_outputs, coupler, map_file, device.port, folder, checks))
     checks.done("coupler record has each change of a node and of pymodbus, and writes nothing to it")
 
 
