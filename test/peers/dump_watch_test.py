@@ -116,15 +116,17 @@ def changes_are_told_as_json(coupler, map_file, device, checks):
     checks.equal("status after SIGINT", watch.end(), 0)
 
 
-def without_a_number_it_looks_once_a_second(coupler, map_file, device, checks):
-    began = time.monotonic()
-    with subprocess.Popen([coupler, "dump", map_file, "--at", f"127.0.0.1:{device.port}", "--watch", "--json"],
-                          stdout=subprocess.PIPE, text=True) as program:
-        for _ in range(3):
-            program.stdout.readline()
-        passed = time.monotonic() - began
-        program.terminate()
-    checks.equal(f"seconds until the third look, at least 1.9: {passed:.1f}", passed > 1.9, True)
+def without_a_number_it_looks_once_a_second(coupler, map_file, checks):
+    with peer.silent_port() as port, device_with_values(port) as device:
+        began = time.monotonic()
+        with subprocess.Popen([coupler, "dump", map_file, "--at", f"127.0.0.1:{port}", "--watch", "--json"],
+                              stdout=subprocess.PIPE, text=True) as program:
+            for _ in range(3):
+                program.stdout.readline()
+            passed = time.monotonic() - began
+            program.terminate()
+        checks.equal(f"seconds until the third look, at least 1.9: {passed:.1f}", passed > 1.9, True)
+        checks.equal("functions that it was asked for", device.store.asked, READS)
 
 
 def a_terminal_is_drawn_over(coupler, map_file, device, checks):
@@ -172,7 +174,7 @@ def changes_of_a_node_are_told_as_they_come(coupler, node, checks):
         for point in ("motor", "motor_runs", "ejector"):
             checks.equal(f"{point}: each change, a pulse's end too", [line for line in told if line.startswith(point + " ")],
                          [f"{point} true", f"{point} false"])
-        os.kill(peer.the_worker(), signal.SIGKILL)  # another one serves after 100 ms
+        os.kill(peer.the_worker(port), signal.SIGKILL)  # another one serves after 100 ms
         gone = watch.await_line(lambda line: " offline: " in line, last or 0)
         back = watch.await_line(lambda line: line.endswith(" online again"), gone or 0)
         checks.equal("the short loss is told, then everything anew", watch.await_line(
@@ -221,21 +223,25 @@ def a_change_has_its_own_time(coupler, node, checks):
         checks.equal("status after SIGINT", watch.end(), 0)
 
 
-def main():
-    coupler, map_file, node = sys.argv[1:]
-    checks = peer.Checks()
+def changes_of_a_device_are_told(coupler, map_file, checks):
     # Stopped and started again, it has the same port.
     with peer.silent_port() as port, device_with_values(port) as device:
         changes_are_told_line_by_line(coupler, map_file, device, checks)
         checks.equal("functions that the device was asked for, and mbpoll's", device.store.asked, READS | {6})
         device.store.asked.clear()
         changes_are_told_as_json(coupler, map_file, device, checks)
-        without_a_number_it_looks_once_a_second(coupler, map_file, device, checks)
         a_terminal_is_drawn_over(coupler, map_file, device, checks)
         checks.equal("functions that the device was asked for", device.store.asked, READS)
-    changes_of_a_node_are_told_as_they_come(coupler, node, checks)
-    a_node_that_is_gone_is_looked_for_soon(coupler, node, checks)
-    a_change_has_its_own_time(coupler, node, checks)
+
+
+def main():
+    coupler, map_file, node = sys.argv[1:]
+    checks = peer.Checks()
+    peer.side_by_side((changes_of_a_device_are_told, coupler, map_file, checks),
+                      (without_a_number_it_looks_once_a_second, coupler, map_file, checks),
+                      (changes_of_a_node_are_told_as_they_come, coupler, node, checks),
+                      (a_node_that_is_gone_is_looked_for_soon, coupler, node, checks),
+                      (a_change_has_its_own_time, coupler, node, checks))
     checks.done("coupler dump --watch tells what changes at pymodbus and at a node, and writes nothing")
 
 

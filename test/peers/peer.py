@@ -192,15 +192,18 @@ def children_of(process):
             for child in (task / "children").read_text(encoding="ascii").split()]
 
 
-def the_node():
-    """The one that this test has started."""
-    return next(child for child in children_of(os.getpid())
+_by_port = {}  # the process id of each node
+
+
+def the_node(port=None):
+    """The one that this test has started; of several: at this port."""
+    return _by_port[port] if port else next(child for child in children_of(os.getpid())
                 if pathlib.Path(f"/proc/{child}/comm").read_text(encoding="ascii") == "coupler-node\n")
 
 
-def the_worker():
+def the_worker(port=None):
     """The process that answers for it; None while there is none."""
-    for child in children_of(the_node()):
+    for child in children_of(the_node(port)):
         with contextlib.suppress(OSError):
             if pathlib.Path(f"/proc/{child}/comm").read_text(encoding="ascii") == "coupler-node-io\n":
                 return child
@@ -225,6 +228,7 @@ def running_node(command, port=0):
             sys.exit(1)
         reader = threading.Thread(target=lambda: said.extend(node.stderr), daemon=True)
         reader.start()
+        _by_port[port] = node.pid
         yield port
         node.terminate()
         status = node.wait(timeout=PATIENCE)
