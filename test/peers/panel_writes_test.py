@@ -102,14 +102,14 @@ def a_terminal_obeys_no_page(panel, page, checks):
 
 
 class Busy(Writable):
-    """Each request takes it two seconds."""
+    """Each read takes it a second, each write two."""
 
     def getValues(self, fc_as_hex, address, count=1):
-        time.sleep(2)
+        time.sleep(1)
         return super().getValues(fc_as_hex, address, count)
 
     def setValues(self, fc_as_hex, address, values):
-        time.sleep(2)
+        time.sleep(1)
         super().setValues(fc_as_hex, address, values)
 
 
