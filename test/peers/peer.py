@@ -118,6 +118,21 @@ def undisturbed(limit, act, again=lambda: None):
     return seen
 
 
+SLOWER = (1, 2, 4, 8, 16, 32)
+
+
+def slower_until_undisturbed(limit, act, again=lambda: None):
+    """The same of `act(silence, factor)`, which is to take its times that many times as long, the limit included."""
+    for factor in SLOWER:
+        silence = Silence()
+        seen = act(silence, factor)
+        if silence.longest < limit * factor:
+            break
+        print(f"tried again: this machine was silent for {silence.longest:.1f} s")
+        again()
+    return seen
+
+
 def waited_for_a_processor(process):
     """Seconds, by thread of it and of its children."""
     tasks = [task for one in (process, *children_of(process)) for task in pathlib.Path(f"/proc/{one}/task").iterdir()]
@@ -150,19 +165,20 @@ def waits_noted(silence, *processes):
         watcher.join()
 
 
-def run_undisturbed(limit, command, *others, again=lambda: None, **options):
-    """subprocess.run() of a program that gives up waiting after a time that is longer than `limit`. It waits for this
-    program, or for these processes."""
-    def run(silence):
-        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as process, \
+def run_hasty(command, *others, again=lambda: None, **options):
+    """subprocess.run() of `command(seconds)`, which gives up waiting for an answer of this program, or of these processes,
+    after so many. Others never answer, so it begins with one second."""
+    def run(silence, seconds):
+        called = command(seconds)
+        with subprocess.Popen(called, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as process, \
                 waits_noted(silence, process, *others):
             try:
                 out, err = process.communicate(timeout=PATIENCE)
             finally:
                 process.kill()
-        return subprocess.CompletedProcess(command, process.returncode, out, err)
+        return subprocess.CompletedProcess(called, process.returncode, out, err)
 
-    return undisturbed(limit, run, again)
+    return slower_until_undisturbed(0.5, run, again)
 
 
 def side_by_side(*calls):

@@ -107,9 +107,8 @@ def a_unit_is_found(folder, checks):
         silent = probe(f"127.0.0.1:{port}", timeout=0.2)
         checks.equal("units: none of the default ones", (silent.returncode, silent.stdout), (3, ""))
         # Two silent units cost a timeout each.
-        call = [COUPLER, "probe", f"127.0.0.1:{port}", "--units", "16-18", "--to", "99", "--out", draft, "--rate", "1000",
-                "--timeout", "1"]
-        found = peer.run_undisturbed(0.5, call, again=lambda: draft.unlink(missing_ok=True))
+        call = [COUPLER, "probe", f"127.0.0.1:{port}", "--units", "16-18", "--to", "99", "--out", draft, "--rate", "1000"]
+        found = peer.run_hasty(lambda seconds: [*call, "--timeout", str(seconds)], again=lambda: draft.unlink(missing_ok=True))
         checks.equal("units: exit status", found.returncode, 0)
         checks.equal("units that answer", re.findall(r"units that answer: (.*)", found.stdout), ["17"])
         printed = probe(f"127.0.0.1:{port}/17", "--to", "99", "--out", "-")

@@ -20,7 +20,7 @@ except ImportError as error:
     peer.skip(f"python3-pymodbus is missing ({error}); run scripts/install-packages test")
 from recording import TAPE_MAP, Node, Program, Tape, outcomes, read, utc, wait_until
 
-TOLERANCE = 0.5  # seconds by which a write may be late
+TOLERANCE = 0.5  # seconds of the recording by which a write may be late
 
 
 def a_client_is_compared(node, folder, checks):
@@ -61,21 +61,22 @@ def a_client_is_compared(node, folder, checks):
 
 
 def play_a_client(node, file, writes, options):
-    def play(silence):
-        with Node(node, "--replay", file, "--tolerance", TOLERANCE, *options) as device, peer.waits_noted(silence, device.process):
+    def play(silence, slower):
+        with Node(node, "--replay", file, "--tolerance", TOLERANCE, "--speed", 1 / slower, *options) as device, \
+                peer.waits_noted(silence, device.process):
             client = peer.pymodbus_client(device.port)
             began = time.monotonic()
             for t, point, value in writes:
-                wait_until(began + t)
+                wait_until(began + t * slower)
                 if point == "valve":
                     client.write_coil(0, bool(value), 1)
                 else:
                     client.write_register({"speed": 0, "quiet": 9}[point], value & 0xFFFF, 1)
-                silence.note(time.monotonic() - began - t)
+                silence.note(time.monotonic() - began - t * slower)
             client.close()
             return device.wait(), device.text()
 
-    return peer.undisturbed(TOLERANCE / 2, play)
+    return peer.slower_until_undisturbed(TOLERANCE / 2, play)
 
 
 def what_a_client_writes_stays(node, folder, checks):

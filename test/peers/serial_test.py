@@ -60,8 +60,7 @@ def run(*arguments):
 
 
 def run_hasty(*arguments):
-    """Where somebody's silence is waited for: a second, which is enough for an answer if neither side was kept waiting."""
-    return peer.run_undisturbed(0.5, [coupler, *map(str, arguments), "--timeout", "1"], encoding="utf-8")
+    return peer.run_hasty(lambda seconds: [coupler, *map(str, arguments), "--timeout", str(seconds)], encoding="utf-8")
 
 
 def status(*arguments):

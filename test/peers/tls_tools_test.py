@@ -20,7 +20,7 @@ import peer
 from tls_node import Node, make_certificates
 
 NODE, COUPLER, MAP = sys.argv[1:4]
-HASTY = "hasty.yaml"  # the same map with a timeout of a second, where no reply is to be expected
+HASTY = "hasty_{}.yaml"  # the same map with a timeout of so many seconds, where no reply is to be expected
 if shutil.which("openssl") is None:
     peer.skip("the program openssl is missing; apt install openssl")
 
@@ -55,7 +55,7 @@ def the_tools(node, checks):
     checks.equal("it stands for the authority", told.returncode, 0)
     told = coupler("dump", "cell.yaml", "--at", place, "--pin", pins[2].strip())
     checks.equal("another one does not", "has the pin" in told.stderr, True)
-    told = coupler("dump", HASTY, "--at", f"tls://127.0.0.1:{node.port}", "--ca", "ca.pem")
+    told = coupler("dump", HASTY.format(1), "--at", f"tls://127.0.0.1:{node.port}", "--ca", "ca.pem")
     checks.equal("TLS at the port without", told.returncode, 3)
     told = subprocess.run([COUPLER, "dump", "cell.yaml", "--at", f"tcp://127.0.0.1:{node.tls_port}"], cwd=node.folder,
                           capture_output=True, text=True, timeout=peer.PATIENCE)
@@ -164,9 +164,9 @@ def which_servers_are_believed(folder, checks):
     def is_believed_or_not(name, options, says):
         with s_server(folder, name, *options) as (server, port):
             ca = "small_ca.pem" if name == "small_ca_node" else "ca.pem"
-            dump = [COUPLER, "dump", HASTY if says == "no reply within" else "cell.yaml", "--at", f"tls://127.0.0.1:{port}",
-                    "--certificate", "operator.pem", "--key", "operator.key", "--ca", ca]
-            told = peer.run_undisturbed(0.5, dump, server, cwd=folder).stderr
+            how = ["--at", f"tls://127.0.0.1:{port}", "--certificate", "operator.pem", "--key", "operator.key", "--ca", ca]
+            told = peer.run_hasty(lambda seconds: [COUPLER, "dump", HASTY.format(seconds) if says == "no reply within" else
+                                                   "cell.yaml", *how], server, cwd=folder).stderr
             checks.equal(f"a server with {name} {' '.join(options)}: {told}", says in told, True)
 
     old = "-cipher", "DEFAULT@SECLEVEL=0"
@@ -189,7 +189,9 @@ def main():
         folder = pathlib.Path(name)
         make_certificates(folder)
         shutil.copy(MAP, folder / "cell.yaml")
-        (folder / HASTY).write_text(re.sub("timeout: .*", "timeout: 1s", pathlib.Path(MAP).read_text()))
+        for seconds in peer.SLOWER:
+            hasty = re.sub("timeout: .*", f"timeout: {seconds}s", pathlib.Path(MAP).read_text())
+            (folder / HASTY.format(seconds)).write_text(hasty)
         what_check_says(folder, checks)
         what_a_killed_call_leaves(folder, checks)
         node = Node(folder, NODE, "cell.yaml")
