@@ -39,7 +39,7 @@ def record_a_session(node, coupler, map_file, file, checks, silence):
     with Node(node, map_file) as device, Recorder(coupler, map_file, device.port, file) as recorder, \
             peer.waits_noted(silence, device.process, recorder.process):
         recorder.await_value("level", -2, checks)
-        time.sleep(2)  # who is played it five times as fast reads what was there in the beginning, too
+        time.sleep(1.5)  # who is played it four times as fast reads what was there in the beginning, too
         client = peer.pymodbus_client(device.port)
         for address in chance.sample([0, 1, 3, 8, 9], 5):
             for coil in (0, 1):
@@ -203,7 +203,7 @@ def the_recorded_is_played(node, coupler, map_file, folder, checks):
     recorded = peer.undisturbed(WAIT, lambda silence: record_a_session(node, coupler, map_file, file, checks, silence))
     checks.equal("a session with changes", min(len(values(recorded, "lamp")), len(values(recorded, "curve"))) > 2, True)
     # At the first all that is read is there for half a second at least, and so is seen.
-    peer.side_by_side(*((the_session_is_played, node, coupler, map_file, recorded, file, speed, checks) for speed in (0.5, 5)))
+    peer.side_by_side(*((the_session_is_played, node, coupler, map_file, recorded, file, speed, checks) for speed in (0.5, 4)))
 
 
 def main():
