@@ -139,7 +139,7 @@ class Page:
         peer.await_true(what, lambda: self.events > known + 1, checks)
 
     def await_change(self, what, client, checks):
-        """What `client`, one of pymodbus, does now to the setpoint of panel.yaml is shown."""
+        """Waits until the page shows a setpoint (panel.yaml) that `client`, one of pymodbus, writes now."""
         value = (client.read_holding_registers(0, 1, 1).registers[0] + 1) % 100
         client.write_register(0, value, 1)
         peer.await_true(what, lambda: self.value("setpoint") == value, checks)

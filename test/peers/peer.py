@@ -122,7 +122,7 @@ SLOWER = (1, 2, 4, 8, 16, 32)
 
 
 def slower_until_undisturbed(limit, act, again=lambda: None):
-    """The same of `act(silence, factor)`, which is to take its times that many times as long, the limit included."""
+    """Does the same with `act(silence, factor)`. Its times and the limit are that many times as long."""
     for factor in SLOWER:
         silence = Silence()
         seen = act(silence, factor)

@@ -131,7 +131,7 @@ def two_clients_schedule_the_same_output(port, checks):
 
 def a_reload_cancels_and_durations_go_on(port, checks):
     def is_in_time(duration):
-        """Whether it lasted for longer than the reload took; otherwise it shows nothing."""
+        """True if it lasted for longer than the reload took; otherwise it shows nothing."""
         before = client.epoch
         due, begun = client.ahead(LAMP, [1], duration)
         it_burns = {(ON, COIL, LAMP), (ON, INPUT, LAMP), (DONE, 0, number_of(begun))}
@@ -191,7 +191,7 @@ def another_map_ends_what_it_has_elsewhere(port, checks, served):
 
 def the_watchdog_cancels(node, guarded, folder, checks):
     def is_in_time(timeout):
-        """Whether nothing but its client's silence made the watchdog expire, and the duration lasted for longer."""
+        """True if nothing but its client's silence made the watchdog expire, and the duration lasted for longer."""
         served = folder / f"watchdog_{timeout}s.yaml"
         served.write_text(guarded.read_text(encoding="utf-8").replace("timeout: 500ms", f"timeout: {timeout}s"), encoding="utf-8")
         silence = peer.Silence()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""For schedule_test.py: a client that schedules outputs (function code 66) and hears of changes, by the bytes of docs/time.md.
-The map is schedule.yaml's, or watchdog.yaml's."""
+"""A client that schedules outputs (function code 66) and hears of changes, by the bytes of docs/time.md. schedule_test.py
+serves it schedule.yaml or watchdog.yaml."""
 import contextlib
 import pathlib
 import struct

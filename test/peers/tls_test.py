@@ -258,7 +258,7 @@ def main():
         folder = pathlib.Path(name)
         ca = make_certificates(folder)
         shutil.copy(MAP, folder / "cell.yaml")
-        # What is changed by one of them is not there for the others.
+        # Each part has a copy, since some of them change the files.
         copies = [shutil.copytree(folder, f"{name}/copy_{i}", ignore=shutil.ignore_patterns("copy_*")) for i in range(3)]
         starts, hangs, generated = map(pathlib.Path, copies)
         peer.side_by_side((a_node_and_its_clients, folder, ca, checks), (a_start_that_fails, starts, checks),
