@@ -50,6 +50,8 @@ class Process:
     def __init__(self, name, *arguments, environment=None, under=()):
         """`under`: a command that runs it."""
         self._lines = []
+        self._ended = False  # there are no more lines
+        self._news = threading.Condition()
         self._child = subprocess.Popen(
             [*under, str(BUILD / "bin" / name), *map(str, arguments)],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", env=environment)
@@ -58,7 +60,12 @@ class Process:
 
     def _read(self):
         for line in self._child.stdout:
-            self._lines.append(line)
+            with self._news:
+                self._lines.append(line)
+                self._news.notify_all()
+        with self._news:
+            self._ended = True
+            self._news.notify_all()
 
     @property
     def output(self):
@@ -93,14 +100,10 @@ class Process:
         self._wait_until(lambda: text in self.output, f"'{text}'")
 
     def _wait_until(self, condition, what):
-        end = time.monotonic() + PATIENCE
-        while True:
-            last = time.monotonic() > end or not self._reader.is_alive()  # before the look: what it said last counts
-            if condition():
-                return
-            if last:
+        with self._news:
+            self._news.wait_for(lambda: condition() or self._ended, PATIENCE)
+            if not condition():
                 raise AssertionError(f"{what} was not printed, but:\n{self.output}")
-            time.sleep(0.02)
 
     def ends_within(self, seconds):
         with contextlib.suppress(subprocess.TimeoutExpired):
@@ -109,9 +112,8 @@ class Process:
 
     def wait(self):
         """The exit code, once the program ends by itself."""
-        code = self._child.wait(PATIENCE)
-        self._reader.join(PATIENCE)
-        return code
+        self._reader.join(PATIENCE)  # its output ends with it, which is seen at once; Popen.wait looks now and then
+        return self._child.wait(PATIENCE)
 
     def signal(self, number):
         if self.running:

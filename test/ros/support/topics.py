@@ -6,6 +6,7 @@ import threading
 import time
 
 import rospy
+import rosservice
 import rostopic
 from rospy.impl.registration import get_topic_manager
 
@@ -123,8 +124,11 @@ class NoService(Exception):
 
 def service(name, kind, seconds=PATIENCE):
     """A function that calls it, once it is there."""
+    end = time.monotonic() + seconds
+    while not rosservice.get_service_uri(name) and time.monotonic() < end:
+        time.sleep(0.02)  # rospy looks for it three times a second
     try:
-        rospy.wait_for_service(name, seconds)
+        rospy.wait_for_service(name, max(end - time.monotonic(), 0.001))
     except rospy.ROSException as error:
         raise NoService(name) from error
     return rospy.ServiceProxy(name, kind)
