@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a test of either ROS's driver starts and publishes, and how its file is run."""
+import itertools
 import sys
 import unittest
 
@@ -9,7 +10,15 @@ from support.topics import connected_publishers, service
 
 class Case(unittest.TestCase):
     """What a test starts, listens to or publishes ends with it: a publisher that stayed would count a driver that is
-    gone as its subscriber."""
+    gone as its subscriber.
+    at_once: each test of the class names its devices after `name`, which no other test has, so that all of them may run
+    at the same time. In ROS 1 they do (support/at_once.py)."""
+    at_once = False
+    _numbers = itertools.count(1)
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        self.name = f"device{next(Case._numbers)}"
 
     def publisher(self, name, kind):
         return self.publishers({name: kind})[0]
@@ -30,9 +39,11 @@ class Case(unittest.TestCase):
         return driver
 
 
-def run(at_the_end=lambda: None):
+def run(at_the_end=lambda: None, suite=unittest.TestSuite):
     """Runs the tests of the program. Exit code 77: all of them were skipped."""
-    result = unittest.main(exit=False, verbosity=2, warnings="ignore").result
+    loader = unittest.TestLoader()
+    loader.suiteClass = suite
+    result = unittest.main(exit=False, verbosity=2, warnings="ignore", testLoader=loader).result
     at_the_end()
     if not result.wasSuccessful():
         sys.exit(1)

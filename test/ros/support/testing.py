@@ -6,18 +6,23 @@ import xmlrpc.client
 
 import rosgraph
 import rospy
-from rospy.impl.registration import get_topic_manager
+from rospy.impl.registration import get_registration_listeners, get_topic_manager
 
-from support import case
+from support import at_once, case
 from support.topics import Topic
 
 
 class RosTest(case.Case):
-    def run(self, result=None):
+    @staticmethod
+    def before_all():
         """On a parameter server as a new roscore has it: a launch file's parameters outlive its nodes."""
         for name in rospy.get_param_names():
             if name not in ("/rosdistro", "/rosversion", "/run_id") and not name.startswith("/roslaunch/"):
                 rospy.delete_param(name)
+
+    def run(self, result=None):
+        if not self.at_once:
+            self.before_all()
         return super().run(result)
 
     def topic(self, name, kind, latched=False):  # pylint: disable=unused-argument
@@ -30,8 +35,16 @@ class RosTest(case.Case):
 def main():
     """Runs the tests of the calling file as a ROS node."""
     rospy.init_node("test", anonymous=True, disable_signals=True)
+    rospy.core.add_shutdown_hook(_wake_registrar)
     threading.Thread(target=_tell_of_publishers, daemon=True).start()
-    case.run()
+    case.run(suite=at_once.Suite)
+
+
+def _wake_registrar(_):
+    """rospy waits at its end for this thread, which looks for the end twice a second."""
+    for listener in get_registration_listeners().listeners:
+        with listener.cond:
+            listener.cond.notify_all()
 
 
 def _tell_of_publishers():
