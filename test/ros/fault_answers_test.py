@@ -8,7 +8,7 @@ from support import testing
 from support.device import (ACKNOWLEDGE, BUSY, FAILURE, ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, NO_RESPONSE,
                             PATH_UNAVAILABLE, Device, Raw, Refuse, frame)
 from support.patience import NO_TIMEOUT
-from support.truth import TIMEOUT, Truth
+from support.truth import TIMEOUT, nothing_is_published, start_several
 
 LIE = b"\x03\x02\xFF\xFF"  # -1 as a reply of one register
 REJECTED = (ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE)  # not asked for again while the connection lasts
@@ -37,69 +37,83 @@ NO_REPLIES = {
 
 
 class Answers(testing.RosTest):
-    timeout = NO_TIMEOUT
+    """A device for each of what is answered."""
+    at_once = True
 
-    def setUp(self):
-        self.device = Device().start()
-        self.addCleanup(self.device.stop)
+    def start(self, answers, timeout=NO_TIMEOUT):
+        """`answers`: what each is, for for_each()."""
+        self.answers = answers
+        self.devices = [Device().start() for _ in answers]
+        for device in self.devices:
+            self.addCleanup(device.stop)
         self.value = 0
-        self.truth = Truth(self, self.device.port, timeout=self.timeout)
+        self.truths = start_several(self, [device.port for device in self.devices], timeout=timeout)
         self.all_is_well()
 
+    def for_each(self, act):
+        for answer, device, truth in zip(self.answers, self.devices, self.truths):
+            with self.subTest(answer):
+                act(answer, device, truth)
+
     def all_is_well(self):
-        self.device.answer = self.device.serve
         self.value += 1
-        self.device.tables["holding_registers"][4] = self.value
-        self.truth.is_good(self.value)
+        for device in self.devices:
+            device.tables["holding_registers"][4] = self.value
+            device.answer = device.serve
+        self.for_each(lambda _, __, truth: truth.is_good(self.value))
 
 
 class FaultExceptions(Answers):
-    def refuse(self, code):
-        def answer(request):
-            raise Refuse(code)
+    def refuse(self):
+        for code, device in zip(self.answers, self.devices):
+            def answer(_, code=code):
+                raise Refuse(code)
 
-        self.device.answer = answer
+            device.answer = answer
 
     def test_an_exception_that_passes_is_told_and_the_connection_stays(self):
-        for code in PASSING:
-            with self.subTest(code=code):
-                self.refuse(code)
-                self.truth.has_exception(code, PointStatus.EXCEPTION)
-                self.all_is_well()
-        self.assertEqual(self.device.accepted, 1)
+        self.start(PASSING)
+        self.refuse()
+        self.for_each(lambda code, _, truth: truth.has_exception(code, PointStatus.EXCEPTION))
+        nothing_is_published(self.truths)
+        self.all_is_well()
+        self.for_each(lambda _, device, __: self.assertEqual(device.accepted, 1))
 
     def test_a_unit_that_its_gateway_cannot_reach_is_offline_and_the_connection_stays(self):
-        for code in AWAY:
-            with self.subTest(code=code):
-                self.refuse(code)
-                self.truth.is_offline()
-                # It is online for a moment when it asks again: the identity is refused as a foreign coupler refuses it.
-                self.truth.status.wait_for(lambda known, text=f"exception {code:02X}": text in known["trouble"])
-                self.truth.driver.wait_for(f"plant: the gateway cannot reach unit 1: exception {code:02X}")
-                self.all_is_well()
-        self.assertEqual(self.device.accepted, 1)
-        self.assertNotIn("--verify off", self.truth.driver.output)  # it has answered before
+        def is_away(code, _, truth):
+            truth.is_offline()
+            # It is online for a moment when it asks again: the identity is refused as a foreign coupler refuses it.
+            truth.status.wait_for(lambda known: f"exception {code:02X}" in known["trouble"])
+            truth.driver.wait_for(f"{truth.name}: the gateway cannot reach unit 1: exception {code:02X}")
+
+        self.start(AWAY)
+        self.refuse()
+        self.for_each(is_away)
+        nothing_is_published(self.truths)
+        self.all_is_well()
+        self.for_each(lambda _, device, __: self.assertEqual(device.accepted, 1))
+        self.assertNotIn("--verify off", self.truths[0].driver.output)  # they have answered before
 
     def test_a_point_that_the_device_has_not_is_told_and_asked_for_again_on_the_next_connection(self):
-        for code in REJECTED:
-            with self.subTest(code=code):
-                self.refuse(code)
-                self.truth.has_exception(code, PointStatus.REJECTED)
-                self.device.answer = self.device.serve
-                self.device.drop()
-                self.all_is_well()
+        self.start(REJECTED)
+        self.refuse()
+        self.for_each(lambda code, _, truth: truth.has_exception(code, PointStatus.REJECTED))
+        nothing_is_published(self.truths)
+        for device in self.devices:
+            device.answer = device.serve
+            device.drop()
+        self.all_is_well()
 
 
 class FaultReplies(Answers):
-    timeout = TIMEOUT  # there is nothing, or not all of it
-
     def test_a_reply_that_is_none_is_never_taken(self):
-        for name, answer in NO_REPLIES.items():
-            with self.subTest(name):
-                self.device.answer = answer
-                self.truth.is_offline()
-                self.assertNotIn(-1, self.truth.level.ever)
-                self.all_is_well()
+        self.start(NO_REPLIES, timeout=TIMEOUT)  # there is nothing, or not all of it
+        for device, answer in zip(self.devices, NO_REPLIES.values()):
+            device.answer = answer
+        self.for_each(lambda _, __, truth: truth.is_offline())
+        nothing_is_published(self.truths)
+        self.for_each(lambda _, __, truth: self.assertNotIn(-1, truth.level.ever))
+        self.all_is_well()
 
 
 if __name__ == "__main__":

@@ -4,10 +4,12 @@ from support import testing
 from support.device import Device
 from support.network import Network
 from support.patience import NO_TIMEOUT, wait_until
-from support.truth import TIMEOUT, Truth
+from support.truth import TIMEOUT, nothing_is_published, start
 
 
 class FaultLink(testing.RosTest):
+    at_once = True
+
     def setUp(self):
         self.network = self.enterContext(Network())
         self.device = Device(address=self.network.device)
@@ -19,7 +21,11 @@ class FaultLink(testing.RosTest):
         self.truth.is_good(1)
 
     def start(self, timeout=TIMEOUT):
-        self.truth = Truth(self, self.device.port, address=self.network.device, timeout=timeout)
+        self.truth = start(self, self.device.port, address=self.network.device, timeout=timeout)
+
+    def is_offline(self):
+        self.truth.is_offline()
+        nothing_is_published([self.truth])
 
     def set(self, value):
         self.device.tables["holding_registers"][4] = value
@@ -27,14 +33,14 @@ class FaultLink(testing.RosTest):
     def test_a_pulled_cable_is_told_and_the_driver_comes_back_by_itself(self):
         for value in (2, 3):
             self.network.pull()
-            self.truth.is_offline()
+            self.is_offline()
             self.set(value)
             self.network.plug()
             self.truth.is_good(value)
 
     def test_an_interface_that_goes_down_is_told_and_the_driver_comes_back_by_itself(self):
         self.network.take_down()
-        self.truth.is_offline()
+        self.is_offline()
         self.set(2)
         self.network.bring_up()
         self.truth.is_good(2)
@@ -56,7 +62,7 @@ class FaultLink(testing.RosTest):
         self.truth.end()
         self.network.pull()
         self.start()
-        self.truth.is_offline()
+        self.is_offline()
         self.network.plug()
         self.truth.is_good(1)
 

@@ -8,30 +8,39 @@ from support.device import Device
 from support.patience import PATIENCE
 from support.ports import free_port
 from support.pymodbus_server import LEVEL, Server
-from support.truth import OK, TIMEOUT, WARN, Truth
+from support.truth import OK, TIMEOUT, WARN, nothing_is_published, start
+
+
+def is_offline(truth):
+    truth.is_offline()
+    nothing_is_published([truth])
 
 
 class FaultProcess(testing.RosTest):
+    at_once = True
+
     def setUp(self):
         self.server = Server(free_port()).start()
         self.addCleanup(self.server.kill)
-        self.truth = Truth(self, self.server.port)
+        self.truth = start(self, self.server.port)
         self.truth.is_good(LEVEL)
 
     def test_a_killed_server_is_told_and_found_again(self):
         self.server.kill()
-        self.truth.is_offline()
+        is_offline(self.truth)
         self.server.start()
         self.truth.is_good(LEVEL)
 
     def test_a_frozen_server_is_told_and_found_again(self):
         self.server.freeze()
-        self.truth.is_offline()
+        is_offline(self.truth)
         self.server.thaw()
         self.truth.is_good(LEVEL)
 
 
 class FaultConnection(testing.RosTest):
+    at_once = True
+
     def setUp(self):
         self.device = Device()
         self.device.tables["holding_registers"][4] = 1
@@ -39,7 +48,7 @@ class FaultConnection(testing.RosTest):
     def start(self, *arguments):
         self.device.start()
         self.addCleanup(self.device.stop)
-        return Truth(self, self.device.port, *arguments)
+        return start(self, self.device.port, *arguments)
 
     def test_a_device_that_became_too_slow_is_offline_until_it_is_fast_again(self):
         truth = self.start()
@@ -50,7 +59,7 @@ class FaultConnection(testing.RosTest):
             return self.device.serve(request)
 
         self.device.answer = answer
-        truth.is_offline()
+        is_offline(truth)
         self.device.answer = self.device.serve
         truth.is_good(1)
 
@@ -68,7 +77,7 @@ class FaultConnection(testing.RosTest):
         self.device = Device(connections=0)
         self.device.tables["holding_registers"][4] = 1
         truth = self.start()
-        truth.is_offline()
+        is_offline(truth)
         self.device.allow(1)
         truth.is_good(1)
 

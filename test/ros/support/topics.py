@@ -64,17 +64,27 @@ class Topic:
         return self.wait_for(lambda _: True)
 
     def stays_quiet(self):
-        """Nothing is published from now on. By a subscription anew: what was published before may still be under way in the
-        old one, and two of a process have one connection."""
+        """Nothing is published from now on."""
+        stay_quiet([self])
+
+    def subscribe_anew(self):
+        """What was published before may still be under way in the old subscription, and two of a process have one connection."""
         self.close()
         assert not get_topic_manager().has_subscription(self.name), f"another subscriber of {self.name} keeps the connection"
         self._subscribe()
-        time.sleep(QUIET)
-        if self.values:
-            raise AssertionError(f"{self.name}: {self.values} came, though there is nothing new")
 
     def close(self):
         self._subscriber.unregister()
+
+
+def stay_quiet(topics):
+    """Nothing is published on any of them from now on."""
+    for topic in topics:
+        topic.subscribe_anew()
+    time.sleep(QUIET)
+    for topic in topics:
+        if topic.values:
+            raise AssertionError(f"{topic.name}: {topic.values} came, though there is nothing new")
 
 
 class Latest:

@@ -6,22 +6,45 @@ from std_msgs.msg import Bool, Int16
 
 from .latest import LatestDiagnostics, LatestStatus
 from .process import write_map
+from .topics import stay_quiet
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 TIMEOUT = 0.5
 
 
-class Truth:
-    """Of the device `plant` with the point `level` in holding register 4."""
+def start(test, port, *arguments, **options):
+    """The truth of one device; the options are those of _map()."""
+    path = _map(test.name, port, **options)
+    return Truth(test, test.name, test.driver(f"_map:={path}", *arguments))
 
-    def __init__(self, test, port, *arguments, address="127.0.0.1", timeout=TIMEOUT):
-        path = write_map(f"name: plant\naddress: {address}\nrate: 20\ntimeout: {timeout}s\n"
-                         "mapping:\n  holding_registers: {level: {address: 4, type: INT}}\n")
-        self.driver = test.driver(f"_map:={path}", f"_port:={port}", *arguments)
-        self.level = test.topic("/plant/level", Int16)
-        self.online = test.topic("/plant/online", Bool)
-        self.status = LatestStatus("plant")
-        self.diagnostics = LatestDiagnostics("plant")
+
+def start_several(test, ports, **options):
+    """That of each of several devices, which have one driver."""
+    names = [f"{test.name}_{number}" for number in range(len(ports))]
+    maps = [_map(name, port, **options) for name, port in zip(names, ports)]
+    driver = test.driver(f"_maps:=[{','.join(maps)}]")
+    return [Truth(test, name, driver) for name in names]
+
+
+def _map(name, port, address="127.0.0.1", timeout=TIMEOUT):
+    return write_map(f"name: {name}\naddress: {address}\nport: {port}\nrate: 20\ntimeout: {timeout}s\n"
+                     "mapping:\n  holding_registers: {level: {address: 4, type: INT}}\n")
+
+
+def nothing_is_published(truths):
+    """What is old does not come again."""
+    stay_quiet([truth.level for truth in truths])
+
+
+class Truth:
+    """Of a device with the point `level` in holding register 4."""
+
+    def __init__(self, test, name, driver):
+        self.name, self.driver = name, driver
+        self.level = test.topic(f"/{name}/level", Int16)
+        self.online = test.topic(f"/{name}/online", Bool)
+        self.status = LatestStatus(name)
+        self.diagnostics = LatestDiagnostics(name)
         test.addCleanup(self._close)
         self._test = test
 
@@ -43,24 +66,19 @@ class Truth:
         self.diagnostics.level("polling", *polling)
 
     def is_offline(self):
+        """A test looks with nothing_is_published(), too."""
         self._expect_online(False)
         self.status.wait_for(  # with the reason, which there is none of at the very beginning
             lambda known: not known.get("online", True) and known["level"].quality == PointStatus.OFFLINE and
             known["trouble"])
         self.diagnostics.says("offline", "connection", ERROR)
-        self._nothing_is_published()
 
     def has_exception(self, code, quality):
-        """The device is there, but refuses the point."""
+        """The device is there, but refuses the point. A test looks with nothing_is_published(), too."""
         point = self.status.wait_for(lambda known: known.get("online") and known["level"].quality == quality)["level"]
         self._test.assertEqual(point.exception, code)
         self.diagnostics.says("level", "polling", WARN, ERROR)
         self._expect_online(True)
-        self._nothing_is_published()
 
     def _expect_online(self, wanted):
         self.online.wait_for(lambda _: self.online.values[-1] == wanted)
-
-    def _nothing_is_published(self):
-        """What is old does not come again."""
-        self.level.stays_quiet()

@@ -126,19 +126,29 @@ class Topic:
         return self.wait_for(lambda _: True)
 
     def stays_quiet(self):
-        """Nothing is published from now on. By a subscription anew: what was published before may still be under way in the
-        old one."""
+        """Nothing is published from now on."""
+        stay_quiet([self])
+
+    def subscribe_anew(self):
+        """What was published before may still be under way in the old subscription."""
         self.close()
         self._subscribe()
-        time.sleep(QUIET)
-        if self.values:
-            raise AssertionError(f"{self.name}: {self.values} came, though there is nothing new")
 
     def close(self):
         if self._subscription:
             self._take()
             self._subscription.close()
             self._subscription = None
+
+
+def stay_quiet(topics):
+    """Nothing is published on any of them from now on."""
+    for topic in topics:
+        topic.subscribe_anew()
+    time.sleep(QUIET)
+    for topic in topics:
+        if topic.values:
+            raise AssertionError(f"{topic.name}: {topic.values} came, though there is nothing new")
 
 
 class Latest:
