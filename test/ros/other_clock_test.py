@@ -16,11 +16,11 @@ from support.patience import NO_TIMEOUT, PATIENCE, wait_until
 from support.ports import free_port
 from support.times import ROUNDING, ros_duration, ros_time, seconds
 
-MAP = f"""
-name: cell
+MAP = """
+name: {name}
 address: 127.0.0.1
 rate: 0.001
-timeout: {NO_TIMEOUT}s
+timeout: {timeout}s
 defaults: {{publish: on_change, stamped: true}}
 mapping:
   coils: {{lamp: 4}}
@@ -45,26 +45,27 @@ class Edge:
         return max(self.before - self.stamp, self.stamp - self.after, 0)
 
 
-@unittest.skipUnless(process.has_node(), "coupler-node was not built")
-class OtherClockTest(testing.RosTest):
-    def begin(self, **clock):
-        self.doCleanups()  # of the clock before
-        path = process.write_map(MAP)
+class Cell:
+    """A node whose clock goes otherwise, and its driver."""
+
+    def __init__(self, test, name, **clock):
+        self._test = test
+        path = process.write_map(MAP.format(name=name, timeout=NO_TIMEOUT))
         node = process.Node(path, port=free_port())
-        self.addCleanup(node.end)
+        test.addCleanup(node.end)
         self.clock = OtherClock(node.port, **clock)
-        self.addCleanup(self.clock.stop)
-        self.process = self.driver(f"_map:={path}", f"_port:={self.clock.port}")
-        self.process.wait_for("connected")
-        self.lamp = self.topic("/cell/lamp/stamped", BoolStamped)
+        test.addCleanup(self.clock.stop)
+        self.driver = test.driver(f"_map:={path}", f"_port:={self.clock.port}")
+        self.driver.wait_for("connected")
+        self.lamp = test.topic(f"/{name}/lamp/stamped", BoolStamped)
         self.lamp.wait_for(lambda message: not message.value)
         self.client = ModbusTcpClient("127.0.0.1", port=node.port, timeout=PATIENCE)
-        self.addCleanup(self.client.close)
+        test.addCleanup(self.client.close)
         self.level = False
         self.edge()  # from here on the driver listens
 
     def set_lamp(self, level):
-        self.assertFalse(self.client.write_coil(4, level).isError())
+        self._test.assertFalse(self.client.write_coil(4, level).isError())
 
     def edge(self):
         """Made by another client, behind no clock and no delay."""
@@ -77,12 +78,13 @@ class OtherClockTest(testing.RosTest):
         message = self.lamp.values[-1]
         return Edge(before, after, seconds(message.header.stamp), message.uncertainty)
 
-    def edges(self, count, pause=0.0):
-        edges = []
-        for _ in range(count):
-            edges.append(self.edge())
-            time.sleep(pause)
-        return edges
+    def edges(self, count):
+        return [self.edge() for _ in range(count)]
+
+
+@unittest.skipUnless(process.has_node(), "coupler-node was not built")
+class OtherClockTest(testing.RosTest):
+    at_once = True
 
     def expect_true(self, edges):
         for edge in edges:
@@ -91,25 +93,29 @@ class OtherClockTest(testing.RosTest):
 
 class Stamps(OtherClockTest):
     def test_of_a_clock_that_is_ahead_or_has_just_begun(self):
-        for offset in (300 * 24 * HOUR, NS - time.monotonic_ns()):
+        for number, offset in enumerate((300 * 24 * HOUR, NS - time.monotonic_ns())):
             with self.subTest(offset=offset):
-                self.begin(offset=offset)
-                self.expect_true(self.edges(10))
+                self.expect_true(Cell(self, f"{self.name}_{number}", offset=offset).edges(10))
 
     def test_of_a_clock_that_drifts(self):
-        for drift in (DRIFT, -DRIFT):
-            with self.subTest(drift=drift):
-                self.begin(drift=drift)
-                begun = time.monotonic()
-                while time.monotonic() < begun + MEASURED:
-                    self.expect_true(self.edges(1, pause=0.6))
-                self.expect_true(self.edges(3, pause=1.2))  # the drift is known, and nothing was exchanged for a while
+        cells = [Cell(self, f"{self.name}_{number}", drift=drift) for number, drift in enumerate((DRIFT, -DRIFT))]
+
+        def expect_each_true(pause):
+            for cell in cells:
+                with self.subTest(drift=cell.clock.drift):
+                    self.expect_true(cell.edges(1))
+            time.sleep(pause)
+
+        begun = time.monotonic()
+        while time.monotonic() < begun + MEASURED:
+            expect_each_true(pause=0.6)
+        for _ in range(3):
+            expect_each_true(pause=1.2)  # the drift is known, and nothing was exchanged for a while
 
     def test_of_a_network_that_is_slow_one_way(self):
         for way in ("to_node", "to_driver"):
             with self.subTest(way=way):
-                self.begin(**{way: lambda: ASYMMETRIC})
-                edges = self.edges(10)
+                edges = Cell(self, f"{self.name}_{way}", **{way: lambda: ASYMMETRIC}).edges(10)
                 self.expect_true(edges)
                 for edge in edges:
                     self.assertGreaterEqual(edge.uncertainty, ASYMMETRIC / 2, "which way it was slow nobody can know")
@@ -120,40 +126,40 @@ class Stamps(OtherClockTest):
         def delay():
             return chance.uniform(0.02, 0.1) if chance.random() < 0.3 else chance.uniform(0, 0.001)
 
-        self.begin(offset=7 * HOUR, drift=DRIFT / 2, to_node=delay, to_driver=delay)
-        self.expect_true(self.edges(60))
+        cell = Cell(self, self.name, offset=7 * HOUR, drift=DRIFT / 2, to_node=delay, to_driver=delay)
+        self.expect_true(cell.edges(60))
 
     def test_after_a_jump_they_begin_anew(self):
-        self.begin()
-        self.expect_true(self.edges(3))
+        cell = Cell(self, self.name)
+        self.expect_true(cell.edges(3))
         for jump in (HOUR, -HOUR):
-            self.clock.offset += jump
-            self.edge()  # this exchange may have begun before the jump
-            self.expect_true(self.edges(3))
-        self.process.wait_for("clock has jumped")
+            cell.clock.offset += jump
+            cell.edge()  # this exchange may have begun before the jump
+            self.expect_true(cell.edges(3))
+        cell.driver.wait_for("clock has jumped")
 
 
 class Schedules(OtherClockTest):
     """An output at a time, through all of it."""
 
     def test_the_time_that_is_told_is_when_it_was_driven(self):
-        self.begin(offset=7 * HOUR, drift=DRIFT, to_node=lambda: 0.002, to_driver=lambda: 0.01)
-        scheduled = self.topic("/cell/scheduled", Scheduled)
-        schedule = self.service("/cell/schedule", Schedule)
+        cell = Cell(self, self.name, offset=7 * HOUR, drift=DRIFT, to_node=lambda: 0.002, to_driver=lambda: 0.01)
+        scheduled = self.topic(f"/{self.name}/scheduled", Scheduled)
+        schedule = self.service(f"/{self.name}/schedule", Schedule)
 
         def in_seconds(ahead):
             return schedule("lamp", "true", ros_time(time.time() + ahead), ros_duration(0))
 
         def is_known():
             answer = in_seconds(3000)
-            self.set_lamp(False)
+            cell.set_lamp(False)
             return answer.message == "accepted: the node does it"
 
         wait_until(is_known, "the node to be known")
         ahead, before = 0.5, time.time()
         while not (answer := in_seconds(ahead)).success:  # on a busy machine the call may come after the time
             ahead, before = 2 * ahead, time.time()
-        before, after = self.driven(before)
+        before, after = self.driven(cell, before)
         outcome = scheduled.wait_for(lambda message: message.number == answer.number)
         self.assertEqual((outcome.result, outcome.reason), (Scheduled.DONE, ""))
         stamp = seconds(outcome.header.stamp)
@@ -161,11 +167,12 @@ class Schedules(OtherClockTest):
         self.assertGreaterEqual(after, stamp - outcome.uncertainty - ROUNDING)
         self.assertLess(abs(stamp - outcome.lateness - seconds(outcome.due)), ROUNDING)
 
-    def driven(self, before):
+    @staticmethod
+    def driven(cell, before):
         """The last time at which the lamp was seen off, of `before` and those since, and the first at which it was seen on."""
         while True:
             asked = time.time()
-            if self.client.read_coils(4, 1).bits[0]:
+            if cell.client.read_coils(4, 1).bits[0]:
                 return before, time.time()
             before = asked
 
