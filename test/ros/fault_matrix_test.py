@@ -12,31 +12,33 @@ from std_msgs.msg import Bool, Int16, Int32, UInt16
 from support import process, testing
 from support.device import (BUSY, FAILURE, ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Device, Raw,
                             Refuse, frame)
-from support.patience import NO_TIMEOUT, PATIENCE, QUIET
+from support.patience import NO_TIMEOUT, PATIENCE
 from support.topics import connected_publishers, next_message, wait_until
 
 TIMEOUT = 0.5
 MAP = """
-name: plant
+name: {name}
 address: 127.0.0.1
 rate: 20
+timeout: {timeout}s
 """
 
 
 class FaultMatrix(testing.RosTest):
+    at_once = True
+
     def setUp(self):
         self.device = Device().start()
         self.addCleanup(self.device.stop)
 
     def start(self, mapping, *arguments, head="", timeout=NO_TIMEOUT):
-        path = process.write_map(f"{MAP}timeout: {timeout}s\n{head}mapping:\n{mapping}")
+        path = process.write_map(f"{MAP.format(name=self.name, timeout=timeout)}{head}mapping:\n{mapping}")
         driver = self.driver(f"_map:={path}", f"_port:={self.device.port}", *arguments)
-        self.online = self.topic("/plant/online", Bool)
+        self.online = self.topic(f"/{self.name}/online", Bool)
         return driver
 
-    @staticmethod
-    def status_says_offline():
-        status = next_message("/plant/status", Status)
+    def status_says_offline(self):
+        status = next_message(f"/{self.name}/status", Status)
         return (status.online, status.points[0].quality) == (False, PointStatus.OFFLINE)
 
     LEVEL = "  holding_registers: {level: {address: 4, type: INT}}\n"
@@ -48,7 +50,7 @@ class FaultMatrix(testing.RosTest):
     # 1. It never reconnects
     def test_01_it_comes_back_after_every_way_to_go(self):
         self.start(self.LEVEL, timeout=TIMEOUT)
-        level = self.topic("/plant/level", Int16)
+        level = self.topic(f"/{self.name}/level", Int16)
         self.level_follows(level, 1)
         ways = {"reset": self.device.drop, "killed": self.device.stop,
                 "frozen": lambda: setattr(self.device, "silent", True),
@@ -78,7 +80,7 @@ class FaultMatrix(testing.RosTest):
 
         self.device.tables["holding_registers"][4] = 7
         self.start(self.LEVEL, timeout=TIMEOUT)
-        level = self.topic("/plant/level", Int16)
+        level = self.topic(f"/{self.name}/level", Int16)
         level.next()
         self.device.answer = answer
         wait_until(lambda: late["n"] > 25, "several late replies")
@@ -94,7 +96,7 @@ class FaultMatrix(testing.RosTest):
 
         self.device.tables["holding_registers"][4] = 7
         self.start(self.LEVEL)
-        level = self.topic("/plant/level", Int16)
+        level = self.topic(f"/{self.name}/level", Int16)
         level.wait_for(lambda value: value == 7)
         self.device.answer = answer
         wait_until(lambda: len(answered) >= 4, "several old replies")
@@ -116,7 +118,7 @@ class FaultMatrix(testing.RosTest):
         driver = self.start("  input_registers:\n" + points)
         driver.wait_for("p9")
         for i in (0, 8, 10, 19):
-            self.assertEqual(self.topic(f"/plant/p{i}", Int16).next(), 100 + i)
+            self.assertEqual(self.topic(f"/{self.name}/p{i}", Int16).next(), 100 + i)
         asked = len(self.device.requests)
         wait_until(lambda: len(self.device.requests) > asked + 40, "several cycles")
         late = self.device.requests[asked:]
@@ -127,7 +129,7 @@ class FaultMatrix(testing.RosTest):
     def test_04_a_limit_is_kept_where_the_map_says_it(self):
         points = "".join(f"    p{i}: {{address: {i}, type: INT}}\n" for i in range(100))
         self.start("  input_registers:\n" + points, head="limits: {read_registers: 30}\n")
-        self.topic("/plant/p99", Int16).next()
+        self.topic(f"/{self.name}/p99", Int16).next()
         self.assertLessEqual(max(request.count for request in self.device.requests), 30)
 
     def test_04_a_limit_that_the_map_does_not_say_is_found(self):
@@ -140,7 +142,7 @@ class FaultMatrix(testing.RosTest):
         points = "".join(f"    p{i}: {{address: {i}, type: INT}}\n" for i in range(100))
         self.start("  input_registers:\n" + points)
         for i in (0, 50, 99):
-            self.topic(f"/plant/p{i}", Int16).next()
+            self.topic(f"/{self.name}/p{i}", Int16).next()
 
     # 5. Too many small reads, and holes that must not be read
     def test_05_points_are_read_together_and_holes_only_where_the_map_allows_it(self):
@@ -151,7 +153,7 @@ class FaultMatrix(testing.RosTest):
                 self.setUp()  # a device that nobody has asked for anything
                 driver = self.start("  input_registers:\n" + points,
                                     head=f"registers_read_continuous: {str(allowed).lower()}\n")
-                last = self.topic("/plant/p49", Int16)
+                last = self.topic(f"/{self.name}/p49", Int16)
                 last.next()
                 self.assertEqual(len({(r.address, r.count) for r in self.device.requests}), requests)
                 driver.end()
@@ -160,7 +162,7 @@ class FaultMatrix(testing.RosTest):
     # 6. Stale looks fresh
     def test_06_nothing_old_is_published_while_the_device_is_silent(self):
         self.start(self.LEVEL, timeout=TIMEOUT)
-        level = self.topic("/plant/level", Int16)
+        level = self.topic(f"/{self.name}/level", Int16)
         self.level_follows(level, 5)
         self.device.silent = True
         self.online.becomes(False)
@@ -177,7 +179,7 @@ class FaultMatrix(testing.RosTest):
         self.device.answer = answer
         points = "".join(f"    p{i}: {{address: {100 * i}, type: INT}}\n" for i in range(30))
         self.start("  input_registers:\n" + points + "  coils: {lamp: 3}\n")
-        lamp = self.publisher("/plant/lamp/write", Bool)
+        lamp = self.publisher(f"/{self.name}/lamp/write", Bool)
         self.online.becomes(True)
         wait_until(lambda: len(self.device.requests) > 3, "polling")
         reads = []
@@ -199,21 +201,22 @@ class FaultMatrix(testing.RosTest):
 
         self.device.answer = answer
         self.start(self.LEVEL, "_rate:=100")
-        level = self.topic("/plant/level", Int16)
-        write = self.publisher("/plant/level/write", Int16)
+        level = self.topic(f"/{self.name}/level", Int16)
+        write = self.publisher(f"/{self.name}/level/write", Int16)
         level.next()
         for value in range(1, 40):
             write.publish(value)
             time.sleep(0.03)
         level.wait_for(lambda value: value == 39)
-        time.sleep(QUIET)
+        read = len(self.device.seen(3))
+        wait_until(lambda: len(self.device.seen(3)) > read + 10, "ten more reads")
         self.assertEqual(level.values, sorted(level.values), "an older value came after a newer one")
 
     # 9. One dead unit blocks the gateway
     def test_09_a_unit_that_is_away_costs_the_others_neither_values_nor_connection(self):
         self.device.away = {2}
-        maps = [process.write_map(f"name: unit{unit}\naddress: 127.0.0.1\nport: {self.device.port}\nunit: {unit}\n"
-                                  f"rate: 20\ntimeout: {NO_TIMEOUT}s\nmapping:\n{self.LEVEL}") for unit in (1, 2, 3)]
+        maps = [process.write_map(f"{MAP.format(name=f'unit{unit}', timeout=NO_TIMEOUT)}port: {self.device.port}\nunit: {unit}\n"
+                                  f"mapping:\n{self.LEVEL}") for unit in (1, 2, 3)]
         self.driver(f"_maps:=[{','.join(maps)}]")
         levels = {unit: self.topic(f"/unit{unit}/level", Int16) for unit in (1, 3)}
         for unit, level in levels.items():
@@ -245,7 +248,7 @@ class FaultMatrix(testing.RosTest):
         self.device = Device(port=self.device.port, connections=1).start()
         self.addCleanup(self.device.stop)
         self.start(self.LEVEL)
-        level = self.topic("/plant/level", Int16)
+        level = self.topic(f"/{self.name}/level", Int16)
         for value in range(1, 4):
             self.level_follows(level, value)
             self.device.drop()
@@ -258,7 +261,7 @@ class FaultMatrix(testing.RosTest):
         points = "".join(f"    {order.lower()}: {{address: 0, type: DINT, order: {order}}}\n" for order in orders)
         self.start("  input_registers:\n" + points)
         for order, value in orders.items():
-            self.assertEqual(self.topic(f"/plant/{order.lower()}", Int32).next(), value)
+            self.assertEqual(self.topic(f"/{self.name}/{order.lower()}", Int32).next(), value)
 
     # 13. Address base
     def test_13_the_manuals_numbers_and_the_wires_mean_what_the_map_says(self):
@@ -266,7 +269,7 @@ class FaultMatrix(testing.RosTest):
         for head, number in (("", 1), ("addressing: modicon\n", 40002), ("addressing: modicon\n", 2)):
             with self.subTest(head, number=number):
                 driver = self.start(f"  holding_registers: {{level: {{address: {number}, type: INT}}}}\n", head=head)
-                level = self.topic("/plant/level", Int16)
+                level = self.topic(f"/{self.name}/level", Int16)
                 self.assertEqual(level.next(), 22)
                 driver.end()
                 level.close()
@@ -283,7 +286,7 @@ class FaultMatrix(testing.RosTest):
                 self.device.answer = answer
                 driver = self.start(f"  holding_registers: {{level: {{address: 4, type: INT, write_function: {said}}}}}\n")
                 driver.wait_for("connected")
-                write = connected_publishers({"/plant/level/write": Int16})[0]
+                write = connected_publishers({f"/{self.name}/level/write": Int16})[0]
                 write.publish(100 + refused)
                 wait_until(lambda r=refused: self.device.tables["holding_registers"][4] == 100 + r, "the write")
                 write.unregister()
@@ -294,32 +297,35 @@ class FaultMatrix(testing.RosTest):
         self.device.tables["holding_registers"][7] = 0xA5A5
         self.start("  holding_registers: {fault: {address: 7, type: BOOL, bit: 5}, "
                    "ready: {address: 7, type: BOOL, bit: 6}, word: {address: 7, type: UINT, access: read}}\n")
-        self.assertTrue(self.topic("/plant/fault", Bool).next())
-        self.assertFalse(self.topic("/plant/ready", Bool).next())
-        self.publisher("/plant/ready/write", Bool).publish(True)
-        self.topic("/plant/word", UInt16).wait_for(lambda value: value == 0xA5E5)
+        self.assertTrue(self.topic(f"/{self.name}/fault", Bool).next())
+        self.assertFalse(self.topic(f"/{self.name}/ready", Bool).next())
+        self.publisher(f"/{self.name}/ready/write", Bool).publish(True)
+        self.topic(f"/{self.name}/word", UInt16).wait_for(lambda value: value == 0xA5E5)
 
     # Every exception code
     def test_every_exception_code_is_said_and_the_link_stays(self):
-        code = {"now": 0}
+        codes = (ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE, FAILURE, 5, BUSY, 8, 0x0A, 0x0B)
 
         def answer(request):
-            if code["now"] and request.function == 5:
-                raise Refuse(code["now"])
+            if request.function == 5:
+                raise Refuse(request.unit)  # each unit with its number
             return self.device.serve(request)
 
         self.device.answer = answer
-        driver = self.start(self.LEVEL + "  coils: {lamp: 3}\n")
-        level = self.topic("/plant/level", Int16)
-        lamp = self.publisher("/plant/lamp/write", Bool)
-        self.level_follows(level, 1)
-        for number in (ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE, FAILURE, 5, BUSY, 8, 0x0A, 0x0B):
-            with self.subTest(code=number):
-                code["now"] = number
-                lamp.publish(True)
-                driver.wait_for(f"exception {number:02X}")
-                code["now"] = 0
-                self.level_follows(level, 100 + number)
+        names = {code: f"{self.name}_{code}" for code in codes}
+        maps = [process.write_map(f"{MAP.format(name=name, timeout=NO_TIMEOUT)}port: {self.device.port}\nunit: {code}\n"
+                                  f"mapping:\n{self.LEVEL}  coils: {{lamp: 3}}\n") for code, name in names.items()]
+        driver = self.driver(f"_maps:=[{','.join(maps)}]")
+        levels = {code: self.topic(f"/{name}/level", Int16) for code, name in names.items()}
+        lamps = self.publishers({f"/{name}/lamp/write": Bool for name in names.values()})
+        for level in levels.values():
+            self.level_follows(level, 1)
+        for lamp in lamps:
+            lamp.publish(True)
+        for code in codes:
+            with self.subTest(code=code):
+                driver.wait_for(f"exception {code:02X}")
+                self.level_follows(levels[code], 100 + code)
         self.assertEqual(self.device.accepted, 1, "an exception is no reason to close the connection")
 
 

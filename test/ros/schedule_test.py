@@ -15,11 +15,11 @@ from support.peer import Peer
 from support.ports import free_port
 from support.times import ROUNDING, ros_duration, ros_time, seconds
 
-MAP = f"""
-name: cell
+MAP = """
+name: {name}
 address: 127.0.0.1
 rate: 50
-timeout: {NO_TIMEOUT}s
+timeout: {timeout}s
 mapping:
   coils: {{lamp: 4, horn: {{address: 5, access: write}}}}
   input_registers: {{pressure: {{address: 40, type: INT}}}}
@@ -32,12 +32,17 @@ BY_DRIVER, BY_NODE = "accepted: the driver does it", "accepted: the node does it
 
 
 class ScheduleTest(testing.RosTest):
-    def start(self, port, by=BY_DRIVER, text=MAP):
-        self.program = self.driver(f"_map:={process.write_map(text)}", f"_port:={port}")
+    at_once = True
+
+    def write_map(self, head=""):
+        return process.write_map(head + MAP.format(name=self.name, timeout=NO_TIMEOUT))
+
+    def start(self, port, path, by=BY_DRIVER):
+        self.program = self.driver(f"_map:={path}", f"_port:={port}")
         self.program.wait_for("connected")
-        self.scheduled = self.topic("/cell/scheduled", Scheduled)
-        self.call = self.service("/cell/schedule", Schedule)
-        self.write = self.service("/cell/write", Write)
+        self.scheduled = self.topic(f"/{self.name}/scheduled", Scheduled)
+        self.call = self.service(f"/{self.name}/schedule", Schedule)
+        self.write = self.service(f"/{self.name}/write", Write)
         self.settles(by)
 
     def settles(self, by):
@@ -64,13 +69,16 @@ class ScheduleTest(testing.RosTest):
 
     def same_time_in_order(self, by):
         """What is asked for at the same time is done in the order in which it was asked for, each time."""
+        pairs = []
         for _ in range(10):
             first = self.accepted(by, "lamp", "true", LATER)
             answer = self.call("lamp", "false", self.at, ros_duration(0))
             if answer.success:  # not too late on a busy machine
-                self.done(answer.number)
-                told = [message.number for message in self.scheduled.values]
-                self.assertLess(told.index(first), told.index(answer.number))
+                pairs.append((first, answer.number))
+        for first, second in pairs:
+            self.done(second)
+            told = [message.number for message in self.scheduled.values]
+            self.assertLess(told.index(first), told.index(second))
 
     def outcome(self, number):
         return self.scheduled.wait_for(lambda message: message.number == number)
@@ -97,7 +105,7 @@ class ByTheDriver(ScheduleTest):
     def setUp(self):
         self.peer = Peer().start()
         self.addCleanup(self.peer.stop)
-        self.start(self.peer.port)
+        self.start(self.peer.port, self.write_map())
 
     def get(self, table, address):
         return int(self.peer.get(table, address)[0])
@@ -157,7 +165,7 @@ class Failures(ScheduleTest):
                 raise Refuse(FAILURE)
             return self.device.serve(request)
 
-        self.start(self.device.port)
+        self.start(self.device.port, self.write_map())
         self.device.answer = answer
         outcome = self.outcome(self.accepted(BY_DRIVER, "lamp", "true"))
         self.assertEqual(outcome.result, Scheduled.FAILED)
@@ -170,7 +178,7 @@ class Failures(ScheduleTest):
                 raise OSError
             return self.device.serve(request)
 
-        self.start(self.device.port)
+        self.start(self.device.port, self.write_map())
         self.device.answer = answer
         outcome = self.outcome(self.accepted(BY_DRIVER, "lamp", "true"))
         self.assertEqual(outcome.result, Scheduled.UNKNOWN)
@@ -179,12 +187,12 @@ class Failures(ScheduleTest):
 
 @unittest.skipUnless(process.has_node(), "coupler-node was not built")
 class ByTheNode(ScheduleTest):
-    def begin(self, by=BY_NODE, text=MAP):
-        self.map = process.write_map(text)
-        self.node = process.Node(self.map, port=free_port())
+    def begin(self, by=BY_NODE, head=""):
+        path = self.write_map(head)
+        self.node = process.Node(path, port=free_port())
         self.addCleanup(lambda: self.node.end())  # pylint: disable=unnecessary-lambda
-        self.start(self.node.port, by, text)
-        self.lamp = self.topic("/cell/lamp", Bool)
+        self.start(self.node.port, path, by)
+        self.lamp = self.topic(f"/{self.name}/lamp", Bool)
         self.lamp.becomes(False)
 
     def test_it_is_driven_and_told(self):
@@ -210,7 +218,7 @@ class ByTheNode(ScheduleTest):
         self.done(self.accepted(BY_DRIVER, "part", "true"))
 
     def test_with_changes_off_it_is_the_drivers(self):
-        self.begin(BY_DRIVER, "changes: off\n" + MAP)
+        self.begin(BY_DRIVER, "changes: off\n")
         self.done(self.accepted(BY_DRIVER, "lamp", "true"))
         self.lamp.becomes(True)
 
