@@ -16,7 +16,7 @@ from support.ports import free_port
 SELDOM = 0.001
 
 MAP = """
-name: cell
+name: {name}
 address: 127.0.0.1
 rate: {rate}
 timeout: {timeout}
@@ -35,15 +35,17 @@ REQUESTS = 0xFF00 + 15  # of the node's statistics
 
 @unittest.skipUnless(process.has_node(), "coupler-node was not built")
 class Changes(testing.RosTest):
+    at_once = True
+
     def begin(self, rate=SELDOM, timeout=60, wires="", before_node=lambda port: port):
         """`before_node` returns the port of something between the driver and the node."""
-        self.map = process.write_map(MAP.format(rate=rate, timeout=timeout) + wires)
+        self.map = process.write_map(MAP.format(name=self.name, rate=rate, timeout=timeout) + wires)
         self.node = process.Node(self.map, port=free_port())
         self.addCleanup(lambda: self.node.end())  # pylint: disable=unnecessary-lambda
         self.port = self.node.port
         self.process = self.driver(f"_map:={self.map}", f"_port:={before_node(self.port)}")
         self.process.wait_for("connected")
-        self.lamp = self.topic("/cell/lamp", Bool)
+        self.lamp = self.topic(f"/{self.name}/lamp", Bool)
         self.lamp.becomes(False)
 
     def another_client(self):
@@ -67,7 +69,7 @@ class Changes(testing.RosTest):
 
     def test_inputs_that_change_are_heard_of(self):
         self.begin()
-        lit, dark = self.topic("/cell/lit", Bool), self.topic("/cell/dark", Bool)
+        lit, dark = self.topic(f"/{self.name}/lit", Bool), self.topic(f"/{self.name}/dark", Bool)
         lit.becomes(False)
         dark.becomes(True)
         for level in (True, False, True):
@@ -77,7 +79,7 @@ class Changes(testing.RosTest):
 
     def test_a_wave_is_heard_of_edge_by_edge(self):
         self.begin(wires=WAVE)
-        beat = self.topic("/cell/beat", Bool)
+        beat = self.topic(f"/{self.name}/beat", Bool)
         beat.wait_for(lambda _: len(beat.values) >= 9)
         seen = beat.values[1:9]  # the first is that of the new subscriber, perhaps with an edge before it
         self.assertEqual(seen, [seen[0], not seen[0]] * 4)
@@ -107,7 +109,7 @@ class Changes(testing.RosTest):
         for level in (True, False, True):
             self.set_lamp(level)
             self.lamp.becomes(level)
-        self.publisher("/cell/lamp/write", Bool).publish(False)
+        self.publisher(f"/{self.name}/lamp/write", Bool).publish(False)
         self.lamp.becomes(False)
         self.assertEqual((gateway.accepted, gateway.waits), (accepted, waits))
 
@@ -135,12 +137,12 @@ class Changes(testing.RosTest):
 
     def test_a_write_is_heard_of(self):
         self.begin()
-        self.publisher("/cell/lamp/write", Bool).publish(True)
+        self.publisher(f"/{self.name}/lamp/write", Bool).publish(True)
         self.lamp.becomes(True)
 
     def test_a_node_that_was_started_anew_is_heard_of_again(self):
         self.begin()
-        online = self.topic("/cell/online", Bool)
+        online = self.topic(f"/{self.name}/online", Bool)
         self.node.end()
         online.becomes(False)
         self.node = process.Node(self.map, port=self.port)
@@ -159,7 +161,7 @@ class Changes(testing.RosTest):
 
     def test_a_node_that_hangs_is_offline_until_its_supervisor_has_replaced_what_serves(self):
         self.begin(timeout=1)
-        online = self.topic("/cell/online", Bool)
+        online = self.topic(f"/{self.name}/online", Bool)
         online.becomes(True)
         online.values.clear()
         self.node.hang()
@@ -173,7 +175,7 @@ class Changes(testing.RosTest):
         self.set_lamp(True)
         self.lamp.becomes(True)
         self.lamp.close()
-        self.lamp = self.topic("/cell/lamp", Bool)
+        self.lamp = self.topic(f"/{self.name}/lamp", Bool)
         self.lamp.becomes(True)
 
 

@@ -17,7 +17,7 @@ from support.patience import NO_TIMEOUT, PATIENCE, QUIET
 from support.topics import response_of, wait_until
 
 MAP = """
-name: served
+name: {name}
 address: 127.0.0.1
 rate: 20
 timeout: {timeout}s
@@ -38,19 +38,20 @@ WriteResponse = response_of(Write)
 
 
 class ServicesTest(testing.RosTest):
+    at_once = True
     timeout = NO_TIMEOUT
 
     def setUp(self):
         self.device = Device().start()
         self.addCleanup(self.device.stop)
-        path = process.write_map(MAP.replace("{timeout}", str(self.timeout)))
+        path = process.write_map(MAP.replace("{timeout}", str(self.timeout)).replace("{name}", self.name))
         self.program = self.driver(f"_map:={path}", f"_port:={self.device.port}")
         self.program.wait_for("connected")
-        self.status = LatestStatus("served")
+        self.status = LatestStatus(self.name)
         self.addCleanup(self.status.close)
 
     def call(self, name, kind, *arguments):
-        return self.service(f"/served/{name}", kind)(*arguments)
+        return self.service(f"/{self.name}/{name}", kind)(*arguments)
 
     def write(self, point, value):
         return self.call("write", Write, point, value)
@@ -90,8 +91,8 @@ class Services(ServicesTest):
             self.assertEqual(self.device.tables["coils"][3], on)
 
     def test_what_cannot_be_written_is_told_with_what_can(self):
-        for point, value, expected in (("nothing", "1", "there is no point 'nothing' in the map of served; the map has their names"),
-                                       ("presure", "1", "there is no point 'presure' in the map of served; did you mean 'pressure'?"),
+        for point, value, expected in (("nothing", "1", f"there is no point 'nothing' in the map of {self.name}; the map has their names"),
+                                       ("presure", "1", f"there is no point 'presure' in the map of {self.name}; did you mean 'pressure'?"),
                                        ("pressure", "1", "pressure cannot be written"),
                                        ("level", "70000", "-32768 to 32767"), ("level", "full", "is not a number"),
                                        ("speeds", "[1]", "give 3")):
@@ -106,28 +107,29 @@ class Services(ServicesTest):
             self.assertEqual((result.outcome, self.device.seen(16)), (WriteResponse.REFUSED, []))
             self.assertIn("not finite", result.message)
         self.assertEqual(self.write("gains", "[1, inf]").outcome, WriteResponse.REFUSED)
-        self.publisher("/served/gain/write", Float32).publish(float("nan"))
-        self.program.wait_for("served: write to gain: refused: a number that is not finite (NaN or infinity)")
+        self.publisher(f"/{self.name}/gain/write", Float32).publish(float("nan"))
+        self.program.wait_for(f"{self.name}: write to gain: refused: a number that is not finite (NaN or infinity)")
         self.assertTrue(self.write("gain", "1.5").success)
         self.assertEqual([request.count for request in self.device.seen(16)], [2])
 
     def test_a_flood_of_refused_writes_is_one_line_a_second_with_a_count(self):
         began = time.monotonic()
+        write = self.service(f"/{self.name}/write", Write)
         for _ in range(300):
-            self.write("level", "70000")
+            write("level", "70000")
         self.program.wait_for("more of this kind)")
-        lines = self.program.output.count("served: refused a write to level")
+        lines = self.program.output.count(f"{self.name}: refused a write to level")
         self.assertLess(lines, 2 + time.monotonic() - began)
 
     def test_what_is_refused_is_logged_and_counted(self):
-        diagnostics = LatestDiagnostics("served")
+        diagnostics = LatestDiagnostics(self.name)
         self.addCleanup(diagnostics.close)
         self.write("level", "70000")
-        self.program.wait_for("served: refused a write to level by the service served/write: 70000 does not fit")
+        self.program.wait_for(f"{self.name}: refused a write to level by the service {self.name}/write: 70000 does not fit")
         self.write("pressure", "1")
-        self.program.wait_for("served: refused a write to pressure by the service served/write: ")
+        self.program.wait_for(f"{self.name}: refused a write to pressure by the service {self.name}/write: ")
         self.write("nothing", "1")
-        self.program.wait_for("served: refused a write to nothing by the service served/write: there is no point 'nothing'")
+        self.program.wait_for(f"{self.name}: refused a write to nothing by the service {self.name}/write: there is no point 'nothing'")
         self.write("level", "1e3")
         self.assertEqual(self.device.tables["holding_registers"][4], 1000)
         known = diagnostics.wait_for(lambda known: "writes" in known and values(known["writes"])["ok"] == "1")
@@ -186,12 +188,12 @@ class ServicesOffline(ServicesTest):
         result = self.write("level", "1")
         self.assertFalse(result.success)
         self.assertTrue(result.message)
-        online = self.topic("/served/online", Bool)
+        online = self.topic(f"/{self.name}/online", Bool)
         online.wait_for(lambda now: not now)
         self.assertIn("not connected", self.write("level", "1").message)
 
     def test_a_read_is_answered_at_once_while_the_device_is_offline(self):
-        online = self.topic("/served/online", Bool)
+        online = self.topic(f"/{self.name}/online", Bool)
         online.wait_for(bool)
         self.call("read", Read, "pressure")
         self.device.silent = True
@@ -202,7 +204,7 @@ class ServicesOffline(ServicesTest):
             self.assertIn("no value of seldom: the device is offline: ", result.message)
         self.assertLess(time.monotonic() - started, PATIENCE, "seldom is read every 1000 s")
         self.device.silent = False
-        self.topic("/served/online", Bool).wait_for(bool)
+        self.topic(f"/{self.name}/online", Bool).wait_for(bool)
         self.assertTrue(self.call("read", Read, "pressure").success)
 
 

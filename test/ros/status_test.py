@@ -12,7 +12,7 @@ from support.latest import LatestDiagnostics, LatestStatus, values
 from support.patience import NO_TIMEOUT
 
 MAP = """
-name: plant
+name: {name}
 address: 127.0.0.1
 rate: 20
 timeout: {timeout}s
@@ -25,16 +25,17 @@ mapping:
 
 
 class StatusTest(testing.RosTest):
+    at_once = True
     timeout = NO_TIMEOUT
 
     def setUp(self):
         self.began = time.monotonic()
         self.device = Device().start()
         self.addCleanup(self.device.stop)
-        path = process.write_map(MAP.replace("{timeout}", str(self.timeout)))
+        path = process.write_map(MAP.replace("{timeout}", str(self.timeout)).replace("{name}", self.name))
         self.driver(f"_map:={path}", f"_port:={self.device.port}").wait_for("connected")
-        self.status = LatestStatus("plant")
-        self.diagnostics = LatestDiagnostics("plant")
+        self.status = LatestStatus(self.name)
+        self.diagnostics = LatestDiagnostics(self.name)
         self.addCleanup(self.status.close)
         self.addCleanup(self.diagnostics.close)
 
@@ -55,7 +56,7 @@ class StatusAndDiagnostics(StatusTest):
         self.assertEqual(known["identity"], "foreign")
         self.assertEqual(known["order"].quality, PointStatus.NEVER_READ)
         for name in ("connection", "polling", "writes"):
-            self.assertIn("plant", self.diagnostics.level(name, DiagnosticStatus.OK).hardware_id)
+            self.assertIn(self.name, self.diagnostics.level(name, DiagnosticStatus.OK).hardware_id)
 
     def test_a_point_that_fails_is_named_with_its_exception(self):
         self.status.quality("broken", PointStatus.GOOD)
@@ -94,7 +95,7 @@ class StatusAndDiagnostics(StatusTest):
             return self.device.serve(request)
 
         self.device.answer = answer
-        order = self.publisher("/plant/order/write", Int16)
+        order = self.publisher(f"/{self.name}/order/write", Int16)
         order.publish(1)
         self.diagnostics.wait_for(lambda known: "writes" in known and values(known["writes"])["ok"] == "1")
         order.publish(2)

@@ -31,9 +31,10 @@ class LatestDiagnostics(Latest):
 
     def _merge_diagnostics(self, known, message):
         for status in message.status:
-            name = status.name.split(f"{self._device} ")[-1]
-            known[name] = status
-            self.told.append((name, status.level))
+            _, is_its, name = status.name.rpartition(f"{self._device} ")
+            if is_its:
+                known[name] = status
+                self.told.append((name, status.level))
 
     def level(self, name, *wanted):
         return self.says("", name, *wanted)

@@ -35,16 +35,20 @@ class RosTest(case.Case):
 def main():
     """Runs the tests of the calling file as a ROS node."""
     rospy.init_node("test", anonymous=True, disable_signals=True)
-    rospy.core.add_shutdown_hook(_wake_registrar)
     threading.Thread(target=_tell_of_publishers, daemon=True).start()
-    case.run(suite=at_once.Suite)
+    case.run(_wake_registrar_at_the_end, at_once.Suite)
 
 
-def _wake_registrar(_):
-    """rospy waits at its end for this thread, which looks for the end twice a second."""
-    for listener in get_registration_listeners().listeners:
-        with listener.cond:
-            listener.cond.notify_all()
+def _wake_registrar_at_the_end():
+    """rospy's end waits for this thread, which looks for the end twice a second."""
+    registrars = list(get_registration_listeners().listeners)  # it has none any more when the hook is called
+
+    def wake(_):
+        for registrar in registrars:
+            with registrar.cond:
+                registrar.cond.notify_all()
+
+    rospy.core.add_shutdown_hook(wake)
 
 
 def _tell_of_publishers():
