@@ -14,11 +14,11 @@ from support.device import FAILURE, Device, Refuse
 from support.patience import NO_TIMEOUT, PATIENCE
 from support.topics import wait_until
 
-MAP = f"""
-name: slow
+MAP = """
+name: {name}
 address: 127.0.0.1
 rate: 20
-timeout: {NO_TIMEOUT}s
+timeout: {timeout}s
 mapping:
   coils: {{start: 1, brake: {{address: 2, safe: on}}, kept: {{address: 3, safe: hold}}}}
   holding_registers:
@@ -69,48 +69,59 @@ class SlowDevice(Device):
 
 
 class LoadTest(testing.RosTest):
+    at_once = True
+
     def setUp(self):
         self.device = SlowDevice().start()
         self.addCleanup(self.device.stop)
         self.addCleanup(self.device.go_on)
-        self.program = self.driver(f"_map:={process.write_map(MAP)}", f"_port:={self.device.port}")
+        self.program = self.driver(f"_map:={process.write_map(MAP.format(name=self.name, timeout=NO_TIMEOUT))}", f"_port:={self.device.port}")
         self.program.wait_for("connected")
 
     def senders(self, *names):
-        return in_order.senders(self, {f"/slow/{name}/write": {"start": Bool}.get(name, UInt16) for name in names})
+        return in_order.senders(self, {f"/{self.name}/{name}/write": {"start": Bool}.get(name, UInt16) for name in names})
 
     def call(self, name, kind, *arguments):
-        rospy.wait_for_service(f"/slow/{name}", PATIENCE)
-        return rospy.ServiceProxy(f"/slow/{name}", kind)(*arguments)
+        rospy.wait_for_service(f"/{self.name}/{name}", PATIENCE)
+        return rospy.ServiceProxy(f"/{self.name}/{name}", kind)(*arguments)
 
 
 class Flood(LoadTest):
-    def flood(self, topics, seconds=3, until=lambda: True):
-        """Publishes rising values on each of them, 200 times a second, for so long and until that is true; returns the last
-        one."""
-        begun = time.monotonic()
+    @staticmethod
+    def flood(topics, until):
+        """Publishes rising values on each of them, 200 times a second, until that is true; returns the last one."""
         value = 0
-        while time.monotonic() < begun + (seconds if until() else PATIENCE):
+
+        def publish():
+            nonlocal value
             value += 1
             for topic in topics:
                 topic.publish(value)
-            time.sleep(0.005)
+            return until()
+
+        wait_until(publish, "the flood to have done its work")
         return value
 
+    def takes(self, writes):
+        """Until the device has taken so many more, with its reads between them."""
+        before = len(self.device.seen(6, 16))
+        return lambda: len(self.device.seen(6, 16)) >= before + writes
+
     def test_reads_go_on_while_ros_writes_faster_than_the_device(self):
-        level, speed = self.topic("/slow/level", Int16), self.topic("/slow/speed", UInt16)
+        level, speed = self.topic(f"/{self.name}/level", Int16), self.topic(f"/{self.name}/speed", UInt16)
         speed.next()
         level.values.clear()
         speed.values.clear()
-        last = self.flood([self.publisher("/slow/speed/write", UInt16)],
-                          until=lambda: len(level.values) > 5 and len(set(speed.values)) > 5)
+        has_taken_many = self.takes(100)
+        last = self.flood([self.publisher(f"/{self.name}/speed/write", UInt16)],
+                          until=lambda: has_taken_many() and len(level.values) > 5 and len(set(speed.values)) > 5)
         self.assertGreater(len(level.values), 5)
         self.assertGreater(len(set(speed.values)), 5, "the one that is written is shown, too")
         speed.wait_for(lambda value: value == last)
 
     def test_the_newest_value_of_each_topic_is_on_the_wire_after_one_request_for_each(self):
         topics = self.senders("speed", "torque")
-        last = self.flood(topics) + 1
+        last = self.flood(topics, self.takes(100)) + 1
         self.device.hold()
         for topic in topics:
             in_order.publish(topic, last)
@@ -122,12 +133,16 @@ class Flood(LoadTest):
         self.assertNotIn("too many writes", self.program.output)
 
     def test_a_service_is_answered_after_what_waits_and_that_is_little(self):
-        topics = self.publishers({"/slow/speed/write": UInt16, "/slow/torque/write": UInt16})
-        flood = threading.Thread(target=self.flood, args=(topics, 4))
+        topics = self.publishers({f"/{self.name}/speed/write": UInt16, f"/{self.name}/torque/write": UInt16})
+        is_answered = threading.Event()
+        flood = threading.Thread(target=self.flood, args=(topics, is_answered.is_set))
+        self.addCleanup(is_answered.set)
+        is_in_full_spate = self.takes(50)
         flood.start()
-        time.sleep(1)  # so that it is in full spate
+        wait_until(is_in_full_spate, "the flood to be in full spate")
         before = len(self.device.requests)
         self.assertTrue(self.call("start/set", SetBool, True).success)
+        is_answered.set()
         during = self.device.requests[before:]
         at = next(i for i, request in enumerate(during) if request.function == 5)
         flood.join()
@@ -153,10 +168,10 @@ class Safe(LoadTest):
     def ask(self):
         """The answer, once it is there; the driver has the call when this returns."""
         answer = []
-        rospy.wait_for_service("/slow/safe", PATIENCE)
+        rospy.wait_for_service(f"/{self.name}/safe", PATIENCE)
         calling = threading.Thread(target=lambda: answer.append(self.call("safe", Trigger)))
         calling.start()
-        self.program.wait_for("slow: safe values were requested")
+        self.program.wait_for(f"{self.name}: safe values were requested")
         return calling, answer
 
     def test_safe_values_go_after_the_request_in_flight_and_before_what_waits(self):
@@ -197,7 +212,7 @@ class Safe(LoadTest):
         self.assertEqual(self.device.tables["holding_registers"][20], 5)
 
     def test_offline_it_fails_at_once(self):
-        online = self.topic("/slow/online", Bool)
+        online = self.topic(f"/{self.name}/online", Bool)
         self.device.stop()
         online.wait_for(lambda now: not now)
         told = self.call("safe", Trigger)

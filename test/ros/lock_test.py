@@ -11,7 +11,7 @@ from support.patience import PATIENCE
 
 COUPLER = process.BUILD / "bin" / "coupler"
 MAP = """
-name: press
+name: {name}
 address: 127.0.0.1
 timeout: 60
 rate: 20
@@ -28,7 +28,7 @@ mapping:
     speed: {type: UINT}
 """
 ADDRESSED = """
-name: press
+name: {name}
 address: 127.0.0.1
 mapping:
   coils: {clamp: 0, lamp: 1}
@@ -51,22 +51,27 @@ def lock_of(path):
 
 @unittest.skipUnless(process.has_node() and COUPLER.exists(), "coupler-node or coupler was not built")
 class Lock(testing.RosTest):
+    at_once = True
+
     def start_node(self, path):
         node = process.Node(path)
         self.addCleanup(node.end)
         return node, node.port
 
-    def locked_map(self, text=MAP):
-        path = process.write_map(text)
+    def text(self, text=MAP):
+        return text.replace("{name}", self.name)
+
+    def locked_map(self):
+        path = process.write_map(self.text())
         check(path)
         return path
 
     def assert_works(self, driver):
         driver.wait_for("connected")
-        self.topic("/press/trim", Int8).wait_for(lambda value: value == -3)
-        self.topic("/press/speed", UInt16).wait_for(lambda value: value == 0)
-        self.publisher("/press/speed/write", UInt16).publish(4711)
-        self.topic("/press/speed", UInt16).wait_for(lambda value: value == 4711)
+        self.topic(f"/{self.name}/trim", Int8).wait_for(lambda value: value == -3)
+        self.topic(f"/{self.name}/speed", UInt16).wait_for(lambda value: value == 0)
+        self.publisher(f"/{self.name}/speed/write", UInt16).publish(4711)
+        self.topic(f"/{self.name}/speed", UInt16).wait_for(lambda value: value == 4711)
         self.assertNotIn("fingerprint", driver.output)
 
     def test_both_sides_read_the_same_lock_and_are_equal(self):
@@ -80,7 +85,7 @@ class Lock(testing.RosTest):
 
     def test_the_same_map_with_its_addresses_is_equal(self):
         _, port = self.start_node(self.locked_map())
-        self.assert_works(self.driver(f"_map:={process.write_map(ADDRESSED)}", f"_port:={port}"))
+        self.assert_works(self.driver(f"_map:={process.write_map(self.text(ADDRESSED))}", f"_port:={port}"))
 
     def test_another_lock_is_another_map(self):
         path = self.locked_map()
@@ -93,7 +98,7 @@ class Lock(testing.RosTest):
         self.assertIn("~ speed: address 9 -> 3", driver.output)
 
     def test_without_the_lock_neither_starts_and_both_say_what_to_do(self):
-        path = process.write_map(MAP)
+        path = process.write_map(self.text())
         for program in (process.Node(path), self.driver(f"_map:={path}")):
             self.assertEqual(program.wait(), 1)
             self.assertIn(f"there is no {path}.lock; run `coupler check {path}`", program.output)
@@ -102,7 +107,7 @@ class Lock(testing.RosTest):
     def test_a_node_reads_the_lock_again_with_the_map(self):
         path = self.locked_map()
         node, port = self.start_node(path)
-        pathlib.Path(path).write_text(MAP + "    later: {type: UINT}\n", encoding="utf-8")
+        pathlib.Path(path).write_text(self.text() + "    later: {type: UINT}\n", encoding="utf-8")
         node.reload()
         node.wait_for("'later' has no address in")
         check(path)

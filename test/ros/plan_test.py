@@ -10,7 +10,7 @@ from support.peer import READ, Peer
 from support.topics import wait_until
 
 MAP = """
-name: plan
+name: {name}
 address: localhost
 rate: 20
 timeout: {timeout}s
@@ -30,7 +30,7 @@ mapping:
     far_away: {address: 65535, type: UINT}
 """
 RATES = """
-name: plan
+name: {name}
 address: localhost
 rate: 10
 timeout: {timeout}s
@@ -87,8 +87,10 @@ class Asked:
 
 
 class Plan(testing.RosTest):
+    at_once = True
+
     def start(self, text, missing=()):
-        path = process.write_map(text.replace("{timeout}", str(NO_TIMEOUT)))
+        path = process.write_map(text.replace("{timeout}", str(NO_TIMEOUT)).replace("{name}", self.name))
         peer = Peer()
         asked = Asked(peer, missing)
         peer.start()

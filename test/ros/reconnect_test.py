@@ -8,7 +8,7 @@ from support.ports import free_port
 from support.topics import wait_until
 
 MAP = """
-name: reconnect
+name: {name}
 address: localhost
 rate: 20
 timeout: 60
@@ -19,15 +19,17 @@ mapping:
 
 
 class Reconnect(testing.RosTest):
+    at_once = True
+
     def setUp(self):
-        self.map = process.write_map(MAP)
+        self.map = process.write_map(MAP.replace("{name}", self.name))
 
     def test_online_follows_the_device_and_values_stop_while_it_is_away(self):
         peer = Peer().start()
         peer.set("holding_registers", 4, [11])
         with process.Driver(f"_map:={self.map}", f"_port:={peer.port}"):
-            online = self.topic("/reconnect/online", Bool)
-            level = self.topic("/reconnect/level", Int16)
+            online = self.topic(f"/{self.name}/online", Bool)
+            level = self.topic(f"/{self.name}/level", Int16)
             online.wait_for(bool)
             self.assertEqual(level.next(), 11)
 
@@ -44,16 +46,16 @@ class Reconnect(testing.RosTest):
 
     def test_a_late_subscriber_learns_whether_the_device_is_there(self):
         with Peer() as peer, process.Driver(f"_map:={self.map}", f"_port:={peer.port}"):
-            online = self.topic("/reconnect/online", Bool)
+            online = self.topic(f"/{self.name}/online", Bool)
             online.wait_for(bool)
             online.close()
-            online = self.topic("/reconnect/online", Bool)
+            online = self.topic(f"/{self.name}/online", Bool)
             self.assertTrue(online.wait_for(lambda _: True), "the first value to come is the last one published")
 
     def test_a_device_that_is_not_there_yet_is_waited_for(self):
         port = free_port()
         with process.Driver(f"_map:={self.map}", f"_port:={port}") as driver:
-            online = self.topic("/reconnect/online", Bool)
+            online = self.topic(f"/{self.name}/online", Bool)
             self.assertFalse(online.wait_for(lambda _: True))
             driver.wait_for(f"localhost port {port}: Connection refused")
             with Peer(port):
@@ -63,12 +65,12 @@ class Reconnect(testing.RosTest):
         port = free_port()
         with process.Driver(f"_map:={self.map}", f"_port:={port}") as driver:
             driver.wait_for("Connection refused")
-            self.publisher("/reconnect/lamp/write", Bool).publish(True)
+            self.publisher(f"/{self.name}/lamp/write", Bool).publish(True)
             driver.wait_for("write to lamp: dropped")
             with Peer(port) as peer:
                 driver.wait_for("connected; 1 writes were dropped meanwhile")
                 self.assertFalse(peer.get("coils", 3)[0])
-                lamp = self.publisher("/reconnect/lamp/write", Bool)
+                lamp = self.publisher(f"/{self.name}/lamp/write", Bool)
                 lamp.publish(True)
                 wait_until(lambda: peer.get("coils", 3)[0], "the lamp to be on")
 

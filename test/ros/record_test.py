@@ -12,7 +12,7 @@ from support import process, testing
 from support.patience import wait_until
 
 MAP = """
-name: press
+name: {name}
 rate: 20
 timeout: 60
 mapping:
@@ -25,11 +25,13 @@ sim: [{from: lamp, to: lamp_is_on}]
 
 @unittest.skipUnless(process.has_node(), "coupler-node was not built")
 class Record(testing.RosTest):
+    at_once = True
+
     def setUp(self):
         super().setUp()
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=os.environ["ROS_HOME"]))
         self.map = self.folder / "press.yaml"
-        self.map.write_text(MAP)
+        self.map.write_text(MAP.replace("{name}", self.name))
         self.file = self.folder / "press.jsonl"
 
     def lines(self):
@@ -44,11 +46,11 @@ class Record(testing.RosTest):
         self.addCleanup(node.end)
         driver = self.driver("--map", str(self.map), "_address:=127.0.0.1", f"_port:={node.port}", f"_record:={self.file}")
         driver.wait_for("connected")
-        lamp = self.publisher("/press/lamp/write", Bool)
+        lamp = self.publisher(f"/{self.name}/lamp/write", Bool)
         for on in (True, False):
             lamp.publish(on)
             wait_until(lambda on=on: self.values("lamp_is_on")[-1:] == [on], "the input's change in the file")
-        self.publisher("/press/speed/write", UInt16).publish(4711)
+        self.publisher(f"/{self.name}/speed/write", UInt16).publish(4711)
         wait_until(lambda: self.values("speed") == [0, 4711], "the speed in the file")
         driver.end()
         node.end()
@@ -56,7 +58,7 @@ class Record(testing.RosTest):
     def test_a_driver_records_over_its_own_connection(self):
         self.record()
         lines = self.lines()
-        self.assertEqual((lines[0]["record"], lines[0]["name"]), (1, "press"))
+        self.assertEqual((lines[0]["record"], lines[0]["name"]), (1, self.name))
         self.assertEqual(self.values("lamp"), [False, True, False])
         self.assertEqual(self.values("lamp_is_on"), [False, True, False])
         self.assertTrue(lines[-1]["end"])
@@ -68,8 +70,8 @@ class Record(testing.RosTest):
         node = process.Node("--replay", str(self.file), "--loop")  # a driver may need longer than a round to be there
         self.addCleanup(node.end)
         self.driver("--map", str(self.map), "_address:=127.0.0.1", f"_port:={node.port}").wait_for("connected")
-        lamp = self.topic("/press/lamp_is_on", Bool)
-        speed = self.topic("/press/speed", UInt16)
+        lamp = self.topic(f"/{self.name}/lamp_is_on", Bool)
+        speed = self.topic(f"/{self.name}/speed", UInt16)
         for on in (True, False):
             lamp.wait_for(lambda value, on=on: value is on)
         speed.wait_for(lambda value: value == 4711)
@@ -81,7 +83,7 @@ class Record(testing.RosTest):
         self.addCleanup(node.end)
         driver = self.driver("--map", str(self.map), "_address:=127.0.0.1", f"_port:={node.port}", f"_record:={self.file}")
         driver.wait_for("is no recording")
-        self.topic("/press/speed", UInt16).wait_for(lambda value: value == 0)
+        self.topic(f"/{self.name}/speed", UInt16).wait_for(lambda value: value == 0)
         self.assertEqual(self.file.read_text(), "dear diary\n")
 
 

@@ -11,7 +11,7 @@ from support.rtu_server import RtuServer
 from support.serial_line import SerialLine
 
 MAP = """
-name: rack
+name: {name}
 serial: {{device: {port}}}
 rate: 20
 timeout: {timeout}
@@ -35,18 +35,20 @@ MODULE = """
 
 
 class OnALine(testing.RosTest):
+    at_once = True
+
     def start(self, preset, unit, device, mapping, timeout=f"{NO_TIMEOUT}s"):
         line = SerialLine()
         self.addCleanup(line.end)
         server = RtuServer([unit], line.device)
         self.addCleanup(server.end)
         server.units[unit] = device
-        path = process.write_map(MAP.format(port=line.port, preset=preset, mapping=mapping, timeout=timeout))
+        path = process.write_map(MAP.format(name=self.name, port=line.port, preset=preset, mapping=mapping, timeout=timeout))
         self.driver(f"_map:={path}")
-        self.topic("/rack/online", Bool).becomes(True)
+        self.topic(f"/{self.name}/online", Bool).becomes(True)
 
     def write(self, point, value):
-        return self.service("/rack/write", Write)(point, value)
+        return self.service(f"/{self.name}/write", Write)(point, value)
 
     def writes(self, point, value):
         result = self.write(point, value)
@@ -58,7 +60,7 @@ class Robotiq(OnALine):
         self.gripper = robotiq.Robotiq2f(part)
         self.start("robotiq_2f", robotiq.UNIT, self.gripper, GRIPPER.format(of_target=of_target), **options)
         self.state, self.fault, self.position = (
-            self.topic(f"/rack/{name}", UInt8) for name in ("state", "fault", "position"))
+            self.topic(f"/{self.name}/{name}", UInt8) for name in ("state", "fault", "position"))
 
     def activate(self):
         self.writes("action", "activate")
@@ -101,7 +103,7 @@ class Waveshare(OnALine):
     def test_its_outputs_are_written_or_switched_by_its_inputs(self):
         module = waveshare.WaveshareIo8ch()
         self.start("waveshare_io_8ch", waveshare.UNIT, module, MODULE)
-        valve, door = (self.topic(f"/rack/{name}", Bool) for name in ("valve", "door"))
+        valve, door = (self.topic(f"/{self.name}/{name}", Bool) for name in ("valve", "door"))
         for value in (True, False):
             self.writes("valve", str(value).lower())
             valve.becomes(value)

@@ -8,7 +8,7 @@ from support.serial_line import SerialLine
 from support.topics import wait_until
 
 MAP = """
-name: unit{unit}
+name: {name}_{unit}
 {place}
 unit: {unit}
 rate: 50
@@ -20,6 +20,8 @@ mapping:
 
 
 class Serial(testing.RosTest):
+    at_once = True
+
     def line(self, units, **options):
         line = SerialLine(**options)
         self.addCleanup(line.end)
@@ -29,10 +31,10 @@ class Serial(testing.RosTest):
 
     def drive(self, units, place, timeouts=None):
         """timeouts: of units, where it is not 2 s."""
-        maps = [process.write_map(MAP.format(unit=unit, place=place, timeout=(timeouts or {}).get(unit, "2s")))
+        maps = [process.write_map(MAP.format(name=self.name, unit=unit, place=place, timeout=(timeouts or {}).get(unit, "2s")))
                 for unit in units]
-        self.online = {unit: self.topic(f"/unit{unit}/online", Bool) for unit in units}
-        self.weight = {unit: self.topic(f"/unit{unit}/weight", Int16) for unit in units}
+        self.online = {unit: self.topic(f"/{self.name}_{unit}/online", Bool) for unit in units}
+        self.weight = {unit: self.topic(f"/{self.name}_{unit}/weight", Int16) for unit in units}
         return self.driver(f"_maps:=[{','.join(maps)}]" if len(maps) > 1 else f"_map:={maps[0]}")
 
     @staticmethod
@@ -43,7 +45,7 @@ class Serial(testing.RosTest):
         for value in (7, -7):
             self.server.set(unit, 4, 5, [value & 0xFFFF])
             self.weight[unit].becomes(value)
-        motor = self.publisher(f"/unit{unit}/motor/write", Bool)
+        motor = self.publisher(f"/{self.name}_{unit}/motor/write", Bool)
         for value in (True, False):
             def follows(wanted=value):
                 motor.publish(wanted)

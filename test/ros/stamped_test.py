@@ -14,11 +14,11 @@ from support.peer import Peer
 from support.times import ROUNDING, seconds
 from support.topics import type_of, wait_until
 
-MAP = f"""
-name: cell
+MAP = """
+name: {name}
 address: 127.0.0.1
 rate: 50
-timeout: {NO_TIMEOUT}s
+timeout: {timeout}s
 """
 TYPES = """
 defaults: {stamped: true}
@@ -72,12 +72,14 @@ class Slow(ModbusSequentialDataBlock):
 
 
 class StampedTest(testing.RosTest):
+    at_once = True
+
     def setUp(self):
         self.peer = Peer().start()
         self.addCleanup(self.peer.stop)
 
     def start(self, text):
-        self.driver(f"_map:={process.write_map(MAP + text)}", f"_port:={self.peer.port}").wait_for("connected")
+        self.driver(f"_map:={process.write_map(MAP.format(name=self.name, timeout=NO_TIMEOUT) + text)}", f"_port:={self.peer.port}").wait_for("connected")
 
     def set(self, address, *registers):
         self.peer.set("input_registers", address, registers)
@@ -87,7 +89,7 @@ class WhenItWasTrue(StampedTest):
     def true_within_the_stamp(self, before, after):
         device = self.peer.store.store["i"] = Slow(before, after)
         self.start("mapping: {input_registers: {count: {address: 0, type: UINT, stamped: true}}}\n")
-        topic = self.topic("/cell/count/stamped", UInt64Stamped)
+        topic = self.topic(f"/{self.name}/count/stamped", UInt64Stamped)
         wait_until(lambda: len(topic.values) >= 20, "twenty values")
         for message in topic.values[:20]:
             stamp = seconds(message.header.stamp)
@@ -118,18 +120,18 @@ class Messages(StampedTest):
         self.start(TYPES)
         for name, (kind, value) in WANTED.items():
             with self.subTest(name):
-                message = self.topic(f"/cell/{name}/stamped", kind).wait_for(lambda _: True)
+                message = self.topic(f"/{self.name}/{name}/stamped", kind).wait_for(lambda _: True)
                 self.assertEqual(message.value, value)
                 self.assertEqual(message.header.frame_id, "")
                 self.assertLess(abs(time.time() - seconds(message.header.stamp)), NO_TIMEOUT)
                 self.assertGreater(message.uncertainty, 0)
         for name in ("horn", "row", "gate"):
-            self.assertIsNone(type_of(f"/cell/{name}/stamped"), name)
+            self.assertIsNone(type_of(f"/{self.name}/{name}/stamped"), name)
 
     def test_what_one_request_read_has_one_stamp(self):
         self.start("defaults: {stamped: true, queue_size: 1000}\n"
                    "mapping: {input_registers: {a: {address: 0, type: INT}, b: {address: 1, type: INT}}}\n")
-        a, b = (self.topic(f"/cell/{name}/stamped", Int64Stamped) for name in "ab")
+        a, b = (self.topic(f"/{self.name}/{name}/stamped", Int64Stamped) for name in "ab")
         begun = seconds(a.next().header.stamp)  # from here on it is told every reading
         stamps = []
 
@@ -153,12 +155,12 @@ mapping:
 
     def readings(self, count):
         """So many values were read and published."""
-        every = self.topic("/cell/always", UInt16)
+        every = self.topic(f"/{self.name}/always", UInt16)
         wait_until(lambda: len(every.values) >= count, f"{count} readings")
 
     def test_every_value_has_the_next_number_and_a_later_stamp(self):
         self.start(self.TEXT)
-        topic = self.topic("/cell/always/stamped", UInt64Stamped)
+        topic = self.topic(f"/{self.name}/always/stamped", UInt64Stamped)
         wait_until(lambda: len(topic.values) >= 10, "ten values")
         got = topic.values[:10]
         self.assertEqual([message.sequence for message in got], list(range(got[0].sequence, got[0].sequence + 10)))
@@ -167,7 +169,7 @@ mapping:
 
     def test_under_on_change_only_what_is_news_is_published_and_counted(self):
         self.start(self.TEXT)
-        topic = self.topic("/cell/level/stamped", UInt64Stamped)
+        topic = self.topic(f"/{self.name}/level/stamped", UInt64Stamped)
         topic.wait_for(lambda message: message.value == 0)
         self.readings(5)  # a subscriber that has come makes the value news once more
         for value, is_news in ((5, False), (6, True), (11, False), (12, True)):
@@ -182,22 +184,22 @@ mapping:
     def test_a_late_subscriber_of_a_latched_point_gets_the_last_value_with_its_old_stamp(self):
         self.set(2, 1)
         self.start(self.TEXT)
-        first = self.topic("/cell/kept/stamped", UInt64Stamped, latched=True)
+        first = self.topic(f"/{self.name}/kept/stamped", UInt64Stamped, latched=True)
         self.set(2, 7)
         first.wait_for(lambda message: message.value == 7)
         self.readings(5)
         told = first.values[-1]
         self.peer.stop()  # or else a newcomer has the value read and told once more, with a new stamp
-        self.topic("/cell/online", Bool, latched=True).wait_for(lambda online: not online)
-        late = self.topic("/cell/kept/stamped", UInt64Stamped, latched=True).wait_for(lambda _: True)
+        self.topic(f"/{self.name}/online", Bool, latched=True).wait_for(lambda online: not online)
+        late = self.topic(f"/{self.name}/kept/stamped", UInt64Stamped, latched=True).wait_for(lambda _: True)
         self.assertEqual((late.value, late.sequence, late.header.stamp), (7, told.sequence, told.header.stamp))
 
     def test_with_poll_subscribed_a_subscriber_of_the_stamps_is_one_of_the_point(self):
         self.set(0, 11)
         self.start("poll: subscribed\n" + self.TEXT)
-        message = self.topic("/cell/always/stamped", UInt64Stamped).wait_for(lambda _: True)
+        message = self.topic(f"/{self.name}/always/stamped", UInt64Stamped).wait_for(lambda _: True)
         self.assertEqual(message.value, 11)
-        self.assertEqual(self.topic("/cell/always", UInt16).next(), 11)
+        self.assertEqual(self.topic(f"/{self.name}/always", UInt16).next(), 11)
 
 
 if __name__ == "__main__":

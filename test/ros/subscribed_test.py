@@ -13,7 +13,7 @@ from support.patience import NO_TIMEOUT, QUIET
 from support.topics import wait_until
 
 MAP = """
-name: quiet
+name: {name}
 address: 127.0.0.1
 rate: 20
 timeout: {timeout}s
@@ -26,10 +26,11 @@ mapping:
 
 
 class SubscribedTest(testing.RosTest):
+    at_once = True
     timeout = NO_TIMEOUT  # of silence, after which an idle device is asked whether it is still there
 
     def map(self, head=""):
-        return process.write_map(head + MAP.replace("{timeout}", str(self.timeout)))
+        return process.write_map(head + MAP.replace("{timeout}", str(self.timeout)).replace("{name}", self.name))
 
 
 class Subscribed(SubscribedTest):
@@ -62,18 +63,18 @@ class Subscribed(SubscribedTest):
         self.assertEqual(self.asked(), set())
 
     def test_what_is_subscribed_is_read_and_nothing_else(self):
-        far = self.topic("/quiet/far", Int16)
+        far = self.topic(f"/{self.name}/far", Int16)
         self.assertEqual(far.next(), 33)
         self.assertTrue(self.asks_only_for({100}))
         self.assertEqual(self.asked(), {100})
-        self.assertEqual(self.topic("/quiet/a", Int16).next(), 11)
+        self.assertEqual(self.topic(f"/{self.name}/a", Int16).next(), 11)
         self.assertTrue(self.asks_only_for({0, 100}))
         self.assertEqual(self.asked(), {0, 100})
         far.close()
         wait_until(lambda: self.asks_only_for({0}), "the last one to leave to be noticed")
 
     def test_a_read_asks_for_its_point_once(self):
-        self.assertEqual(self.service("/quiet/read", Read)("b").value, "22")
+        self.assertEqual(self.service(f"/{self.name}/read", Read)("b").value, "22")
         wait_until(self.falls_silent, "it to ask for no more")
         self.assertEqual(self.asked(), {1})
 
@@ -86,14 +87,14 @@ class SaidByTheMap(SubscribedTest):
         self.addCleanup(device.stop)
         self.driver(f"_map:={self.map('poll: subscribed')}", f"_port:={device.port}",
                     *arguments).wait_for("connected")
-        status = LatestStatus("quiet")
+        status = LatestStatus(self.name)
         self.addCleanup(status.close)
         return status
 
     def test_status_says_which_points_nobody_wants(self):
         status = self.drive()
         status.quality("far", PointStatus.NOT_WANTED)
-        far = self.topic("/quiet/far", Int16)
+        far = self.topic(f"/{self.name}/far", Int16)
         status.quality("far", PointStatus.GOOD)
         far.close()
         status.quality("far", PointStatus.NOT_WANTED)

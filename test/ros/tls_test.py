@@ -23,7 +23,7 @@ mapping:
     speed: {address: 7, type: UINT}
 """
 NODE = """
-name: press
+name: {name}
 security:
   certificate: press/press.pem
   key: press/press.key
@@ -36,14 +36,19 @@ security:
 
 @unittest.skipUnless(process.has_node(), "coupler-node was not built")
 class Tls(testing.RosTest):
+    at_once = True
+
     def setUp(self):
         super().setUp()
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=os.environ["ROS_HOME"]))
         self.certificates(self.folder)
         self.node_map = self.folder / "node.yaml"
-        self.node_map.write_text(NODE + POINTS)
+        self.node_map.write_text(self.node_text())
         self.node = process.Node(str(self.node_map), "--tls-port", 0)
         self.addCleanup(self.node.end)
+
+    def node_text(self):
+        return NODE.replace("{name}", self.name) + POINTS
 
     @staticmethod
     def certificates(folder):
@@ -55,32 +60,32 @@ class Tls(testing.RosTest):
     def start(self, client="cell1", more="", *arguments):
         """A driver whose map has the files of that client."""
         path = self.folder / f"{client}.yaml"
-        path.write_text(f"name: press\naddress: 127.0.0.1\nrate: 20\ntimeout: 60\ntls: {{certificate: {client}/{client}.pem, "
+        path.write_text(f"name: {self.name}\naddress: 127.0.0.1\nrate: 20\ntimeout: 60\ntls: {{certificate: {client}/{client}.pem, "
                         f"key: {client}/{client}.key, ca: {client}/authority.pem{more}}}\n" + POINTS)
         return self.driver(f"_map:={path}", f"_port:={self.node.tls_port}", *arguments)
 
     def test_a_role_that_may_read_and_write_does(self):
         driver = self.start()
         driver.wait_for("connected")
-        self.topic("/press/speed", UInt16).wait_for(lambda value: value == 0)
-        self.publisher("/press/speed/write", UInt16).publish(4711)
-        self.topic("/press/speed", UInt16).wait_for(lambda value: value == 4711)
-        self.publisher("/press/valve/write", Bool).publish(True)
+        self.topic(f"/{self.name}/speed", UInt16).wait_for(lambda value: value == 0)
+        self.publisher(f"/{self.name}/speed/write", UInt16).publish(4711)
+        self.topic(f"/{self.name}/speed", UInt16).wait_for(lambda value: value == 4711)
+        self.publisher(f"/{self.name}/valve/write", Bool).publish(True)
         driver.wait_for("write to valve: exception 01 (illegal function): this client has no right to write it")
 
     def test_a_role_that_may_read_some_points_gets_those(self):
         driver = self.start("screen")
-        lamp = self.topic("/press/lamp", Bool)
+        lamp = self.topic(f"/{self.name}/lamp", Bool)
         lamp.wait_for(lambda value: value is False)
         driver.wait_for("speed")  # it is said once that it is rejected
-        self.assertEqual(self.topic("/press/speed", UInt16).ever, [])
+        self.assertEqual(self.topic(f"/{self.name}/speed", UInt16).ever, [])
 
     def test_without_a_map_it_gets_the_nodes(self):
         own = self.folder / "cell1"
         driver = self.driver("--map", f"tls://127.0.0.1:{self.node.tls_port}", f"_certificate:={own}/cell1.pem",
                              f"_key:={own}/cell1.key", f"_ca:={own}/authority.pem")
         driver.wait_for("connected")
-        self.topic("/press/speed", UInt16).wait_for(lambda value: value == 0)
+        self.topic(f"/{self.name}/speed", UInt16).wait_for(lambda value: value == 0)
 
     def test_a_certificate_of_another_authority_is_refused_and_the_alert_is_named(self):
         stranger = self.folder / "stranger"
@@ -96,7 +101,7 @@ class Tls(testing.RosTest):
         driver.wait_for("its certificate is for another name or address")
 
     def test_a_certificate_that_soon_ends_is_a_warning_in_the_log_and_in_the_diagnostics(self):
-        diagnostics = LatestDiagnostics("press")
+        diagnostics = LatestDiagnostics(self.name)
         self.addCleanup(diagnostics.close)
         first = self.start()
         diagnostics.says("good until", "certificates", DiagnosticStatus.OK)
@@ -117,12 +122,12 @@ class Tls(testing.RosTest):
 
     def test_rights_that_a_reload_takes_away_are_gone_on_the_same_connection(self):
         driver = self.start()
-        speed = self.topic("/press/speed", UInt16)
+        speed = self.topic(f"/{self.name}/speed", UInt16)
         speed.wait_for(lambda value: value == 0)
-        self.node_map.write_text((NODE + POINTS).replace("write: [lamp, speed]", "write: [lamp]"))
+        self.node_map.write_text(self.node_text().replace("write: [lamp, speed]", "write: [lamp]"))
         self.node.reload()
         self.node.wait_for("read the map again")
-        self.publisher("/press/speed/write", UInt16).publish(7)
+        self.publisher(f"/{self.name}/speed/write", UInt16).publish(7)
         driver.wait_for("write to speed: exception 01")
         self.assertEqual(driver.output.count("connected"), 1, driver.output)
 
