@@ -76,14 +76,15 @@ class Tested:
 
 
 class Vectors(testing.RosTest):
+    at_once = True
     peer = Peer
 
     def check(self, path, *program):
         """`program`: a generated driver, or the driver with its map."""
         vectors = vectors_of(path)
-        points = [Tested(point, i, "/" + vectors["map"]) for i, point in enumerate(vectors["points"])]
+        points = [Tested(point, i, "/" + self.name) for i, point in enumerate(vectors["points"])]
         with self.peer() as peer:
-            arguments = (*program, *peer.way, f"_timeout:={NO_TIMEOUT}")
+            arguments = (*program, f"_name:={self.name}", "_rate:=50", *peer.way, f"_timeout:={NO_TIMEOUT}")
             with process.Process(*process.driver_arguments(arguments)) as driver:
                 driver.wait_for("connected")
                 self.check_reading(peer, points)
