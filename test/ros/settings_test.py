@@ -12,7 +12,7 @@ from support.peer import Peer
 from support.ports import free_port
 
 MAP = """
-name: settings
+name: {name}
 address: {address}
 port: {port}
 mapping:
@@ -20,19 +20,28 @@ mapping:
 """
 
 
-class Settings(testing.RosTest):
+class SettingsTest(testing.RosTest):
     def setUp(self):
         self.peer = Peer().start()
         self.addCleanup(self.peer.stop)
         self.peer.set("holding_registers", 4, [33])
 
     def map(self, address="127.0.0.1", port=None):
-        return process.write_map(MAP.format(address=address, port=port or self.peer.port))
+        return process.write_map(MAP.format(name=self.name, address=address, port=port or self.peer.port))
 
-    def assert_drives(self, *arguments, name="settings"):
+    def assert_drives(self, *arguments, name=None):
         with process.Driver(*arguments) as driver:
             driver.wait_for("connected")
-            self.assertEqual(self.topic(f"/{name}/level", Int16).next(), 33)
+            self.assertEqual(self.topic(f"/{name or self.name}/level", Int16).next(), 33)
+
+    def assert_ends(self, code, text, *arguments):
+        driver = process.Driver(*arguments)
+        self.assertEqual(driver.wait(), code, driver.output)
+        self.assertIn(text, driver.output)
+
+
+class Settings(SettingsTest):
+    at_once = True
 
     def test_the_map_is_enough(self):
         self.assert_drives(f"_map:={self.map()}")
@@ -45,10 +54,10 @@ class Settings(testing.RosTest):
 
     def test_a_parameter_overrides_the_map_and_an_argument_the_parameter(self):
         path = self.map(port=free_port())
-        rospy.set_param("/settings_driver/port", self.peer.port)
-        self.addCleanup(rospy.delete_param, "/settings_driver/port")
+        rospy.set_param(f"/{self.name}_driver/port", self.peer.port)
+        self.addCleanup(rospy.delete_param, f"/{self.name}_driver/port")
         self.assert_drives(f"_map:={path}")
-        rospy.set_param("/settings_driver/port", free_port())
+        rospy.set_param(f"/{self.name}_driver/port", free_port())
         self.assert_drives(f"_map:={path}", "--port", self.peer.port)
 
     def test_a_node_that_was_given_its_name_finds_its_map_in_its_parameters(self):
@@ -63,24 +72,43 @@ class Settings(testing.RosTest):
             import rosnode  # pylint: disable=import-outside-toplevel
             self.assertIn("/other_driver", rosnode.get_node_names())
 
+    def test_topics_can_be_remapped_and_are_relative(self):
+        with process.Driver(f"_map:={self.map()}", f"{self.name}/level:=height", "__ns:=/cell") as driver:
+            driver.wait_for("connected")
+            self.assertEqual(self.topic("/cell/height", Int16).next(), 33)
+
+    def test_a_misspelt_parameter_is_told_with_the_nearest_name(self):
+        rospy.set_param(f"/{self.name}_driver/raet", 20)
+        with process.Driver(f"_map:={self.map()}") as driver:
+            driver.wait_for(f"parameter /{self.name}_driver/raet is not a setting and does nothing; did you mean 'rate'?")
+            driver.wait_for("connected")
+            self.assertEqual(driver.output.count("is not a setting"), 1)
+
+    def test_a_second_driver_of_the_same_name_is_noticed_by_both(self):
+        with process.Driver(f"_map:={self.map()}") as one:
+            one.wait_for("connected")
+            with process.Driver(f"_map:={self.map()}", "__name:=other") as other:
+                one.wait_for(f"/other also publishes /{self.name}/online: two drivers write to the same device")
+                other.wait_for(f"/{self.name}_driver also publishes /{self.name}/online: two drivers write to the same device")
+
+    def test_an_ipv6_address_may_stand_in_brackets(self):
+        with socket.create_server(("::1", 0), family=socket.AF_INET6) as server:
+            server.settimeout(PATIENCE)
+            with process.Driver(f"_map:={self.map()}", "_address:=[::1]", f"_port:={server.getsockname()[1]}"):
+                server.accept()[0].close()
+
+
+class WithoutAName(SettingsTest):
+    """Drivers that know no name for their node have one, and ROS keeps what they are given as its parameters."""
+
     def test_a_map_without_a_name_takes_that_of_the_call(self):
-        path = process.write_map(MAP.format(address="127.0.0.1", port=self.peer.port).replace("name: settings", ""))
+        path = process.write_map(MAP.format(name="", address="127.0.0.1", port=self.peer.port).replace("name:", ""))
         self.assert_drives(f"_map:={path}", "_name:=press", name="press")
         rospy.set_param("/cell_io", {"map": path, "name": "belt"})
         self.assert_drives("__name:=cell_io", name="belt")
         driver = process.Driver(f"_map:={path}")
         self.assertEqual(driver.wait(), 1, driver.output)
         self.assertIn("the map has no 'name'", driver.output)
-
-    def test_topics_can_be_remapped_and_are_relative(self):
-        with process.Driver(f"_map:={self.map()}", "settings/level:=height", "__ns:=/cell") as driver:
-            driver.wait_for("connected")
-            self.assertEqual(self.topic("/cell/height", Int16).next(), 33)
-
-    def assert_ends(self, code, text, *arguments):
-        driver = process.Driver(*arguments)
-        self.assertEqual(driver.wait(), code, driver.output)
-        self.assertIn(text, driver.output)
 
     def test_a_wrong_call_ends_with_2_and_says_why(self):
         self.assert_ends(2, "no map; give one by --map MAP")
@@ -105,26 +133,6 @@ class Settings(testing.RosTest):
         self.assert_ends(1, f"a relative path counts from {os.getcwd()}; roslaunch starts programs there", "_map:=nowhere.yaml")
         path = process.write_map("name: homeless\nmapping:\n  coils: {a: 7}\n")
         self.assert_ends(1, "the map has no address; add 'address: HOST' or give --address HOST", f"_map:={path}")
-
-    def test_a_misspelt_parameter_is_told_with_the_nearest_name(self):
-        rospy.set_param("/settings_driver/raet", 20)
-        with process.Driver(f"_map:={self.map()}") as driver:
-            driver.wait_for("parameter /settings_driver/raet is not a setting and does nothing; did you mean 'rate'?")
-            driver.wait_for("connected")
-            self.assertEqual(driver.output.count("is not a setting"), 1)
-
-    def test_a_second_driver_of_the_same_name_is_noticed_by_both(self):
-        with process.Driver(f"_map:={self.map()}") as one:
-            one.wait_for("connected")
-            with process.Driver(f"_map:={self.map()}", "__name:=other") as other:
-                one.wait_for("/other also publishes /settings/online: two drivers write to the same device")
-                other.wait_for("/settings_driver also publishes /settings/online: two drivers write to the same device")
-
-    def test_an_ipv6_address_may_stand_in_brackets(self):
-        with socket.create_server(("::1", 0), family=socket.AF_INET6) as server:
-            server.settimeout(PATIENCE)
-            with process.Driver(f"_map:={self.map()}", "_address:=[::1]", f"_port:={server.getsockname()[1]}"):
-                server.accept()[0].close()
 
     def test_its_version_needs_no_master(self):
         self.assert_ends(0, "coupler_driver 0.", "--version")
