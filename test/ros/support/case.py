@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a test of either ROS's driver starts and publishes, and how its file is run."""
 import itertools
+import pathlib
 import sys
 import unittest
 
 from support.process import Driver
 from support.topics import connected_publishers, service
+
+_FILE = pathlib.Path(sys.argv[0]).stem.removesuffix("_test")
 
 
 class Case(unittest.TestCase):
@@ -18,7 +21,8 @@ class Case(unittest.TestCase):
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
-        self.name = f"device{next(Case._numbers)}"
+        # A master keeps the types of topics, so no other file that it sees has the same name.
+        self.name = f"{_FILE}{next(Case._numbers)}"
 
     def publisher(self, name, kind):
         return self.publishers({name: kind})[0]
