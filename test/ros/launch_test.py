@@ -31,6 +31,8 @@ mapping:
 @unittest.skipUnless(shutil.which("roslaunch") and shutil.which("rostest"),
                      "no roslaunch or rostest (scripts/install-packages ros test)")
 class Launch(testing.RosTest):
+    at_once = True
+
     def launch(self, *arguments):
         log = tempfile.NamedTemporaryFile("w+")
         self.addCleanup(log.close)
@@ -55,11 +57,11 @@ class Launch(testing.RosTest):
     def test_device_launch_takes_the_map_and_what_differs_from_it(self):
         peer = self.peer(33)
         self.launch("coupler_driver", "device.launch", f"map:={process.write_map(MAP.format(name='launched'))}",
-                    "name:=press", "address:=127.0.0.1", f"port:={peer.port}", "rate:=50", "node:=press_io")
-        self.assertEqual(self.topic("/press/level", Int16).next(), 33)
+                    f"name:={self.name}", "address:=127.0.0.1", f"port:={peer.port}", "rate:=50", f"node:={self.name}_io")
+        self.assertEqual(self.topic(f"/{self.name}/level", Int16).next(), 33)
 
     def test_two_devices_are_launched_side_by_side(self):
-        levels = {"press": 11, "belt": 22}
+        levels = {f"{self.name}_press": 11, f"{self.name}_belt": 22}
         for name, level in levels.items():
             path = pathlib.Path(process.write_map(MAP.format(name=name)))
             self.launch("coupler_driver", "device.launch", f"map:={path.rename(path.with_name(f'{name}.yaml'))}",
@@ -68,7 +70,7 @@ class Launch(testing.RosTest):
         for _ in range(3):
             for name, level in levels.items():
                 self.assertEqual(topics[name].next(), level)
-        self.assertLessEqual({"/press_driver", "/belt_driver"}, set(rosnode.get_node_names()))
+        self.assertLessEqual({f"/{name}_driver" for name in levels}, set(rosnode.get_node_names()))
 
     def test_the_node_is_named_after_what_tells_devices_apart(self):
         for arguments, node in ((["map:=/cell/press.v2.yaml"], "/press_v2_driver"),
@@ -87,12 +89,12 @@ class Launch(testing.RosTest):
 
     def test_devices_launch_takes_a_list(self):
         maps = []
-        for name, level in (("press", 11), ("belt", 22)):
+        for name, level in ((f"{self.name}_press", 11), (f"{self.name}_belt", 22)):
             text = MAP.format(name=name).replace("192.0.2.1", "127.0.0.1") + f"port: {self.peer(level).port}\n"
             maps.append(process.write_map(text))
         self.launch("coupler_driver", "devices.launch", f"maps:=[{', '.join(maps)}]")
-        self.assertEqual(self.topic("/press/level", Int16).next(), 11)
-        self.assertEqual(self.topic("/belt/level", Int16).next(), 22)
+        self.assertEqual(self.topic(f"/{self.name}_press/level", Int16).next(), 11)
+        self.assertEqual(self.topic(f"/{self.name}_belt/level", Int16).next(), 22)
 
     def test_a_launch_takes_nothing_from_the_parameters_of_an_earlier_one(self):
         rospy.set_param("/later_driver/maps", ["/nowhere/earlier.yaml"])

@@ -6,12 +6,11 @@ import pathlib
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import unittest
 import xmlrpc.client
 
-from support import process
+from support import at_once, case, process
 from support.device import Device
 from support.patience import NO_TIMEOUT, PATIENCE
 from support.ports import free_port
@@ -58,6 +57,7 @@ class MasterThatHangs(Relay):
 
 class MasterRestart(unittest.TestCase):
     """With a master of its own, and no rospy in this process: that belongs to another master."""
+    at_once = True
 
     def start_master(self, port):
         master = subprocess.Popen([MASTER, str(port)], stdout=subprocess.PIPE, text=True)
@@ -174,4 +174,4 @@ class MasterRestart(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    sys.exit(0 if unittest.main(exit=False, verbosity=2, warnings="ignore").result.wasSuccessful() else 1)
+    case.run(suite=at_once.Suite)

@@ -29,8 +29,8 @@ def _may(test):
 
 
 def _run_together(tests, result):
-    for kind in {type(test) for test in tests}:
-        kind.before_all()
+    for before_all in {getattr(test, "before_all", None) for test in tests} - {None}:
+        before_all()
     with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
         for account in pool.map(_run, tests):
             account.tell(result)
