@@ -84,7 +84,7 @@ class Vectors(testing.RosTest):
         vectors = vectors_of(path)
         points = [Tested(point, i, "/" + self.name) for i, point in enumerate(vectors["points"])]
         with self.peer() as peer:
-            arguments = (*program, f"_name:={self.name}", "_rate:=50", *peer.way, f"_timeout:={NO_TIMEOUT}")
+            arguments = (*program, f"_name:={self.name}", *peer.way, f"_timeout:={NO_TIMEOUT}")
             with process.Process(*process.driver_arguments(arguments)) as driver:
                 driver.wait_for("connected")
                 self.check_reading(peer, points)
