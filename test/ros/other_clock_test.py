@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stamps of a node whose clock has an offset and jumps (clock_drift_test.py: and drifts), behind a network that delays, more one way than the other: the
-true time is always within the stamp and its uncertainty. Another client writes at times that the test takes."""
+"""Stamps of a node whose clock has an offset and jumps (one that drifts: clock_drift_test.py), behind a network that delays,
+more one way than the other: the true time is always within the stamp and its uncertainty. Another client writes at times
+that the test takes."""
 import dataclasses
 import random
 import time

@@ -3,7 +3,6 @@
 its read-back are kept."""
 import socket
 import time
-import unittest
 
 import rosservice
 from coupler_driver.srv import Schedule, Write
@@ -16,12 +15,12 @@ from support.couplers import beckhoff_bk9000 as beckhoff
 from support.couplers import moxa_e1200 as moxa
 from support.couplers import wago_750 as wago
 from support.couplers.plc import Plc
+from support.latest import values
 from support.patience import NO_TIMEOUT, PATIENCE
 from support.topics import next_message, wait_until
 
-TIMEOUT = 0.9  # of the watchdogs; they are fed three times in it, and the couplers do not count what a busy machine takes
-MS = 900
-LONGER = 1.5 * TIMEOUT
+MS = 900  # of the watchdogs; they are fed three times in it, and the couplers do not count what a busy machine takes
+TIMEOUT, LONGER = MS / 1000, 1.5 * MS / 1000  # seconds
 
 MAP = """
 name: {name}
@@ -45,10 +44,6 @@ def diagnosis(device, wanted):
                 return status
         if time.monotonic() > end:
             raise AssertionError(f"/diagnostics did not say so in {PATIENCE} s")
-
-
-def times_expired(status):
-    return int({pair.key: pair.value for pair in status.values}["times expired"])
 
 
 class PresetTest(testing.RosTest):
@@ -93,13 +88,12 @@ class PresetTest(testing.RosTest):
     def expect_recovery(self, driver):
         """By itself, with the outputs that it had written."""
         self.switch_on()
-        self.stays_on()
         self.expire(driver)
         driver.wait_for(f"watchdog has expired: {MS} ms without a request from the driver; its outputs are off")
         driver.wait_for("watchdog is reset and fed")
         wait_until(self.is_on, "the outputs to be restored")
         self.assertFalse(self.coupler.expired)
-        self.assertEqual(times_expired(diagnosis(self.name, DiagnosticStatus.OK)), 1)
+        self.assertEqual(values(diagnosis(self.name, DiagnosticStatus.OK))["times expired"], "1")
         expiries = self.coupler.expiries
         time.sleep(LONGER)
         self.assertEqual((self.coupler.expiries, self.is_on()), (expiries, True))
@@ -210,8 +204,7 @@ class Beckhoff(PresetTest):
         self.use(beckhoff.BeckhoffBk9000())
 
     def test_its_time_is_set_before_the_first_write_arms_it(self):
-        driver = self.start("beckhoff_bk9000")
-        driver.wait_for("watchdog is fed")
+        self.start("beckhoff_bk9000").wait_for("watchdog is fed")
         self.assertEqual([(request.address, int.from_bytes(request.data[3:5], "big"))
                           for request in self.coupler.seen(5, 6)],
                          [(beckhoff.TIME, MS), (beckhoff.TYPE, beckhoff.ANYTHING_FEEDS)])
@@ -263,7 +256,10 @@ class Moxa(PresetTest):
         self.use(moxa.MoxaE1200(TIMEOUT))
 
     def test_it_recovers_by_itself(self):
-        self.expect_recovery(self.start("moxa_e1200", top="on_reconnect: restore"))
+        driver = self.start("moxa_e1200", top="on_reconnect: restore")
+        self.switch_on()
+        self.stays_on()
+        self.expect_recovery(driver)
         self.assertEqual(self.coupler.written(moxa.ALARM, function=5), [0xFF00])
 
     def test_it_recovers_by_a_call(self):

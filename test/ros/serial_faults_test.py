@@ -185,8 +185,9 @@ class SerialFaults(testing.RosTest):
     def do_no_harm(self, way, kinds):
         """`kinds` of faults: what happens, the rate, and to how many lines. One that costs a timeout each time happens to three
         side by side, and not three times to one."""
-        faults = {(happen, baud): [(Fault(happen, SEED + i), self.line(f"{happen.__name__}{i}_{baud}", baud=baud, punctual=baud == 1200))
-                                   for i in range(count)] for happen, baud, count in kinds}
+        faults = {(happen, baud): [(Fault(happen, SEED + i), self.line(f"{happen.__name__}{i}_{baud}", baud=baud,
+                                                                       punctual=baud == 1200)) for i in range(count)]
+                  for happen, baud, count in kinds}
         self.drive()
         self.all_go_on("before")
         for lines in faults.values():
@@ -202,7 +203,8 @@ class SerialFaults(testing.RosTest):
     def test_replies_that_are_damaged_or_doubled_do_no_harm(self):
         diagnostics = LatestDiagnostics("flip0_115200")
         self.addCleanup(diagnostics.close)
-        self.do_no_harm("to_port", ((flip, 115200, 3), (cut, 115200, 3), (add_noise, 19200, 1), (double, 1200, 1), (double, 115200, 1)))
+        self.do_no_harm("to_port", ((flip, 115200, 3), (cut, 115200, 3), (add_noise, 19200, 1), (double, 1200, 1),
+                                    (double, 115200, 1)))
         diagnostics.wait_for(lambda known: "connection" in known and int(values(known["connection"])["discarded bytes"]) > 0)
 
     def test_requests_that_are_damaged_or_doubled_do_no_harm(self):

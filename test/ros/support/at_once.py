@@ -7,7 +7,8 @@ AT_ONCE = 6  # tests
 
 
 class Suite(unittest.TestSuite):
-    """Those of classes with `at_once` run together, and the others before them, one after another."""
+    """Those of classes with `at_once` run together, and the others before them, one after another. What such a class starts for
+    all of its tests (setUpClass) is not started: it has none."""
 
     def run(self, result, debug=False):
         tests = list(_each(self))
