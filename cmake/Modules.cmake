@@ -56,6 +56,8 @@ target_precompile_headers(coupler_headers PRIVATE
   <algorithm> <array> <chrono> <cstdint> <functional> <map> <memory> <optional> <string> <string_view> <utility> <variant>
   <vector> <fmt/format.h> <tl/expected.hpp>)
 if(COUPLER_TESTING)
+  # The tests that a user runs, and every program that they start: neither benchmarks nor all that is made of example maps.
+  add_custom_target(coupler_tests)
   add_executable(coupler_test_headers ${PROJECT_BINARY_DIR}/nothing.cpp)
   target_link_libraries(coupler_test_headers PRIVATE coupler_test_flags GTest::gmock)
   target_precompile_headers(coupler_test_headers PRIVATE
@@ -95,23 +97,22 @@ function(coupler_export target name)
   coupler_install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT dev)
 endfunction()
 
-# coupler_unite(NAME TIMES a.cpp …): sets NAME to files that include these, TIMES COUPLER_UNITY each. CMake's own UNITY_BUILD writes absolute
-# paths, with which no two clones could share the compiler's cache. Files that are written while this is configured stay by
-# themselves.
-set(COUPLER_UNITY 4 CACHE STRING "How many files of a large module are compiled as one; of a test program twice as many")
-function(coupler_unite out times)
+# coupler_unite(NAME a.cpp …): sets NAME to files that include these, COUPLER_UNITY each. CMake's own UNITY_BUILD writes
+# absolute paths, with which no two clones could share the compiler's cache. Files that are written while this is configured
+# stay by themselves.
+set(COUPLER_UNITY 8 CACHE STRING "How many files of a large module or a test program are compiled as one")
+function(coupler_unite out)
   if(NOT COUPLER_UNITY GREATER 1)
     set(${out} ${ARGN} PARENT_SCOPE)
     return()
   endif()
-  math(EXPR count "${times} * ${COUPLER_UNITY}")
   set(files ${ARGN})
   list(FILTER files EXCLUDE REGEX "^/")
   set(united ${ARGN})
   list(FILTER united INCLUDE REGEX "^/")
   set(i 0)
   while(files)
-    list(SUBLIST files 0 ${count} batch)
+    list(SUBLIST files 0 ${COUPLER_UNITY} batch)
     list(REMOVE_ITEM files ${batch})
     set(text)
     foreach(file IN LISTS batch)
@@ -135,7 +136,7 @@ endfunction()
 function(coupler_module name)
   cmake_parse_arguments(module "UNITE" "EXPORT" "SOURCES;LINKS;HEADERS;APART" ${ARGN})
   if(module_UNITE)
-    coupler_unite(${name} 1 ${module_SOURCES})
+    coupler_unite(${name} ${module_SOURCES})
     set(module_SOURCES ${${name}})
   endif()
   add_library(${name} STATIC ${module_SOURCES} ${module_APART})
@@ -160,10 +161,11 @@ endfunction()
 # that hangs from one that works on a slow machine under ThreadSanitizer.
 function(coupler_test name)
   cmake_parse_arguments(test "" "" "SOURCES;LINKS" ${ARGN})
-  coupler_unite(${name} 2 ${test_SOURCES})
+  coupler_unite(${name} ${test_SOURCES})
   add_executable(${name} ${${name}})
   target_link_libraries(${name} PRIVATE coupler_test_flags ${test_LINKS} coupler_test_paths GTest::gmock GTest::gtest_main)
   target_precompile_headers(${name} REUSE_FROM coupler_test_headers)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/test/bin)
+  add_dependencies(coupler_tests ${name})
   gtest_discover_tests(${name} TEST_PREFIX "${name}: " DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
 endfunction()
