@@ -245,7 +245,7 @@ TEST(RtuTransport, A_request_ends_when_another_thread_hangs_up_and_the_next_is_m
   asked.get_future().wait();
   on.transport.hang_up();
   EXPECT_TRUE(is<NotConnected>(value.get()));
-  on.transport.select(1, patient);
+  on.transport.select(2, patient);  // a request to unit 1 would wait until no late reply can come
   EXPECT_EQ(read(on.transport, 8), 800);
 }
 
