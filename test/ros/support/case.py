@@ -15,7 +15,7 @@ class Case(unittest.TestCase):
     """What a test starts, listens to or publishes ends with it: a publisher that stayed would count a driver that is
     gone as its subscriber.
     at_once: each test of the class names its devices after `name`, which no other test has, so that all of them may run
-    at the same time. In ROS 1 they do (support/at_once.py)."""
+    at the same time, each in a process of its own. In ROS 1 they do (support/at_once.py)."""
     at_once = False
     _numbers = itertools.count(1)
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 import contextlib
-import logging
 import threading
 import time
 import xmlrpc.client
@@ -33,26 +32,29 @@ class RosTest(case.Case):
         return topic
 
 
+class _Suite(at_once.Suite):
+    @staticmethod
+    def begin():
+        rospy.init_node("test", anonymous=True, disable_signals=True)
+        threading.Thread(target=_tell_of_publishers, daemon=True).start()
+
+    @staticmethod
+    def end():
+        """rospy's end waits for its registrar, which looks for the end twice a second: it is woken."""
+        registrars = list(get_registration_listeners().listeners)  # it has none any more when the hook is called
+
+        def wake(_):
+            for registrar in registrars:
+                with registrar.cond:
+                    registrar.cond.notify_all()
+
+        rospy.core.add_shutdown_hook(wake)
+        rospy.signal_shutdown("the tests are over")
+
+
 def main():
-    """Runs the tests of the calling file as a ROS node."""
-    # rospy's log looks for the caller of each line, and Python 3.11.2 crashes now and then where several threads do that
-    # (PyFrame_GetBack). This is logging's own way to leave it out.
-    logging._srcfile = None  # pylint: disable=protected-access
-    rospy.init_node("test", anonymous=True, disable_signals=True)
-    threading.Thread(target=_tell_of_publishers, daemon=True).start()
-    case.run(_wake_registrar_at_the_end, at_once.Suite)
-
-
-def _wake_registrar_at_the_end():
-    """rospy's end waits for this thread, which looks for the end twice a second."""
-    registrars = list(get_registration_listeners().listeners)  # it has none any more when the hook is called
-
-    def wake(_):
-        for registrar in registrars:
-            with registrar.cond:
-                registrar.cond.notify_all()
-
-    rospy.core.add_shutdown_hook(wake)
+    """Runs the tests of the calling file as ROS nodes."""
+    case.run(lambda: _Suite.end() if rospy.core.is_initialized() else None, _Suite)
 
 
 def _tell_of_publishers():
