@@ -25,3 +25,13 @@ def wait_until(condition, what, seconds=PATIENCE):
         if time.monotonic() > end:
             raise AssertionError(f"waited {seconds} s for {what}")
         time.sleep(0.005)
+
+
+def stay_quiet(topics):
+    """Nothing is published on any of them from now on."""
+    for topic in topics:
+        topic.subscribe_anew()
+    time.sleep(QUIET)
+    for topic in topics:
+        if topic.values:
+            raise AssertionError(f"{topic.name}: {topic.values} came, though there is nothing new")

@@ -10,7 +10,7 @@ import rosservice
 import rostopic
 from rospy.impl.registration import get_topic_manager
 
-from support.patience import PATIENCE, QUIET, wait_until
+from support.patience import PATIENCE, stay_quiet, wait_until
 
 
 def content(message):
@@ -75,16 +75,6 @@ class Topic:
 
     def close(self):
         self._subscriber.unregister()
-
-
-def stay_quiet(topics):
-    """Nothing is published on any of them from now on."""
-    for topic in topics:
-        topic.subscribe_anew()
-    time.sleep(QUIET)
-    for topic in topics:
-        if topic.values:
-            raise AssertionError(f"{topic.name}: {topic.values} came, though there is nothing new")
 
 
 class Latest:

@@ -6,7 +6,7 @@ from std_msgs.msg import Bool, Int16
 
 from .latest import LatestDiagnostics, LatestStatus
 from .process import write_map
-from .topics import stay_quiet
+from .patience import stay_quiet
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 TIMEOUT = 0.5

@@ -8,7 +8,7 @@ import time
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from support.patience import PATIENCE, QUIET, wait_until
+from support.patience import PATIENCE, stay_quiet, wait_until
 from support.ros import polled, spun
 
 STEP = 0.005  # seconds from a look to the next
@@ -139,16 +139,6 @@ class Topic:
             self._take()
             self._subscription.close()
             self._subscription = None
-
-
-def stay_quiet(topics):
-    """Nothing is published on any of them from now on."""
-    for topic in topics:
-        topic.subscribe_anew()
-    time.sleep(QUIET)
-    for topic in topics:
-        if topic.values:
-            raise AssertionError(f"{topic.name}: {topic.values} came, though there is nothing new")
 
 
 class Latest:
