@@ -108,22 +108,15 @@ class Silence:
 def undisturbed(limit, act, again=lambda: None):
     """What `act(silence)` returns of a run in which no silence was as long as `limit`. A busy machine keeps a client from
     what it is to see or to do in time: such a run says nothing, and after `again()` there is another one, twenty at most."""
-    for _ in range(20):
-        silence = Silence()
-        seen = act(silence)
-        if silence.longest < limit:
-            break
-        print(f"tried again: this machine was silent for {silence.longest:.1f} s")
-        again()
-    return seen
+    return slower_until_undisturbed(limit, lambda silence, _: act(silence), again, factors=[1] * 20)
 
 
 SLOWER = (1, 2, 4, 8, 16, 32)
 
 
-def slower_until_undisturbed(limit, act, again=lambda: None):
+def slower_until_undisturbed(limit, act, again=lambda: None, factors=SLOWER):
     """Does the same with `act(silence, factor)`. Its times and the limit are that many times as long."""
-    for factor in SLOWER:
+    for factor in factors:
         silence = Silence()
         seen = act(silence, factor)
         if silence.longest < limit * factor:
