@@ -2,6 +2,7 @@
 #include "coupler/map/nearest.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,6 +10,57 @@
 #include "coupler/base/lower.hpp"
 
 namespace coupler {
+namespace {
+
+/// Words on the left say the opposite of those on the right.
+constexpr std::pair<std::string_view, std::string_view> opposite_words[] = {
+    {" on yes true always enable enabled allow allowed active with ",
+     " off no not non none false never disable disabled deny denied inactive without "},
+    {" high hi upper ", " low lo lower "},
+    {" up ", " down dn "},
+    {" open opened ", " close closed "},
+    {" rising ", " falling "},
+    {" start ", " stop "},
+    {" min ", " max "},
+};
+
+/// Some word of the name, as "active" in "active_low", is one of the list.
+bool has_word_of(std::string_view list, std::string_view name) {
+  constexpr std::string_view separators = " _-./";
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find_first_of(separators, begin), name.size());
+    const std::string padded = fmt::format(" {} ", name.substr(begin, end - begin));
+    if (end > begin && list.find(padded) != std::string_view::npos) return true;
+    begin = end + 1;
+  }
+  return false;
+}
+
+/// "unlatched" is the opposite of "latched", but "inital" is none of "initial".
+bool negates(std::string_view word, std::string_view other) {
+  constexpr std::string_view prefixes[] = {"non", "not", "no", "un", "in", "dis"};
+  for (const std::string_view prefix : prefixes) {
+    if (word.substr(0, prefix.size()) != prefix) continue;
+    const std::size_t rest = word.find_first_not_of("_- ", prefix.size());
+    if (rest == std::string_view::npos || word.size() - rest < 3) continue;
+    if (edit_distance(word.substr(rest), other) < edit_distance(word, other)) return true;
+  }
+  return false;
+}
+
+/// Nobody who wrote the one is told to write the other: "no" and "on", "enabled" and "disabled". In lower
+/// case.
+bool are_opposites(std::string_view a, std::string_view b) {
+  for (const auto& [left, right] : opposite_words) {
+    const bool a_left = has_word_of(left, a), a_right = has_word_of(right, a);
+    const bool b_left = has_word_of(left, b), b_right = has_word_of(right, b);
+    if (a_left != a_right && b_left != b_right && a_left == b_right) return true;
+  }
+  return negates(a, b) || negates(b, a);
+}
+
+}  // namespace
+
 unsigned edit_distance(std::string_view a, std::string_view b) {
   const std::size_t width = b.size() + 1;
   std::vector<unsigned> before(width);
@@ -33,11 +85,14 @@ std::vector<std::string_view> all_nearest(std::string_view word,
                                           const std::vector<std::string_view>& candidates) {
   constexpr std::size_t longest = 40;  // longer words are no typing mistakes, and would cost time
   if (word.size() > longest) return {};
+  const std::string given = lower(word);
   std::vector<std::string_view> best;
   unsigned least = static_cast<unsigned>(1 + word.size() / 4);
   for (const std::string_view candidate : candidates) {
-    const unsigned distance = edit_distance(lower(word), lower(candidate));
-    if (distance > least || distance >= candidate.size()) continue;
+    if (candidate.size() > word.size() + least) continue;
+    const std::string known = lower(candidate);
+    const unsigned distance = edit_distance(given, known);
+    if (distance > least || distance >= candidate.size() || are_opposites(given, known)) continue;
     if (distance < least) best.clear();
     least = distance;
     best.push_back(candidate);
@@ -46,16 +101,19 @@ std::vector<std::string_view> all_nearest(std::string_view word,
 }
 
 bool is_slip(std::string_view word, std::string_view candidate) {
-  constexpr std::size_t longest = 40;
-  if (word.size() > longest) return false;
   const auto most = std::max<std::size_t>(1, word.size() / 4);
+  if (all_nearest(word, {candidate}).empty()) return false;
   const unsigned distance = edit_distance(lower(word), lower(candidate));
-  return distance <= most && distance < std::min(word.size(), candidate.size());
+  return distance <= most && distance < word.size();
 }
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
   const auto best = all_nearest(word, candidates);
-  return best.empty() ? std::string_view{} : best.front();
+  if (best.empty()) return {};
+  const bool open = std::any_of(best.begin(), best.end(), [&](std::string_view other) {
+    return are_opposites(lower(best.front()), lower(other));
+  });
+  return open ? std::string_view{} : best.front();
 }
 
 std::string nearest_or(std::string_view word, const std::vector<std::string_view>& candidates,

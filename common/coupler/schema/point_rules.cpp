@@ -116,7 +116,8 @@ Json with_values(const Json& one, bool has_safe_value = true) {
   const auto rule = [&](const Json& value) {
     // The words come first: a text has values, too, and `hold` is not one of them.
     Json properties{{"initial", value}, {"deadman", {{"properties", {{"value", value}}}}}};
-    if (has_safe_value) properties["safe"] = {{"anyOf", {{{"enum", {"hold", "off"}}}, value}}};
+    const Json off{{"type", "string"}, {"pattern", any_case({"false", "no", "off"})}};
+    if (has_safe_value) properties["safe"] = {{"anyOf", {{{"enum", {"hold", false}}}, off, value}}};
     return Json{{"properties", std::move(properties)}};
   };
   const Json list{{"type", "array"}, {"minItems", 2}, {"items", one}};

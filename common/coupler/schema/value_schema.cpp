@@ -54,13 +54,22 @@ Json boolean() {
   return any_of({{{"type", "boolean"}}, text(any_case({"yes", "no", "on", "off"}), "write true or false")});
 }
 
-/// ros-modbus-device-driver takes its words in any case.
+/// YAML's other words for "on" and "off" are taken where these are choices. ros-modbus-device-driver takes
+/// its words in any case.
 Json choice(const Key& key) {
   const auto choices = loader::words(key.choices);
-  Json exact{{"enum", choices}};
-  if (key.bits) return any_of({exact, {{"type", "array"}, {"minItems", 2}, {"items", boolean()}}});
-  if (key.owner == Owner::project) return exact;
-  return any_of({exact, text(any_case(choices), fmt::format("write one of {}", fmt::join(choices, ", ")))});
+  const std::string remedy = fmt::format("write one of {}", fmt::join(choices, ", "));
+  Json taken = Json::array({{{"enum", choices}}});
+  for (const std::string_view choice : choices) {
+    const auto truth = loader::parse_boolean(choice);
+    if (!truth) continue;
+    taken.push_back({{"const", *truth}});
+    taken.push_back(*truth ? text(any_case({"true", "yes", "on"}), remedy)
+                           : text(any_case({"false", "no", "off"}), remedy));
+  }
+  if (key.bits) taken.push_back({{"type", "array"}, {"minItems", 2}, {"items", boolean()}});
+  if (key.owner != Owner::project) taken.push_back(text(any_case(choices), remedy));
+  return taken.size() == 1 ? taken.front() : Json{{"anyOf", taken}};
 }
 
 /// Editors suggest the names of IEC 61131-3.

@@ -37,6 +37,20 @@ TEST(Nearest, A_slip_is_one_letter_and_more_in_long_words) {
   EXPECT_FALSE(is_slip(std::string(100000, 'a'), "name"));
 }
 
+TEST(Nearest, The_opposite_is_never_suggested) {
+  EXPECT_EQ(nearest("no", {"off", "on", "hold"}), "");
+  EXPECT_EQ(nearest("of", {"off", "on", "hold"}), "") << "as near to the one as to the other";
+  EXPECT_EQ(nearest("offf", {"off", "on", "hold"}), "off");
+  EXPECT_EQ(nearest("enabled", {"as_is", "disabled"}), "");
+  EXPECT_EQ(nearest("active_hi", {"active_low"}), "");
+  EXPECT_EQ(nearest("unlatched", {"latched"}), "");
+  EXPECT_EQ(nearest("latched", {"unlatched"}), "");
+  EXPECT_EQ(nearest("heater_off", {"heater_on", "heater_oft"}), "heater_oft");
+  EXPECT_EQ(nearest("inital", {"initial"}), "initial") << "begins with 'in' and denies nothing";
+  EXPECT_EQ(nearest("unti", {"unit"}), "unit");
+  EXPECT_FALSE(is_slip("unlatched", "latched"));
+}
+
 TEST(Nearest, Nothing_is_suggested_for_another_word) {
   EXPECT_EQ(nearest("colour", {"name", "address", "port"}), "");
   EXPECT_EQ(nearest("x", {"to"}), "");

@@ -93,10 +93,10 @@ void read_safe_value(const Reader& reader, DraftPoint& draft, const Context& con
   const Entry* entry = reader.find("safe");
   if (entry == nullptr) return;
   Point& point = draft.point;
-  const bool is_output = is_analogue(point);
-  if (entry->kind == Entry::Kind::scalar && entry->text == "hold") {
+  const bool word = entry->kind == Entry::Kind::scalar;
+  if (word && entry->text == "hold") {
     point.safe = Safe::hold;
-  } else if (draft.placed && !(is_output && entry->kind == Entry::Kind::scalar && entry->text == "off")) {
+  } else if (draft.placed && !(is_analogue(point) && word && parse_boolean(entry->text) == false)) {
     point.safe = Safe::on;
     point.safe_value = read_value("safe", *entry, point, context);
   }

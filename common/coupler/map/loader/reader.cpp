@@ -214,6 +214,10 @@ std::string_view Reader::chosen_word(std::string_view key) const {
       entry->kind == Entry::Kind::scalar ? folded(entry->text, known.owner) : std::string();
   for (const std::string_view choice : choices)
     if (given == folded(choice, known.owner)) return choice;
+  // YAML's other words for on and off, where these are among the choices.
+  if (const auto truth = parse_boolean(given))
+    for (const std::string_view choice : choices)
+      if (parse_boolean(choice) == truth) return choice;
   const std::string_view meant =
       entry->kind == Entry::Kind::scalar ? remedy_for_choice(entry->text, known.name) : std::string_view{};
   context_.problems.error(

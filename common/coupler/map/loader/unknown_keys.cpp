@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a reader says of a key that its section does not have.
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "coupler/codec/type_name.hpp"
@@ -76,7 +74,7 @@ void Reader::unknown(const Entry& entry) const {
   if (elsewhere != Section::none) return misplaced(entry, elsewhere);
   const auto here = key_names(section_);
   const std::string_view near = nearest(entry.key, here);
-  const bool slip = std::any_of(here.begin(), here.end(), [&](auto key) { return is_slip(entry.key, key); });
+  const bool slip = is_slip(entry.key, near);
   const Key* other = slip ? nullptr : slip_of_another_section(entry.key);
   const Synonym* synonym = slip ? nullptr : find_synonym(entry.key, section_);
   const bool is_point = section_ == Section::mapping && !slip && synonym == nullptr &&

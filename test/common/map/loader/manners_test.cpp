@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Arrays, scaling, analogue channels, and what the host does with points. What is refused is in
 // test/maps/bad.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "coupler/codec/scale.hpp"
@@ -198,6 +199,19 @@ TEST(Link, What_becomes_of_outputs_and_which_points_are_read_is_said_at_the_top)
   EXPECT_FALSE(map->map().changes);
   EXPECT_EQ(load_clean(map_of("coils", "p: 1"))->map().poll, Poll::all);
   EXPECT_TRUE(load_clean(map_of("coils", "p: 1"))->map().changes);
+}
+
+TEST(Manners, Every_word_of_YAML_for_on_and_off_is_a_safe_state) {
+  for (const char* word : {"off", "no", "No", "NO", "false", "\"no\""}) {
+    EXPECT_EQ(OnePoint("coils", fmt::format("{{address: 1, safe: {}}}", word))->safe, Safe::off) << word;
+    const OnePoint pwm("holding_registers",
+                       fmt::format("{{address: 0, type: UINT, pwm: {{chip: p, channel: 0, period: 1ms}}, "
+                                   "safe: {}}}",
+                                   word));
+    EXPECT_EQ(pwm->safe, Safe::off) << word;
+  }
+  for (const char* word : {"on", "yes", "Yes", "true", "TRUE"})
+    EXPECT_EQ(OnePoint("coils", fmt::format("{{address: 1, safe: {}}}", word))->safe, Safe::on) << word;
 }
 
 TEST(Manners, Any_output_may_say_what_is_safe_for_it) {
