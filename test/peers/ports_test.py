@@ -44,8 +44,8 @@ def is_listened_at(port):
         return True
     except ConnectionRefusedError:
         return False
-    except TimeoutError:
-        return True  # by nobody who accepts
+    except (TimeoutError, ConnectionResetError):
+        return True  # by nobody who accepts, or no longer: it was closed meanwhile
 
 
 def main():
