@@ -15,8 +15,10 @@ import time
 SKIPPED = 77
 PATIENCE = 120  # seconds for whatever must come: tells hanging from working, on any machine
 
-# `nohup ./check` leaves it ignored, and a node that is started so takes no SIGHUP.
-signal.signal(signal.SIGHUP, signal.SIG_DFL)
+# `nohup ./check`, and a shell that runs it in the background, leave some ignored: what is started so takes none of them.
+for _number in (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT):
+    if signal.getsignal(_number) == signal.SIG_IGN:
+        signal.signal(_number, signal.SIG_DFL)
 
 
 def skip(reason):

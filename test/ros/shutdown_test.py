@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""SIGINT ends the driver with 0, soon, whatever it is doing."""
+"""SIGINT, and every other signal that asks a program to end, ends the driver with 0, soon, whatever it is doing."""
 import contextlib
 import os
+import signal
 import socket
 import unittest
 
@@ -40,6 +41,29 @@ class Shutdown(unittest.TestCase):
     def test_while_polling(self):
         with Peer() as peer, process.Driver(f"_map:={self.map}", f"_port:={peer.port}") as driver:
             driver.wait_for("connected")
+            self.assert_ends_soon(driver)
+
+    def test_by_each_signal_that_asks_for_it_with_safe_values(self):
+        path = process.write_map("name: shutdown\naddress: 127.0.0.1\non_shutdown: safe\nmapping:\n"
+                                 "  coils: {valve: {address: 7, safe: on}}\n")
+        numbers = {signal.SIGHUP: 0, signal.SIGTERM: 0, signal.SIGUSR1: 0, signal.SIGUSR2: 0,
+                   signal.SIGQUIT: -signal.SIGQUIT}  # which asks for a core, too
+        with Device() as device:
+            def start():
+                device.tables["coils"][7] = 0
+                return process.Driver(f"_map:={path}", f"_port:={device.port}")
+
+            for number, status in numbers.items():
+                with self.subTest(number):
+                    driver, code = process.interrupted_in_time(start, lambda _, code, right=status: code == right, number)
+                    self.assertEqual(code, status, driver.output)
+                    self.assertEqual(device.tables["coils"][7], 1)
+
+    def test_a_signal_that_was_ignored_at_the_start_stays_ignored(self):
+        with Peer() as peer, process.Driver(f"_map:={self.map}", f"_port:={peer.port}", under=("nohup",)) as driver:
+            driver.wait_for("connected")
+            driver.signal(signal.SIGHUP)
+            self.assertFalse(driver.ends_within(1), driver.output)
             self.assert_ends_soon(driver)
 
     def test_while_it_tells_the_master_of_many_topics(self):
@@ -116,9 +140,11 @@ class Shutdown(unittest.TestCase):
         master = os.environ["ROS_MASTER_URI"]
         os.environ["ROS_MASTER_URI"] = f"http://localhost:{free_port()}"
         try:
-            with process.Driver(f"_map:={self.map}") as driver:
-                driver.wait_for("Failed to contact master")
-                self.assert_ends_soon(driver)
+            # ROS waits for it where it sets parameters, or where it advertises its log.
+            for arguments in ([f"_map:={self.map}"], ["--map", self.map], ["--map", self.map, "__name:=io"]):
+                with process.Driver(*arguments) as driver:
+                    driver.wait_for("Failed to contact master")
+                    self.assert_ends_soon(driver)
         finally:
             os.environ["ROS_MASTER_URI"] = master
 

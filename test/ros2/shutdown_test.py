@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""SIGINT and SIGTERM end the driver with 0, soon, whatever it is doing; with 3 if an output did not get its safe value."""
+"""SIGINT, SIGTERM and their kind end the driver with 0, soon, whatever it is doing; with 3 if an output did not get its safe value."""
 import contextlib
 import signal
 import socket
@@ -37,12 +37,12 @@ class Shutdown(testing.RosTest):
         self.assertEqual(driver.interrupt(by), status, driver.output)
 
     def test_while_polling(self):
-        for by in SIGNALS:
+        for by in (*SIGNALS, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGQUIT):
             with self.subTest(by.name), Peer() as peer:
                 driver = self.driver("--map", process.write_map(MAP), "--port", peer.port)
                 driver.wait_for("connected")
                 self.topic("/shutdown/lamp", Bool).next()
-                self.assert_ends_soon(driver, by=by)
+                self.assert_ends_soon(driver, -by if by == signal.SIGQUIT else 0, by)  # with its core
                 wait_until(lambda: "/shutdown/online" not in types(), "the good-bye")
 
     def test_while_it_offers_many_topics(self):

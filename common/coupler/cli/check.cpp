@@ -49,10 +49,10 @@ Exit check(const Arguments& arguments) {
       std::puts(json_report(file, loaded).c_str());
     } else {
       print(loaded.diagnostics);
-      std::fputs(lock_report(loaded.lock).c_str(), stdout);
+      put(lock_report(loaded.lock));
       if (!loaded.map) continue;
       std::puts(summary(file, loaded.map->map()).c_str());
-      std::fputs(rights_table(loaded.map->map()).c_str(), stdout);
+      put(rights_table(loaded.map->map()));
       for (const std::string& line : certificates) std::puts(line.c_str());
     }
   }

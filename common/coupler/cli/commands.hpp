@@ -3,6 +3,8 @@
 // program; when the user calls it, it sets `exit`.
 #pragma once
 
+#include <cstdio>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -25,10 +27,14 @@ enum Exit : int {
 /// Says "coupler COMMAND: error: WHAT; REMEDY" on standard error; returns `exit`. An empty remedy: `what` has
 /// it.
 inline Exit complain(std::string_view command, Exit exit, std::string_view what, std::string_view remedy) {
-  fmt::print(stderr, "coupler {}: error: {}{}{}\n", command, printable_lines(what),
-             remedy.empty() ? "" : "; ", printable_lines(remedy));
+  const std::string line = fmt::format("coupler {}: error: {}{}{}\n", command, printable_lines(what),
+                                       remedy.empty() ? "" : "; ", printable_lines(remedy));
+  std::fputs(line.c_str(), stderr);
   return exit;
 }
+
+/// To standard output, whole: a NUL does not end it. main() looks whether it was taken.
+inline void put(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
 void add_certificates(Program& program, Exit& exit);
 void add_check(Program& program, Exit& exit);

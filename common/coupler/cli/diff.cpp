@@ -152,7 +152,7 @@ Exit run(const Arguments& arguments) {
   const auto report = arguments.format == "json"       ? diff_json
                       : arguments.format == "markdown" ? diff_markdown
                                                        : diff_text;
-  std::fputs(report(arguments.versions, changes).c_str(), stdout);
+  put(report(arguments.versions, changes));
   const auto worst = changes::worst(changes);
   return worst && *worst <= severity_of(arguments.fail_on) ? bad_input : ok;
 }

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // coupler: what a person or a build does with maps at the command line.
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "coupler/base/ending_signals.hpp"
 #include "coupler/base/standard_files.hpp"
 #include "coupler/base/version.hpp"
 #include "coupler/base/what_failed.hpp"
@@ -38,11 +42,20 @@ int main(int argc, char** argv) {
   coupler::cli::add_record(program, exit);
   coupler::cli::add_schema(program, exit);
   coupler::cli::add_status(program, exit);
+  std::optional<int> done;
   try {
-    if (const auto done = program.parse(argc, argv)) return *done;
+    done = program.parse(argc, argv);
   } catch (const std::exception& error) {  // no thread or no memory is left
-    fmt::print(stderr, "coupler: error: {}\n", coupler::what_failed(error));
+    std::fputs(fmt::format("coupler: error: {}\n", coupler::what_failed(error)).c_str(), stderr);
     return coupler::cli::failed;
   }
-  return exit;
+  int code = done.value_or(exit);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    const std::string line =
+        fmt::format("coupler: error: cannot write standard output: {}; what is there is not whole\n",
+                    std::strerror(errno));
+    std::fputs(line.c_str(), stderr);
+    code = code == coupler::cli::ok ? coupler::cli::bad_call : code;
+  }
+  return coupler::end_with(code);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/cli/output_argument.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "coupler/generate/output.hpp"
+#include "coupler/map/printable.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -27,7 +30,7 @@ Exit write_file(std::string_view command, std::string_view option, const std::st
 
 Exit write_out(std::string_view command, const std::string& out, const std::string& text) {
   if (!names_no_file(out)) return write_file(command, "--out", out, text);
-  std::fputs(text.c_str(), stdout);
+  put(::isatty(STDOUT_FILENO) == 1 ? printable_lines(text) : text);
   return ok;
 }
 

@@ -56,7 +56,7 @@ Exit run(const Arguments& arguments) {
   if (arguments.json)
     std::puts(plan_json(arguments.map, map, timing).c_str());
   else
-    std::fputs(plan_text(arguments.map, map, timing).c_str(), stdout);
+    put(plan_text(arguments.map, map, timing));
   warn_if_too_much(arguments.map, map, timing);
   return ok;
 }

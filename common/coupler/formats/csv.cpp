@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/csv_cell.hpp"
+
 namespace coupler::formats {
 namespace {
 
@@ -128,16 +130,6 @@ std::vector<Row> parse_csv(std::string_view text, loader::Problems& problems) {
   return CsvParser(text, problems).run();
 }
 
-namespace {
-
-bool would_be_run(std::string_view text) {
-  const std::size_t first = text.find_first_not_of('\'');
-  return first != std::string_view::npos &&
-         std::string_view("=+-@").find(text[first]) != std::string_view::npos;
-}
-
-}  // namespace
-
 bool is_text(const loader::Key& key, bool is_string) {
   return (key.kind == loader::ValueKind::text && key.inside == loader::Section::none) ||
          (key.kind == loader::ValueKind::value && is_string);
@@ -149,17 +141,6 @@ std::string guarded(std::string_view text) {
 
 std::string_view unguarded(std::string_view text) {
   return text.substr(0, 1) == "'" && would_be_run(text) ? text.substr(1) : text;
-}
-
-std::string csv_cell(std::string_view text) {
-  const bool blank_around = trimmed(text).size() != text.size();
-  if (!blank_around && text.find_first_of(";,\t\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + '"';
 }
 
 }  // namespace coupler::formats

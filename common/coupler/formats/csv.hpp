@@ -25,12 +25,9 @@ std::vector<Row> parse_csv(std::string_view text, loader::Problems& problems);
 /// The cells below this key are text, whatever they look like; `is_string`: those of a STRING.
 bool is_text(const loader::Key& key, bool is_string);
 
-/// Text as a cell that spreadsheets do not take for a formula: an apostrophe before "=", "+", "-" and "@",
-/// and one more where apostrophes stand there. unguarded() takes it away.
+/// Text that spreadsheets do not run: with an apostrophe before it if they would, and one more where
+/// apostrophes stand there. unguarded() takes it away.
 std::string guarded(std::string_view text);
 std::string_view unguarded(std::string_view text);
-
-/// The text as a cell of a file whose separator is ',': in quotes where they are needed.
-std::string csv_cell(std::string_view text);
 
 }  // namespace coupler::formats

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/csv_cell.hpp"
 #include "coupler/codec/text.hpp"
 #include "coupler/formats/csv.hpp"
 #include "coupler/formats/map_tree.hpp"

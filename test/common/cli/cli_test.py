@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The program `coupler` as a script sees it: exit status, output, files. COUPLER is the program."""
+import contextlib
 import json
 import os
+import pty
 import subprocess
 import tempfile
 import unittest
@@ -33,6 +35,45 @@ class Cli(unittest.TestCase):
     def coupler(self, *arguments, stdin=""):
         return subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, input=stdin,
                               capture_output=True, text=True, encoding="utf-8", check=False)
+
+
+class StandardOutput(Cli):
+    def into_a_full_disk(self, *arguments):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([os.environ["COUPLER"], *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE,
+                                  text=True, check=False)
+        self.assertEqual(done.returncode, 2, arguments)
+        self.assertIn("cannot write standard output: No space left on device", done.stderr)
+
+    def test_that_takes_nothing_is_an_error(self):
+        file = self.file("cell.yaml", GOOD)
+        for arguments in (["export", file, "--to", "csv"], ["schema"], ["plan", file], ["plan", file, "--json"], ["check", file],
+                          ["check", file, "--json"], ["generate", file, "--python", "--out", "-"],
+                          ["generate", file, "--vectors", "--out", "-"], ["diff", file, file], ["export", "--list"], ["--help"]):
+            with self.subTest(arguments):
+                self.into_a_full_disk(*arguments)
+
+    def test_has_all_of_a_text_with_a_NUL(self):
+        file = self.file("nul.yaml", GOOD.replace("{address: 0, type: REAL}", '{address: 0, type: REAL, description: "x\\0y"}\n'
+                                                  "    later: {address: 2, type: REAL}"))
+        done = self.coupler("export", file, "--to", "csv")
+        self.assertIn("x\0y", done.stdout)
+        self.assertIn("later", done.stdout)
+
+    def test_on_a_terminal_shows_what_a_terminal_would_obey(self):
+        file = self.file("cell.yaml", GOOD.replace("{address: 0, type: REAL}",
+                                                   '{address: 0, type: REAL, description: "\\e]0;owned\\a"}'))
+        reader, terminal = pty.openpty()
+        subprocess.run([os.environ["COUPLER"], "export", file, "--to", "csv"], cwd=self.folder, stdout=terminal, check=True,
+                       stderr=subprocess.DEVNULL)
+        os.close(terminal)
+        shown = b""
+        with contextlib.suppress(OSError):  # the other end is closed
+            while more := os.read(reader, 1 << 16):
+                shown += more
+        os.close(reader)
+        self.assertNotIn(b"\x1b", shown)
+        self.assertIn(b"\\x1b]0;owned\\x07", shown)
 
 
 class TheCall(Cli):

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/formats/csv.hpp"
 
+#include "coupler/base/csv_cell.hpp"
+
 #include <gmock/gmock.h>
 
 namespace coupler::formats {
@@ -70,7 +72,7 @@ TEST(Csv, What_is_written_as_a_cell_reads_back) {
 }
 
 TEST(Csv, Text_that_a_spreadsheet_would_run_gets_an_apostrophe_and_loses_it_again) {
-  for (const std::string text : {"=1+1", "+49 151", "-flow", "@home", "'=1", "''-x"}) {
+  for (const std::string text : {"=1+1", "+49 151", "-flow", "@home", "'=1", "''-x", "\t=1"}) {
     EXPECT_EQ(guarded(text), "'" + text);
     EXPECT_EQ(unguarded(guarded(text)), text);
   }

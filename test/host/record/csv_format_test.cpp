@@ -82,9 +82,9 @@ TEST(CsvFormat, Quotes_commas_and_newlines_of_a_text_stay_in_its_cell) {
 }
 
 TEST(CsvFormat, A_text_of_the_device_is_no_formula) {
-  EXPECT_EQ(csv_text("=1+2"), "\"'=1+2\"");
-  EXPECT_EQ(csv_text("@sum"), "\"'@sum\"");
-  EXPECT_EQ(csv_text("+cmd|' /C calc'!A0"), "\"'+cmd|' /C calc'!A0\"");
+  EXPECT_EQ(csv_text("=1+2"), "'=1+2");
+  EXPECT_EQ(csv_text("@sum"), "'@sum");
+  EXPECT_EQ(csv_text("+cmd|' /C calc'!A0"), "'+cmd|' /C calc'!A0");
   EXPECT_EQ(csv_text("-a\""), "\"'-a\"\"\"");
   EXPECT_EQ(csv_text("\t=1"), "\"'\t=1\"");
   EXPECT_EQ(csv_text("a=1"), "a=1");

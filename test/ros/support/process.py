@@ -23,8 +23,10 @@ NAME = "__name:="  # gives the node its name
 LIMITABLE = () if os.geteuid() else (
     "setpriv", "--reuid=54321", "--keep-groups", "--inh-caps=+dac_override", "--ambient-caps=+dac_override")
 
-# `nohup ./check` leaves it ignored, and a node that is started so takes no SIGHUP.
-signal.signal(signal.SIGHUP, signal.SIG_DFL)
+# `nohup ./check`, and a shell that runs it in the background, leave some ignored: what is started so takes none of them.
+for _number in (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT):
+    if signal.getsignal(_number) == signal.SIG_IGN:
+        signal.signal(_number, signal.SIG_DFL)
 
 
 def freeze(child):

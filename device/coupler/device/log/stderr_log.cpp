@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "coupler/base/never_wait.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::device {
@@ -29,20 +30,6 @@ bool is_stderr(const char* stream) {
          fmt::format("{}:{}", now.st_dev, now.st_ino) == stream;
 }
 
-Descriptor open_at_once(const char* path) {
-  return Descriptor(::open(path, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
-}
-
-/// Opened again, it has flags of its own. Not a file: it would also have a position of its own, and whoever
-/// writes to the file as well would overwrite the log. /dev/stderr is refused if the pipe or terminal is
-/// another user's; the terminal of one's own session never is.
-Descriptor open_again(mode_t kind) {
-  if (!S_ISFIFO(kind) && !S_ISCHR(kind)) return {};
-  Descriptor own = open_at_once("/proc/self/fd/2");
-  if (!own.is_open() && ::tcgetsid(STDERR_FILENO) == ::getsid(0)) own = open_at_once("/dev/tty");
-  return own;
-}
-
 bool takes_some(int fd) {
   pollfd wish{fd, POLLOUT, 0};
   return ::poll(&wish, 1, 0) == 1 && (wish.revents & POLLOUT) != 0;
@@ -54,7 +41,7 @@ LogStream::LogStream() {
   struct stat now {};
   if (::fstat(STDERR_FILENO, &now) != 0) return;
   is_socket_ = S_ISSOCK(now.st_mode);
-  own_ = open_again(now.st_mode);
+  own_ = Descriptor(open_again(STDERR_FILENO));
 }
 
 std::size_t LogStream::write(std::string_view text) const {

@@ -7,15 +7,9 @@
 
 #include <cassert>
 
+#include "coupler/base/ending_signals.hpp"
+
 namespace coupler::device {
-namespace {
-
-bool is_ignored(int signal) {
-  struct sigaction action {};
-  return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
-}
-
-}  // namespace
 
 bool has_terminal() { return Descriptor(::open("/dev/tty", O_RDONLY | O_NOCTTY | O_CLOEXEC)).is_open(); }
 

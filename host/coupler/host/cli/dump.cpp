@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/cli/live_device.hpp"
 
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/never_wait.hpp"
 #include "coupler/host/cli/device_reader.hpp"
 #include "coupler/host/cli/dump_output.hpp"
 #include "coupler/host/cli/interruption.hpp"
@@ -33,12 +35,20 @@ namespace {
 /// A device that ends each connection is not asked without end.
 constexpr std::chrono::seconds pause_after_loss(1);
 
-void put(const std::string& line) {
+void put_line(const std::string& line) {
   std::puts(line.c_str());
   std::fflush(stdout);
 }
 
-void tell(const std::string& note) { fmt::print(stderr, "coupler dump: note: {}\n", printable_lines(note)); }
+void tell(const std::string& note) {
+  std::fputs(fmt::format("coupler dump: note: {}\n", printable_lines(note)).c_str(), stderr);
+}
+
+/// False while whoever reads standard output stands still.
+bool is_taken() {
+  pollfd wish{STDOUT_FILENO, POLLOUT, 0};
+  return ::poll(&wish, 1, 0) != 0;
+}
 
 /// Rows of the terminal that is standard output.
 std::size_t terminal_rows() {
@@ -54,16 +64,18 @@ bool is_screen() {
 
 void show_frame(const Map& map, const Snapshot* /*before*/, const Snapshot& now) {
   const std::string text = frame(table_lines(map, now, colour_of(STDOUT_FILENO)), terminal_rows());
-  std::fputs(text.c_str(), stdout);
+  put(text);
   std::fflush(stdout);
 }
 
-void show_json(const Map& map, const Snapshot* /*before*/, const Snapshot& now) { put(dump_json(map, now)); }
+void show_json(const Map& map, const Snapshot* /*before*/, const Snapshot& now) {
+  put_line(dump_json(map, now));
+}
 
 void show_changes(const Map& map, const Snapshot* before, const Snapshot& now) {
   if (now.online() && (before == nullptr || before->notes != now.notes))
     for (const std::string& note : now.notes) tell(note);
-  for (const std::string& line : change_lines(map, before, now)) put(line);
+  for (const std::string& line : change_lines(map, before, now)) put_line(line);
 }
 
 Exit once(const Map& map, const DumpOptions& options) {
@@ -75,9 +87,9 @@ Exit once(const Map& map, const DumpOptions& options) {
     return reading.state == Reading::State::good;
   });
   if (options.json) {
-    put(dump_json(map, now));
+    put_line(dump_json(map, now));
   } else if (now.online() || !nothing) {
-    for (const std::string& line : table_lines(map, now, Colour::no)) put(line);
+    for (const std::string& line : table_lines(map, now, Colour::no)) put_line(line);
   }
   if (!now.online())
     complain("dump", failed, node_address_text(map.connection) + ": " + to_string(*now.error),
@@ -122,7 +134,7 @@ class Watch {
       if (online_.online() && !online_.readings.empty()) mark_changes(online_, now);
       online_ = now;
     }
-    show_(map_, std::exchange(is_first_, false) ? nullptr : &before_, now);
+    show_if_taken(std::exchange(is_first_, false) ? nullptr : &before_, now);
     before_ = std::move(now);
     if (is_online) {
       was_told_ = false;
@@ -136,7 +148,7 @@ class Watch {
     was_told_ |= reader_.hears_changes();
     auto lost = reader_.wait_until(next);
     if (!lost || stopped_) return;
-    show_(map_, &before_, *lost);
+    show_if_taken(&before_, *lost);
     before_ = *std::move(lost);
     clock_.sleep_until(std::min<host::Time>(next, clock_.now() + pause_after_loss));
   }
@@ -147,7 +159,19 @@ class Watch {
     before_.at = std::chrono::system_clock::time_point(
         std::chrono::duration_cast<std::chrono::system_clock::duration>(wall_.of(stamp.at)));
     online_ = before_;
-    show_(map_, &before_, before_);
+    show_if_taken(&before_, before_);
+  }
+
+  /// What nobody takes is not shown, so that the device is looked at, and Ctrl-C heard, all the same.
+  void show_if_taken(const Snapshot* before, const Snapshot& now) {
+    if (!is_taken()) {
+      ++missing_;
+      is_first_ |= before == nullptr;
+      return;
+    }
+    if (const unsigned missing = std::exchange(missing_, 0); missing > 0)
+      tell(fmt::format("{} looks are missing here: standard output was blocked", missing));
+    show_(map_, before, now);
   }
 
   const Map& map_;
@@ -162,15 +186,17 @@ class Watch {
   Snapshot before_;
   Snapshot online_;        ///< the last that was
   bool is_first_ = true;   ///< nothing has been shown
+  unsigned missing_ = 0;   ///< that were not shown since the last one that was
   bool was_told_ = false;  ///< the device told its changes, until the connection ended
   DeviceReader reader_;    // last: it uses the others
 };
 
 Exit again_and_again(const Map& map, const DumpOptions& options) {
+  never_wait_for_reader_of(STDERR_FILENO);
   const bool terminal = !options.json && is_screen();
   if (terminal) std::fputs(begin_frames, stdout);
   Watch(map, options, options.json ? show_json : terminal ? show_frame : show_changes).run();
-  if (terminal) put(end_frames);
+  if (terminal) put_line(end_frames);
   return ok;
 }
 

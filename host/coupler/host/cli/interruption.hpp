@@ -8,8 +8,9 @@
 
 namespace coupler::cli {
 
-/// While it exists, the first SIGINT (Ctrl-C) or SIGTERM calls a function, in a thread of its own, instead of
-/// ending the program. To be made before any other thread.
+/// While it exists, the first of coupler::ending_signals (Ctrl-C, a closed terminal, …) calls a function, in
+/// a thread of its own, instead of ending the program; another one half a second later ends it at once. To be
+/// made before any other thread. After SIGQUIT end_with() leaves a core.
 class Interruption {
  public:
   explicit Interruption(std::function<void()> call);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <mutex>
@@ -10,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/never_wait.hpp"
 #include "coupler/base/utc_text.hpp"
 #include "coupler/cli/device_argument.hpp"
 #include "coupler/cli/live_device.hpp"
@@ -166,8 +170,11 @@ Exit panel(const DeviceArgument& argument, const PanelOptions& options) {
   auto server = host::PanelServer::start({options.listen, options.port, options.name}, tls,
                                          host::panel_points(map, options.write, warning), values, device);
   if (!server) return complain("panel", bad_call, server.error(), "give another one with --listen or --port");
-  fmt::print("{}\n", (*server)->url());
+  for (const int file : {STDOUT_FILENO, STDERR_FILENO}) never_wait_for_reader_of(file);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::puts((*server)->url().c_str());
   std::fflush(stdout);
+  std::clearerr(stdout);  // it is no fault of the panel that nobody reads this
   if (const auto objection = (*server)->objection())
     say(host::Level::warning, "the page's certificate: " + *objection);
   say(host::Level::info, "open that address in a browser; Ctrl-C ends it");

@@ -51,7 +51,7 @@ Exit write(const std::string& path, const std::string& text) {
     return loaded.map ? written : bad_input;
   }
   if (const auto outcome = generate::write_if_changed(path, text); !outcome) {
-    std::fputs(text.c_str(), stdout);
+    put(text);
     return complain("probe", bad_call, outcome.error(), "the draft is on standard output instead");
   }
   if (!loaded.map) return bad_input;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/never_wait.hpp"
 #include "coupler/cli/live_device.hpp"
 #include "coupler/host/cli/interruption.hpp"
 #include "coupler/host/cli/only_looking.hpp"
@@ -74,6 +76,8 @@ Exit record(const Map& original, const RecordOptions& options) {
   auto file = open_file(options);
   if (!file) return complain("record", bad_call, file.error(), {});
   const auto transport = host::make_transport(map.connection);
+  never_wait_for_reader_of(STDERR_FILENO);
+  if (options.file != "-") std::signal(SIGPIPE, SIG_IGN);  // a recording outlives the reader of its messages
   host::SteadyClock clock;
   host::SteadyClock pause;
   std::atomic<bool> stopped{false};

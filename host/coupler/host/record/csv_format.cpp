@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/csv_cell.hpp"
 #include "coupler/base/utc_text.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/host/record/record_format.hpp"
@@ -16,17 +17,13 @@ using record::Nanoseconds;
 
 double seconds(Nanoseconds time) { return std::chrono::duration<double>(time).count(); }
 
-/// RFC 4180. A spreadsheet takes what begins so for a formula; a text of the device is none.
+/// A text of the device is no formula; a number may begin with a sign.
 std::string cell(std::string_view text) {
   char* end = nullptr;
   const std::string number(text);
   std::strtod(number.c_str(), &end);
   const bool is_number = end == number.c_str() + number.size();
-  const bool is_formula = !text.empty() && !is_number && std::string_view("=+-@\t\r").find(text[0]) < 6;
-  if (!is_formula && text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = is_formula ? "\"'" : "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
+  return csv_cell(!is_number && would_be_run(text) ? fmt::format("'{}", text) : number);
 }
 
 std::string row(Moment at, std::string_view point, std::string_view value, std::string_view quality,

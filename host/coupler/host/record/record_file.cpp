@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "coupler/base/starts_with.hpp"
+#include "coupler/map/printable.hpp"
 
 namespace coupler::host {
 namespace {
@@ -163,6 +164,8 @@ tl::expected<void, std::string> RecordFile::write(std::string_view lines) { retu
 tl::expected<void, std::string> RecordFile::append(std::string_view lines, std::size_t kept) {
   if (fd_ < 0)
     if (auto created = create(); !created) return created;
+  std::string escaped;  // a terminal would obey the texts of a device
+  if (is_stream_ && ::isatty(fd_) == 1) lines = escaped = printable_lines(lines);
   int error = write_all(lines);
   while (is_full_disk(error) && !is_stream_ && delete_oldest(kept)) error = write_all(lines);
   if (error != 0) return Problem(problem_text(path_, error));

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/ending_signals.hpp"
+#include "coupler/base/never_wait.hpp"
 #include "coupler/base/standard_files.hpp"
 #include "coupler/map/printable.hpp"
 
@@ -24,7 +26,14 @@ std::atomic<int> end_code{0};
 auto ticks() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
 
 void on_signals(void (*handler)(int)) {
-  for (const int number : {SIGINT, SIGTERM, SIGALRM}) std::signal(number, handler);
+  on_ending_signals(handler);
+  std::signal(SIGALRM, handler);
+}
+
+/// Nothing has to be done at the end.
+[[noreturn]] void exit_at_once(int signal, int exit_code) {
+  if (signal == SIGQUIT) die_of(signal);
+  ::_exit(exit_code);
 }
 
 }  // namespace
@@ -47,14 +56,27 @@ void Shutdown::begin_to_end(int exit_code, std::chrono::seconds patience) {
 bool Shutdown::is_driving() { return stage == Stage::driving; }
 
 void Shutdown::exit_on_signals() {
-  on_signals([](int) { ::_exit(0); });
+  on_signals([](int signal) { exit_at_once(signal, 0); });
+}
+
+void Shutdown::unregister_on_signals(void (*shut_down)()) {
+  static std::atomic<void (*)()> first{nullptr};
+  first = shut_down;
+  on_signals([](int signal) {
+    if (signal == SIGQUIT) core_is_wanted = true;
+    const auto unregister = first.exchange(nullptr);
+    if (unregister == nullptr) exit_at_once(signal, 0);
+    unregister();
+  });
 }
 
 void Shutdown::request_on_signals() {
-  on_signals([](int) {
+  on_signals([](int signal) {
+    if (signal == SIGQUIT) core_is_wanted = true;
     Stage now = Stage::starting;
-    if (requested.exchange(true) && stage.compare_exchange_strong(now, Stage::exiting)) ::_exit(0);
-    if (stage == Stage::ending && ticks() >= patient_until) ::_exit(end_code);
+    if (requested.exchange(true) && stage.compare_exchange_strong(now, Stage::exiting))
+      exit_at_once(signal, 0);
+    if (stage == Stage::ending && ticks() >= patient_until) exit_at_once(signal, end_code);
   });
 }
 
@@ -64,13 +86,18 @@ void begin_program() {
   Shutdown::exit_on_signals();
 }
 
+void never_wait_for_readers() {
+  std::signal(SIGPIPE, SIG_IGN);
+  for (const int file : {STDOUT_FILENO, STDERR_FILENO}) never_wait_for_reader_of(file);
+}
+
 int end_of(const Options& arguments) {
   fmt::print(*arguments.exit_code == 0 ? stdout : stderr, "{}", arguments.text);
   return *arguments.exit_code;
 }
 
 void print_message(std::string_view text) {
-  fmt::print(stderr, "coupler_driver: {}\n", printable_lines(text));
+  std::fputs(fmt::format("coupler_driver: {}\n", printable_lines(text)).c_str(), stderr);
 }
 
 }  // namespace coupler::host

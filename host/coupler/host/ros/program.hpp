@@ -16,10 +16,11 @@ constexpr int wrong_call = 2;   ///< the arguments are wrong
 constexpr int not_safe = 3;     ///< an output should have its safe value at the end and has not
 
 /// The whole of a driver program, for the ROS that it is built for: coupler_driver (without a built-in map)
-/// and generated ones. Returns the exit code; 0 after SIGINT or SIGTERM.
+/// and generated ones. Returns the exit code; 0 after one of coupler::ending_signals. After SIGQUIT it does
+/// not return, but leaves a core.
 int main_with(const Map* built_in, int argc, char** argv);
 
-/// How SIGINT and SIGTERM end a driver.
+/// How coupler::ending_signals (SIGINT, SIGTERM, SIGHUP, …) end a driver.
 struct Shutdown {
   static std::atomic<bool> requested;  ///< by a signal; every wait looks at it
 
@@ -36,6 +37,8 @@ struct Shutdown {
 
   /// A signal exits with status 0, as long as nothing has been started that would have to be stopped.
   static void exit_on_signals();
+  /// A signal calls this; a second one exits, since ROS may wait for a master that does not answer.
+  static void unregister_on_signals(void (*shut_down)());
   /// A signal sets `requested`. While nothing has been driven a second one exits at once, so that nobody has
   /// to wait for a device or a ROS master that does not answer.
   static void request_on_signals();
@@ -43,6 +46,10 @@ struct Shutdown {
 
 /// What a driver does first. A signal exits until Shutdown::request_on_signals().
 void begin_program();
+
+/// From now on no thread waits for whoever reads standard output and standard error, and none ends the
+/// program by going away.
+void never_wait_for_readers();
 
 /// Where the arguments end the program: prints their text, and returns the exit code.
 int end_of(const Options& arguments);

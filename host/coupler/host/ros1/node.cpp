@@ -179,11 +179,10 @@ void Ros1Node::log(Level level, const std::string& raw) {
   const std::string text = printable_lines(raw);
   // ROS's log has ended then, but the results of safe values are still to be reported.
   if (ros::isShuttingDown()) {
-    fmt::print(stderr, "[{}] {}\n",
-               level == Level::error     ? "ERROR"
-               : level == Level::warning ? " WARN"
-                                         : " INFO",
-               text);
+    const std::string_view kind = level == Level::error     ? "ERROR"
+                                  : level == Level::warning ? " WARN"
+                                                            : " INFO";
+    std::fputs(fmt::format("[{}] {}\n", kind, text).c_str(), stderr);
     return;
   }
   switch (level) {

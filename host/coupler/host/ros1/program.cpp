@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <csignal>
 #include <exception>
 #include <optional>
 #include <string>
@@ -20,6 +19,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "coupler/base/ending_signals.hpp"
 #include "coupler/base/what_failed.hpp"
 #include "coupler/host/ros/configuration.hpp"
 #include "coupler/host/ros/drive.hpp"
@@ -30,18 +30,21 @@
 namespace coupler::host {
 namespace {
 
-/// The name is overridden by `__name`. ROS takes SIGINT. False after printing what ROS does not accept.
+/// The name is overridden by `__name`. Without a master it waits for one, and a signal exits; afterwards the
+/// first one is left to ROS, as long as the driver has not its own handler. False after printing what ROS
+/// does not accept.
 bool init_ros(std::vector<char*> argv, const std::string& name) {
   int argc = static_cast<int>(argv.size());
   try {
-    ros::init(argc, argv.data(), name);
+    // ROS's own handler only notes that it is to end, and nobody looks at that while there is no master.
+    ros::init(argc, argv.data(), name, ros::init_options::NoSigintHandler);
   } catch (const ros::InvalidNameException& error) {
     print_message(fmt::format("{}; an argument for one device begins with '_', as in _press/address:=HOST",
                               error.what()));
     return false;
   }
   ros::start();  // here, or else the end of the first NodeHandle ends ROS
-  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  Shutdown::unregister_on_signals(ros::requestShutdown);
   return true;
 }
 
@@ -178,8 +181,9 @@ int main_with(const Map* built_in, int argc, char** argv) {
   begin_program();
   const Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
   if (arguments.exit_code) return end_of(arguments);
+  never_wait_for_readers();
   try {
-    return run(built_in, arguments);
+    return end_with(run(built_in, arguments));
   } catch (const std::exception& error) {  // no thread or no memory is left
     print_message(what_failed(error));
   } catch (const XmlRpc::XmlRpcException& error) {  // the master's answer is none

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/ending_signals.hpp"
 #include "coupler/base/what_failed.hpp"
 #include "coupler/host/ros/configuration.hpp"
 #include "coupler/host/ros/drive.hpp"
@@ -123,9 +124,10 @@ int main_with(const Map* built_in, int argc, char** argv) {
   begin_program();
   Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
   if (arguments.exit_code) return end_of(arguments);
+  never_wait_for_readers();
   Shutdown::request_on_signals();
   try {
-    return Program(built_in, std::move(arguments)).run();
+    return end_with(Program(built_in, std::move(arguments)).run());
   } catch (const Exit& exit) {
     return exit.exit_code;
   } catch (const rcl::Error& error) {
