@@ -54,8 +54,8 @@ std::string value_line(Moment at, std::string_view point, std::string_view value
 }
 
 std::string no_value_line(Moment at, std::string_view point, std::string_view quality, unsigned exception) {
-  return line(at, fmt::format(R"("point":"{}","value":null,"quality":"{}","exception":{})", point, quality,
-                              exception));
+  return line(at, fmt::format(R"("point":"{}","value":null,"quality":"{}"{})", point, quality,
+                              exception == 0 ? "" : fmt::format(R"(,"exception":{})", exception)));
 }
 
 std::string online_line(Moment at, std::optional<bool> is_node) {

@@ -109,6 +109,9 @@ Line line_of(const json& object) {
   if (object.contains("exception"))
     return {at, NoValue{get<std::string>(object, "point"), get<std::string>(object, "quality"),
                         exception_of(object["exception"])}};
+  constexpr std::uint8_t device_failure = 4;  // there was no reply, but a node that plays it has to give one
+  if (object.value("quality", "good") == "rejected")
+    return {at, NoValue{get<std::string>(object, "point"), "rejected", device_failure}};
   return {at, value_of(object)};
 }
 

@@ -204,7 +204,8 @@ TEST(DeviceReader, A_device_that_falls_silent_keeps_the_values_of_this_look_only
   looking.reader.look();
   looking.device.during_read = [&looking] {
     if (looking.device.requests.back() == "read holding_registers 0+1")
-      looking.device.next_errors = {host::Timeout{std::chrono::milliseconds(9)}};
+      looking.device.next_errors = {host::Timeout{std::chrono::milliseconds(9)},
+                                    host::Timeout{std::chrono::milliseconds(9)}};  // another one's, too
   };
   Snapshot now = looking.reader.look();
   EXPECT_EQ(to_string(*now.error), "no reply within 9 ms");
@@ -218,6 +219,22 @@ TEST(DeviceReader, A_device_that_falls_silent_keeps_the_values_of_this_look_only
   looking.device.refuse_connect.reset();
   looking.device.during_read = nullptr;
   EXPECT_TRUE(looking.reader.look().online());
+}
+
+TEST(DeviceReader, A_request_without_a_reply_costs_its_own_points_if_others_have_one) {
+  Looking looking(MapBuilder().coil("a", 0).holding("b", 0).holding("c", 1).holding("d", 9));
+  looking.device.during_read = [&looking] {
+    if (const std::string& asked = looking.device.requests.back();
+        asked == "read holding_registers 0+2" || asked == "read holding_registers 1+1")
+      looking.device.next_errors = {host::Timeout{std::chrono::milliseconds(9)}};
+  };
+  for (int i = 0; i < 3; ++i) {
+    const Snapshot now = looking.reader.look();
+    EXPECT_TRUE(now.online());
+    for (const char* good : {"a", "b", "d"}) EXPECT_EQ(looking.of(now, good).state, State::good) << good;
+    EXPECT_THAT(looking.of(now, "c").why, HasSubstr("no reply within 9 ms"));
+  }
+  EXPECT_EQ(looking.device.count("read holding_registers 1+1"), 1U) << "it is asked again later";
 }
 
 TEST(DeviceReader, A_unit_that_its_gateway_cannot_reach_is_offline) {

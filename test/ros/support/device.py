@@ -52,6 +52,7 @@ class Device:
         self.silent = False  # as a device that hangs: accepts everything and answers nothing
         self.away = set()  # units that it, as a gateway, cannot reach
         self.answers_per_connection = None  # then it hangs up
+        self.greeting = b""  # what it says to each new connection
         self._limit = connections
         self._connections = []
         self._lock = threading.Lock()
@@ -83,6 +84,12 @@ class Device:
             except OSError:
                 pass
             connection.close()
+
+    def say(self, text):
+        """To every connection, though nobody has asked."""
+        with self._lock:
+            for connection in self._connections:
+                connection.sendall(text)
 
     def allow(self, connections):
         self._limit = connections
@@ -141,6 +148,7 @@ class Device:
                 self._connections.append(connection)
                 self.accepted += 1
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            connection.sendall(self.greeting)
             threading.Thread(target=self._talk, args=(connection,), daemon=True).start()
 
     def _talk(self, connection):

@@ -28,6 +28,10 @@ constexpr bool is_rejection(Exception code, bool is_node) {
          (is_node && code == Exception::illegal_function);
 }
 
+/// So many requests that have no reply are put off until another one has: a device that is silent is not
+/// waited for for ever.
+constexpr std::size_t most_tried_later = 3;
+
 /// The answer can be another one for a part of the range: one line that fails is answered for all.
 constexpr bool is_of_the_range(Exception code, bool is_node) {
   return (is_node || code != Exception::illegal_function) && code != Exception::acknowledge &&
@@ -103,6 +107,7 @@ DeviceReader::DeviceReader(const Map& map, const std::vector<bool>& chosen, host
       reading.why = plan::words_of(*reason);
     }
   }
+  no_reply_.resize(blank_.readings.size());
 }
 
 Snapshot DeviceReader::look() {
@@ -195,7 +200,16 @@ void DeviceReader::plan() {
 
 Result<> DeviceReader::read_all() {
   std::vector<ReadSpan> next;
-  for (const ReadSpan& span : spans_)
+  std::vector<ReadSpan> later;
+  for (const ReadSpan& span : spans_) {
+    const Result<> answer = ask(span, next);
+    if (answer) continue;
+    // Perhaps it is that one only: others first.
+    if (answered_ || !is_no_reply(answer.error()) || later.size() == most_tried_later) return answer;
+    later.push_back(span);
+    if (auto again = connect_again(); !again) return again;
+  }
+  for (const ReadSpan& span : later)
     if (auto answer = ask(span, next); !answer) return answer;
   spans_ = std::move(next);
   now_.notes = known_.notes;
@@ -204,31 +218,55 @@ Result<> DeviceReader::read_all() {
 
 /// Appends to `next` the requests to make in its place at the next look.
 Result<> DeviceReader::ask(const ReadSpan& span, std::vector<ReadSpan>& next) {
+  if (aside_.rests(span, clock_.now())) {
+    for (const std::uint32_t point : span.points) reading(point).why = no_reply_[place_[point]];
+    next.push_back(span);
+    return {};
+  }
   Result<> answer = transport_.read(span.table, span.range, registers_.data());
   if (answer) {
     keep(span);
+    answered_ = {span.table, span.range};
+    aside_.answered(span);
     next.push_back(span);
     return answer;
   }
   const host::ExceptionReply* exception = exception_in(answer.error());
+  if (is_no_reply(answer.error())) return without(span, answer.error(), next);
   if (exception == nullptr || is_unit_away(answer.error())) return answer;
-  if (is_of_the_range(exception->code, is_node_)) return in_parts(span, exception->code, next);
-  fail(span, exception->code);
+  if (is_of_the_range(exception->code, is_node_)) return in_parts(span, refusal(exception->code), next);
+  fail(span, refusal(exception->code));
   next.push_back(span);
   return {};
 }
 
-Result<> DeviceReader::in_parts(const ReadSpan& span, Exception code, std::vector<ReadSpan>& next) {
+Result<> DeviceReader::connect_again() {
+  transport_.close();
+  return transport_.connect();
+}
+
+/// A late answer must not be taken for another: the connection is made anew. If another request is answered
+/// then, as before, this one is to blame.
+Result<> DeviceReader::without(const ReadSpan& span, const host::Error& error, std::vector<ReadSpan>& next) {
+  if (!answered_ || is_node_) return tl::make_unexpected(error);
+  if (auto again = connect_again(); !again) return again;
+  if (auto other = transport_.ask(*answered_); !other) return other;
+  return in_parts(span, {{}, to_string(error) + ", though others have one; asked again now and then"}, next);
+}
+
+Result<> DeviceReader::in_parts(const ReadSpan& span, const Refusal& refusal, std::vector<ReadSpan>& next) {
   ReadSpan whole{span.table, span.range, {}};  // the points that no smaller request reads
   ReadSpan rest = whole;
   for (const std::uint32_t point : span.points)
     (read_range(map_.points[point]) == span.range ? whole : rest).points.push_back(point);
-  fail(whole, code);
+  fail(whole, refusal);
+  const host::Time now = clock_.now();
+  if (!refusal.code && !whole.points.empty() && !aside_.failed_again(whole, now)) aside_.add(whole, now);
   plan::Split split = split_or_narrow(rest, map_);
   std::vector<ReadSpan> parts;
   for (const ReadSpan& piece : split.pieces)
     if (auto answer = ask(piece, parts); !answer) return answer;
-  if (!is_rejection(code, is_node_)) {  // it may pass: the whole is asked for again
+  if (refusal.code && !is_rejection(*refusal.code, is_node_)) {  // it may pass: the whole is asked for again
     next.push_back(span);
     return {};
   }
@@ -260,14 +298,18 @@ void DeviceReader::keep(const ReadSpan& span) {
   }
 }
 
-void DeviceReader::fail(const ReadSpan& span, Exception code) {
+DeviceReader::Refusal DeviceReader::refusal(Exception code) const {
   const bool is_right = is_node_ && code == Exception::illegal_function;  // a node knows how to read
-  const std::string why = host::to_string(host::Error(host::ExceptionReply{code})) +
-                          (is_right ? ": this client has no right to read it" : "");
+  return {code, host::to_string(host::Error(host::ExceptionReply{code})) +
+                    (is_right ? ": this client has no right to read it" : "")};
+}
+
+void DeviceReader::fail(const ReadSpan& span, const Refusal& refusal) {
   for (const std::uint32_t point : span.points) {
     Reading& failed = reading(point);
-    failed.exception = code;
-    failed.why = why;
+    failed.exception = refusal.code;
+    failed.why = refusal.why;
+    if (!refusal.code) no_reply_[place_[point]] = refusal.why;
   }
 }
 

@@ -4,11 +4,13 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "coupler/host/cli/change_watch.hpp"
 #include "coupler/host/cli/snapshot.hpp"
 #include "coupler/host/core/paced_transport.hpp"
+#include "coupler/host/core/set_aside.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::cli {
@@ -16,8 +18,9 @@ namespace coupler::cli {
 /// Reads a device, and only reads: it makes no write request, arms no watchdog and repeats no output.
 ///
 /// Requests are those of `coupler plan`, with the pauses of the map. One that the device refuses is made in
-/// parts, so that a bad address costs only its points; the parts stay apart while the connection lasts.
-/// Nothing is read from a place that means something else in the device's own map.
+/// parts, so that a bad address costs only its points; the parts stay apart while the connection lasts. One
+/// that has no reply is treated so, too, if others have one before and after; what is left of it is asked
+/// seldom. Nothing is read from a place that means something else in the device's own map.
 class DeviceReader {
  public:
   /// `chosen` by point. Changes that the device announces go to `use`, if it is not empty: those that come
@@ -47,10 +50,18 @@ class DeviceReader {
   void plan();
   host::Result<> read_all();
   host::Result<> ask(const ReadSpan& span, std::vector<ReadSpan>& next);
-  host::Result<> in_parts(const ReadSpan& span, modbus::Exception code, std::vector<ReadSpan>& next);
+  /// What was wrong with a request.
+  struct Refusal {
+    std::optional<modbus::Exception> code;  ///< nullopt: there was no reply, or none that can be one
+    std::string why;
+  };
+  Refusal refusal(modbus::Exception code) const;
+  host::Result<> in_parts(const ReadSpan& span, const Refusal& refusal, std::vector<ReadSpan>& next);
+  host::Result<> connect_again();
+  host::Result<> without(const ReadSpan& span, const host::Error& error, std::vector<ReadSpan>& next);
   void note(std::string text);
   void keep(const ReadSpan& span);
-  void fail(const ReadSpan& span, modbus::Exception code);
+  void fail(const ReadSpan& span, const Refusal& refusal);
   Reading& reading(std::uint32_t point) { return now_.readings[place_[point]]; }
 
   Map map_;
@@ -64,6 +75,10 @@ class DeviceReader {
   std::vector<std::size_t> place_;  ///< by point: of its reading
   Snapshot blank_;                  ///< before anything is read
   Snapshot now_;
+
+  std::optional<Unreadable> answered_;  ///< the last request that was
+  host::SetAside aside_;
+  std::vector<std::string> no_reply_;  ///< by reading: what came instead of one, when it was set aside
 
   // For the time of a connection.
   bool connected_ = false;

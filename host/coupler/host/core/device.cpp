@@ -77,7 +77,7 @@ Result<> Device::do_what_is_due(Time now) {
   else if (listener_.lets_read() && poller_.due() <= now)
     answer = read(write_due);
   else if (keep_alive_due() <= now && transport_.await_turn(write_due) == Transport::Turn::read)
-    answer = transport_.keep_alive(map_);
+    answer = poller_.last_answered() ? transport_.ask(*poller_.last_answered()) : transport_.keep_alive(map_);
   if (answer) answered();
   return answer;
 }
@@ -110,7 +110,33 @@ Result<> Device::read(Time until) {
   const std::uint64_t replies = transport_.replies();
   auto answer = poller_.step(until);
   if (transport_.replies() != replies) wrote_last_ = false;
-  return answer;
+  return answer ? answer : go_on_without(answer.error());
+}
+
+/// A request to which a foreign device says nothing, or nonsense, ends the connection: what would come next
+/// cannot be trusted. The first time the device may have been away, or started again. If it happens again,
+/// and others are answered before and after, the request costs its own points only: nobody is told that the
+/// device was away, no write is dropped, and nothing is restored.
+Result<> Device::go_on_without(const Error& error) {
+  if (!is_no_reply(error) || is_node_ || ending_) return tl::make_unexpected(error);
+  if (transport_.replies() == replies_at_connect_ || !poller_.is_suspected()) {
+    poller_.ended_connection();
+    return tl::make_unexpected(error);
+  }
+  if (auto again = connect_again(); !again) return again;
+  poller_.set_aside(error);
+  return {};
+}
+
+Result<> Device::connect_again() {
+  transport_.close();
+  Result<> result = transport_.connect();
+  if (result && verify_ != Verify::off) result = prove_equal();
+  if (result && is_node_) result = fail(NotConnected{"the device has become another one"});
+  if (result) result = watchdog_.connected();
+  replies_at_connect_ = transport_.replies();
+  if (result && poller_.last_answered()) result = transport_.ask(*poller_.last_answered());
+  return result;
 }
 
 Result<> Device::serve_watchdog() {
@@ -139,7 +165,7 @@ void Device::arrived() {
       answered();
     return;
   }
-  lost(TransportFailure{"the device closed the connection, or sent an unexpected reply"});
+  if (const auto discarded = transport_.discard_unasked(); !discarded) lost(discarded.error());
 }
 
 bool Device::stop() {
@@ -164,6 +190,8 @@ Time Device::connect() {
   if (result && verify_ != Verify::off) result = prove_equal();
   writer_.talks_to_node(is_node_ || map_.connection.tls.present());
   if (result) result = watchdog_.connected();
+  if (result && writer_.has_suspects() && poller_.last_answered())
+    result = transport_.ask(*poller_.last_answered());
   if (result) result = writer_.reconnected();
   if (!result) {
     lost(result.error());
@@ -219,7 +247,7 @@ Result<> Device::prove_equal() {
 }
 
 void Device::explain_silence(const Error& error) {
-  const bool silent = std::holds_alternative<Timeout>(error) || is_unit_away(error);
+  const bool silent = is_no_reply(error) || is_unit_away(error);
   if (silent && std::exchange(explains_silence_, false))
     sink_.on_report(Level::warning, silence_text(map_, error));
 }

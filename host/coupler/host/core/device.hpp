@@ -108,6 +108,8 @@ class Device {
   Result<> write();
   Result<> read_or_write();
   Result<> read(Time until);
+  Result<> go_on_without(const Error& error);
+  Result<> connect_again();
   Result<> serve_watchdog();
   Time due() const;
   Time keep_alive_due() const {

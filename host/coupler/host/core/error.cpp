@@ -33,6 +33,10 @@ bool is_unit_away(const Error& error) {
                                   exception->code == modbus::Exception::gateway_target_failed_to_respond);
 }
 
+bool is_no_reply(const Error& error) {
+  return std::holds_alternative<Timeout>(error) || std::holds_alternative<BadFrame>(error);
+}
+
 bool has_remedy(const Error& error) {
   const auto* none = std::get_if<NotConnected>(&error);
   const auto* broken = std::get_if<TransportFailure>(&error);

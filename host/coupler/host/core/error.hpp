@@ -55,6 +55,9 @@ bool is_no_right(const Error& error);
 /// A gateway is there and says that the unit behind it is not (exceptions 0A and 0B).
 bool is_unit_away(const Error& error);
 
+/// No reply, or none that can be one: of the device, or of this request only.
+bool is_no_reply(const Error& error);
+
 /// Its text says what to do: no general advice need follow.
 bool has_remedy(const Error& error);
 

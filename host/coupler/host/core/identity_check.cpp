@@ -52,13 +52,14 @@ std::string silence_text(const Map& known, const Error& error) {
   if (known.connection.is_rtu() && !is_unit_away(error))
     return fmt::format(
         "unit {} does not answer the request for its identity: {}; {}. If it is a module that ignores "
-        "addresses it "
-        "does not have, give its map 'verify: off', or start with --verify off (a client: Options::verify)",
+        "addresses it does not have, or answers nonsense, give its map 'verify: off', or start with --verify "
+        "off (a client: Options::verify)",
         known.connection.unit, to_string(error), line_remedy(known.connection));
   return fmt::format(
       "{}, but unit {} does not answer the request for its identity: {}; check that the device runs, and "
-      "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, give "
-      "its map 'verify: off', or start with --verify off (a client: Options::verify)",
+      "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, or "
+      "answers "
+      "nonsense, give its map 'verify: off', or start with --verify off (a client: Options::verify)",
       is_unit_away(error) ? "the gateway answers" : "connected", known.connection.unit, to_string(error));
 }
 

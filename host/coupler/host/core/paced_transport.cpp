@@ -89,9 +89,13 @@ Result<> PacedTransport::receive_wait() {
 Result<> PacedTransport::keep_alive(const Map& map) {
   const auto found = std::find_if(map.points.begin(), map.points.end(), is_readable);
   const Point* const point = found == map.points.end() ? map.points.begin() : found;
+  return map.points.empty() ? ask({Table::coils, modbus::Range::of(0, 1)})
+                            : ask({point->table, read_range(*point)});
+}
+
+Result<> PacedTransport::ask(const Unreadable& place) {
   std::array<std::uint16_t, modbus::max_read_bits> ignored;
-  Result<> answer = map.points.empty() ? read(Table::coils, modbus::Range::of(0, 1), ignored.data())
-                                       : read(point->table, read_range(*point), ignored.data());
+  Result<> answer = read(place.table, place.range, ignored.data());
   if (answer || (exception_in(answer.error()) != nullptr && !is_unit_away(answer.error()))) return {};
   return answer;
 }

@@ -59,12 +59,15 @@ class PacedTransport : public Transport {
   /// Gets the answers; take_wait_answer() has none.
   void listen(WaitListener& listener) { listener_ = &listener; }
   Woken wait_until(Time time) override { return transport_.wait_until(time); }
+  Result<> discard_unasked() override { return transport_.discard_unasked(); }
   std::uint64_t discarded() const override { return transport_.discarded(); }
   std::optional<Certificates> certificates() const override { return transport_.certificates(); }
   void wake() override { transport_.wake(); }
 
-  /// Makes a request only to see that the device answers: the first point that can be read, or else coil 0.
-  /// An exception is an answer, unless it says that the unit is away.
+  /// Reads, only to see that the device answers. An exception is an answer, unless it says that the unit is
+  /// away.
+  Result<> ask(const Unreadable& place);
+  /// The same of the first point that can be read, or else of coil 0.
   Result<> keep_alive(const Map& map);
 
   /// A request that is made now needs no pause.

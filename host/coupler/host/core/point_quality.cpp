@@ -37,6 +37,7 @@ void PointQualities::good(Span<const std::uint32_t> points, Time at) {
     news |= state_of(entry, at) != State::good;
     entry.last_good = at;
     entry.failing = false;
+    entry.why.clear();
   }
   if (news) ++revision_;
 }
@@ -62,6 +63,12 @@ void PointQualities::rejected(Span<const std::uint32_t> points, modbus::Exceptio
   exception(points, code);
   const std::lock_guard lock(mutex_);
   for (const std::uint32_t point : points) points_[point].rejected = true;
+  ++revision_;
+}
+
+void PointQualities::set_aside(Span<const std::uint32_t> points, const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  for (const std::uint32_t point : points) points_[point].why = why;
   ++revision_;
 }
 
@@ -92,7 +99,7 @@ void PointQualities::online(bool online) {
 
 State PointQualities::state_of(const Entry& entry, Time now) const {
   if (!online_) return State::offline;
-  if (entry.rejected) return State::rejected;
+  if (entry.rejected || !entry.why.empty()) return State::rejected;
   if (entry.failing) return State::exception;
   if (!entry.last_good) return State::never_read;
   if (entry.told) return State::good;
@@ -106,7 +113,8 @@ PointQuality PointQualities::quality_of(const Entry& entry, Time now) const {
   const bool was_true_then =
       entry.told && entry.last_good && (state == State::good || state == State::offline);
   const auto last_good = was_true_then ? std::max(*entry.last_good, heard_) : entry.last_good;
-  return {state, stale_from, last_good, entry.last_exception, entry.last_write, entry.last_write_text};
+  return {
+      state, stale_from, last_good, entry.last_exception, entry.why, entry.last_write, entry.last_write_text};
 }
 
 std::vector<PointQuality> PointQualities::snapshot(Time now) const {

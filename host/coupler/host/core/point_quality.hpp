@@ -24,7 +24,7 @@ struct PointQuality {
     stale,       ///< nothing new for two periods of its rate and a timeout
     never_read,  ///< since the program began
     exception,   ///< the last read was answered with an exception
-    rejected,    ///< the device does not have it: not read again while the connection lasts
+    rejected,    ///< the device does not have it: not read again while the connection lasts, or set aside
     offline,     ///< the device does not answer
     not_wanted   ///< not read, since nobody listens to it
   };
@@ -32,6 +32,7 @@ struct PointQuality {
   Time stale_from = Time::max();                      ///< of a good one: if nothing new comes
   std::optional<Time> last_good{};                    ///< of the last value
   std::optional<modbus::Exception> last_exception{};  ///< the last one there was, however long ago
+  std::string why{};                                  ///< what came instead of a reply; empty: there was one
   std::optional<WriteResult::Outcome> last_write{};   ///< of the last one that no newer one superseded
   std::string last_write_text{};                      ///< to_string() of its result
 };
@@ -48,6 +49,8 @@ class PointQualities {
   void exception(Span<const std::uint32_t> points, modbus::Exception code);
   void wrote(std::uint32_t point, const WriteResult& result);
   void rejected(Span<const std::uint32_t> points, modbus::Exception code);
+  /// The request for them ends the connection, and `why`: they are read seldom, if ever.
+  void set_aside(Span<const std::uint32_t> points, const std::string& why);
   /// Whether the device tells changes of the point: its value does not become stale then.
   void told(std::uint32_t point, bool told);
   /// The last values of told points were still true `at`.
@@ -70,6 +73,7 @@ class PointQualities {
     std::optional<modbus::Exception> last_exception{};
     std::optional<WriteResult::Outcome> last_write{};
     std::string last_write_text{};
+    std::string why{};
     bool failing = false;
     bool rejected = false;
     bool told = false;

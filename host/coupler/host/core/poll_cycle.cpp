@@ -39,8 +39,11 @@ PollCycle::PollCycle(const Map& map)
 }
 
 void PollCycle::start(Time now) {
-  rejected_ranges_.clear();
+  rejected_ranges_ = aside_.ranges();
   given_up_.assign(given_up_.size(), false);
+  for (const std::uint32_t point : aside_.take_back()) given_up_[point] = true;
+  for (const ReadSpan& span : deferred_)
+    for (const std::uint32_t point : span.points) given_up_[point] = true;
   at_rest_.assign(at_rest_.size(), false);
   findings_.clear();
   others_first_ = false;
@@ -85,7 +88,7 @@ Time PollCycle::Group::due() const {
 }
 
 Time PollCycle::due() const {
-  Time earliest = Time::max();
+  Time earliest = aside_.due();
   for (const Group& group : groups_) earliest = std::min(earliest, group.due());
   return earliest;
 }
@@ -100,6 +103,7 @@ bool PollCycle::is_overdue(Time now) const {
 }
 
 const ReadSpan* PollCycle::select(Time now) {
+  if (aside_.due() <= now) ask_again(aside_.take_due(now));
   std::optional<std::size_t> chosen;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     Group& group = groups_[i];
@@ -112,9 +116,18 @@ const ReadSpan* PollCycle::select(Time now) {
   return &current();
 }
 
+void PollCycle::ask_again(Span<const std::uint32_t> points) {
+  for (const std::uint32_t point : points) {
+    given_up_[point] = false;
+    if (Group* const group = group_of(point)) group->stale = true;
+  }
+}
+
 bool PollCycle::answered(std::optional<modbus::Exception> exception, Time now) {
   Group& group = groups_[current_];
-  const bool news = std::exchange(group.steps[group.next].last, exception) != exception;
+  const bool is_back = aside_.answered(current());
+  for (const ReadSpan& span : std::exchange(deferred_, {})) ask_again(span.points);
+  const bool news = std::exchange(group.steps[group.next].last, exception) != exception || is_back;
   ++group.next;
   done(now);
   return news;
@@ -150,6 +163,30 @@ std::vector<std::uint32_t> PollCycle::rejected(Time now) {
                      pieces.end());
   done(now);
   return given_up;
+}
+
+std::vector<std::uint32_t> PollCycle::set_aside(Time now) {
+  const ReadSpan span = current();
+  if (aside_.failed_again(span, now)) {
+    give_up(now);
+    return {};
+  }
+  aside_.convict(span);
+  std::vector<std::uint32_t> left = rejected(now);
+  if (!left.empty()) aside_.add({span.table, span.range, left}, now);
+  return left;
+}
+
+void PollCycle::ended_connection() {
+  aside_.suspect(current());
+  deferred_.push_back(current());
+  std::size_t deferred = 0;
+  std::size_t asked = 0;
+  for (const ReadSpan& span : deferred_) deferred += span.points.size();
+  for (const Group& group : groups_)
+    for (const std::uint32_t point : group.points->points)
+      asked += wanted_[point] && !given_up_[point] ? 1 : 0;
+  if (deferred >= asked) deferred_.clear();  // there are no others: all of it is silent
 }
 
 void PollCycle::give_up(Time now) {

@@ -8,6 +8,7 @@
 
 #include "coupler/host/core/error.hpp"
 #include "coupler/host/core/schedule.hpp"
+#include "coupler/host/core/set_aside.hpp"
 #include "coupler/map/table.hpp"
 #include "coupler/modbus/range.hpp"
 #include "coupler/plan/planner.hpp"
@@ -38,7 +39,8 @@ class PollCycle {
   /// What `map` views must outlive the cycle. All its points are wanted.
   explicit PollCycle(const Map& map);
 
-  /// A new connection: everything is asked for again, all first cycles are due now.
+  /// A new connection: everything is asked for again, but for what is set aside; all first cycles are due
+  /// now.
   void start(Time now);
 
   /// Whether somebody wants the values of a point (index into Map::points). From the next cycle of its rate
@@ -57,17 +59,26 @@ class PollCycle {
   /// give_up() is called.
   const ReadSpan* select(Time now);
   const ReadSpan& current() const { return step().span; }
-  /// The last answer to current() was an exception.
-  bool failing() const { return step().last.has_value(); }
+  /// The last answer to current() was an exception, or there was none and it is set aside.
+  bool failing() const { return step().last.has_value() || aside_.has(current()); }
 
   /// current() was answered, with values (nullopt) or with an exception that may pass. True if that is news:
-  /// another answer than that of the cycle before.
+  /// another answer than that of the cycle before, or the first one after it was set aside.
   bool answered(std::optional<modbus::Exception> exception, Time now);
   /// The device rejects current(): smaller requests take its place in this cycle. Returns the points that
   /// cannot be read at all and are given up until the next start().
   std::vector<std::uint32_t> rejected(Time now);
   /// The device does not know the function of current(): its points are given up until the next start().
   void give_up(Time now);
+
+  /// current() ended the connection. Over the next one others are asked before it, if there are any.
+  void ended_connection();
+  /// It has not been by chance if it does so now: SetAside::is_suspected().
+  bool is_suspected() const { return aside_.is_suspected(current()); }
+  /// current() ended the connection again, though others were answered before, and after it over another one:
+  /// it is parted as if it were rejected, and what is left is set aside. Returns those points; none if they
+  /// were set aside before.
+  std::vector<std::uint32_t> set_aside(Time now);
 
   /// The device may have other points, or other rights for this client: what was given up is asked for again,
   /// from the next cycle on, and what was rejected once more.
@@ -119,6 +130,7 @@ class PollCycle {
   void remove_current();
   void done(Time now);
   void learn(Group& group);
+  void ask_again(Span<const std::uint32_t> points);
 
   plan::Planner planner_;
   std::vector<bool> wanted_;    ///< by point
@@ -130,6 +142,8 @@ class PollCycle {
   bool others_first_ = false;                ///< a cycle has ended: the rates that wait have a turn
   std::vector<Unreadable> rejected_ranges_;  ///< no request of several points contains one
   std::vector<RejectedRange> findings_;
+  SetAside aside_;
+  std::vector<ReadSpan> deferred_;  ///< until another request is answered
   std::optional<Duration> cycle_time_;
 };
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/functions.hpp"
+
 namespace coupler::host {
 
 Poller::Poller(const Map& map, PacedTransport& transport, Writer& writer, DeviceStatistics& statistics,
@@ -44,6 +46,7 @@ Result<> Poller::step(Time until) {
     on_exception(exception->code);
   } else {
     publish(span);
+    answered_ = {span.table, span.range};
     const std::string name = cycle_.failing() ? describe(span) : std::string();
     if (cycle_.answered(std::nullopt, clock_.now()))
       sink_.on_report(Level::info, name + " can be read again");
@@ -52,6 +55,23 @@ Result<> Poller::step(Time until) {
     statistics_.cycle_ended(*cycle_time, cycle_.overruns());
   report_rejected_ranges();
   return {};
+}
+
+void Poller::set_aside(const Error& error) {
+  const ReadSpan span = cycle_.current();
+  const std::string asked = fmt::format(
+      "FC {}, {}, {} {}{}", static_cast<int>(read_function(span.table)), span.range.start(),
+      span.range.count(), holds_bits(span.table) ? "bit" : "register", span.range.count() == 1 ? "" : "s");
+  for (const std::uint32_t point : cycle_.set_aside(clock_.now())) {
+    const std::string why = fmt::format("{} to the request for it ({})", to_string(error), asked);
+    qualities_.set_aside({&point, 1}, why);
+    sink_.on_report(
+        Level::warning,
+        fmt::format("{} cannot be read: {}, though other requests are answered; it is tried again "
+                    "in 10 s, and then less and less often",
+                    map_.points[point].name, why));
+  }
+  report_rejected_ranges();
 }
 
 void Poller::publish(const ReadSpan& span) {

@@ -38,6 +38,13 @@ class Poller {
   /// the connection can no longer be used, or that the unit is away; any other exception is not an error.
   Result<> step(Time until = Time::max());
 
+  // The request that step() made has ended the connection. As PollCycle's:
+  void ended_connection() { cycle_.ended_connection(); }
+  bool is_suspected() const { return cycle_.is_suspected(); }
+  void set_aside(const Error& error);
+  /// What was answered last over any connection; nullopt: nothing.
+  const std::optional<Unreadable>& last_answered() const { return answered_; }
+
   void want(std::uint32_t point, bool wanted) { told_.want(point, wanted); }
   /// Gets the changes.
   ChangeSink& changes() { return told_; }
@@ -61,6 +68,7 @@ class Poller {
   Sink& sink_;
   PollCycle cycle_;
   ToldBits told_;
+  std::optional<Unreadable> answered_;
   bool is_node_ = false;  ///< which knows every function: exception 01 is about rights
   ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< kept for its memory
   std::array<std::uint8_t, modbus::max_read_bits> bits_{};

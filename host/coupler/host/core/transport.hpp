@@ -129,6 +129,12 @@ class Transport {
   /// Of the last connection that was made; nullopt: none with TLS. From any thread.
   virtual std::optional<Certificates> certificates() const { return std::nullopt; }
 
+  /// wait_until() returned for bytes, and nothing was asked: throws them away where that can be done. An
+  /// error means that the connection has ended, or can no longer be used.
+  virtual Result<> discard_unasked() {
+    return fail(TransportFailure{"the device closed the connection, or sent an unexpected reply"});
+  }
+
   enum class Woken { by_time, by_call, by_bytes };
   /// Returns when bytes have come (or the connection has ended), after wake(), or at `time`.
   virtual Woken wait_until(Time time) = 0;

@@ -104,19 +104,21 @@ Result<modbus::WriteRequest> send(const WriteBatch& batch, const Map& map, Trans
 }
 
 Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map,
-                                                Transport& transport) {
+                                                Transport& transport, std::vector<Write>* broken) {
   std::vector<RejectedValue> rejected;
   WriteBatch batch(map);
+  const auto write_all = [&]() -> Result<> {
+    Result<> written = batch.empty() ? Result<>{} : write_batch(batch, map, transport, rejected);
+    if (!written && broken != nullptr) *broken = batch.writes();
+    batch.clear();
+    return written;
+  };
   for (const Write& write : writes) {
     if (batch.add(write)) continue;
-    if (auto written = write_batch(batch, map, transport, rejected); !written)
-      return tl::make_unexpected(written.error());
-    batch.clear();
+    if (auto written = write_all(); !written) return tl::make_unexpected(written.error());
     batch.add(write);
   }
-  if (batch.empty()) return rejected;
-  if (auto written = write_batch(batch, map, transport, rejected); !written)
-    return tl::make_unexpected(written.error());
+  if (auto written = write_all(); !written) return tl::make_unexpected(written.error());
   return rejected;
 }
 

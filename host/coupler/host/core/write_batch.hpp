@@ -57,9 +57,9 @@ struct RejectedValue {
 };
 
 /// Writes values that no caller waits for, neighbours in one request. Returns those that were rejected; an
-/// error means that the connection broke.
+/// error means that the connection broke, with the request of `broken`.
 Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map,
-                                                Transport& transport);
+                                                Transport& transport, std::vector<Write>* broken = nullptr);
 
 /// What a point holds after a write, compared with what was written.
 class ReadBack {

@@ -21,6 +21,9 @@ bool is_wrong(modbus::Exception code) {
 /// Until a deadman value that the device would not carry out is written again.
 constexpr auto deadman_retry = std::chrono::seconds(1);
 
+/// The same of one that ended two connections in a row.
+constexpr auto suspect_retry = std::chrono::seconds(10);
+
 /// " idle", for the log. Nothing of an array or a text, which may be long.
 std::string deadman_value(const Point& point) {
   if (point.count > 1 || point.format.type == codec::Type::STRING) return {};
@@ -182,6 +185,7 @@ Result<> Writer::finish(const Result<>& answer) {
 
 Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Result<>& link) {
   if (answer) {
+    suspects_.erase(write.point);
     remember(write);
     acknowledged_[write.point] = true;
     if (written_ != nullptr) written_->on_written(write);
@@ -195,7 +199,7 @@ Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Re
     // It may be carried out, or what it replaced be no more: nothing older is restored, and a deadman is due.
     last_written_.erase(write.point);
     if (write.of_deadman || (is_away && !write.of_schedule)) remember(write);
-    if (write.of_deadman) deadmen_.retry(write.point, is_away ? Time() : clock_.now() + deadman_retry);
+    if (write.of_deadman) deadmen_.retry(write.point, deadman_due(write.point, is_away));
   }
   if (exception == nullptr) {
     settle(write, {Outcome::lost, std::nullopt, to_string(answer.error())});
@@ -288,18 +292,57 @@ void Writer::report_held_back() {
 Result<> Writer::reconnected() {
   merges_ = true;
   fire_deadmen();
-  std::vector<Write> values;
-  for (const auto& [point, write] : last_written_)
-    if (!queue_.is_pending(point)) values.push_back(write);
-  const auto rejected = write_values(values, map_, transport_);
-  if (!rejected) return tl::make_unexpected(rejected.error());
-  for (const auto& [point, code] : *rejected)
-    sink_.on_report(Level::warning, fmt::format("{} was not restored: {}", name(point),
-                                                to_string(Error(ExceptionReply{code}))));
-  if (!values.empty())
-    sink_.on_report(Level::info, fmt::format("{} outputs were restored", values.size() - rejected->size()));
+  if (auto restored = restore(); !restored) return restored;
   safe_calls_.open();
   return {};
+}
+
+/// Those that ended a connection go last, each by itself.
+Result<> Writer::restore() {
+  std::vector<std::vector<Write>> requests(1);
+  for (const auto& [point, write] : last_written_) {
+    if (queue_.is_pending(point)) continue;
+    if (suspects_.count(point) > 0)
+      requests.push_back({write});
+    else
+      requests.front().push_back(write);
+  }
+  std::size_t restored = 0;
+  for (const std::vector<Write>& values : requests) {
+    std::vector<Write> broken;
+    const auto rejected = write_values(values, map_, transport_, &broken);
+    if (!rejected) {
+      suspect(broken, rejected.error());
+      return tl::make_unexpected(rejected.error());
+    }
+    for (const Write& write : values) suspects_.erase(write.point);
+    for (const auto& [point, code] : *rejected)
+      sink_.on_report(Level::warning, fmt::format("{} was not restored: {}", name(point),
+                                                  to_string(Error(ExceptionReply{code}))));
+    restored += values.size() - rejected->size();
+  }
+  if (restored > 0) sink_.on_report(Level::info, fmt::format("{} outputs were restored", restored));
+  return {};
+}
+
+/// When a deadman value that failed is written again: at once when the device is back, but not as long as it
+/// ends each connection.
+Time Writer::deadman_due(std::uint32_t point, bool is_away) const {
+  if (!is_away) return clock_.now() + deadman_retry;
+  return suspects_.count(point) > 0 ? clock_.now() + suspect_retry : Time();
+}
+
+/// A device that has gone cannot answer either; one that answers other requests, before and after, can.
+void Writer::suspect(const std::vector<Write>& writes, const Error& why) {
+  if (!is_no_reply(why)) return;
+  for (const Write& write : writes) {
+    if (suspects_.insert(write.point).second || last_written_.erase(write.point) == 0) continue;
+    suspects_.erase(write.point);
+    sink_.on_report(Level::error,
+                    fmt::format("{} is not restored: the device carries the write out or not, and ends the "
+                                "connection each time ({}); write it again, and look at the device",
+                                name(write.point), to_string(why)));
+  }
 }
 
 void Writer::disconnected(const Error& why) {
@@ -308,6 +351,7 @@ void Writer::disconnected(const Error& why) {
   safe_calls_.close(to_string(why));
   std::swap(batch_, done_);
   for (const Write& write : done_.writes()) finish_one(write, tl::make_unexpected(why));
+  suspect(done_.writes(), why);
   done_.clear();
   while (const auto write = queue_.take()) drop(*write);
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -100,6 +101,10 @@ class Writer {
     for (const std::uint32_t point : points) acknowledged_[point] = false;
   }
 
+  /// A write ended the last connection, and would be restored: it is to be seen first that the device answers
+  /// anything, since otherwise that is no fault of the write.
+  bool has_suspects() const { return !suspects_.empty(); }
+
   /// How many writes were dropped since the last call.
   std::uint64_t take_dropped() { return std::exchange(dropped_, 0); }
 
@@ -111,6 +116,9 @@ class Writer {
   /// `link`: what has become of the connection since the answer.
   Result<> finish_one(const Write& write, const Result<>& answer, const Result<>& link = {});
   Result<> verify(const Write& write, const Result<>& link);
+  Result<> restore();
+  Time deadman_due(std::uint32_t point, bool is_away) const;
+  void suspect(const std::vector<Write>& writes, const Error& why);
   Result<> make_safe();
   Result<std::vector<RejectedValue>> write_safe_values();
   void tell(const Write& write, const WriteResult& result);
@@ -133,6 +141,7 @@ class Writer {
   WriteQueue queue_;
   Deadmen deadmen_;
   std::map<std::uint32_t, Write> last_written_;  ///< by point, for `on_reconnect: restore`
+  std::set<std::uint32_t> suspects_;             ///< points whose last write ended the connection
   std::vector<Write> safe_values_;
   std::vector<bool> is_safe_point_;  ///< by point: safe_values_ has one
   Calls safe_calls_;

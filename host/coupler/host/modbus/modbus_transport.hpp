@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -36,6 +37,8 @@ class ModbusTransport : public MultiUnitTransport {
   Result<> receive_wait() override;
   std::optional<Certificates> certificates() const override;
   std::optional<WaitAnswer> take_wait_answer() override { return std::exchange(wait_answer_, std::nullopt); }
+  Result<> discard_unasked() override;
+  std::uint64_t discarded() const override { return discarded_; }
   Woken wait_until(Time time) override;
   void wake() override { wakeup_.call(); }
 
@@ -49,6 +52,11 @@ class ModbusTransport : public MultiUnitTransport {
   Result<modbus::Bytes> receive_pdu() override;
 
  private:
+  /// To be called before a request is sent.
+  Result<> make_ready();
+  void throw_away(std::uint64_t bytes);
+  /// Of an exception whose header lies about its length: what follows cannot be trusted.
+  modbus::Bytes take_lying_exception(const modbus::Framer& framer, const Result<modbus::Bytes>& reply);
   modbus::Frame next_header();
   /// The answer to a wait comes before that to the request which has been sent now.
   Result<> receive_wait_before(const Deadline& deadline);
@@ -76,6 +84,11 @@ class ModbusTransport : public MultiUnitTransport {
   modbus::Frame sent_;  ///< the header of the request whose answer is awaited
   std::array<std::uint8_t, modbus::max_adu_size> reply_{};
   Deadline answer_by_{std::chrono::milliseconds(0)};
+  std::uint8_t function_ = 0;  ///< of that request
+  bool is_first_ = true;       ///< nothing has been answered over this connection
+  std::uint64_t unasked_ = 0;  ///< bytes thrown away over this connection
+  bool is_untrusted_ = false;  ///< the connection is made anew before the next request
+  std::atomic<std::uint64_t> discarded_{0};
   std::optional<Wait> wait_;
   std::optional<WaitAnswer> wait_answer_;  ///< until it is taken
   /// Between the owner and other threads, of what follows; never held during a request.

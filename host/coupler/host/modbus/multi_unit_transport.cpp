@@ -4,6 +4,7 @@
 #include <array>
 
 #include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/raw_exchange.hpp"
 #include "coupler/host/modbus/rtu_transport.hpp"
 #include "coupler/map/functions.hpp"
 #include "coupler/modbus/file_record.hpp"
@@ -11,13 +12,12 @@
 namespace coupler::host {
 namespace {
 
-Result<> result(const tl::expected<void, modbus::ReplyError>& taken, const char* what) {
+Result<> result(const tl::expected<void, modbus::ReplyError>& taken, modbus::Bytes asked,
+                modbus::Bytes came) {
   if (taken) return {};
   if (taken.error().exception) return fail(ExceptionReply{*taken.error().exception});
-  return fail(BadFrame{what});
+  return fail(bad_reply("not the reply to this request", asked, came));
 }
-
-constexpr auto another_reply = "not the reply to this request";
 
 }  // namespace
 
@@ -30,14 +30,14 @@ Result<> MultiUnitTransport::read_bits(Table table, modbus::Range range, std::ui
   const modbus::ReadRequest request(read_function(table), range);
   const auto reply = ask(request);
   if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::take_bits(request, *reply, bits), another_reply);
+  return result(modbus::take_bits(request, *reply, bits), request.pdu(), *reply);
 }
 
 Result<> MultiUnitTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
   const modbus::ReadRequest request(read_function(table), range);
   const auto reply = ask(request);
   if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::take_registers(request, *reply, registers), another_reply);
+  return result(modbus::take_registers(request, *reply, registers), request.pdu(), *reply);
 }
 
 Result<> MultiUnitTransport::read_file_record(std::uint16_t file, std::uint16_t record,
@@ -46,13 +46,13 @@ Result<> MultiUnitTransport::read_file_record(std::uint16_t file, std::uint16_t 
   modbus::build_file_request({file, record, static_cast<std::uint16_t>(registers.size())}, pdu);
   const auto reply = exchange(pdu);
   if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::parse_file_reply(*reply, registers), "not the file record that was requested");
+  return result(modbus::parse_file_reply(*reply, registers), pdu, *reply);
 }
 
 Result<> MultiUnitTransport::receive(const modbus::WriteRequest& request) {
   const auto reply = receive_pdu();
   if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::check_reply(request, *reply), another_reply);
+  return result(modbus::check_reply(request, *reply), request.pdu(), *reply);
 }
 
 std::unique_ptr<MultiUnitTransport> make_transport(const Connection& connection) {

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,23 @@ std::size_t missing(modbus::Bytes bytes) {
   return size - bytes.size();
 }
 
+/// A reply to a read begins with so much: the header, the function code, and the byte count or the exception.
+constexpr std::size_t beginning_size = modbus::mbap_size + 2;
+
+/// Whether a reply to a read with this function code may begin so, as far as it has come. One with the right
+/// transaction is one, however wrong the rest is; a TLS alert tells what is wrong, too.
+bool may_begin_reply(modbus::Bytes bytes, const modbus::Frame& to, std::uint8_t asked) {
+  constexpr std::uint16_t tls_alert = 0x1503;
+  const auto begins = bytes.size() < 2 ? 0 : modbus::get_u16(bytes.data());
+  if (bytes.size() >= 2 && (begins == to.transaction || begins == tls_alert)) return true;
+  // The protocol, and the high byte of the length.
+  for (std::size_t i = 2; i < std::min<std::size_t>(bytes.size(), 5); ++i)
+    if (bytes[i] != 0) return false;
+  if (bytes.size() > 6 && bytes[6] != to.unit) return false;
+  if (bytes.size() < beginning_size) return bytes.size() < 8 || (bytes[7] & 0x7FU) == asked;
+  return bytes[7] == asked ? bytes[5] == 3 + bytes[8] : bytes[7] == (asked | 0x80U) && bytes[5] == 3;
+}
+
 enum class Take { all, one_frame };
 
 /// `has_begun`: bytes have come, so it is tried to receive them before it is waited, and the clock is read
@@ -33,7 +51,8 @@ Result<> receive_frame(int socket, std::chrono::milliseconds timeout, Deadline d
   for (bool waits = !has_begun;;) {
     const auto outcome = framer.next();
     if (outcome == modbus::Framer::Outcome::frame) return {};
-    if (outcome == modbus::Framer::Outcome::bad) return fail(BadFrame{"not Modbus/TCP"});
+    if (outcome == modbus::Framer::Outcome::bad)
+      return fail(BadFrame{"not Modbus/TCP: " + shown_bytes(framer.rest())});
     if (waits && std::exchange(shortens, false)) deadline = std::min(deadline, Deadline(timeout));
     pollfd wanted{socket, POLLIN, 0};
     if (waits && ::poll(&wanted, 1, deadline.left()) == 0) return fail(Timeout{timeout});
@@ -51,14 +70,59 @@ Result<> receive_frame(int socket, std::chrono::milliseconds timeout, Deadline d
 
 }  // namespace
 
+std::string shown_bytes(modbus::Bytes bytes) {
+  constexpr std::size_t most = 16;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(bytes.size(), most); ++i)
+    text += fmt::format("{}{:02x}", i > 0 ? " " : "", bytes[i]);
+  return bytes.size() > most ? fmt::format("{} … ({} bytes)", text, bytes.size()) : text;
+}
+
+BadFrame bad_reply(std::string_view what, modbus::Bytes asked, modbus::Bytes came) {
+  return {fmt::format("{}; asked {}, got {}", what, shown_bytes(asked), shown_bytes(came))};
+}
+
 Result<> check_header(const modbus::Frame& reply, const modbus::Frame& request) {
-  if (reply.transaction != request.transaction) return fail(BadFrame{"the reply to another request"});
+  if (reply.transaction != request.transaction)
+    return fail(BadFrame{fmt::format("the reply to another request: transaction {}, where {} was asked",
+                                     reply.transaction, request.transaction)});
   if (reply.unit != request.unit)
     return fail(
         BadFrame{fmt::format("unit {0} answered a request to unit {1}; if the device is unit {0}, "
                              "set `unit: {0}`",
                              reply.unit, request.unit)});
   return {};
+}
+
+Result<> skip_to_reply(int socket, const modbus::Frame& to, std::uint8_t asked, const Deadline& deadline,
+                       std::uint64_t& discarded) {
+  constexpr std::uint64_t most = 16384;
+  std::uint64_t skipped = 0;
+  std::vector<std::uint8_t> first_bytes;
+  while (deadline.left() > 0 && skipped < most) {
+    std::array<std::uint8_t, beginning_size> bytes{};
+    const auto got = ::recv(socket, bytes.data(), bytes.size(), MSG_PEEK | MSG_DONTWAIT);
+    if (got == 0 && skipped > 0) break;
+    if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) return {};  // whoever receives sees it
+    const auto size = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
+    std::size_t first = 0;
+    while (first < size && !may_begin_reply({&bytes[first], size - first}, to, asked)) ++first;
+    if (first > 0) {
+      ::recv(socket, bytes.data(), first, MSG_DONTWAIT);
+      if (first_bytes.size() < beginning_size)
+        first_bytes.insert(first_bytes.end(), bytes.begin(), &bytes[first]);
+      skipped += first;
+      discarded += first;
+      continue;
+    }
+    if (size == bytes.size()) return {};
+    pollfd more{socket, POLLIN, 0};
+    // A part of it is there, so poll() would not wait for the rest.
+    ::poll(&more, size > 0 ? 0 : 1, size > 0 ? 1 : deadline.left());
+  }
+  if (skipped == 0) return {};
+  return fail(BadFrame{fmt::format("{} bytes have come, and none of them begins a reply: {}", skipped,
+                                   shown_bytes({first_bytes.data(), first_bytes.size()}))});
 }
 
 Result<> send_request(int socket, const modbus::Frame& to, modbus::Bytes pdu) {

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <chrono>
+#include <string>
+#include <string_view>
 
 #include "coupler/host/core/error.hpp"
 #include "coupler/host/modbus/wait.hpp"
@@ -11,8 +13,20 @@
 
 namespace coupler::host {
 
+/// "03 04 00 14 …": sixteen of them at most.
+std::string shown_bytes(modbus::Bytes bytes);
+
+/// BadFrame that says what was asked and what came, from the function code on or both as a whole.
+BadFrame bad_reply(std::string_view what, modbus::Bytes asked, modbus::Bytes came);
+
 /// BadFrame unless `reply` has the transaction and the unit of `request`.
 Result<> check_header(const modbus::Frame& reply, const modbus::Frame& request);
+
+/// Waits until a reply begins, whose request is `asked`, and throws away what comes before it: the greeting
+/// of a serial server, a heartbeat, another client's frame. Adds how much that was to `discarded`. A reply to
+/// another request stays, since it tells what is wrong. BadFrame if nothing else has come until `deadline`.
+Result<> skip_to_reply(int socket, const modbus::Frame& to, std::uint8_t asked, const Deadline& deadline,
+                       std::uint64_t& discarded);
 
 /// Sends `pdu` with the header `to` on a connected, non-blocking socket. It never waits: what does not go out
 /// at once is an error.

@@ -45,7 +45,9 @@ class CsvFormat final : public RecordFormat {
   }
   std::string no_value(Moment at, const Point& point, PointQuality::State quality,
                        unsigned exception) const override {
-    return row(at, point.name, {}, fmt::format("{}: exception {:02X}", to_string(quality), exception));
+    return row(at, point.name, {},
+               exception == 0 ? std::string(to_string(quality))
+                              : fmt::format("{}: exception {:02X}", to_string(quality), exception));
   }
   std::string online(Moment at, std::optional<bool>) const override { return row(at, {}, {}, "online"); }
   std::string lost(Moment at, std::string_view why) const override {

@@ -53,6 +53,7 @@ class Status {
 
   static std::string in_words(const PointQuality& quality) {
     std::string text(to_string(quality.state));
+    if (!quality.why.empty()) text += ": " + quality.why;
     if (quality.last_exception) text += "; last " + to_string(Error(ExceptionReply{*quality.last_exception}));
     return text;
   }

@@ -86,6 +86,7 @@ class TracedTransport : public Transport {
             [&] { return fmt::format("wait for changes: {}", answer->reply ? answer->reply->count : 0); });
     return answer;
   }
+  Result<> discard_unasked() override { return transport_->discard_unasked(); }
   std::uint64_t discarded() const override { return transport_->discarded(); }
   std::optional<Certificates> certificates() const override { return transport_->certificates(); }
   Woken wait_until(Time time) override { return transport_->wait_until(time); }
