@@ -116,6 +116,20 @@ class OddDevices(testing.RosTest):
         self.assertEqual(device.tables["coils"][0], 1)
 
 
+    def test_an_acknowledgement_that_contradicts_the_write_is_not_ok(self):
+        device, path = self.start()
+        device.answer = lambda request: b"\x00\x05\x00\x09" if request.function == 6 else \
+            b"\x00\x00\x00\x00" if request.function == 5 else device.serve(request)
+        self.driver(f"_map:={path}", f"_port:={device.port}")
+        self.assertEqual(self.topic(f"/{self.name}/a", UInt16).next(), 100)
+        write = self.service(f"/{self.name}/write", Write)
+        for point, value, said in (("w", "77", "0x0009"), ("lamp", "true", "0x0000")):
+            answer = write(point=point, value=value)
+            self.assertFalse(answer.success, answer)
+            self.assertTrue(answer.message.startswith("not taken: ") and said in answer.message, answer)
+        self.assertEqual(device.accepted, 1)
+
+
 def _add(kind, table, call):
     for number, (name, answer) in enumerate(table.items(), 1):
         def test(self, answer=answer):

@@ -89,6 +89,10 @@ tl::expected<void, ReplyError> check_reply(const WriteRequest& request, Bytes re
   const std::size_t same = several ? 5 : 3;
   if (reply.size() != (several ? 5 : asked.size()) || !std::equal(&reply[0], &reply[0] + same, asked.begin()))
     return tl::unexpected(reply_error(asked[0], reply));
+  const bool single = request.function() == Function::write_single_coil ||
+                      request.function() == Function::write_single_register;
+  if (single && get_u16(&reply[3]) != get_u16(&asked[3]))
+    return tl::unexpected(ReplyError{std::nullopt, get_u16(&reply[3])});
   return {};
 }
 

@@ -85,9 +85,11 @@ constexpr std::string_view to_string(Exception code) {
   return "unknown exception";
 }
 
-/// Why a reply is not the expected one: the server's exception, or (empty) it does not match the request.
+/// Why a reply is not the expected one: the server's exception, or another value than was written (FC 5 and 6
+/// repeat it), or (empty) it does not match the request.
 struct ReplyError {
-  std::optional<Exception> exception;
+  std::optional<Exception> exception{};
+  std::optional<std::uint16_t> other_value{};
 };
 constexpr ReplyError reply_error(std::uint8_t function, Bytes reply) {
   if (reply.size() != 2 || reply[0] != (function | exception_bit)) return {};

@@ -87,9 +87,13 @@ TEST(WriteRequest, The_reply_repeats_where_it_was_written_and_how_much) {
   EXPECT_FALSE(check_reply(request, elsewhere));
 }
 
-TEST(WriteRequest, A_device_may_answer_with_the_value_that_it_made_of_it) {
-  const std::uint8_t other_value[] = {6, 0, 1, 0, 9};
-  EXPECT_TRUE(check_reply(WriteRequest::register_value(1, 3), other_value));
+TEST(WriteRequest, An_acknowledgement_of_another_value_is_told_with_that_value) {
+  const std::uint8_t other_register[] = {6, 0, 1, 0, 9};
+  EXPECT_EQ(check_reply(WriteRequest::register_value(1, 3), other_register).error().other_value, 9);
+  EXPECT_TRUE(check_reply(WriteRequest::register_value(1, 9), other_register));
+  const std::uint8_t off[] = {5, 0, 1, 0, 0};
+  EXPECT_EQ(check_reply(WriteRequest::coil(1, true), off).error().other_value, 0);
+  EXPECT_TRUE(check_reply(WriteRequest::coil(1, false), off));
 }
 
 TEST(WriteRequest, An_exception_brings_its_code_whatever_it_is) {

@@ -13,6 +13,8 @@ struct Text {
     return fmt::format("no reply within {} ms", e.after.count());
   }
   std::string operator()(const ExceptionReply& e) const {
+    if (e.other_value)
+      return fmt::format("the device acknowledged another value than was sent: {:#06x}", *e.other_value);
     return fmt::format("exception {:02X} ({})", static_cast<unsigned>(e.code), modbus::to_string(e.code));
   }
   std::string operator()(const BadFrame& e) const { return "malformed reply: " + e.why; }

@@ -26,6 +26,7 @@ std::string exception_text(const WriteResult& result) {
 }
 
 std::string not_taken_text(const WriteResult& result) {
+  if (!result.exception && !result.why.empty()) return fmt::format("not taken: {}", result.why);
   if (result.found.empty())
     return fmt::format("not taken: acknowledged, but it cannot be read back: {}", exception_text(result));
   return fmt::format("not taken: acknowledged, but {} was written and {} reads back",

@@ -25,7 +25,7 @@ struct WriteResult {
     ok,          ///< acknowledged by the device, and read back where the map asks for that
     superseded,  ///< a newer value of the same point took its place before it was sent, or its safe value
     exception,   ///< the device answered with an exception
-    not_taken,   ///< acknowledged, but something else (or nothing) reads back
+    not_taken,   ///< acknowledged with another value, or something else (or nothing) reads back
     lost,        ///< sent, but the connection broke before the answer: it may have been carried out or not
     dropped,     ///< never sent: not connected, too many writes wait, or it waited longer than it may
     kept,        ///< not connected: written when the device is back, unless a newer value comes before
@@ -35,7 +35,7 @@ struct WriteResult {
 
   Outcome outcome = Outcome::ok;
   std::optional<modbus::Exception> exception{};  ///< of the write, or with not_taken of the read-back
-  std::string_view why{};                        ///< exception, lost, dropped, refused; valid during the call
+  std::string_view why{};  ///< exception, lost, dropped, refused, not_taken by its acknowledgement; valid during the call
   Span<const std::uint16_t> written{};           ///< not_taken, as Point::initial; valid during the call
   Span<const std::uint16_t> found{};  ///< not_taken: what reads back; empty if nothing could be read
 };

@@ -22,7 +22,7 @@ Result<> write_batch(const WriteBatch& batch, const Map& map, Transport& transpo
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   if (exception == nullptr || is_unit_away(answer.error())) return answer;
   if (batch.writes().size() == 1) {
-    rejected.push_back({batch.writes().front().point, exception->code});
+    rejected.push_back({batch.writes().front().point, *exception});
     return {};
   }
   for (const Write& write : batch.writes()) {  // one of them may be to blame, or their being together

@@ -50,10 +50,10 @@ class WriteBatch {
 /// Transport::receive(). After an error it was not sent.
 Result<modbus::WriteRequest> send(const WriteBatch& batch, const Map& map, Transport& transport);
 
-/// A value that the device answered with an exception.
+/// A value that the device did not take.
 struct RejectedValue {
   std::uint32_t point;
-  modbus::Exception code;
+  ExceptionReply reply;
 };
 
 /// Writes values that no caller waits for, neighbours in one request. Returns those that were rejected; an

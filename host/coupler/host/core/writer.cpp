@@ -184,16 +184,18 @@ Result<> Writer::finish(const Result<>& answer) {
 }
 
 Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Result<>& link) {
-  if (answer) {
+  const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
+  const bool verifies = map_.points[write.point].host.verify_write;
+  // What reads back counts for more than an odd acknowledgement.
+  if (answer || (verifies && exception != nullptr && exception->other_value)) {
     suspects_.erase(write.point);
     remember(write);
     acknowledged_[write.point] = true;
     if (written_ != nullptr) written_->on_written(write);
-    if (map_.points[write.point].host.verify_write) return verify(write, link);
+    if (verifies) return verify(write, link);
     settle(write, {Outcome::ok});
     return {};
   }
-  const ExceptionReply* exception = exception_in(answer.error());
   const bool is_away = exception == nullptr || is_unit_away(answer.error());
   if (is_away || !is_wrong(exception->code)) {
     // It may be carried out, or what it replaced be no more: nothing older is restored, and a deadman is due.
@@ -204,6 +206,10 @@ Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Re
   if (exception == nullptr) {
     settle(write, {Outcome::lost, std::nullopt, to_string(answer.error())});
     return answer;
+  }
+  if (exception->other_value) {
+    settle(write, {Outcome::not_taken, std::nullopt, to_string(answer.error())});
+    return {};
   }
   const bool is_right = is_node_ && exception->code == modbus::Exception::illegal_function;
   settle(write, {Outcome::exception, exception->code,
@@ -244,8 +250,8 @@ Result<> Writer::make_safe() {
   }
   std::string text = fmt::format("{} of {} outputs have their safe values",
                                  safe_values_.size() - rejected->size(), safe_values_.size());
-  for (const auto& [point, code] : *rejected) {
-    text += fmt::format("; {}: {}", name(point), to_string(Error(ExceptionReply{code})));
+  for (const auto& [point, reply] : *rejected) {
+    text += fmt::format("; {}: {}", name(point), to_string(Error(reply)));
     if (std::count(deadmen.begin(), deadmen.end(), point) > 0)
       deadmen_.retry(point, clock_.now() + deadman_retry);
   }
@@ -316,9 +322,9 @@ Result<> Writer::restore() {
       return tl::make_unexpected(rejected.error());
     }
     for (const Write& write : values) suspects_.erase(write.point);
-    for (const auto& [point, code] : *rejected)
+    for (const auto& [point, reply] : *rejected)
       sink_.on_report(Level::warning, fmt::format("{} was not restored: {}", name(point),
-                                                  to_string(Error(ExceptionReply{code}))));
+                                                  to_string(Error(reply))));
     restored += values.size() - rejected->size();
   }
   if (restored > 0) sink_.on_report(Level::info, fmt::format("{} outputs were restored", restored));
@@ -393,9 +399,9 @@ bool Writer::shut_down(bool connected) {
                     "not all outputs could be set to their safe values: " + to_string(rejected.error()));
     return false;
   }
-  for (const auto& [point, code] : *rejected)
+  for (const auto& [point, reply] : *rejected)
     sink_.on_report(Level::error, fmt::format("{} could not be set to its safe value: {}", name(point),
-                                              to_string(Error(ExceptionReply{code}))));
+                                              to_string(Error(reply))));
   return rejected->empty();
 }
 
