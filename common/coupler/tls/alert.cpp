@@ -47,14 +47,29 @@ std::string alert_text(int number) {
   return fmt::format("the other side refuses with the TLS alert {}", number);
 }
 
+/// Of the errors that OpenSSL has noted, the first one of TLS itself; how many follow it differs between
+/// releases.
+unsigned long first_of_tls() {
+  const unsigned long first = ERR_peek_error();
+  for (unsigned long code = ERR_get_error(); code != 0; code = ERR_get_error())
+    if (ERR_GET_LIB(code) == ERR_LIB_SSL) return code;
+  return first;
+}
+
+std::string text_of(unsigned long code) {
+  const char* reason = code == 0 ? nullptr : ERR_reason_error_string(code);
+  return reason == nullptr ? "unknown error" : reason;
+}
+
 }  // namespace
 
 std::string failure_text(const SSL* ssl, int result, const Verification& verification) {
   const int system_error = errno;
   const int kind = SSL_get_error(ssl, result);
-  const unsigned long code = ERR_peek_last_error();
+  const unsigned long code = first_of_tls();
+  ERR_clear_error();
   const int reason = ERR_GET_REASON(code);
-  std::string text = take_openssl_error();
+  std::string text = text_of(code);
   if (!verification.problem.empty()) return verification.problem;
   if (kind == SSL_ERROR_ZERO_RETURN) return has_left;
   if (kind == SSL_ERROR_SYSCALL)

@@ -33,6 +33,7 @@ Stream::Progress Stream::write(const char* from, std::size_t size) {
 }
 
 bool Stream::is_there() {
+  if (has_failed_) return false;  // OpenSSL 3.5 would wait for more
   char next = 0;
   ERR_clear_error();
   const Progress peeked = progress(SSL_peek(ssl_.get(), &next, 1));
@@ -43,6 +44,7 @@ Stream::Progress Stream::progress(int result) {
   const int problem = SSL_get_error(ssl_.get(), result);
   is_good_ = problem == SSL_ERROR_NONE || problem == SSL_ERROR_WANT_READ || problem == SSL_ERROR_WANT_WRITE ||
              problem == SSL_ERROR_ZERO_RETURN;
+  has_failed_ |= !is_good_;
   if (result > 0) return {result, 0};
   if (problem == SSL_ERROR_WANT_READ) return {0, POLLIN};
   if (problem == SSL_ERROR_WANT_WRITE) return {0, POLLOUT};

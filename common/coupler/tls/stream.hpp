@@ -33,7 +33,8 @@ class Stream {
 
   Verification verification_;
   SslPtr ssl_;
-  bool is_good_ = false;  ///< the last call was
+  bool is_good_ = false;     ///< the last call was
+  bool has_failed_ = false;  ///< a call was not
 };
 
 }  // namespace coupler::tls
