@@ -129,7 +129,7 @@ class Services(ServicesTest):
         self.write("pressure", "1")
         self.program.wait_for(f"{self.name}: refused a write to pressure by the service {self.name}/write: ")
         self.write("nothing", "1")
-        self.program.wait_for(f"{self.name}: refused a write to nothing by the service {self.name}/write: there is no point 'nothing'")
+        self.program.wait_for(f"{self.name}: refused a write to 'nothing' by the service {self.name}/write: there is no point 'nothing'")
         self.write("level", "1e3")
         self.assertEqual(self.device.tables["holding_registers"][4], 1000)
         known = diagnostics.wait_for(lambda known: "writes" in known and values(known["writes"])["ok"] == "1")

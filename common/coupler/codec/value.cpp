@@ -70,13 +70,19 @@ bool fits(From from) {
   }
 }
 
+/// What a caller wants written may be long.
+std::string beginning(const std::string& text) {
+  constexpr std::size_t most = 300;  // a STRING has 250 bytes at most
+  return text.size() <= most ? text : text.substr(0, most) + "…";
+}
+
 template <class To>
 Result put_number(const Value& value, const Format& format, std::uint16_t* registers) {
   return std::visit(
       [&](const auto& v) -> Result {
         using From = std::decay_t<decltype(v)>;
         if constexpr (std::is_same_v<From, bool> || std::is_same_v<From, std::string>) {
-          return tl::make_unexpected(fmt::format("'{}' is not a number", to_string(value)));
+          return tl::make_unexpected(fmt::format("'{}' is not a number", beginning(to_string(value))));
         } else {
           if constexpr (std::is_floating_point_v<From> && !std::is_floating_point_v<To>)
             if (v != std::trunc(v))
@@ -95,10 +101,11 @@ Result put_text(const Value& value, const Format& format, std::uint16_t* registe
   if (text == nullptr) return tl::make_unexpected(fmt::format("{} is not text", to_string(value)));
   switch (encode_text(*text, format, registers)) {
     case TextError::too_long:
-      return tl::make_unexpected(fmt::format("'{}' is longer than {} bytes", *text, format.length));
+      return tl::make_unexpected(
+          fmt::format("'{}' is longer than {} bytes", beginning(*text), format.length));
     case TextError::not_encodable:
       return tl::make_unexpected(
-          fmt::format("'{}' cannot be written in {}", *text, to_string(format.encoding)));
+          fmt::format("'{}' cannot be written in {}", beginning(*text), to_string(format.encoding)));
     case TextError::has_nul:
       return tl::make_unexpected(
           std::string("a text with a NUL character cannot be written, since it would end there"));

@@ -55,6 +55,14 @@ bool turns_direction(char32_t code) {
 
 std::string printable(std::string_view text) { return escaped(text, ""); }
 
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t most = 80;
+  if (text.size() <= most) return fmt::format("'{}'", printable(text));
+  std::size_t end = 0;
+  while (end < most) end += character_at(text, end).size;
+  return fmt::format("'{}…' ({} bytes)", printable(text.substr(0, end)), text.size());
+}
+
 std::string printable_lines(std::string_view text) { return escaped(text, "\n\t"); }
 
 }  // namespace coupler

@@ -58,8 +58,8 @@ class WriteRequest {
   std::size_t size_ = 5;
 };
 
-/// An error, too, if a reply to FC 5 or 6 repeats another value: some devices answer with the value that they stored
-/// instead. The masks of FC 22 are not compared.
+/// An error, too, if a reply to FC 5 or 6 repeats another value: some devices answer with the value that they
+/// stored instead. The masks of FC 22 are not compared.
 tl::expected<void, ReplyError> check_reply(const WriteRequest& request, Bytes reply);
 
 }  // namespace coupler::modbus

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "coupler/json/json_text.hpp"
+
 namespace coupler::record {
 namespace {
 
@@ -138,7 +140,7 @@ tl::expected<Reader, std::string> Reader::open(std::istream& text, std::string f
   Reader reader(text, std::move(file));
   std::string first;
   std::getline(text, first);
-  const json object = json::parse(first, nullptr, false);
+  const json object = parse_json(first);
   if (!object.is_object() || !object.contains("record"))
     return tl::unexpected(reader.error("this is no recording; `coupler record` makes one"));
   try {
@@ -159,7 +161,7 @@ tl::expected<std::optional<Line>, std::string> Reader::next() {
   while (std::getline(*text_, text)) {
     ++number_;
     if (text.empty()) continue;
-    const json object = json::parse(text, nullptr, false);
+    const json object = parse_json(text);
     if (object.is_discarded() && text_->eof()) return std::nullopt;  // cut short
     if (object.is_discarded()) return tl::unexpected(error("this is no JSON"));
     try {

@@ -252,5 +252,12 @@ TEST(RecordReader, Members_that_nobody_knows_are_passed_over) {
   EXPECT_EQ(head_error(with(head_text, "\"name\"", "\"later\":{},\"name\"")), "");
 }
 
+TEST(RecordReader, A_value_that_is_nested_deep_is_an_error_and_takes_no_stack) {
+  const std::string deep(100'000, '[');
+  const std::string line = R"({"t":1,"utc":"2026-11-28T21:48:42.710Z","point":"a","value":)" + deep +
+                           std::string(deep.size(), ']') + "}\n";
+  EXPECT_EQ(read(line + remark).error, "press.jsonl:2: this is no JSON");
+}
+
 }  // namespace
 }  // namespace coupler::record

@@ -107,6 +107,13 @@ void read_names(const Entry& entry, Point& point, const Context& context) {
                            std::string(names_form));
     return;
   }
+  constexpr std::size_t most = 1000;
+  if (entry.children.size() > most) {
+    context.problems.error(entry.at,
+                           fmt::format("'values' has {} names, of {} at most", entry.children.size(), most),
+                           "name those that are used");
+    return;
+  }
   std::vector<NamedValue> names;
   bool good = true;
   for (const Entry& each : entry.children) good = read_name(each, point, names, context) && good;

@@ -215,7 +215,7 @@ const Entry* child(const Entry& entry, std::string_view key) {
 
 std::optional<Entry> parse_document(std::string_view text, Problems& problems) {
   text = without_byte_order_mark(text);
-  if (!check_text(text, problems)) return std::nullopt;
+  if (!check_text(text, problems) || !check_shape(text, problems)) return std::nullopt;
   std::string source(text);
   const bool json = is_json(source);
   if (json && !blank_comments(source, problems)) return std::nullopt;

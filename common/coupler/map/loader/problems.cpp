@@ -19,6 +19,7 @@ void Problems::warning(Position at, std::string what, std::string remedy, const 
 void Problems::add(Diagnostic::Severity severity, Position at, std::string what, std::string remedy,
                    const Notes& related) {
   if (severity == Diagnostic::Severity::error) ++errors_;
+  if (is_full()) return;
   found_.push_back({severity, file_, at.line, at.column, std::move(what), std::move(remedy)});
   for (const Note& note : related) found_.back().notes.push_back({note.at.line, note.at.column, note.what});
 }

@@ -28,12 +28,16 @@ class Problems {
   void error(Position at, std::string what, std::string remedy, const Notes& related = {});
   void warning(Position at, std::string what, std::string remedy, const Notes& related = {});
 
+  /// No more are kept, but errors are counted: nobody reads so many.
+  bool is_full() const { return found_.size() >= most; }
   bool has_errors() const { return errors_ > 0; }
   std::size_t errors() const { return errors_; }
   /// In the order of the file.
   Diagnostics sorted() &&;
 
  private:
+  static constexpr std::size_t most = 10'000;
+
   void add(Diagnostic::Severity severity, Position at, std::string what, std::string remedy,
            const Notes& related);
 

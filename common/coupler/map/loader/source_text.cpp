@@ -2,6 +2,7 @@
 #include "coupler/map/loader/source_text.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -40,8 +41,69 @@ bool opens_string(char c, char previous) {
 
 /// One past the closing quote, or npos if the line ends before it.
 std::size_t string_end(std::string_view text, std::size_t at) {
-  return quoted_end(text.substr(0, std::min(text.find('\n', at), text.size())), at);
+  const std::size_t end = quoted_end(text, at);
+  if (end == std::string_view::npos) return end;
+  return text.substr(at, end - at).find('\n') == std::string_view::npos ? end : std::string_view::npos;
 }
+
+/// How deep the brackets, lists ("- - -") and keys ("? ? ?") are nested, and how many parts there are, as far
+/// as that can be told without a parser: brackets count where a value can begin, so not those of prose.
+class Shape {
+ public:
+  explicit Shape(std::string_view text) : text_(text) {}
+
+  /// Where one of the limits is passed; nullopt: nowhere.
+  struct Excess {
+    std::size_t at;
+    bool is_depth;
+  };
+  std::optional<Excess> find_excess(std::size_t deepest, std::size_t most_parts) {
+    for (std::size_t at = 0; at < text_.size(); ++at) {
+      at = look_at(at);
+      if (brackets_ > deepest || run_ > deepest) return Excess{std::min(at, text_.size()), true};
+      if (parts_ > most_parts) return Excess{std::min(at, text_.size()), false};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  bool begins_value() const { return std::string_view("{[,:-?\n").find(previous_) != std::string_view::npos; }
+
+  /// Returns the last character that was looked at.
+  std::size_t look_at(std::size_t at) {
+    const char c = text_[at];
+    if (c == '\n') {
+      run_ = 0;
+      ++parts_;
+      if (brackets_ == 0) previous_ = c;
+      return at;
+    }
+    if (blanks.find(c) != std::string_view::npos) return at;
+    if (const std::size_t end = comment_end(text_, at); end != at)
+      return end == std::string_view::npos ? text_.size() : end - 1;
+    if ((c == '"' || c == '\'') && begins_value()) {
+      const std::size_t end = quoted_end(text_, at);
+      previous_ = c;
+      return end == std::string_view::npos ? text_.size() : end - 1;
+    }
+    count(c);
+    previous_ = c;
+    return at;
+  }
+
+  void count(char c) {
+    if ((c == '[' || c == '{') && begins_value()) ++brackets_;
+    if ((c == ']' || c == '}') && brackets_ > 0) --brackets_;
+    run_ = c == '-' || c == '?' ? run_ + 1 : 0;
+    if (std::string_view("[{,:-?").find(c) != std::string_view::npos) ++parts_;
+  }
+
+  std::string_view text_;
+  char previous_ = '\n';  ///< neither blank nor comment
+  std::size_t brackets_ = 0;
+  std::size_t run_ = 0;
+  std::size_t parts_ = 0;
+};
 
 class CommentBlanker {
  public:
@@ -149,6 +211,20 @@ void indent_with_blanks(std::string& text) {
     if (starts_line && (ends_line || is_comment)) std::fill(text.begin() + begin, text.begin() + after, ' ');
     tab = after;
   }
+}
+
+bool check_shape(std::string_view text, Problems& problems) {
+  constexpr std::size_t deepest = 64;            // of characters; the tree may have 16 levels
+  constexpr std::size_t most_parts = 4'000'000;  // yaml-cpp takes some 240 bytes for each
+  const auto excess = Shape(text).find_excess(deepest, most_parts);
+  if (!excess) return true;
+  if (excess->is_depth)
+    problems.error(position_of(text, excess->at), "the values are nested too deep",
+                   "a map has at most five levels");
+  else
+    problems.error(position_of(text, excess->at), fmt::format("the file has more than {} parts", most_parts),
+                   "give the file of a map");
+  return false;
 }
 
 Position position_of(std::string_view text, std::size_t offset) {

@@ -21,6 +21,10 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// characters for the end of the file or for another encoding.
 bool check_text(std::string_view text, Problems& problems);
 
+/// The text is neither nested too deep nor in too many parts for a parser, which would take its time and
+/// memory before it tells.
+bool check_shape(std::string_view text, Problems& problems);
+
 /// Blanks in place of the tabs of empty lines and before comments: yaml-cpp takes them for wrong indentation.
 void indent_with_blanks(std::string& text);
 

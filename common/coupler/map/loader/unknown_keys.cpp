@@ -70,6 +70,10 @@ void Reader::misplaced(const Entry& entry, Section elsewhere) const {
 }
 
 void Reader::unknown(const Entry& entry) const {
+  if (context_.problems.is_full()) {  // a remedy would take time for nobody
+    if (!context_.served && !context_.foreign) context_.problems.error(entry.key_at, "unknown key", "");
+    return;
+  }
   const Section elsewhere = sections_with(entry.key);
   if (elsewhere != Section::none) return misplaced(entry, elsewhere);
   const auto here = key_names(section_);

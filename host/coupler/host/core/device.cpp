@@ -259,7 +259,12 @@ Result<> Device::judge(const Identity& identity) {
     return {};
   }
   const bool refuse = verify_ == Verify::require;
-  if (std::exchange(reported_fingerprint_, identity.fingerprint) != identity.fingerprint) {
+  const Time now = clock_.now();
+  // A device that shows another map at each connect is told once a minute.
+  const bool is_due = !reported_difference_at_ || now - *reported_difference_at_ >= std::chrono::minutes(1);
+  if (reported_fingerprint_ != identity.fingerprint && is_due) {
+    reported_fingerprint_ = identity.fingerprint;
+    reported_difference_at_ = now;
     std::string text = difference_text(map_, identity);
     if (refuse)
       text +=
@@ -281,9 +286,9 @@ void Device::came_online() {
   sink_.on_online(true);
   const std::string connected = peer_.empty() ? "connected" : "connected to " + peer_;
   if (const std::uint64_t dropped = writer_.take_dropped(); dropped > 0)
-    sink_.on_report(Level::warning, fmt::format("{}; {} writes were dropped meanwhile", connected, dropped));
+    tell(Level::warning, fmt::format("{}; {} writes were dropped meanwhile", connected, dropped));
   else
-    sink_.on_report(Level::info, connected);
+    tell(Level::info, connected);
   if (const Health health = certificates_health(certificates, std::chrono::system_clock::now());
       health.level != Level::info)
     sink_.on_report(health.level, health.text);
@@ -314,9 +319,14 @@ void Device::lost(const Error& error) {
   if (!ending_ && (was_online || why != last_error_text_)) {
     const std::string text = loss_text(map_, error, was_online);
     sink_.on_loss(text);
-    sink_.on_report(Level::warning, text);
+    tell(Level::warning, text);
   }
   last_error_text_ = why;
+}
+
+void Device::tell(Level level, std::string text) {
+  level_ = level;
+  if (const auto line = lines_.say(std::move(text), clock_.now())) sink_.on_report(level, *line);
 }
 
 }  // namespace coupler::host

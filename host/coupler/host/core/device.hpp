@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <future>
+#include <optional>
 #include <string>
 
+#include "coupler/base/line_limit.hpp"
 #include "coupler/host/core/change_listener.hpp"
 #include "coupler/host/core/coupler_watchdog.hpp"
 #include "coupler/host/core/output_scheduler.hpp"
@@ -43,6 +45,7 @@ class Device {
 
   /// As Writer's.
   void report_held_back() {
+    if (const auto line = lines_.due(clock_.now())) sink_.on_report(level_, *line);
     writer_.report_held_back();
     listener_.report_held_back();
   }
@@ -67,6 +70,11 @@ class Device {
   Time step();
   /// Bytes have come while no step() ran: an answer to send_now(), or else the end of the connection.
   void arrived();
+  /// step() has thrown: the connection is closed, and tried again after the back-off. Returns when.
+  Time give_up(const std::string& why) {
+    lost(TransportFailure{why});
+    return retry_at_;
+  }
   /// From now on a lost connection is not logged.
   void end_comes() { ending_ = true; }
   /// The program ends: outputs are set as `on_shutdown` says, and the connection is closed for good. False if
@@ -120,6 +128,8 @@ class Device {
   void answered();
   void came_online();
   void lost(const Error& error);
+  /// Of a connection that comes and goes.
+  void tell(Level level, std::string text);
 
   Map map_;
   Verify verify_;
@@ -137,6 +147,8 @@ class Device {
   ChangeListener listener_;
   Backoff backoff_;
 
+  LineLimit lines_{std::chrono::seconds(10), 6};
+  std::atomic<Level> level_{Level::info};  ///< of the newest
   std::atomic<bool> ending_{false};
   State state_ = State::none;
   bool wrote_last_ = false;  ///< the last request was a write: an overdue read goes before the next one
@@ -152,6 +164,7 @@ class Device {
   identity::Further node_;                  ///< what it says of itself; empty if it is none
   std::string peer_;                        ///< which machine it is, if a node says so
   std::uint64_t reported_fingerprint_ = 0;  ///< whose differences have been logged
+  std::optional<Time> reported_difference_at_;
 };
 
 }  // namespace coupler::host

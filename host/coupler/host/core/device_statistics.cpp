@@ -7,7 +7,8 @@ void DeviceStatistics::answered(Duration after, const Result<>& result) {
   const std::lock_guard lock(mutex_);
   ++now_.requests;
   const ExceptionReply* exception = result ? nullptr : exception_in(result.error());
-  if (exception != nullptr && !exception->other_value) ++now_.exceptions[static_cast<std::size_t>(exception->code)];
+  if (exception != nullptr && !exception->other_value)
+    ++now_.exceptions[static_cast<std::size_t>(exception->code)];
   if (result || exception != nullptr)
     now_.latency.add(after);
   else

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/core/device_thread.hpp"
 
+#include <exception>
 #include <utility>
+
+#include "coupler/base/what_failed.hpp"
 
 namespace coupler::host {
 namespace {
@@ -83,7 +86,12 @@ std::future<ScheduleAnswer> DeviceThread::schedule(const ScheduledWrite& what) {
 Time DeviceThread::step() {
   const std::lock_guard turn(turn_);
   demand_.take([this](std::uint32_t point, bool wanted) { device_.want(point, wanted); });
-  return device_.step();
+  try {
+    return device_.step();
+  } catch (const std::exception&
+               error) {  // no memory is left for what the device sends, say: it costs itself only
+    return device_.give_up(what_failed(error));
+  }
 }
 
 void DeviceThread::run() {

@@ -29,7 +29,7 @@ struct Timeout {
 };
 /// The device refuses the request. Any code may arrive (MAP 7).
 struct ExceptionReply {
-  modbus::Exception code{};
+  modbus::Exception code;
   /// There is no code: it acknowledges a write, but with this value instead of the one that was sent.
   std::optional<std::uint16_t> other_value{};
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/core/identity_check.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "coupler/map/fields.hpp"
@@ -35,7 +37,15 @@ Identity compare(const Map& known, const Map& device, std::uint64_t fingerprint)
 std::string difference_text(const Map& known, const Identity& identity) {
   std::string text = fmt::format("the map differs from the device's: fingerprint {} here, {} in the device",
                                  fingerprint_text(known.fingerprint), fingerprint_text(identity.fingerprint));
-  for (const std::string& line : identity.differences) text += "\n  " + line;
+  constexpr std::size_t most = 20;
+  constexpr std::size_t longest = 300;
+  const std::size_t shown = std::min(identity.differences.size(), most);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const std::string& line = identity.differences[i];
+    text += "\n  " + (line.size() > longest ? line.substr(0, longest) + "…" : line);
+  }
+  if (identity.differences.size() > most)
+    text += fmt::format("\n  and {} more; `coupler diff` shows them all", identity.differences.size() - most);
   return text;
 }
 

@@ -8,6 +8,7 @@
 
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/map/nearest.hpp"
+#include "coupler/map/printable.hpp"
 
 namespace coupler::host {
 
@@ -16,7 +17,7 @@ tl::expected<const Point*, std::string> point_named(const Map& map, std::string_
   std::vector<std::string_view> names;
   names.reserve(map.points.size());
   for (const Point& point : map.points) names.push_back(point.name);
-  return tl::unexpected(fmt::format("there is no point '{}' in the map of {}; {}", name, map.name,
+  return tl::unexpected(fmt::format("there is no point {} in the map of {}; {}", excerpt(name), map.name,
                                     nearest_or(name, names, "the map has their names")));
 }
 

@@ -14,6 +14,7 @@
 #include "coupler/codec/bit_string.hpp"
 #include "coupler/codec/scale.hpp"
 #include "coupler/codec/value.hpp"
+#include "coupler/map/printable.hpp"
 #include "coupler/map/typed_value.hpp"
 
 namespace coupler::host {
@@ -66,7 +67,7 @@ Parsed parse_element(std::string_view text, const Point& point, std::uint16_t* r
   registers[0] = 0;
   if (format.type == Type::BOOL) {
     const auto on = parse_bool(text);
-    if (!on) return tl::make_unexpected(fmt::format("'{}' is neither true nor false", text));
+    if (!on) return tl::make_unexpected(excerpt(text) + " is neither true nor false");
     if (!holds_bits(point.table)) return codec::encode(*on, format, registers);
     registers[0] = *on ? 1 : 0;
     return {};
@@ -76,8 +77,8 @@ Parsed parse_element(std::string_view text, const Point& point, std::uint16_t* r
   const auto number = parse_number(std::string(text));
   if (!number && !point.values.empty())
     return tl::make_unexpected(
-        fmt::format("'{}' is not one of its values; send {}", text, allowed_text(point)));
-  if (!number) return tl::make_unexpected(fmt::format("'{}' is not a number", text));
+        fmt::format("{} is not one of its values; send {}", excerpt(text), allowed_text(point)));
+  if (!number) return tl::make_unexpected(excerpt(text) + " is not a number");
   if (point.scale.present()) {
     const std::string wrong = encode_scaled(as_double(*number), point, registers);
     if (!wrong.empty()) return tl::make_unexpected(wrong);

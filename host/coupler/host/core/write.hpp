@@ -35,9 +35,10 @@ struct WriteResult {
 
   Outcome outcome = Outcome::ok;
   std::optional<modbus::Exception> exception{};  ///< of the write, or with not_taken of the read-back
-  std::string_view why{};  ///< exception, lost, dropped, refused, not_taken by its acknowledgement; valid during the call
-  Span<const std::uint16_t> written{};           ///< not_taken, as Point::initial; valid during the call
-  Span<const std::uint16_t> found{};  ///< not_taken: what reads back; empty if nothing could be read
+  std::string_view
+      why{};  ///< exception, lost, dropped, refused, not_taken by its acknowledgement; valid during the call
+  Span<const std::uint16_t> written{};  ///< not_taken, as Point::initial; valid during the call
+  Span<const std::uint16_t> found{};    ///< not_taken: what reads back; empty if nothing could be read
 };
 
 /// As messages have it, where 0 is none.

@@ -323,8 +323,8 @@ Result<> Writer::restore() {
     }
     for (const Write& write : values) suspects_.erase(write.point);
     for (const auto& [point, reply] : *rejected)
-      sink_.on_report(Level::warning, fmt::format("{} was not restored: {}", name(point),
-                                                  to_string(Error(reply))));
+      sink_.on_report(Level::warning,
+                      fmt::format("{} was not restored: {}", name(point), to_string(Error(reply))));
     restored += values.size() - rejected->size();
   }
   if (restored > 0) sink_.on_report(Level::info, fmt::format("{} outputs were restored", restored));

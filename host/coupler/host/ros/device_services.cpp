@@ -12,6 +12,7 @@
 #include "coupler/host/core/named_write.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/host/ros/program.hpp"
+#include "coupler/map/printable.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::host {
@@ -90,7 +91,8 @@ WriteTicket::Outcome DeviceServices::refuse(const std::string& name, const std::
   const std::lock_guard lock(mutex_);
   if (device_)
     device_->writes.refuse(point != nullptr ? std::optional(index_of(*point)) : std::nullopt,
-                           fmt::format("{} by the service {}/write: {}", name, map_.name, why));
+                           fmt::format("{} by the service {}/write: {}",
+                                       point != nullptr ? name : excerpt(name), map_.name, why));
   return {Outcome::refused, {}, "refused: " + why};
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Large and hostile files end in time: what is quadratic takes minutes, and CTest's limit is one.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "test/common/map/loader/loaded.hpp"
@@ -72,6 +73,48 @@ TEST(Size, A_bomb_of_aliases_is_refused) {
 
 TEST(Size, A_file_above_the_limit_is_refused_unread) {
   EXPECT_EQ(problems(std::string((std::size_t{16} << 20U) + 1, ' ')), 1U);
+}
+
+TEST(Size, A_map_in_one_line_is_read_as_fast_as_in_many) {
+  std::string text = R"({"name": "press", "mapping": {"holding_registers": {)";
+  for (int i = 0; i < 30000; ++i)
+    text += (i > 0 ? ", " : "") + fmt::format(R"("p{}": {{"address": {}, "type": "INT"}})", i, i);
+  EXPECT_EQ(problems(text + "}}}"), 0U);
+}
+
+TEST(Size, Sixteen_megabytes_of_brackets_and_commas_are_refused_before_they_are_parsed) {
+  constexpr std::size_t many = 15'000'000;  // yaml-cpp would take 3.5 GB
+  for (const std::string_view part : {"[", "[\n", "{a: ", "- ", ","}) {
+    const std::string text = (part == "," ? "[" : "a: ") + repeated(part, many / part.size());
+    const auto found = load_map(text, "map").diagnostics;
+    ASSERT_EQ(found.size(), 1U) << part;
+    const std::string& what = found.front().what;
+    EXPECT_TRUE(what.find("nested too deep") != std::string::npos || what.find("parts") != std::string::npos)
+        << what;
+  }
+}
+
+TEST(Size, Brackets_of_prose_are_not_nesting) {
+  EXPECT_EQ(problems(registers(100,
+                               [](const std::string& i) {
+                                 return "p" + i + ": {address: " + i +
+                                        ", type: INT, description: 'see [1'}\n    # [[[ {{";
+                               })),
+            0U);
+  EXPECT_EQ(problems(registers(100,
+                               [](const std::string& i) {
+                                 return "p" + i + ":\n      address: " + i +
+                                        "\n      type: INT\n      description: see [1";
+                               })),
+            0U);
+}
+
+TEST(Size, A_point_has_a_thousand_names_of_values_at_most) {
+  std::string text =
+      "name: press\nmapping:\n  holding_registers:\n    mode:\n      address: 0\n      type: UDINT\n"
+      "      values:\n";
+  for (int i = 0; i < 40000; ++i) text += fmt::format("        {}: n{}\n", i, i);
+  EXPECT_EQ(problems(text), 1U);
 }
 
 }  // namespace
