@@ -203,6 +203,7 @@ Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
   }
   const Span<const std::uint8_t> adu(reply_.data(), static_cast<std::size_t>(size));
   if (auto ours = check_adu(adu, sent_); !ours) return tl::make_unexpected(ours.error());
+  if (deadline.has_passed()) return fail(Timeout{timeout_});
   is_first_ = false;
   is_untrusted_ = size_in_header(adu) != adu.size();
   return modbus::Bytes(adu.data() + modbus::mbap_size, adu.size() - modbus::mbap_size);

@@ -115,6 +115,12 @@ Result<modbus::Bytes> RtuTransport::exchange(modbus::Bytes pdu) {
   return MultiUnitTransport::exchange(pdu);
 }
 
+Result<modbus::Bytes> RtuTransport::ask(const modbus::ReadRequest& request) {
+  auto reply = exchange(request.pdu());
+  if (reply && is_late_) return fail(Timeout{timeout_});
+  return reply;
+}
+
 Result<> RtuTransport::receive(const modbus::WriteRequest& request) {
   return unit_ == rtu_broadcast ? Result<>{} : MultiUnitTransport::receive(request);
 }
@@ -178,6 +184,7 @@ Result<modbus::Bytes> RtuTransport::receive_pdu() {
       case modbus::RtuFramer::Outcome::reply:
         discarded_ += framer_.skipped();
         busy_until_ = {};
+        is_late_ = now() > answer_by_;
         return framer_.pdu();
       case modbus::RtuFramer::Outcome::damaged: damaged_ = true; break;
       case modbus::RtuFramer::Outcome::nothing: break;

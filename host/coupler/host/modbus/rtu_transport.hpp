@@ -44,6 +44,7 @@ class RtuTransport : public MultiUnitTransport {
   std::uint64_t discarded() const override { return discarded_; }
 
  protected:
+  Result<modbus::Bytes> ask(const modbus::ReadRequest& request) override;
   Result<> send_pdu(modbus::Bytes pdu) override;
   Result<modbus::Bytes> receive_pdu() override;
 
@@ -74,6 +75,7 @@ class RtuTransport : public MultiUnitTransport {
   Wakeup hung_up_;
   Wakeup wakeup_;
   modbus::RtuFramer framer_;
+  bool is_late_ = false;   ///< the last reply came, or was looked at, after its time
   bool damaged_ = false;   ///< something has come since the request, and is no reply
   Time last_character_{};  ///< on the line, of either side
   Time answer_by_{};

@@ -7,25 +7,37 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <utility>
 
 #include "coupler/host/core/transport.hpp"
 
 namespace coupler::host {
 
+/// Since the machine was started, with the time for which it was suspended.
+inline std::chrono::nanoseconds time_since_boot() {
+  timespec now{};
+  ::clock_gettime(CLOCK_BOOTTIME, &now);
+  return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
+}
+
 /// A point in time by which something must be done.
 class Deadline {
  public:
-  explicit Deadline(std::chrono::milliseconds after) : at_(std::chrono::steady_clock::now() + after) {}
+  using Clock = std::chrono::nanoseconds (*)();
+  explicit Deadline(std::chrono::milliseconds after, Clock now = time_since_boot) : now_(now), at_(now() + after) {}
   friend bool operator<(const Deadline& a, const Deadline& b) { return a.at_ < b.at_; }
   /// What poll() takes: milliseconds left, rounded up, 0 when it has passed.
   int left() const {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(at_ - std::chrono::steady_clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(at_ - now_());
     return static_cast<int>(std::max<std::chrono::milliseconds::rep>(left.count(), 0));
   }
+  /// Whoever was stopped or suspended finds a reply that may be old, however soon it came.
+  bool has_passed() const { return now_() > at_; }
 
  private:
-  std::chrono::steady_clock::time_point at_;
+  Clock now_;
+  std::chrono::nanoseconds at_;
 };
 
 /// Owns a file descriptor; -1 is none.
