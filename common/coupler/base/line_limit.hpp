@@ -19,7 +19,9 @@ class LineLimit {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  explicit LineLimit(std::chrono::seconds interval = std::chrono::seconds(1), int burst = 1)
+  static constexpr auto usual = std::chrono::seconds(1);
+
+  explicit LineLimit(std::chrono::seconds interval = usual, int burst = 1)
       : interval_(interval), ahead_(interval * (burst - 1)) {}
 
   /// The line to log now, if any.

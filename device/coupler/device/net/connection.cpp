@@ -27,7 +27,7 @@ void Connection::open(Descriptor socket, const IpAddress& origin, TimePoint now)
   assert(!is_open());
   framer_.reset();
   output_begin_ = output_end_ = 0;
-  ended_ = has_asked_ = false;
+  ended_ = has_asked_ = is_probed_ = false;
   session_ = {};
   tls_.reset();
   origin_ = origin;
@@ -177,11 +177,18 @@ Outcome Connection::fill_output(TimePoint now) {
     if (outcome != Outcome::frame) return outcome;
     is_away_ = !server_.answers();
     if (is_away_) return Outcome::bad;
+    if (framer_.frame().pdu[0] == static_cast<std::uint8_t>(modbus::Function::schedule_output)) be_probed();
     output_end_ += server_.answer(framer_.frame(), session_, now, room());
     has_asked_ = true;
     last_active_ = now;
   }
   return Outcome::frame;
+}
+
+/// What is scheduled is cancelled when its connection ends, which a pulled cable does not tell. With TLS the
+/// other process has the client's socket, and probes each.
+void Connection::be_probed() {
+  if (!std::exchange(is_probed_, true)) notice_end_soon(socket_.get());
 }
 
 /// The reply to what it waits for has the time at which it leaves.

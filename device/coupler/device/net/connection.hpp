@@ -71,6 +71,7 @@ class Connection final : public EventHandler {
   bool answer(TimePoint now);
   modbus::Framer::Outcome fill_output(TimePoint now);
   void put_waiting();
+  void be_probed();
   void tell_of_tls();
   bool has_room() const;
   Span<std::uint8_t> room() { return Span<std::uint8_t>(output_).from(output_end_); }
@@ -97,6 +98,7 @@ class Connection final : public EventHandler {
   bool ended_ = false;    ///< the client sends no more, but may wait for replies
   bool is_away_ = false;  ///< the firmware stands for a device that has gone
   bool has_asked_ = false;
+  bool is_probed_ = false;  ///< its end is noticed soon
   TimePoint last_active_{};
   Waiting waiting_ = Waiting::for_request;
   std::optional<TimePoint> deadline_;

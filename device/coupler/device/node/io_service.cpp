@@ -151,7 +151,7 @@ void IoService::run(const std::function<bool(TimePoint)>& is_over, const std::fu
     beat();
     next_beat = now_ + heartbeat_period;
   }
-  (void)log_.tick(now_ + LineLimit::interval);  // logs what is still held back
+  (void)log_.tick(now_ + LineLimit::usual);  // logs what is still held back
 }
 
 std::vector<OpenConnection> IoService::release() {

@@ -93,6 +93,7 @@ bool TlsServer::accept_one(TimePoint now) {
     return true;
   }
   configure_client(socket.get());
+  notice_end_soon(socket.get());  // it may schedule outputs, which is seen by another process only
   make_room_for(origin_of(peer));
   if (connections_.size() < most_connections)
     connections_.emplace_back(loop_, *this, rules_->context, std::move(socket), peer, now);
