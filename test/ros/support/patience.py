@@ -6,7 +6,7 @@ import pathlib
 import re
 import time
 
-_CACHE = pathlib.Path(os.environ["COUPLER_BUILD_DIR"]) / "CMakeCache.txt"
+_CACHE = pathlib.Path(os.environ.get("COUPLER_BUILD_DIR", ""), "CMakeCache.txt")  # none: of a program that is no test of a build
 _SANITIZED = _CACHE.exists() and re.search(r"^COUPLER_SANITIZE:\w+=.", _CACHE.read_text(), re.MULTILINE)
 
 # Seconds until what must come is given up. Longer than the 60 for which rospy waits for the header of a connection, and all
