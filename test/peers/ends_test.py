@@ -9,6 +9,7 @@ import contextlib
 import json
 import os
 import pathlib
+import resource
 import signal
 import socket
 import subprocess
@@ -95,6 +96,25 @@ def nobody_reads(what, command, checks, folder=None):
         os.close(reader)
 
 
+def a_log_file_that_may_not_grow_ends_no_node(folder, checks):
+    log = folder / "node.log"
+    with open(log, "w", encoding="utf-8") as file:
+        node = subprocess.Popen([NODE, MAP, "--sim", "--listen", "127.0.0.1", "--port", "0"], stderr=file,
+                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (400, 400)))
+    peer.await_true("small log: it serves", lambda: "serving" in log.read_text(encoding="utf-8"), checks)
+    port = int(log.read_text(encoding="utf-8").split("127.0.0.1:")[1].split()[0].rstrip(","))
+    request = b"\0\1\0\0\0\6\1\1\0\0\0\1"
+    with socket.create_connection(("127.0.0.1", port), peer.PATIENCE) as client:
+        for _ in range(5):
+            node.send_signal(signal.SIGHUP)  # which is told
+            time.sleep(0.1)
+            client.sendall(request)
+            checks.equal("small log: it answers", client.recv(300)[:2], request[:2])
+    checks.equal("small log: its size", log.stat().st_size <= 400, True)
+    node.terminate()
+    checks.equal("small log: status", node.wait(peer.PATIENCE), 0)
+
+
 def main():
     checks = peer.Checks()
     with tempfile.TemporaryDirectory() as name, peer.running_node([NODE, MAP, "--sim"]) as port:
@@ -104,6 +124,7 @@ def main():
             *((a_recording_ends_whole, port, folder, number, checks) for number in ENDED),
             (nohup_is_respected, port, folder, checks),
             (a_silent_device_holds_nothing_up, checks),
+            (a_log_file_that_may_not_grow_ends_no_node, folder, checks),
             (nobody_reads, "dump --watch", [COUPLER, "dump", MAP, *at, "--watch", "0.05"], checks),
             (nobody_reads, "dump --watch --json", [COUPLER, "dump", MAP, *at, "--watch", "0.05", "--json"], checks),
             (nobody_reads, "panel", [COUPLER, "panel", MAP, *at, "--port", "0"], checks),

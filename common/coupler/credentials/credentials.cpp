@@ -48,6 +48,8 @@ std::optional<std::string> why_not_secret(const struct stat& file, const std::st
   const auto others = [&](const char* who, const char* what) {
     return fmt::format("{} may {} it; 'chmod 600 {}' keeps it to its owner", who, what, path);
   };
+  if (::geteuid() == 0 && file.st_uid != 0 && !is_systemd_credential(path))
+    return fmt::format("it belongs to another user, who can exchange it; 'chown root {}' gives it to this one", path);
   if ((file.st_mode & S_IROTH) != 0) return others("everybody", "read");
   if ((file.st_mode & S_IWOTH) != 0) return others("everybody", "change");
   if ((file.st_mode & S_IWGRP) != 0) return others("its group", "change");

@@ -89,6 +89,13 @@ TEST_F(CredentialFilesTest, A_key_is_its_owners) {
   EXPECT_EQ(error(), "") << "its group is that of this process";
 }
 
+TEST_F(CredentialFilesTest, Root_takes_no_key_that_somebody_else_can_exchange) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root gives a file to somebody else";
+  EXPECT_EQ(error(), "");
+  ASSERT_EQ(::chown((folder_ / "own.key").c_str(), 54321, static_cast<gid_t>(-1)), 0);
+  EXPECT_THAT(error(), AllOf(HasSubstr("belongs to another user"), HasSubstr("chown root")));
+}
+
 TEST_F(CredentialFilesTest, A_group_that_is_another_ones_may_not_read_it_but_in_systemds_folder) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root gives a file to another group";
   ASSERT_EQ(::chown((folder_ / "own.key").c_str(), 0, ::getegid() + 1), 0);

@@ -110,6 +110,7 @@ void StderrLog::never_wait() {
   waits_ = false;
   // A terminal with "stty tostop" stops the process of the background that writes.
   std::signal(SIGTTOU, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a log file that may not grow
 }
 
 void StderrLog::put(int priority, std::string_view who, std::string_view line) {

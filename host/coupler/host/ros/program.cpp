@@ -88,6 +88,7 @@ void begin_program() {
 
 void never_wait_for_readers() {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a log file that may not grow
   for (const int file : {STDOUT_FILENO, STDERR_FILENO}) never_wait_for_reader_of(file);
 }
 
