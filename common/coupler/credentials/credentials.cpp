@@ -49,7 +49,8 @@ std::optional<std::string> why_not_secret(const struct stat& file, const std::st
     return fmt::format("{} may {} it; 'chmod 600 {}' keeps it to its owner", who, what, path);
   };
   if (::geteuid() == 0 && file.st_uid != 0 && !is_systemd_credential(path))
-    return fmt::format("it belongs to another user, who can exchange it; 'chown root {}' gives it to this one", path);
+    return fmt::format(
+        "it belongs to another user, who can exchange it; 'chown root {}' gives it to this one", path);
   if ((file.st_mode & S_IROTH) != 0) return others("everybody", "read");
   if ((file.st_mode & S_IWOTH) != 0) return others("everybody", "change");
   if ((file.st_mode & S_IWGRP) != 0) return others("its group", "change");
@@ -83,8 +84,6 @@ tl::expected<std::string, std::string> read_pem_file(std::string_view what, std:
     return failed("cannot be read: " + read_error(errno, path, folder));
   if (!S_ISREG(status.st_mode)) return failed("is not a regular file; write it to one");
   if (status.st_size > most_bytes) return failed("is larger than 1 MiB; certificates are smaller");
-  if (is_secret)
-    if (const auto why = why_not_secret(status, full)) return failed("is not secret: " + *why);
   std::string text(static_cast<std::size_t>(status.st_size), '\0');
   std::size_t size = 0;
   while (size < text.size()) {
@@ -95,6 +94,11 @@ tl::expected<std::string, std::string> read_pem_file(std::string_view what, std:
     size += static_cast<std::size_t>(got);
   }
   text.resize(size);
+  if (is_secret && text.find("PRIVATE KEY") == std::string::npos &&
+      text.find("BEGIN CERTIFICATE") != std::string::npos)
+    return failed("is a certificate; perhaps 'certificate' and 'key' are exchanged");
+  if (is_secret)
+    if (const auto why = why_not_secret(status, full)) return failed("is not secret: " + *why);
   return text;
 }
 

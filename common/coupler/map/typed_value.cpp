@@ -5,6 +5,7 @@
 
 #include "coupler/codec/text.hpp"
 #include "coupler/codec/value.hpp"
+#include "coupler/map/printable.hpp"
 
 namespace coupler {
 namespace {
@@ -36,11 +37,12 @@ std::string value_names_text(const Point& point) {
 std::string encode_scaled(double value, const Point& point, std::uint16_t* registers) {
   const auto [least, most] = codec::published_range(point.format.type, point.scale);
   const std::string units = units_of(point);
+  const std::string right =
+      limits_values(point) ? allowed_text(point) : fmt::format("{:g} to {:g}{}", least, most, units);
   switch (codec::encode_published(value, point.format, point.scale, registers)) {
-    case codec::ScaleError::not_a_number:
-      return fmt::format("not a number; send {:g} to {:g}{}", least, most, units);
+    case codec::ScaleError::not_a_number: return "not a number; send " + right;
     case codec::ScaleError::out_of_range:
-      return fmt::format("{:g}{} is out of range; send {:g} to {:g}{}", value, units, least, most, units);
+      return fmt::format("{:g}{} is out of range; send {}", value, units, right);
     case codec::ScaleError::none: break;
   }
   return {};
@@ -49,10 +51,10 @@ std::string encode_scaled(double value, const Point& point, std::uint16_t* regis
 std::string encode_string(std::string_view text, const Point& point, std::uint16_t* registers) {
   switch (codec::encode_text(text, point.format, registers)) {
     case codec::TextError::too_long:
-      return fmt::format("'{}' is too long; give at most {} bytes of {}", text, point.format.length,
+      return fmt::format("{} is too long; give at most {} bytes of {}", excerpt(text), point.format.length,
                          codec::to_string(point.format.encoding));
     case codec::TextError::not_encodable:
-      return fmt::format("'{}' cannot be written in {}; leave out what it does not have", text,
+      return fmt::format("{} cannot be written in {}; leave out what it does not have", excerpt(text),
                          codec::to_string(point.format.encoding));
     case codec::TextError::has_nul:
       return "a text with a NUL character would end there; leave the character out";

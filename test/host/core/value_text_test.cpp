@@ -94,6 +94,10 @@ TEST(ValueText, A_scaled_point_speaks_in_published_units) {
   const Registers raw{615};
   EXPECT_EQ(format_value(raw.data(), point), "21.5");
   EXPECT_THAT(error_of("5000", point), HasSubstr("5000 °C is out of range; send -3316.8 to 3236.7 °C"));
+  Point limited = point;
+  limited.bounds = {0, 100};
+  EXPECT_THAT(error_of("5000", limited), HasSubstr("send 0 to 100 °C")) << "not what the type could hold";
+  EXPECT_THAT(error_of("nan", limited), HasSubstr("send 0 to 100 °C"));
   EXPECT_THAT(error_of("nan", point), HasSubstr("not a number"));
 }
 

@@ -14,8 +14,8 @@ constexpr int client_send_buffer = 16 * 1024;
 /// Of a client's TCP connection: no delay, an end that is noticed, a small send buffer.
 void configure_client(int socket);
 
-/// From now on the end of a client's TCP connection is noticed within some 5 s, though nobody says a word: a cable that was
-/// pulled, a machine without power.
+/// From now on the end of a client's TCP connection is noticed within some 5 s, though nobody says a word: a
+/// cable that was pulled, a machine without power.
 void notice_end_soon(int socket);
 
 /// Who is at the other end of a client's socket; nullopt: it has left.

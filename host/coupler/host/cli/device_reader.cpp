@@ -202,7 +202,7 @@ Result<> DeviceReader::read_all() {
   std::vector<ReadSpan> next;
   std::vector<ReadSpan> later;
   for (const ReadSpan& span : spans_) {
-    const Result<> answer = ask(span, next);
+    Result<> answer = ask(span, next);
     if (answer) continue;
     // Perhaps it is that one only: others first.
     if (answered_ || !is_no_reply(answer.error()) || later.size() == most_tried_later) return answer;

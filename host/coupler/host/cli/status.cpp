@@ -39,9 +39,10 @@ Exit run(const Arguments& arguments) {
   std::fflush(stdout);
   const std::string device = node_address_text(connection);
   if (status.error)
-    return complain(
-        "status", failed, device + ": " + to_string(*status.error),
-        reach_remedy(connection, *status.error, "check that a node serves there, with this unit id"));
+    return complain("status", failed, device + ": " + to_string(*status.error),
+                    reach_remedy(connection, *status.error,
+                                 "check that a node serves there, with this unit id, and that its "
+                                 "'allow' lets this machine in"));
   if (!status.report)
     return complain("status", bad_input, device + " is a foreign coupler: it has no identity area",
                     "`coupler dump` shows its values if you have its map, `coupler probe` looks into it");

@@ -84,7 +84,10 @@ Parsed parse_element(std::string_view text, const Point& point, std::uint16_t* r
     if (!wrong.empty()) return tl::make_unexpected(wrong);
     return {};
   }
-  return codec::encode(*number, format, registers);
+  auto encoded = codec::encode(*number, format, registers);
+  if (!encoded && limits_values(point))  // the range of the type is not what may be sent
+    return tl::make_unexpected(fmt::format("{} is not allowed; send {}", excerpt(text), allowed_text(point)));
+  return encoded;
 }
 
 std::vector<std::string_view> elements(std::string_view text) {

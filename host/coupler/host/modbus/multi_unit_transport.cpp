@@ -16,7 +16,8 @@ Result<> result(const tl::expected<void, modbus::ReplyError>& taken, modbus::Byt
                 modbus::Bytes came) {
   if (taken) return {};
   if (taken.error().exception) return fail(ExceptionReply{*taken.error().exception});
-  if (taken.error().other_value) return fail(ExceptionReply{static_cast<modbus::Exception>(0), taken.error().other_value});
+  if (taken.error().other_value)
+    return fail(ExceptionReply{static_cast<modbus::Exception>(0), taken.error().other_value});
   return fail(bad_reply("not the reply to this request", asked, came));
 }
 

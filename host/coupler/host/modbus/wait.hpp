@@ -25,7 +25,8 @@ inline std::chrono::nanoseconds time_since_boot() {
 class Deadline {
  public:
   using Clock = std::chrono::nanoseconds (*)();
-  explicit Deadline(std::chrono::milliseconds after, Clock now = time_since_boot) : now_(now), at_(now() + after) {}
+  explicit Deadline(std::chrono::milliseconds after, Clock now = time_since_boot)
+      : now_(now), at_(now() + after) {}
   friend bool operator<(const Deadline& a, const Deadline& b) { return a.at_ < b.at_; }
   /// What poll() takes: milliseconds left, rounded up, 0 when it has passed.
   int left() const {
