@@ -83,5 +83,29 @@ TEST_F(SetAsideTest, A_device_that_is_silent_is_away_whatever_was_asked) {
   EXPECT_TRUE(sink->online.back());
 }
 
+TEST_F(SetAsideTest, Several_silent_requests_before_the_first_good_one_are_found_one_after_the_other) {
+  device.during_read = [this] {
+    const std::string& asked = device.requests.back();
+    if (asked == "read holding_registers 0+1" || asked == "read holding_registers 5+1")
+      device.next_errors = {Timeout{milliseconds(3000)}};
+  };
+  start(MapBuilder().holding("a", 0).holding("b", 5).holding("c", 9), Verify::off);
+  run_for(seconds(9));
+  EXPECT_TRUE(sink->online.back());
+  EXPECT_EQ(sink->reported("a cannot be read: no reply"), 1);
+  EXPECT_EQ(sink->reported("b cannot be read: no reply"), 1);
+}
+
+TEST_F(SetAsideTest, A_device_that_comes_and_goes_is_told_in_a_few_lines) {
+  start(MapBuilder().holding("a", 0), Verify::off);
+  for (int i = 0; i < 300; ++i) {
+    device.next_errors.push_back(TransportFailure{"reset"});
+    run_for(milliseconds(200));
+  }
+  EXPECT_LE(sink->reported("connect"), 13) << "in a minute";
+  run_for(seconds(11));
+  EXPECT_THAT(sink->reports.back(), testing::HasSubstr("connected")) << "and the last state is told";
+}
+
 }  // namespace
 }  // namespace coupler::host

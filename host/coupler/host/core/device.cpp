@@ -47,6 +47,7 @@ bool Device::needs_keep_alive() const {
 }
 
 Time Device::step() {
+  if (holds_line_) tell_what_waits();
   if (!is_verified()) {
     writer_.disconnected(NotConnected{"not connected"});
     return clock_.now() < retry_at_ ? retry_at_ : connect();
@@ -326,7 +327,15 @@ void Device::lost(const Error& error) {
 
 void Device::tell(Level level, std::string text) {
   level_ = level;
-  if (const auto line = lines_.say(std::move(text), clock_.now())) sink_.on_report(level, *line);
+  const auto line = lines_.say(std::move(text), clock_.now());
+  holds_line_ = !line;
+  if (line) sink_.on_report(level, *line);
+}
+
+void Device::tell_what_waits() {
+  const auto line = lines_.due(clock_.now());
+  holds_line_ = lines_.due_at().has_value();
+  if (line) sink_.on_report(level_, *line);
 }
 
 }  // namespace coupler::host

@@ -45,7 +45,6 @@ class Device {
 
   /// As Writer's.
   void report_held_back() {
-    if (const auto line = lines_.due(clock_.now())) sink_.on_report(level_, *line);
     writer_.report_held_back();
     listener_.report_held_back();
   }
@@ -130,6 +129,7 @@ class Device {
   void lost(const Error& error);
   /// Of a connection that comes and goes.
   void tell(Level level, std::string text);
+  void tell_what_waits();
 
   Map map_;
   Verify verify_;
@@ -148,7 +148,8 @@ class Device {
   Backoff backoff_;
 
   LineLimit lines_{std::chrono::seconds(10), 6};
-  std::atomic<Level> level_{Level::info};  ///< of the newest
+  Level level_ = Level::info;  ///< of the newest
+  bool holds_line_ = false;    ///< it waits
   std::atomic<bool> ending_{false};
   State state_ = State::none;
   bool wrote_last_ = false;  ///< the last request was a write: an overdue read goes before the next one

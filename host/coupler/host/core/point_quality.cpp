@@ -47,6 +47,7 @@ void PointQualities::exception(Span<const std::uint32_t> points, modbus::Excepti
   for (const std::uint32_t point : points) {
     points_[point].last_exception = code;
     points_[point].failing = true;
+    points_[point].why.clear();
   }
   ++revision_;
 }

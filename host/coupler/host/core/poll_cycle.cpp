@@ -180,13 +180,11 @@ std::vector<std::uint32_t> PollCycle::set_aside(Time now) {
 void PollCycle::ended_connection() {
   aside_.suspect(current());
   deferred_.push_back(current());
-  std::size_t deferred = 0;
   std::size_t asked = 0;
-  for (const ReadSpan& span : deferred_) deferred += span.points.size();
   for (const Group& group : groups_)
     for (const std::uint32_t point : group.points->points)
       asked += wanted_[point] && !given_up_[point] ? 1 : 0;
-  if (deferred >= asked) deferred_.clear();  // there are no others: all of it is silent
+  if (current().points.size() >= asked) deferred_.clear();  // there are no others: all of it is silent
 }
 
 void PollCycle::give_up(Time now) {
