@@ -2,6 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -67,8 +71,14 @@ bool is_identifier(std::string_view text) {
   });
 }
 
+/// Of one `values`, which may have a name for each number of a type.
+struct Seen {
+  std::unordered_set<std::int64_t> values;
+  std::unordered_set<std::string_view> names;
+};
+
 /// One entry of `values`; false if it is wrong.
-bool read_name(const Entry& entry, const Point& point, std::vector<NamedValue>& names,
+bool read_name(const Entry& entry, const Point& point, std::vector<NamedValue>& names, Seen& seen,
                const Context& context) {
   const auto wrong = [&](Position at, std::string what, std::string remedy) {
     context.problems.error(at, std::move(what), std::move(remedy));
@@ -86,11 +96,11 @@ bool read_name(const Entry& entry, const Point& point, std::vector<NamedValue>& 
   if (const auto held = codec::encode(codec::Value{*value}, point.format, registers.data()); !held)
     return wrong(entry.key_at, fmt::format("'values': {}", held.error()),
                  "write a value that the type can hold");
-  for (const NamedValue& other : names)
-    if (other.value == *value || other.name == entry.text)
-      return wrong(entry.key_at,
-                   fmt::format("'values' has '{}' twice", other.value == *value ? entry.key : entry.text),
-                   "keep one of the two");
+  const bool is_new_value = seen.values.insert(*value).second;
+  const bool is_new_name = seen.names.insert(entry.text).second;
+  if (!is_new_value || !is_new_name)
+    return wrong(entry.key_at, fmt::format("'values' has '{}' twice", is_new_value ? entry.text : entry.key),
+                 "keep one of the two");
   if (const auto why = why_forbidden(point, registers.data()))
     return wrong(entry.key_at,
                  fmt::format("'values' names {}, which is {}", *value,
@@ -107,16 +117,10 @@ void read_names(const Entry& entry, Point& point, const Context& context) {
                            std::string(names_form));
     return;
   }
-  constexpr std::size_t most = 1000;
-  if (entry.children.size() > most) {
-    context.problems.error(entry.at,
-                           fmt::format("'values' has {} names, of {} at most", entry.children.size(), most),
-                           "name those that are used");
-    return;
-  }
   std::vector<NamedValue> names;
+  Seen seen;
   bool good = true;
-  for (const Entry& each : entry.children) good = read_name(each, point, names, context) && good;
+  for (const Entry& each : entry.children) good = read_name(each, point, names, seen, context) && good;
   if (!good) return;
   std::sort(names.begin(), names.end(),
             [](const NamedValue& a, const NamedValue& b) { return a.value < b.value; });
