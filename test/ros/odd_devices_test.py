@@ -102,7 +102,7 @@ class OddDevices(testing.RosTest):
         driver = self.driver(f"_map:={path}", f"_port:={device.port}")
         other = self.topic(f"/{self.name}/a", UInt16)
         self.assertEqual(other.next(), 100)
-        answer = self.service(f"/{self.name}/write", Write)(point="w", value="77")
+        answer = self.service(f"/{self.name}/write", Write)("w", "77")
         self.assertFalse(answer.success, answer)
         self.assertTrue(answer.message.startswith("lost: "), answer)
         driver.wait_for("w is not restored")
@@ -112,7 +112,7 @@ class OddDevices(testing.RosTest):
             device.tables["holding_registers"][0] = value
             wait_until(lambda value=value: other.next() == value, "a new value")
         self.assertEqual(len(device.seen(6)), written)
-        self.assertTrue(self.service(f"/{self.name}/write", Write)(point="lamp", value="true").success)
+        self.assertTrue(self.service(f"/{self.name}/write", Write)("lamp", "true").success)
         self.assertEqual(device.tables["coils"][0], 1)
 
 
@@ -124,7 +124,7 @@ class OddDevices(testing.RosTest):
         self.assertEqual(self.topic(f"/{self.name}/a", UInt16).next(), 100)
         write = self.service(f"/{self.name}/write", Write)
         for point, value, said in (("w", "77", "0x0009"), ("lamp", "true", "0x0000")):
-            answer = write(point=point, value=value)
+            answer = write(point, value)
             self.assertFalse(answer.success, answer)
             self.assertTrue(answer.message.startswith("not taken: ") and said in answer.message, answer)
         self.assertEqual(device.accepted, 1)

@@ -28,9 +28,9 @@ constexpr bool is_rejection(Exception code, bool is_node) {
          (is_node && code == Exception::illegal_function);
 }
 
-/// So many requests that have no reply are put off until another one has: a device that is silent is not
-/// waited for for ever.
-constexpr std::size_t most_tried_later = 3;
+/// Requests without a reply that are put off until another one has one. No more: a device that is silent
+/// would be waited for that many timeouts.
+constexpr std::size_t most_tried_later = 1;
 
 /// The answer can be another one for a part of the range: one line that fails is answered for all.
 constexpr bool is_of_the_range(Exception code, bool is_node) {
