@@ -27,18 +27,37 @@ std::size_t missing(modbus::Bytes bytes) {
 /// A reply to a read begins with so much: the header, the function code, and the byte count or the exception.
 constexpr std::size_t beginning_size = modbus::mbap_size + 2;
 
-/// Whether a reply to a read with this function code may begin so, as far as it has come. One with the right
-/// transaction is one, however wrong the rest is; a TLS alert tells what is wrong, too.
-bool may_begin_reply(modbus::Bytes bytes, const modbus::Frame& to, std::uint8_t asked) {
+/// Something with the right transaction is the reply, however wrong the rest is; a TLS alert tells what is
+/// wrong, too.
+bool begins_reply(modbus::Bytes bytes, const modbus::Frame& to) {
   constexpr std::uint16_t tls_alert = 0x1503;
   const auto begins = bytes.size() < 2 ? 0 : modbus::get_u16(bytes.data());
-  if (bytes.size() >= 2 && (begins == to.transaction || begins == tls_alert)) return true;
+  return bytes.size() >= 2 && (begins == to.transaction || begins == tls_alert);
+}
+
+/// Whether a reply to a read with this function code may begin so, as far as it has come.
+bool may_begin_reply(modbus::Bytes bytes, const modbus::Frame& to, std::uint8_t asked) {
+  if (begins_reply(bytes, to)) return true;
   // The protocol, and the high byte of the length.
   for (std::size_t i = 2; i < std::min<std::size_t>(bytes.size(), 5); ++i)
     if (bytes[i] != 0) return false;
   if (bytes.size() > 6 && bytes[6] != to.unit) return false;
   if (bytes.size() < beginning_size) return bytes.size() < 8 || (bytes[7] & 0x7FU) == asked;
   return bytes[7] == asked ? bytes[5] == 3 + bytes[8] : bytes[7] == (asked | 0x80U) && bytes[5] == 3;
+}
+
+/// False: no more comes. Where a part of a reply is there, poll() would not wait for the rest.
+bool await_more(int socket, bool has_begun, const Deadline& deadline) {
+  pollfd more{socket, static_cast<short>(has_begun ? POLLRDHUP : POLLIN), 0};
+  ::poll(&more, 1, has_begun ? 1 : deadline.left());
+  return !has_begun || more.revents == 0;
+}
+
+/// Of what has come so far, so many bytes are before the reply.
+std::size_t size_before_reply(modbus::Bytes bytes, const modbus::Frame& to, std::uint8_t asked) {
+  std::size_t first = 0;
+  while (first < bytes.size() && !may_begin_reply({&bytes[first], bytes.size() - first}, to, asked)) ++first;
+  return first;
 }
 
 enum class Take { all, one_frame };
@@ -105,9 +124,7 @@ Result<> skip_to_reply(int socket, const modbus::Frame& to, std::uint8_t asked, 
     if (got == 0 && skipped > 0) break;
     if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) return {};  // whoever receives sees it
     const auto size = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
-    std::size_t first = 0;
-    while (first < size && !may_begin_reply({&bytes[first], size - first}, to, asked)) ++first;
-    if (first > 0) {
+    if (const std::size_t first = size_before_reply({bytes.data(), size}, to, asked); first > 0) {
       ::recv(socket, bytes.data(), first, MSG_DONTWAIT);
       if (first_bytes.size() < beginning_size)
         first_bytes.insert(first_bytes.end(), bytes.begin(), &bytes[first]);
@@ -115,10 +132,8 @@ Result<> skip_to_reply(int socket, const modbus::Frame& to, std::uint8_t asked, 
       discarded += first;
       continue;
     }
-    if (size == bytes.size()) return {};
-    pollfd more{socket, POLLIN, 0};
-    // A part of it is there, so poll() would not wait for the rest.
-    ::poll(&more, size > 0 ? 0 : 1, size > 0 ? 1 : deadline.left());
+    if (size == bytes.size() || begins_reply({bytes.data(), size}, to)) return {};
+    if (!await_more(socket, size > 0, deadline)) return {};
   }
   if (skipped == 0) return {};
   return fail(BadFrame{fmt::format("{} bytes have come, and none of them begins a reply: {}", skipped,
