@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of a writer's values when the connection ends, and which are written again over the next one.
+#include <fmt/format.h>
+
+#include "coupler/host/core/writer.hpp"
+
+namespace coupler::host {
+namespace {
+
+using Outcome = WriteResult::Outcome;
+
+/// Until a deadman value that the device would not carry out is written again.
+constexpr auto deadman_retry = std::chrono::seconds(1);
+
+/// The same of one that ended two connections in a row.
+constexpr auto suspect_retry = std::chrono::seconds(10);
+
+/// What becomes of a write that waits while there is no connection.
+std::string_view unconnected_text(const Point& point, const Write& write) {
+  if (write.until != Time::max()) return "not connected";
+  if (is_pulsed(point)) return "not connected; a pulse is not written when the device is back";
+  return "not connected; with 'on_reconnect: restore' in the map it would be written when the device is back";
+}
+
+}  // namespace
+
+Result<> Writer::reconnected() {
+  merges_ = true;
+  fire_deadmen();
+  if (auto restored = restore(); !restored) return restored;
+  safe_calls_.open();
+  return {};
+}
+
+/// Those that ended a connection go last, each by itself.
+Result<> Writer::restore() {
+  std::vector<std::vector<Write>> requests(1);
+  for (const auto& [point, write] : last_written_) {
+    if (queue_.is_pending(point)) continue;
+    if (suspects_.count(point) > 0)
+      requests.push_back({write});
+    else
+      requests.front().push_back(write);
+  }
+  std::size_t restored = 0;
+  for (const std::vector<Write>& values : requests) {
+    std::vector<Write> broken;
+    const auto rejected = write_values(values, map_, transport_, &broken);
+    if (!rejected) {
+      suspect(broken, rejected.error());
+      return tl::make_unexpected(rejected.error());
+    }
+    for (const Write& write : values) suspects_.erase(write.point);
+    for (const auto& [point, reply] : *rejected)
+      sink_.on_report(Level::warning,
+                      fmt::format("{} was not restored: {}", name(point), to_string(Error(reply))));
+    restored += values.size() - rejected->size();
+  }
+  if (restored > 0) sink_.on_report(Level::info, fmt::format("{} outputs were restored", restored));
+  return {};
+}
+
+/// When a deadman value that failed is written again: at once when the device is back, but not as long as it
+/// ends each connection.
+Time Writer::deadman_due(std::uint32_t point, bool is_away) const {
+  if (!is_away) return clock_.now() + deadman_retry;
+  return suspects_.count(point) > 0 ? clock_.now() + suspect_retry : Time();
+}
+
+/// A device that has gone cannot answer either; one that answers other requests, before and after, can.
+void Writer::suspect(const std::vector<Write>& writes, const Error& why) {
+  if (!is_no_reply(why)) return;
+  for (const Write& write : writes) {
+    if (suspects_.insert(write.point).second || last_written_.erase(write.point) == 0) continue;
+    suspects_.erase(write.point);
+    sink_.on_report(Level::error,
+                    fmt::format("{} is not restored: the device carries the write out or not, and ends the "
+                                "connection each time ({}); write it again, and look at the device",
+                                name(write.point), to_string(why)));
+  }
+}
+
+void Writer::disconnected(const Error& why) {
+  sent_.reset();
+  send_error_.reset();
+  safe_calls_.close(to_string(why));
+  std::swap(batch_, done_);
+  for (const Write& write : done_.writes()) finish_one(write, tl::make_unexpected(why));
+  suspect(done_.writes(), why);
+  done_.clear();
+  while (const auto write = queue_.take()) drop(*write);
+}
+
+void Writer::remember(const Write& write) {
+  if (!restores(write)) return;
+  Write& value = last_written_[write.point];
+  value = write;
+  value.listener = nullptr;
+  value.ordered = value.of_schedule = false;
+}
+
+void Writer::drop(const Write& write) {
+  const bool keeps = restores(write) && !write.of_schedule;  // that has a time of its own
+  if (keeps) remember(write);
+  if (write.of_deadman) deadmen_.retry(write.point, Time());
+  const WriteResult result = {keeps ? Outcome::kept : Outcome::dropped, std::nullopt,
+                              unconnected_text(map_.points[write.point], write)};
+  queue_.settled(write.point);
+  tell(write, result);
+  if (keeps || dropped_++ > 0) return;
+  sink_.on_report(Level::warning,
+                  fmt::format("write to {}: {}. Further writes are dropped silently until the device is back",
+                              name(write.point), to_string(result)));
+}
+
+}  // namespace coupler::host
