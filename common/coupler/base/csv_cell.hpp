@@ -13,8 +13,8 @@ inline bool would_be_run(std::string_view text) {
          std::string_view("=+-@\t\r").find(text[first]) != std::string_view::npos;
 }
 
-/// As a cell of a CSV file (RFC 4180): quoted where it has a separator of any country, a quote or an end of
-/// line, or blanks at an end, which readers drop.
+/// Returns the text as a cell of a CSV file (RFC 4180). It is quoted where it has a separator of any country,
+/// a quote or an end of line, or blanks at an end, which readers drop.
 inline std::string csv_cell(std::string_view text) {
   constexpr std::string_view blanks = " \t";
   const bool blank_around = !text.empty() && (blanks.find(text.front()) != std::string_view::npos ||

@@ -38,7 +38,7 @@ inline void on_ending_signals(void (*handler)(int)) {
 /// Set by whoever takes SIGQUIT: the program leaves a core when it has ended in order.
 inline std::atomic<bool> core_is_wanted{false};
 
-/// What main() returns, once all that has to be done at the end is done.
+/// main() returns this, once all that has to be done at the end is done.
 inline int end_with(int exit_code) {
   if (core_is_wanted) die_of(SIGQUIT);
   return exit_code;

@@ -44,7 +44,7 @@ class Forwarder {
     ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
 
-  /// What was written so far has its reader, or that one has had a fifth of a second for it.
+  /// Returns when the reader has what was written so far, or has had a fifth of a second for it.
   void drain() const {
     for (int i = 0; i < 200; ++i) {
       int left = 0;
@@ -76,7 +76,7 @@ class Forwarder {
 
 inline std::array<std::atomic<const Forwarder*>, 3> forwarders{};
 
-/// Of a socket, or of a pipe of another user.
+/// Serves what cannot be opened again: a socket, or a pipe of another user.
 inline void forward_by_thread(int file) {
   std::array<int, 2> pipe{};
   const int reader = ::fcntl(file, F_DUPFD_CLOEXEC, 3);
@@ -85,7 +85,7 @@ inline void forward_by_thread(int file) {
   ::dup2(pipe[1], file);
   ::close(pipe[1]);
   forwarders.at(static_cast<std::size_t>(file)) = new Forwarder(pipe[0], reader);  // as long as the process
-  std::atexit([] {
+  [[maybe_unused]] static const int registered = std::atexit([] {
     for (const auto& each : forwarders)
       if (const Forwarder* forwarder = each) forwarder->drain();
   });
@@ -98,8 +98,8 @@ inline void forward_by_thread(int file) {
 /// collector that hangs. What cannot be written at once is dropped. To be called before any other thread
 /// writes.
 inline void never_wait_for_reader_of(int file) {
-  std::signal(SIGTTOU,
-              SIG_IGN);  // a terminal with "stty tostop" stops a process of the background that writes
+  // A terminal with "stty tostop" stops a process of the background that writes.
+  std::signal(SIGTTOU, SIG_IGN);
   struct stat now {};
   if (::fstat(file, &now) != 0 || S_ISREG(now.st_mode)) return;
   const int own = open_again(file);

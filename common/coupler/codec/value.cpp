@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/shortened.hpp"
 #include "coupler/codec/number.hpp"
 #include "coupler/codec/text.hpp"
 
@@ -70,11 +71,8 @@ bool fits(From from) {
   }
 }
 
-/// What a caller wants written may be long.
-std::string beginning(const std::string& text) {
-  constexpr std::size_t most = 300;  // a STRING has 250 bytes at most
-  return text.size() <= most ? text : text.substr(0, most) + "…";
-}
+/// Callers may want long texts written.
+constexpr std::size_t most_quoted = 300;  // a STRING has 250 bytes at most
 
 template <class To>
 Result put_number(const Value& value, const Format& format, std::uint16_t* registers) {
@@ -82,7 +80,8 @@ Result put_number(const Value& value, const Format& format, std::uint16_t* regis
       [&](const auto& v) -> Result {
         using From = std::decay_t<decltype(v)>;
         if constexpr (std::is_same_v<From, bool> || std::is_same_v<From, std::string>) {
-          return tl::make_unexpected(fmt::format("'{}' is not a number", beginning(to_string(value))));
+          return tl::make_unexpected(
+              fmt::format("'{}' is not a number", shortened(to_string(value), most_quoted)));
         } else {
           if constexpr (std::is_floating_point_v<From> && !std::is_floating_point_v<To>)
             if (v != std::trunc(v))
@@ -102,10 +101,10 @@ Result put_text(const Value& value, const Format& format, std::uint16_t* registe
   switch (encode_text(*text, format, registers)) {
     case TextError::too_long:
       return tl::make_unexpected(
-          fmt::format("'{}' is longer than {} bytes", beginning(*text), format.length));
+          fmt::format("'{}' is longer than {} bytes", shortened(*text, most_quoted), format.length));
     case TextError::not_encodable:
-      return tl::make_unexpected(
-          fmt::format("'{}' cannot be written in {}", beginning(*text), to_string(format.encoding)));
+      return tl::make_unexpected(fmt::format("'{}' cannot be written in {}", shortened(*text, most_quoted),
+                                             to_string(format.encoding)));
     case TextError::has_nul:
       return tl::make_unexpected(
           std::string("a text with a NUL character cannot be written, since it would end there"));

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/shortened.hpp"
+
 namespace coupler {
 namespace {
 
@@ -57,10 +59,8 @@ std::string printable(std::string_view text) { return escaped(text, ""); }
 
 std::string excerpt(std::string_view text) {
   constexpr std::size_t most = 80;
-  if (text.size() <= most) return fmt::format("'{}'", printable(text));
-  std::size_t end = 0;
-  while (end < most) end += character_at(text, end).size;
-  return fmt::format("'{}…' ({} bytes)", printable(text.substr(0, end)), text.size());
+  const std::string size = text.size() > most ? fmt::format(" ({} bytes)", text.size()) : "";
+  return fmt::format("'{}'{}", printable(shortened(text, most)), size);
 }
 
 std::string printable_lines(std::string_view text) { return escaped(text, "\n\t"); }

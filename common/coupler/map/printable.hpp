@@ -26,7 +26,7 @@ bool turns_direction(char32_t code);
 /// and bytes that are no UTF-8 are escaped: "\x1b", "\x9b", "\u202e", "\xff".
 std::string printable(std::string_view text);
 
-/// As it is quoted in a message: printable, in quotes, and no more than the beginning of a long one.
+/// Quotes a text in a message: what printable() makes of it, or of the beginning of a long one.
 std::string excerpt(std::string_view text);
 
 /// The same for text of several lines: newlines and tabs stay.

@@ -56,11 +56,6 @@ unsigned long first_of_tls() {
   return first;
 }
 
-std::string text_of(unsigned long code) {
-  const char* reason = code == 0 ? nullptr : ERR_reason_error_string(code);
-  return reason == nullptr ? "unknown error" : reason;
-}
-
 }  // namespace
 
 std::string failure_text(const SSL* ssl, int result, const Verification& verification) {
@@ -69,7 +64,7 @@ std::string failure_text(const SSL* ssl, int result, const Verification& verific
   const unsigned long code = first_of_tls();
   ERR_clear_error();
   const int reason = ERR_GET_REASON(code);
-  std::string text = text_of(code);
+  std::string text = openssl_error_text(code);
   if (!verification.problem.empty()) return verification.problem;
   if (kind == SSL_ERROR_ZERO_RETURN) return has_left;
   if (kind == SSL_ERROR_SYSCALL)

@@ -10,11 +10,15 @@
 
 namespace coupler::tls {
 
+std::string openssl_error_text(unsigned long code) {
+  const char* reason = code == 0 ? nullptr : ERR_reason_error_string(code);
+  return reason == nullptr ? "unknown error" : reason;
+}
+
 std::string take_openssl_error() {
   const unsigned long code = ERR_get_error();
   ERR_clear_error();
-  const char* reason = code == 0 ? nullptr : ERR_reason_error_string(code);
-  return reason == nullptr ? "unknown error" : reason;
+  return openssl_error_text(code);
 }
 
 Validity validity_of(const X509* certificate) {

@@ -31,6 +31,9 @@ using StoreContextPtr = std::unique_ptr<X509_STORE_CTX, FreedBy<X509_STORE_CTX_f
 using ContextPtr = std::unique_ptr<SSL_CTX, FreedBy<SSL_CTX_free>>;
 using SslPtr = std::unique_ptr<SSL, FreedBy<SSL_free>>;
 
+/// The reason of an error that OpenSSL noted; "unknown error" for 0.
+std::string openssl_error_text(unsigned long code);
+
 /// The reason of the oldest error that OpenSSL noted in this thread, which then has none; "unknown error".
 std::string take_openssl_error();
 

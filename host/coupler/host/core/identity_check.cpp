@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/shortened.hpp"
 #include "coupler/map/fields.hpp"
 #include "coupler/map/fingerprint.hpp"
 
@@ -40,10 +41,7 @@ std::string difference_text(const Map& known, const Identity& identity) {
   constexpr std::size_t most = 20;
   constexpr std::size_t longest = 300;
   const std::size_t shown = std::min(identity.differences.size(), most);
-  for (std::size_t i = 0; i < shown; ++i) {
-    const std::string& line = identity.differences[i];
-    text += "\n  " + (line.size() > longest ? line.substr(0, longest) + "…" : line);
-  }
+  for (std::size_t i = 0; i < shown; ++i) text += "\n  " + shortened(identity.differences[i], longest);
   if (identity.differences.size() > most)
     text += fmt::format("\n  and {} more; `coupler diff` shows them all", identity.differences.size() - most);
   return text;
