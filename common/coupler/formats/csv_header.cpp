@@ -25,11 +25,16 @@ std::vector<std::string_view> column_names() {
   return names;
 }
 
-/// The heading's own column, or what --columns says of it.
-std::string column_of(std::string_view heading, const ImportOptions& options) {
-  for (const auto& [column, given] : options.columns)
-    if (lower(given) == lower(heading)) return column;
-  return formats::column_of(heading);
+/// The heading's own meaning, or what --columns says of it.
+Meaning meaning_of(std::string_view heading, const ImportOptions& options) {
+  const Meaning own = formats::meaning_of(heading);
+  for (const auto& [column, given] : options.columns) {
+    if (lower(given) != lower(heading)) continue;
+    Meaning meaning = formats::meaning_of(column);
+    if (meaning.key == own.key && own.reading == Reading::function_codes) return own;
+    return meaning;
+  }
+  return own;
 }
 
 bool is_known(const Column& column) {
@@ -71,7 +76,8 @@ void need_columns(const Row& header, const std::vector<Column>& columns, const I
 std::vector<Column> read_header(const Row& header, const ImportOptions& options, Problems& problems) {
   std::vector<Column> columns;
   for (const Cell& cell : header) {
-    Column column{column_of(cell.text, options), nullptr, is_of_function_codes(cell.text)};
+    auto [key, reading] = meaning_of(cell.text, options);
+    Column column{std::move(key), nullptr, reading};
     column.described = loader::find_key(column.key, any_point);
     const bool twice = std::any_of(columns.begin(), columns.end(),
                                    [&](const Column& c) { return !c.key.empty() && c.key == column.key; });
@@ -104,7 +110,29 @@ void tell_units_from_unit_ids(std::vector<Column>& columns, const std::vector<Ro
   const bool is_text = std::any_of(rows.begin() + 1, rows.end(), [at](const Row& row) {
     return at < row.size() && !row[at].text.empty() && !loader::parse_unsigned(row[at].text);
   });
-  if (is_text) *unit = {"units", loader::find_key("units", any_point), false};
+  if (is_text) *unit = {"units", loader::find_key("units", any_point), Reading::plain};
+}
+
+void refuse_two_meanings(const std::vector<Column>& columns, const std::vector<Row>& rows,
+                         Problems& problems) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].reading != Reading::factor_or_divisor) continue;
+    const auto differs = std::find_if(rows.begin() + 1, rows.end(), [i](const Row& row) {
+      if (i >= row.size()) return false;
+      std::string number = row[i].text;
+      std::replace(number.begin(), number.end(), ',', '.');
+      return loader::parse_number(number).value_or(1) != 1;
+    });
+    if (differs == rows.end()) continue;
+    const Cell& heading = rows.front()[i];
+    problems.error(
+        heading.at,
+        fmt::format("{} has two meanings: with {}, some makers multiply a register by it, others divide",
+                    shown(heading.text), shown((*differs)[i].text)),
+        fmt::format("write --columns 'scale={0}' if it is a factor, or --columns 'divisor={0}'; the ranges "
+                    "and units in the table show which",
+                    heading.text));
+  }
 }
 
 }  // namespace coupler::formats

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "coupler/formats/csv.hpp"
+#include "coupler/formats/csv_words.hpp"
 #include "coupler/formats/importers.hpp"
 #include "coupler/map/loader/keys.hpp"
 #include "coupler/map/loader/problems.hpp"
@@ -15,7 +16,7 @@ namespace coupler::formats {
 struct Column {
   std::string key;
   const loader::Key* described = nullptr;  ///< nullptr: table, name, unit
-  bool function_codes = false;             ///< numbers in it are those
+  Reading reading = Reading::plain;
 };
 
 /// One for each heading. What is missing, twice, or not a key of a point is reported.
@@ -23,5 +24,9 @@ std::vector<Column> read_header(const Row& header, const ImportOptions& options,
 
 /// "Unit" is the unit id to one, "bar" to another: where one cell is no unit id, the column is `units`.
 void tell_units_from_unit_ids(std::vector<Column>& columns, const std::vector<Row>& rows);
+
+/// A column that may hold factors or divisors is an error, unless both come to the same.
+void refuse_two_meanings(const std::vector<Column>& columns, const std::vector<Row>& rows,
+                         loader::Problems& problems);
 
 }  // namespace coupler::formats

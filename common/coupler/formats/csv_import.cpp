@@ -80,7 +80,8 @@ class RowReader {
     const loader::Position at = name != nullptr ? name->at : row.front().at;
     Entry point = section(name != nullptr ? name->text : "", at);
     for (std::size_t i = 0; i < row.size(); ++i)
-      if (columns_[i].described != nullptr && !row[i].text.empty())
+      if (columns_[i].described != nullptr &&
+          (!row[i].text.empty() || (columns_[i].reading == Reading::may_be_written && is_writable(*table))))
         add(columns_[i], row[i], row, *table, point);
     if (codes_are_access_ && codes == Codes::read && is_writable(*table))
       point.children.push_back(scalar("access", "read", table_cell->at));
@@ -110,7 +111,8 @@ class RowReader {
 
   TableWord table_word(const Row& row, const Cell* given) const {
     if (given == nullptr) return read_table("", false);
-    return read_table(given->text, columns_[static_cast<std::size_t>(given - row.data())].function_codes);
+    const Column& column = columns_[static_cast<std::size_t>(given - row.data())];
+    return read_table(given->text, column.reading == Reading::function_codes);
   }
 
   const Cell* cell(const Row& row, std::string_view key) const {
@@ -139,12 +141,14 @@ class RowReader {
       }
     }
     Entry entry = scalar(column.key, std::string(text ? unguarded(given.text) : given.text), given.at, text);
-    if (column.key == "access") entry.text = access_of(given.text);
+    if (column.key == "access") entry.text = access_of(given.text, column.reading);
     if (!text && has_decimal_comma(given.text)) {
       std::replace(entry.text.begin(), entry.text.end(), ',', '.');
       problems_.warning(given.at, fmt::format("{} is read as {}", shown(given.text), entry.text),
                         "write a decimal point");
     }
+    if (column.reading == Reading::divisor)
+      if (const auto factor = factor_of(entry.text)) entry.text = fmt::format("{}", *factor);
     point.children.push_back(std::move(entry));
   }
 
@@ -213,6 +217,8 @@ std::vector<ForeignUnit> read_csv(std::string_view text, const ImportOptions& op
   std::vector<Column> columns = read_header(rows.front(), options, problems);
   if (problems.has_errors()) return {};
   tell_units_from_unit_ids(columns, rows);
+  refuse_two_meanings(columns, rows, problems);
+  if (problems.has_errors()) return {};
   std::vector<ForeignUnit> units;
   RowReader reader(columns, options, rows, problems);
   for (auto row = rows.begin() + 1; row != rows.end(); ++row) reader.read(*row, units);

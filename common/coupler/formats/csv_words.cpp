@@ -22,7 +22,13 @@ struct Word {
   std::string_view meant;
 };
 
-constexpr Word columns[] = {
+struct Heading {
+  std::string_view said;  ///< in lower case, letters and digits only
+  std::string_view key;
+  Reading reading = Reading::plain;
+};
+
+constexpr Heading headings[] = {
     {"tag", "name"},
     {"tagname", "name"},
     {"signal", "name"},
@@ -41,11 +47,11 @@ constexpr Word columns[] = {
     {"area", "table"},
     {"objecttype", "table"},
     {"memoryarea", "table"},
-    {"function", "table"},
-    {"functioncode", "table"},
-    {"functioncodes", "table"},
-    {"modbusfunction", "table"},
-    {"fc", "table"},
+    {"function", "table", Reading::function_codes},
+    {"functioncode", "table", Reading::function_codes},
+    {"functioncodes", "table", Reading::function_codes},
+    {"modbusfunction", "table", Reading::function_codes},
+    {"fc", "table", Reading::function_codes},
     {"datatype", "type"},
     {"dtype", "type"},
     {"format", "type"},
@@ -62,11 +68,20 @@ constexpr Word columns[] = {
     {"readwrite", "access"},
     {"accesstype", "access"},
     {"permission", "access"},
+    {"writable", "access", Reading::may_be_written},
+    {"writeable", "access", Reading::may_be_written},
+    {"writeenable", "access", Reading::may_be_written},
+    {"canwrite", "access", Reading::may_be_written},
+    {"readonly", "access", Reading::may_not_be_written},
     {"factor", "scale"},
-    {"scalefactor", "scale"},
-    {"scaling", "scale"},
     {"multiplier", "scale"},
-    {"gain", "scale"},
+    {"divisor", "scale", Reading::divisor},
+    {"divider", "scale", Reading::divisor},
+    {"gain", "scale", Reading::factor_or_divisor},
+    {"scale", "scale", Reading::factor_or_divisor},
+    {"scalefactor", "scale", Reading::factor_or_divisor},
+    {"scaling", "scale", Reading::factor_or_divisor},
+    {"scalingfactor", "scale", Reading::factor_or_divisor},
     {"byteorder", "order"},
     {"slave", "unit"},
     {"slaveid", "unit"},
@@ -167,6 +182,14 @@ std::string_view without_fc(std::string_view text) {
   return text;
 }
 
+/// Of a column such as "Writable", where people tick rows and leave the others empty.
+std::optional<bool> answer(std::string_view text) {
+  const std::string word = lower(text);
+  if (word == "x" || word == "1") return true;
+  if (word.empty() || word == "-" || word == "0") return false;
+  return loader::parse_boolean(word);
+}
+
 TableWord table_of_codes(const std::vector<std::string_view>& numbers, std::string_view text) {
   TableWord word;
   for (const std::string_view number : numbers) {
@@ -208,19 +231,14 @@ TableWord ambiguous(std::string_view text, std::uint64_t number) {
 
 }  // namespace
 
-std::string column_of(std::string_view heading) {
-  const std::string word = letters_and_digits(heading);
-  for (const auto& [said, meant] : columns)
-    if (word == said) return std::string(meant);
+Meaning meaning_of(std::string_view heading) {
+  // The map's own key is a factor, as `coupler export` writes it. Other programs' "Scale" may divide.
+  const std::string word = heading == "scale" ? "" : letters_and_digits(heading);
+  for (const auto& [said, key, reading] : headings)
+    if (word == said) return {std::string(key), reading};
   std::string key = lower(heading);
   std::replace(key.begin(), key.end(), ' ', '_');
-  return key;
-}
-
-bool is_of_function_codes(std::string_view heading) {
-  const std::string word = letters_and_digits(heading);
-  return word == "fc" || word == "function" || word == "functioncode" || word == "functioncodes" ||
-         word == "modbusfunction";
+  return {std::move(key), Reading::plain};
 }
 
 TableWord read_table(std::string_view text, bool function_codes) {
@@ -247,11 +265,20 @@ std::optional<Table> table_of_modicon(std::string_view address) {
   }
 }
 
-std::string_view access_of(std::string_view text) {
+std::string_view access_of(std::string_view text, Reading reading) {
+  if (reading == Reading::may_be_written || reading == Reading::may_not_be_written)
+    if (const auto yes = answer(text))
+      return *yes == (reading == Reading::may_be_written) ? "read_write" : "read";
   const std::string word = letters_and_digits(text);
   for (const auto& [said, meant] : accesses)
     if (word == said) return meant;
   return text;
+}
+
+std::optional<double> factor_of(std::string_view divisor) {
+  const auto number = loader::parse_number(divisor);
+  if (!number || *number == 0) return std::nullopt;
+  return 1 / *number;
 }
 
 }  // namespace coupler::formats

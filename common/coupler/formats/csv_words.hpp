@@ -10,12 +10,22 @@
 
 namespace coupler::formats {
 
-/// The column that a heading means, "data type" or "Tag"; the heading in lower case, with '_' for blanks, if
-/// it is none of the words that are known.
-std::string column_of(std::string_view heading);
+/// How the cells below a heading are read.
+enum class Reading {
+  plain,               ///< as the map's key is
+  function_codes,      ///< numbers are those, and name a table
+  divisor,             ///< value = register / cell
+  factor_or_divisor,   ///< makers' tables have both under this heading
+  may_be_written,      ///< yes or no, or a tick
+  may_not_be_written,  ///< the same
+};
 
-/// The heading is of function codes: numbers below it are those.
-bool is_of_function_codes(std::string_view heading);
+/// The column that a heading means: "Data Type" is `type`, "Tag" is `name`.
+struct Meaning {
+  std::string key;  ///< the heading in lower case, with '_' for blanks, if it is none of the known words
+  Reading reading = Reading::plain;
+};
+Meaning meaning_of(std::string_view heading);
 
 /// What the function codes in a cell do; none: it has none.
 enum class Codes { none, read, write, read_and_write };
@@ -35,7 +45,11 @@ TableWord read_table(std::string_view text, bool function_codes);
 /// The table that a Modicon address of five or six digits begins with: "40001".
 std::optional<Table> table_of_modicon(std::string_view address);
 
-/// Of `access`: "read" for "RO", "read_write" for "R/W"; the text itself if it is no word that is known.
-std::string_view access_of(std::string_view text);
+/// Of `access`: "read" for "RO", "read_write" for "R/W", or for "yes" below `may_be_written`; the text itself
+/// if it is no word that is known.
+std::string_view access_of(std::string_view text, Reading reading);
+
+/// The factor that does the same; nullopt if the cell is no number, or 0.
+std::optional<double> factor_of(std::string_view divisor);
 
 }  // namespace coupler::formats

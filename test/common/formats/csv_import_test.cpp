@@ -11,7 +11,7 @@ using testing::Not;
 
 TEST(CsvImport, A_row_is_a_point_and_a_column_a_key_in_any_order) {
   const Imported csv("csv",
-                     "Units,Type,Name,Address,Table,Scale\n"
+                     "Units,Type,Name,Address,Table,scale\n"
                      "rpm,INT,speed,7,holding_register,0.5\n"
                      ",,lamp,2,coils,\n");
   EXPECT_EQ(csv.said, "");
@@ -140,6 +140,61 @@ TEST(CsvImport, Headings_and_words_are_those_that_people_write) {
                            "lamp: {address: 2, access: read_write}", "door: {address: 3, access: read}",
                            "go: {address: 9, type: UINT, access: write}"})
     EXPECT_THAT(text, HasSubstr(line));
+}
+
+// Makers of inverters call what a value was multiplied with the gain: Gain 10 is a register in tenths.
+TEST(CsvImport, A_factor_that_may_be_a_divisor_is_asked_for) {
+  for (const std::string heading :
+       {"Gain", "gain", "Scale", "SCALE", "Scalefactor", "Scale Factor", "Scaling"})
+    for (const char* cell : {"10", "0.1", "\"0,1\""}) {
+      const std::string table =
+          "table,name,address,type," + heading + "\nhr,a,1,INT,1\nhr,b,2,INT," + cell + "\n";
+      const Imported csv("csv", table);
+      EXPECT_THAT(csv.said, HasSubstr("given:1:25: error: '" + heading + "' has two meanings"));
+      EXPECT_THAT(csv.said, HasSubstr("--columns 'scale=" + heading +
+                                      "' if it is a factor, or --columns "
+                                      "'divisor=" +
+                                      heading + "'"));
+      EXPECT_TRUE(csv.result.maps.empty());
+    }
+  // Both come to the same, and the map's own key has one meaning.
+  EXPECT_EQ(Imported("csv", "table,name,address,type,Gain\nhr,a,1,INT,1\nhr,b,2,INT,\n").said, "");
+  EXPECT_EQ(Imported("csv", "table,name,address,type,scale\nhr,a,1,INT,10\n").said, "");
+  EXPECT_EQ(Imported("csv", "table,name,address,type,Factor\nhr,a,1,INT,10\n").said, "");
+}
+
+TEST(CsvImport, The_caller_says_that_a_column_is_a_divisor) {
+  const std::string table =
+      "table,name,address,type,Gain\nhr,a,1,INT,10\nhr,b,2,INT,1000\nhr,c,3,INT,\"0,1\"\n";
+  formats::ImportOptions options{"m", {}};
+  options.columns = {{"divisor", "Gain"}};
+  const std::string divided = Imported("csv", table, options).text();
+  for (const char* scale : {"address: 1, type: INT, scale: 0.1}", "scale: 0.001}", "scale: 10}"})
+    EXPECT_THAT(divided, HasSubstr(scale));
+  options.columns = {{"scale", "Gain"}};
+  EXPECT_THAT(Imported("csv", table, options).text(), HasSubstr("b: {address: 2, type: INT, scale: 1000}"));
+  const std::string wrong =
+      Imported("csv", "table,name,address,type,Divisor\nhr,a,1,INT,0\nhr,b,2,INT,ten\n").said;
+  EXPECT_THAT(wrong, HasSubstr("given:2:12: error: 'scale' must be a number other than 0"));
+  EXPECT_THAT(wrong, HasSubstr("given:3:12: error: 'scale' must be a number"));
+}
+
+TEST(CsvImport, A_column_of_what_may_be_written_is_the_access) {
+  const auto access = [](const std::string& heading, const std::string& cell) {
+    const Imported csv("csv",
+                       "table,name,address,type," + heading + "\nhr,a,1,INT," + cell + "\nhr,b,2,INT,1\n");
+    return csv.result.maps.empty() ? csv.said : csv.text();
+  };
+  for (const char* heading : {"writable", "Writeable", "Can write"}) {
+    for (const char* cell : {"yes", "TRUE", "1", "x", "RW"})
+      EXPECT_THAT(access(heading, cell), HasSubstr("a: {address: 1, type: INT, access: read_write}")) << cell;
+    for (const char* cell : {"no", "FALSE", "0", "", "-", "ro"})
+      EXPECT_THAT(access(heading, cell), HasSubstr("a: {address: 1, type: INT, access: read}")) << cell;
+  }
+  EXPECT_THAT(access("read only", "yes"), HasSubstr("a: {address: 1, type: INT, access: read}"));
+  EXPECT_THAT(access("ReadOnly", "no"), HasSubstr("a: {address: 1, type: INT, access: read_write}"));
+  EXPECT_THAT(access("writable", "perhaps"), HasSubstr("given:2:12: error: 'access' must be one of"));
+  EXPECT_EQ(Imported("csv", "table,name,address,type,writable\nir,a,1,INT,no\nir,b,2,INT,\n").said, "");
 }
 
 // The codes are those of "Modbus Application Protocol V1.1b3", section 6.

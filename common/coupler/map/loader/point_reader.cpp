@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/map/loader/point_reader.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "coupler/map/loader/reader.hpp"
@@ -115,6 +117,25 @@ void read_access(const Reader& reader, Point& point, const Context& context) {
                            "remove 'access'");
 }
 
+/// "0.1V" in a maker's table means a register in tenths of a volt.
+void warn_of_scaled_units(const Reader& reader, const Point& point, const Context& context) {
+  if (holds_bits(point.table) || reader.has("scale")) return;
+  const std::string_view units = point.units;
+  const std::string_view number = units.substr(0, units.find_first_not_of("0123456789.,"));
+  std::string factor{number};
+  std::replace(factor.begin(), factor.end(), ',', '.');
+  const auto value = parse_number(factor);
+  if (!value || *value == 1) return;
+  std::string_view rest = units.substr(number.size());
+  rest.remove_prefix(std::min(rest.find_first_not_of(" *"), rest.size()));
+  if (rest.empty() || rest[0] == '/' || rest[0] == '-') return;
+  context.problems.warning(reader.find("units")->at,
+                           fmt::format("the units {} do not scale the value: {} is published as it is in "
+                                       "the register",
+                                       shown(units), shown(point.name)),
+                           fmt::format("write 'scale: {}' and the units {}", factor, shown(rest)));
+}
+
 void check_has_options(const Entry& entry, const Context& context) {
   if (entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null) return;
   const std::string given = entry.kind == Entry::Kind::scalar ? entry.text.substr(0, 10) : "0";
@@ -172,6 +193,7 @@ void read_rest(const PointDefaults& defaults, DraftPoint& draft, const Context& 
   read_host_options(options, defaults.host, draft, context);
   options.text("description", point.description);
   options.text("units", point.units);
+  warn_of_scaled_units(options, point, context);
 }
 
 }  // namespace coupler::loader

@@ -121,6 +121,22 @@ TEST(Point, Words_for_people_are_kept) {
   EXPECT_EQ(point->units, "1");
 }
 
+TEST(Point, Units_with_a_number_do_not_scale_and_that_is_said) {
+  const auto said = [](const std::string& options) {
+    return text_of(
+        load_map(map_of("input_registers", "a: {address: 0, type: UINT, " + options + "}"), "m.yaml")
+            .diagnostics);
+  };
+  EXPECT_THAT(
+      said("units: 0.1V"),
+      testing::HasSubstr("warning: the units '0.1V' do not scale the value: 'a' is published as it is "
+                         "in the register; write 'scale: 0.1' and the units 'V'"));
+  EXPECT_THAT(said("units: '0,01 Hz'"), testing::HasSubstr("write 'scale: 0.01' and the units 'Hz'"));
+  for (const char* good :
+       {"units: 0.1V, scale: 0.1", "units: V", "units: 1/min", "units: 1", "units: 100", "units: m3/h"})
+    EXPECT_EQ(said(good), "") << good;
+}
+
 TEST(Point, Bytes_and_bits_share_a_register) {
   const MapPtr owned =
       test::load_clean(test::map_of("holding_registers",
