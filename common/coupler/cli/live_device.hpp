@@ -74,6 +74,7 @@ struct PanelOptions {
   std::string certificate;           ///< PEM file for HTTPS; empty: HTTP
   std::string key;                   ///< its key's
   bool write = false;                ///< pages may write
+  bool field = false;                ///< the field side of a simulated node (coupler/map/field_side.hpp)
 };
 
 /// Serves a live page of a device until SIGINT or SIGTERM. Writes what pages ask for only. bad_call: it

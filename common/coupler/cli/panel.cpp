@@ -77,9 +77,12 @@ void add_panel(Program& program, Exit& exit) {
   command.add_option("--page-key", arguments->key, "The file of its key").path().type_name("FILE");
   command.add_flag("--write", arguments->panel.write,
                    "Pages may write to the device; without it nothing is ever written");
+  command.add_flag("--field", arguments->panel.field,
+                   "Of a node that runs with --sim: the other side of its terminals. With --write its inputs "
+                   "can be set, and its outputs are only shown");
   command.footer(
       "Example:\n  coupler panel 192.168.1.20\n  coupler panel press.yaml --at 192.168.1.20 --port "
-      "8502");
+      "8502\n  coupler panel 127.0.0.1:1502 --field --write");
   command.callback([arguments, &exit] { exit = run(*arguments); });
 }
 

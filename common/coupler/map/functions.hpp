@@ -19,6 +19,16 @@ constexpr modbus::Function read_function(Table table) {
   return modbus::Function::read_holding_registers;
 }
 
+/// The table that FC 1, 2, 3 or 4 reads.
+constexpr Table table_of(modbus::Function read) {
+  switch (read) {
+    case modbus::Function::read_coils: return Table::coils;
+    case modbus::Function::read_discrete_inputs: return Table::discrete_inputs;
+    case modbus::Function::read_input_registers: return Table::input_registers;
+    default: return Table::holding_registers;
+  }
+}
+
 /// For `count` coils or holding registers in one request: one alone has a function of its own, unless the map
 /// wants the other one.
 constexpr modbus::Function write_function(Table table, std::size_t count, HostOptions::WriteFunction wanted) {

@@ -65,6 +65,9 @@ struct Pwm {
   constexpr bool present() const { return !chip.empty(); }
 };
 
+/// What a PWM can be driven to.
+constexpr bool is_duty_cycle(double percent) { return percent >= 0 && percent <= 100; }
+
 enum class Edge : std::uint8_t { rising, falling, both };
 constexpr Enumeration<Edge, 3> enumeration(Edge) {
   return {"Edge", {{Edge::rising, "rising"}, {Edge::falling, "falling"}, {Edge::both, "both"}}};

@@ -52,6 +52,14 @@ class FakeLines : public Lines {
     return !stuck;
   }
 
+  bool is_simulated() const override { return simulated; }
+  bool pull(modbus::Range inputs, Span<const std::uint16_t> levels) override {
+    if (wired && inputs.contains(*wired)) return false;
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      set_input(static_cast<std::uint16_t>(inputs.start() + i), levels[i]);
+    return true;
+  }
+
   void take_edges(TimePoint, EdgeSink& sink) override {
     for (const auto& [input, happened] : edges) sink.add(input, happened);
     edges.clear();
@@ -81,6 +89,8 @@ class FakeLines : public Lines {
   std::optional<std::uint16_t> stuck;  ///< this output cannot be driven
   bool unplugged = false;              ///< and known to be
   bool remembers = true;
+  bool simulated = false;
+  std::optional<std::uint16_t> wired;  ///< this input, to an output
   int safe_calls = 0;
   std::function<void()> on_drive;           ///< is called when they are about to be driven
   std::function<void()> on_safe;            ///< is called when they are about to be driven to it

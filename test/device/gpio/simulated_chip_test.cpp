@@ -74,6 +74,24 @@ TEST(SimulatedChip, An_input_with_no_wire_has_its_initial_level_until_it_is_pull
   EXPECT_EQ(read(chip, 0, 2), Levels({0, 1}));
 }
 
+TEST(SimulatedChip, Several_inputs_are_pulled_at_once_unless_one_follows_a_wire) {
+  const auto lined = [](Point& point) { point.line.name = "L"; };
+  const auto map = MapBuilder()
+                       .coil("lamp", 0)
+                       .add(inputs, "a", 0, Type::BOOL, lined)
+                       .add(inputs, "b", 1, Type::BOOL, lined)
+                       .add(inputs, "c", 2, Type::BOOL, lined)
+                       .wire("lamp", "c")
+                       .build();
+  SimulatedChip chip(map->map(), {});
+  EXPECT_TRUE(chip.pull(Range::of(0, 2), Levels{0, 1}));
+  EXPECT_EQ(read(chip, 0, 3), Levels({0, 1, 0}));
+  EXPECT_FALSE(chip.pull(Range::of(0, 3), Levels{1, 0, 1}));
+  EXPECT_EQ(read(chip, 0, 3), Levels({0, 1, 0}));
+  chip.plug(false);
+  EXPECT_FALSE(chip.pull(Range::of(0, 1), Levels{1}));
+}
+
 TEST(SimulatedChip, An_input_with_neither_line_nor_wire_is_left_as_it_is) {
   const auto map = MapBuilder().input("a", 0).input("b", 1).square("b", milliseconds(100)).build();
   SimulatedChip chip(map->map(), {});

@@ -127,6 +127,17 @@ void read_names(const Entry& entry, Point& point, const Context& context) {
   point.values = context.map.keep(names);
 }
 
+void check_duty_cycle(std::string_view key, Span<const std::uint16_t> registers, const Reader& reader,
+                      const Point& point, const Context& context) {
+  const double percent = codec::published(registers.data(), point.format, point.scale);
+  if (is_duty_cycle(percent)) return;
+  const Entry* entry = reader.find(key);
+  context.problems.error(entry != nullptr ? entry->at : reader.find("pwm")->key_at,
+                         fmt::format("the '{}' value of {} is {:g}, but a PWM takes 0 to 100 %", key,
+                                     shown(point.name), percent),
+                         fmt::format("write '{}' with a value in that range", key));
+}
+
 }  // namespace
 
 void read_allowed_values(const Reader& reader, Point& point, const Context& context) {
@@ -158,6 +169,10 @@ void check_start(const Reader& reader, const Point& point, const Context& contex
   };
   check("initial", !point.initial.empty(), "at the start");
   check("safe", point.safe == Safe::hold || !point.safe_value.empty(), "when nobody is in command");
+  if (!point.pwm.present()) return;
+  check_duty_cycle("initial", point.initial.empty() ? Span<const std::uint16_t>(zero) : point.initial, reader,
+                   point, context);
+  if (!point.safe_value.empty()) check_duty_cycle("safe", point.safe_value, reader, point, context);
 }
 
 }  // namespace coupler::loader

@@ -98,7 +98,7 @@ class Opener {
 
 bool accepts(const WiredOutput& output, double value) {
   if (const auto* dac = std::get_if<IioOutput>(&output.channel)) return dac->accepts(value);
-  return value >= 0 && value <= 100;
+  return is_duty_cycle(value);
 }
 
 const std::string& name_of(const WiredOutput& output) {

@@ -6,6 +6,7 @@
 
 #include "coupler/device/core/identity.hpp"
 #include "coupler/map/allowed_values.hpp"
+#include "coupler/map/functions.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/modbus/server.hpp"
 
@@ -30,15 +31,6 @@ bool is_of_nodes(Function function) {
     case Function::wait_for_changes:
     case Function::schedule_output: return true;
     default: return false;
-  }
-}
-
-Table table_of(Function read) {
-  switch (read) {
-    case Function::read_coils: return Table::coils;
-    case Function::read_discrete_inputs: return Table::discrete_inputs;
-    case Function::read_input_registers: return Table::input_registers;
-    default: return Table::holding_registers;
   }
 }
 

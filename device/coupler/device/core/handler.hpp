@@ -61,6 +61,12 @@ class Handler {
   /// not allow, or that an output cannot take; 04 hardware that cannot be read or driven, or an output that
   /// the watchdog keeps in its safe state; 06 no place left to schedule such an output.
   std::size_t handle(modbus::Bytes request, ClientSession& session, TimePoint now, Span<std::uint8_t> reply);
+  /// Whether there is a field side (coupler/map/field_side.hpp).
+  bool has_field_side() const { return hardware_.is_simulated(); }
+  /// Answers there. It has FC 1 … 6, 15 and 16, feeds no watchdog, and is in no statistics. Exceptions as
+  /// handle()'s; 02 also an input that has its value from elsewhere: a wire, a counter, a firmware's code.
+  std::size_t handle_from_field(modbus::Bytes request, ClientSession& session, TimePoint now,
+                                Span<std::uint8_t> reply);
 
   /// Drives the outputs to their safe state if the watchdog is due, drives what is scheduled for now or
   /// before, and takes news if a client asks for changes, unless take_news() did since the last tick.
@@ -142,6 +148,13 @@ class Handler {
                      std::chrono::milliseconds longest = std::chrono::milliseconds::max());
   /// A coil that was 1 when this process, or this map, came into force ends, too.
   void begin_pulses_that_are_missing();
+
+  // The field side: handler_field.cpp.
+  Answer answer_from_field(const Call& call);
+  Answer read_from_field(const modbus::Read& read, const Call& call);
+  bool is_free_input(const Point& point) const;
+  /// The inputs of the range get what next_ says.
+  Answer set_inputs(Table table, modbus::Range range, const Call& call);
 
   // Outputs at a time: handler_schedule.cpp.
   bool can_schedule() const;

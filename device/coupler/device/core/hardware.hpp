@@ -53,6 +53,12 @@ class Hardware {
     return hooked_ == nullptr ? std::nullopt : hooked_->refuse_read(table, range);
   }
 
+  /// Lines::is_simulated(), Lines::pull().
+  bool is_simulated() const { return lines_->is_simulated(); }
+  [[nodiscard]] bool pull(modbus::Range inputs, Span<const std::uint16_t> levels) {
+    return lines_->pull(inputs, levels);
+  }
+
   /// Whether a firmware's code is behind points.
   bool has_code() const { return hooked_ != nullptr; }
 

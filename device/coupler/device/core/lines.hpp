@@ -62,6 +62,12 @@ class Lines {
 
   /// Drives every output to its safe state (`hold` stays). Tries all of them; false if one cannot be driven.
   [[nodiscard]] virtual bool drive_safe() = 0;
+
+  /// Whether somebody may play the machine: pull().
+  virtual bool is_simulated() const { return false; }
+  /// Gives those inputs of the range that have a simulated line a level from outside. False: one of them
+  /// follows a wire, or cannot be reached; then none has changed.
+  [[nodiscard]] virtual bool pull(modbus::Range, Span<const std::uint16_t>) { return false; }
 };
 
 }  // namespace coupler::device

@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/device/core/server.hpp"
 
+#include "coupler/map/field_side.hpp"
+
 namespace coupler::device {
 
 std::size_t Server::answer(const modbus::Frame& frame, ClientSession& session, TimePoint now,
                            Span<std::uint8_t> adu) {
   const std::size_t before = end_wait(session, now, adu);
-  if (frame.unit != unit_ && frame.unit != 0 && frame.unit != 255) {
+  const bool is_own = frame.unit == unit_ || frame.unit == 0 || frame.unit == 255;
+  if (!is_own && !(frame.unit == field_unit && handler_.has_field_side())) {
     ++statistics_.foreign_units;
     return before;
   }
   adu = adu.from(before);
+  if (!is_own) {
+    const std::size_t pdu =
+        handler_.handle_from_field(frame.pdu, session, now, adu.from(modbus::mbap_size));
+    modbus::put_header(frame, pdu, adu.data());
+    return before + modbus::mbap_size + pdu;
+  }
   const std::size_t pdu = handler_.handle(frame.pdu, session, now, adu.from(modbus::mbap_size));
   if (session.wait) {
     session.wait->transaction = frame.transaction;

@@ -182,6 +182,19 @@ void SimulatedChip::set(Output& output, bool level) {
     if (input.from == &output) ++(level != input.wire->invert ? input.edges.rising : input.edges.falling);
 }
 
+void SimulatedChip::set(Input& input, bool level) {
+  if (std::exchange(input.level, level) != level) ++(level ? input.edges.rising : input.edges.falling);
+}
+
+bool SimulatedChip::pull(Range inputs, Span<const std::uint16_t> levels) {
+  if (!state_[0].plugged) return false;
+  const auto lines = in_range(inputs_.all(), inputs);
+  if (std::any_of(lines.begin(), lines.end(), [](const Input& input) { return input.wire != nullptr; }))
+    return false;
+  for (Input& input : lines) set(input, levels[input.point->address - inputs.start()] != 0);
+  return true;
+}
+
 void SimulatedChip::take_over(const SimulatedChip& before) {
   start_ = before.start_;
   state_[0].told = before.state_[0].told;
@@ -200,8 +213,7 @@ void SimulatedChip::take_over(const SimulatedChip& before) {
 void SimulatedChip::pull(std::string_view input, bool level) {
   Input* line = named(inputs_.all(), input);
   assert(line != nullptr && line->wire == nullptr);
-  if (line->level != level) ++(level ? line->edges.rising : line->edges.falling);
-  line->level = level;
+  set(*line, level);
 }
 
 bool SimulatedChip::level(std::string_view output) const {

@@ -33,6 +33,8 @@ class SimulatedChip : public Lines {
   bool drive(modbus::Range coils, Span<const std::uint16_t> levels) override;
   bool driven(modbus::Range coils, Span<std::uint16_t> levels) const override;
   bool drive_safe() override;
+  bool is_simulated() const override { return true; }
+  bool pull(modbus::Range inputs, Span<const std::uint16_t> levels) override;
 
   /// Goes on where that of another map was: levels of outputs and unwired inputs of the same name, and time.
   void take_over(const SimulatedChip& before);
@@ -75,6 +77,7 @@ class SimulatedChip : public Lines {
   void tell(Input& input, TimePoint now, EdgeSink& sink) const;
   void tell_return(Input& input, TimePoint now, EdgeSink& sink) const;
   void set(Output& output, bool level);
+  static void set(Input& input, bool level);
 
   SharedArray<Output> outputs_;  ///< ascending addresses
   SharedArray<Input> inputs_;    ///< ascending addresses

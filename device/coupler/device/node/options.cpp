@@ -82,7 +82,8 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
   app.add_option("--tls-port", options.tls_port,
                  "TCP port for TLS, if the map has that (default: the map's, usually 802; 0: any free one)");
   app.add_flag("--sim", options.simulated,
-               "Simulate every coil and discrete input, wired as the map's sim: section says");
+               "Simulate the hardware, wired as the map's sim: section says; `coupler panel --field --write` "
+               "sets inputs");
   app.add_flag("--realtime", options.realtime,
                "Run ahead of other programs (SCHED_FIFO) with locked memory; exit with status 3 if the "
                "system refuses that");

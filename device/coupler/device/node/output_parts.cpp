@@ -51,6 +51,7 @@ bool OutputParts::drive_safe(std::size_t part) {
 
 void OutputParts::give_up(std::size_t part) {
   if (has_lines(part)) return context_.wiring->give_up_outputs(part);
+  if (context_.channels == nullptr) return;
   each_of_device(part, [&](const Point& output) { context_.channels->give_up(output); });
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -73,6 +74,10 @@ tl::expected<std::unique_ptr<ServingContext>, ServeError> ServingContext::prepar
   context->state = std::make_unique<SharedState>(
       map, TimePoint::clock::now(), before == nullptr ? this_machine() : before->state->machine());
   if (before != nullptr) context->state->prepare_take_over(*before->state);
+  if (options.simulated && std::any_of(map.points.begin(), map.points.end(), is_analogue)) {
+    context->simulated = std::make_unique<SimulatedChannels>(context->state->image());
+    context->analogue = std::make_unique<AnaloguePoints>(map, context->state->image(), *context->simulated);
+  }
   if (!options.simulated) {
     auto channels = open_channels(map, log, "/sys", before == nullptr ? first_udev_timeout : udev_timeout);
     if (!channels) return failed(ServeError::device_failed, std::move(channels).error());

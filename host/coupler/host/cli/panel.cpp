@@ -17,6 +17,7 @@
 #include "coupler/base/utc_text.hpp"
 #include "coupler/cli/device_argument.hpp"
 #include "coupler/cli/live_device.hpp"
+#include "coupler/host/cli/field_map.hpp"
 #include "coupler/host/cli/interruption.hpp"
 #include "coupler/host/cli/only_looking.hpp"
 #include "coupler/host/cli/report_line.hpp"
@@ -154,7 +155,12 @@ Exit panel(const DeviceArgument& argument, const PanelOptions& options) {
   }
   const auto found = get_device("panel", argument);
   if (!found) return found.error();
-  const Map& original = found->map;
+  const FieldMap field(found->map);
+  const Map& original = options.field ? field.map() : found->map;
+  if (options.field)
+    if (const std::string why = field.why_missing(); !why.empty())
+      return complain("panel", failed, "there is no field side: " + why,
+                      "give --field only for a node that runs with --sim");
   const OnlyLooking looking(original);
   const Map& map = looking.map();
   host::SteadyClock clock;
