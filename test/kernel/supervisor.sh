@@ -87,7 +87,7 @@ id=$(worker)
 status=0; stop node KILL || status=$?
 expect "it dies" 137 "$status"
 check "its worker process drives the safe state and ends" wait_until ended "$id"
-check "and says so" says node 'Terminated: outputs are in their safe state'
+check "and says so" says node 'the supervisor, process [0-9]+, was killed, and the node ends with it: outputs are in their safe state'
 
 echo "# the supervisor is stopped: its worker process, after which nobody would look, ends safely"
 plant_node supervisor.yaml
@@ -107,7 +107,7 @@ kill -s STOP "$id"
 status=0; stop node KILL || status=$?
 expect "the supervisor dies" 137 "$status"
 check "the worker process, which the kernel makes go on, drives the safe state and ends" wait_until ended "$id"
-check "and says so" says node 'Terminated: outputs are in their safe state'
+check "and says so" says node 'the supervisor, process [0-9]+, was killed, and the node ends with it: outputs are in their safe state'
 
 echo "# nobody reads the log"
 mkfifo "$check_folder/unread"

@@ -74,6 +74,7 @@ def the_session_is_played(node, coupler, map_file, recorded, file, speed, checks
                 Recorder(coupler, map_file, device.port, again) as recorder, \
                 peer.waits_noted(silence, device.process, recorder.process):
             checks.equal(f"speed {speed}: status of the node", device.wait(), 0)
+            checks.equal(f"speed {speed}: it says why it ends", "the recording is over: outputs are" in device.text(), True)
             recorder.await_lines("its end", lambda lines: lines[-1].get("device") == "lost", checks)
             checks.equal(f"speed {speed}: status of the recorder", recorder.end(), 0)
         return until_lost(recorder.lines())

@@ -39,6 +39,9 @@ class Values(OfADevice):
                 (press.label, "\ud800", "cannot be written in utf-8"), (press.code, "é", "cannot be written in ascii"),
                 (press.bar, 21.8, "21.8 bar is above the maximum; send 0 to 21.7 bar"),
                 (press.bar, -0.1, "-0.1 bar is below the minimum; send 0 to 21.7 bar"),
+                (press.bar, float("nan"), "not a number; send 0 to 21.7 bar"),
+                (press.bar, 99999, "99999 bar is out of range; send 0 to 21.7 bar"),
+                (press.mode, -1, "-1 is not allowed; send off (0), idle (1) or auto (2)"),
                 (press.mode, 3, "3 is not one of its values; send off (0), idle (1) or auto (2)"),
                 (press.real, 21.8, "21.8 is above the maximum; send at most 21.7"),
                 (press.real, float("nan"), "not finite"), (press.any, 1e39, "1e+39 does not fit into REAL")):

@@ -19,7 +19,7 @@ supervisor() { property MainPID; }
 worker() { pgrep -P "$(supervisor)" -x coupler-node-io; }
 of_process() { sed -nE "s/^$2:[[:space:]]*(.*)/\1/p" "/proc/$1/status"; }
 serves() { answered client -t 1 -r 0 -c 1 127.0.0.1 >/dev/null; }
-times_made_safe() { journalctl -u "$unit" -o cat --no-pager | grep -c '^Terminated: outputs are in their safe state' || true; }
+times_made_safe() { journalctl -u "$unit" -o cat --no-pager | grep -cE '^(Terminated|the supervisor, .* ends with it): outputs are in their safe state' || true; }
 made_safe() { [ "$(times_made_safe)" = "$1" ]; }
 is_another() { [ "$(property MainPID)" != "$1" ] && is ActiveState active && serves; }
 mode_of_chip() { stat -c '%U:%G %a' "/dev/$(sim_chip plant)"; }

@@ -69,7 +69,7 @@ TEST_F(Serving, Who_waits_for_changes_hears_that_the_outputs_went_to_their_safe_
 }
 
 TEST(ShutdownSummary, Of_an_idle_node_is_short) {
-  EXPECT_EQ(shutdown_summary(SIGTERM, true, {}, TimePoint() + 90s),
+  EXPECT_EQ(shutdown_summary("Terminated", true, {}, TimePoint() + 90s),
             "Terminated: outputs are in their safe state; answered 0 requests, 0 of them with an exception; "
             "uptime 90 s");
 }
@@ -90,7 +90,7 @@ TEST(ShutdownSummary, Has_every_statistic_that_is_not_0_in_one_line) {
   statistics.bad_frames = 8;
   statistics.timeouts = 9;
   EXPECT_EQ(
-      shutdown_summary(SIGINT, false, statistics, TimePoint() + 20s),
+      shutdown_summary("Interrupt", false, statistics, TimePoint() + 20s),
       "Interrupt: not every output could be driven to its safe state; answered 1000 requests, 14 of them "
       "with an exception (01: 3, 04: 11); uptime 10 s, connections: 5, refused: 6, evicted: 7, closed for "
       "what they sent: 8, timed out: 9, requests for other units: 4, hardware errors: 1, events lost: 2, "

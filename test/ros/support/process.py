@@ -80,8 +80,10 @@ class Process:
     def waits(self):
         """Of each thread: the seconds for which it has waited for a processor, but for a wait that is not over, and whether it
         wants one now."""
-        threads = {}
-        for thread in pathlib.Path(f"/proc/{self._child.pid}/task").iterdir():
+        tasks, threads = [], {}
+        with contextlib.suppress(OSError):  # the process has ended
+            tasks = list(pathlib.Path(f"/proc/{self._child.pid}/task").iterdir())
+        for thread in tasks:
             with contextlib.suppress(OSError):  # it has ended
                 waited = int((thread / "schedstat").read_text(encoding="ascii").split()[1]) / 1e9
                 state = (thread / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]

@@ -210,6 +210,10 @@ class Spec:
         self._check_allowed(words)
         return words
 
+    @property
+    def _limited(self) -> bool:
+        return math.isfinite(self.least) or math.isfinite(self.most) or self.names is not None
+
     def _text(self, value: Any) -> bytes:
         if not isinstance(value, str):
             self.refuse(f"{value!r} is not text")
@@ -246,6 +250,8 @@ class Spec:
             self.refuse(f"{number} is not a whole number, as {self.type} needs")
         least, most = self._ends(letter)
         if not least <= number <= most:
+            if self._limited:  # the range of the type is not what may be sent
+                self.refuse(f"{number} is not allowed; send {self.allowed}")
             self.refuse(f"{number} does not fit into {self.type} ({least} to {most})")
         return int(number)
 
@@ -263,15 +269,16 @@ class Spec:
         except OverflowError:
             value = math.inf if number > 0 else -math.inf
         least, most = (float(end) for end in self._ends(letter))
-        range_ = "{:g} to {:g}".format(*sorted((least * self.gain + self.offset, most * self.gain + self.offset)))
+        ends = sorted((least * self.gain + self.offset, most * self.gain + self.offset))
+        right = self.allowed if self._limited else "{:g} to {:g}".format(*ends) + self._unit()
         if math.isnan(value):
-            self.refuse(f"not a number; send {range_}{self._unit()}")
+            self.refuse(f"not a number; send {right}")
         raw = (value - self.offset) / self.gain
         half = 0.0 if letter in "fd" else 0.5
         # The greatest number of 64 bits has no double: `most` is then the first one beyond.
         above = raw > most if letter in "fd" else raw >= most + half
         if above or (raw <= least - half and raw != least):
-            self.refuse(f"{value:g}{self._unit()} is out of range; send {range_}{self._unit()}")
+            self.refuse(f"{value:g}{self._unit()} is out of range; send {right}")
         if letter in "fd":
             return raw
         whole = int(raw)

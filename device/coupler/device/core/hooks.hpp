@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "coupler/device/core/changes.hpp"
 #include "coupler/device/core/image.hpp"
@@ -55,6 +56,9 @@ class Hooks {
                                                                      modbus::Range /*range*/) {
     return std::nullopt;
   }
+
+  /// Why the node is to end, if this code has asked for it; otherwise empty. For the log.
+  [[nodiscard]] virtual std::string_view why_it_ends() const noexcept { return {}; }
 
   /// The watchdog expired, or the node ends. When the process that serves has died, this is called in another
   /// one, in which serving_began() was not called.

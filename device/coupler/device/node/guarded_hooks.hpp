@@ -27,6 +27,7 @@ class GuardedHooks final : public Hooks {
   [[nodiscard]] bool shows_identity() const noexcept override { return hooks_.shows_identity(); }
   [[nodiscard]] bool answers() override;
   [[nodiscard]] std::optional<modbus::Exception> refuse_read(Table table, modbus::Range range) override;
+  [[nodiscard]] std::string_view why_it_ends() const noexcept override { return hooks_.why_it_ends(); }
   void make_safe() override { (void)made_safe(); }
 
  private:

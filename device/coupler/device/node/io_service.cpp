@@ -165,9 +165,9 @@ bool IoService::make_safe(modbus::Reason reason) {
   return is_safe;
 }
 
-void IoService::end(int signal) {
+void IoService::end(std::string_view why) {
   const bool is_safe = make_safe(modbus::Reason::reload);
-  log_.write(shutdown_summary(signal, is_safe, statistics_, TimePoint::clock::now()));
+  log_.write(shutdown_summary(why, is_safe, statistics_, TimePoint::clock::now()));
 }
 
 void IoService::turn() {
@@ -190,13 +190,13 @@ void IoService::log_trips() {
                   writers.empty() ? "no such client is connected" : "still connected: " + writers));
 }
 
-std::string shutdown_summary(int signal, bool safe, const Statistics& statistics, TimePoint now) {
+std::string shutdown_summary(std::string_view why, bool safe, const Statistics& statistics, TimePoint now) {
   struct Count {
     std::string_view of;
     std::uint32_t count;
   };
   std::string text = fmt::format(
-      "{}: {}; answered {} requests, {} of them with an exception{}; uptime {} s", ::strsignal(signal),
+      "{}: {}; answered {} requests, {} of them with an exception{}; uptime {} s", why,
       safe ? "outputs are in their safe state" : "not every output could be driven to its safe state",
       statistics.requests, statistics.exceptions, by_code(statistics),
       std::chrono::duration_cast<std::chrono::seconds>(now - statistics.started).count());

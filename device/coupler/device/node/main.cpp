@@ -34,29 +34,38 @@ class MapInput {
   /// For a node that serves: only a regular file is read. Others may have no end, or block.
   ReadMap again() const {
     if (path_ == "-") return {};
-    const auto read = [this]() -> MapPtr {
+    const auto read = [this]() -> tl::expected<MapPtr, std::string> {
       for (const std::string& path : {path_, path_ + ".lock"})
-        if (!is_regular(path)) return nullptr;
+        if (!is_regular(path)) return tell({irregular(path)});
       return this->read();
     };
     return {read, log_.descriptor()};
   }
 
  private:
-  MapPtr read() const {
+  tl::expected<MapPtr, std::string> read() const {
     const LoadResult loaded = load_map_file(path_);
-    for (const Diagnostic& diagnostic : shortened(loaded.diagnostics)) log_.tell(diagnostic);
-    return loaded.map;
+    auto told = tell(loaded.diagnostics);
+    if (loaded.map != nullptr) return loaded.map;
+    return told;
+  }
+
+  /// Returns the first of them.
+  tl::unexpected<std::string> tell(const Diagnostics& diagnostics) const {
+    const Diagnostics some = shortened(diagnostics);
+    for (const Diagnostic& diagnostic : some) log_.tell(diagnostic);
+    return tl::unexpected(some.empty() ? std::string() : to_string(some.front()));
   }
 
   /// A file that does not exist, or cannot be examined, is reported when it is read.
-  bool is_regular(const std::string& path) const {
+  static bool is_regular(const std::string& path) {
     std::error_code ignored;
     const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-    if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return true;
-    log_.tell({Diagnostic::Severity::error, path, 0, 0, "it is not a regular file",
-               "a running node reads only regular files: write the map to one, or restart the node"});
-    return false;
+    return !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
+  }
+  static Diagnostic irregular(const std::string& path) {
+    return {Diagnostic::Severity::error, path, 0, 0, "it is not a regular file",
+            "a running node reads only regular files: write the map to one, or restart the node"};
   }
 
   std::string path_;

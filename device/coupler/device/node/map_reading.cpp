@@ -69,10 +69,11 @@ int MapReading::read(const ReadMap& source, pid_t parent) {
   std::pmr::set_default_resource(arena_.get());
   try {
     if (!source.read) ::_exit(read_settings_of(*source.built_in));
-    const MapPtr map = source.read();
-    if (map == nullptr) ::_exit(logged);
-    made_[0].map = map.get();
-    ::_exit(read_settings_of(map->map()));
+    const auto map = source.read();
+    if (!map) leave_text(map.error());
+    if (!map || *map == nullptr) ::_exit(logged);
+    made_[0].map = map->get();
+    ::_exit(read_settings_of((*map)->map()));
   } catch (const std::bad_alloc&) {
     return too_large;
   }
@@ -83,10 +84,13 @@ int MapReading::read_settings_of(const Map& map) {
   if (!map.security.files.present()) return done;
   const auto settings = tls_settings_of(map);
   if (settings && write_settings(settings_.get(), *settings)) return done;
-  const std::string why = settings ? "there is no memory for the certificates" : settings.error();
+  leave_text(settings ? "there is no memory for the certificates" : settings.error());
+  return no_settings;
+}
+
+void MapReading::leave_text(const std::string& why) const {
   (void)!::ftruncate(settings_.get(), 0);
   (void)!::pwrite(settings_.get(), why.data(), why.size(), 0);
-  return no_settings;
 }
 
 void MapReading::ready(TimePoint) {
@@ -119,7 +123,7 @@ tl::expected<MapRead, ServeError> MapReading::take() {
   if (WEXITSTATUS(*status_) == too_large)
     return failed(ServeError::map_is_wrong,
                   fmt::format("the map needs more than {} MiB of memory; remove points", room >> 20));
-  return failed(ServeError::map_is_wrong, {});
+  return tl::unexpected(ServeError{ServeError::map_is_wrong, {}, text_in(settings_.get())});
 }
 
 tl::expected<MapRead, ServeError> read_first(const ReadMap& source) {

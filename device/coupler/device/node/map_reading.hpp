@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <tl/expected.hpp>
 
 #include "coupler/device/net/descriptor.hpp"
@@ -17,8 +18,9 @@ namespace coupler::device {
 /// How a node reads a map. It is called in a process of its own, which has none of the node's lines and
 /// sockets, and may take its time.
 struct ReadMap {
-  std::function<MapPtr()> read;  ///< null if the map is wrong, which it logs; empty: there is none to read
-  int descriptor = -1;           ///< that it needs besides 0 to 2: the log's
+  /// The error is the first of those that it has logged. Empty: there is no map to read.
+  std::function<tl::expected<MapPtr, std::string>()> read;
+  int descriptor = -1;  ///< that it needs besides 0 to 2: the log's
   const Map* built_in =
       nullptr;  ///< in place of one that is read, with files that are: those of its `security`
 
@@ -65,12 +67,13 @@ class MapReading final : public EventHandler {
   MapReading(Loop& loop, TimePoint now);
   int read(const ReadMap& source, pid_t parent);
   int read_settings_of(const Map& map);
+  void leave_text(const std::string& why) const;
 
   Loop& loop_;
   TimePoint deadline_;
   std::shared_ptr<SharedArena> arena_;
   SharedArray<Made> made_{1};
-  Descriptor settings_;  ///< of TLS; or why they could not be read
+  Descriptor settings_;  ///< of TLS; or why there is no map, or no settings
   std::optional<Child> child_;
   std::optional<int> status_;
   bool is_watched_ = false;

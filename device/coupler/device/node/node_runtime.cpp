@@ -85,6 +85,7 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
     return ServeError::device_failed;
   }
   const Signals signals(loop);
+  const pid_t parent = supervisor.pid();
   supervisor.watch(loop);
   if (hooks_) waker_ = std::make_unique<LoopWaker>(loop);
   if (hooks_ && !hooks_->begin(waker_.get())) return ServeError::device_failed;
@@ -99,12 +100,21 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
       },
       [&] { supervisor.beat(); });
   if (signals.stop() != 0)
-    service.end(signals.stop());
+    service.end(why_it_ends(signals.stop(), parent));
   else if (supervisor.wants_room())
     for (const OpenConnection& client : service.release()) supervisor.give(client);
   else
     return end_without_supervisor(service);
   return 0;
+}
+
+/// The kernel sends a signal, too, if the parent has been killed.
+std::string NodeRuntime::why_it_ends(int signal, pid_t supervisor) const {
+  if (::getppid() != supervisor)
+    return fmt::format("the supervisor, process {}, was killed, and the node ends with it", supervisor);
+  if (hooks_)
+    if (const std::string_view why = hooks_->why_it_ends(); !why.empty()) return std::string(why);
+  return ::strsignal(signal);
 }
 
 void NodeRuntime::beat() {
@@ -248,8 +258,7 @@ void NodeRuntime::refuse(const ServeError& error) {
   const std::string text =
       fmt::format("the new map is refused; the old one stays in force: {}", status_line());
   log_.fail(text);
-  requests_.reply(false,
-                  error.errors.empty() ? text + " (the node's log says why)" : error.errors + "; " + text);
+  requests_.reply(false, (error.errors.empty() ? error.first_logged : error.errors) + "; " + text);
   manager_.ready(status_line());
 }
 

@@ -59,6 +59,7 @@ class NodeRuntime final : public Workload {
   void hurry() const;
   void end_durations_that_do_not_fit();
   int end_without_supervisor(IoService& service);
+  std::string why_it_ends(int signal, pid_t supervisor) const;
 
   Loop& loop_;
   const Options& options_;

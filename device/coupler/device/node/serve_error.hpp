@@ -13,6 +13,7 @@ struct ServeError {
   enum Reason : int { map_is_wrong = 1, device_failed = 3 };
   Reason reason;       ///< also the exit status
   std::string errors;  ///< one a line; empty: they are logged already
+  std::string first_logged{};  ///< of those
 };
 
 /// Logs each of the errors.

@@ -154,7 +154,8 @@ void Player::begin_again() {
 }
 
 /// Stops the node.
-void Player::end() const {
+void Player::end() {
+  is_over_ = true;
   if (::getppid() == supervisor_) ::kill(supervisor_, SIGTERM);
 }
 

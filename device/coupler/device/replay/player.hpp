@@ -42,6 +42,9 @@ class Player final : public PointHooks {
   [[nodiscard]] bool accept(std::uint32_t point, const std::uint16_t* registers) override;
   [[nodiscard]] bool shows_identity() const noexcept override { return !recording_.is_foreign(); }
   [[nodiscard]] bool answers() override;
+  [[nodiscard]] std::string_view why_it_ends() const noexcept override {
+    return is_over_ ? "the recording is over" : std::string_view();
+  }
   [[nodiscard]] std::optional<modbus::Exception> refuse_read(Table table, modbus::Range range) override;
 
   /// In any of the processes: how many differences there were.
@@ -68,7 +71,7 @@ class Player final : public PointHooks {
   void tell(const std::vector<Differences::Difference>& found);
   void tell_unwritten();
   void begin_again();
-  void end() const;
+  void end();
   bool wait_and_tell(Nanoseconds recorded, Clock::time_point real_time);
   Nanoseconds now() const;  ///< of the recording
   bool sleep_until(Clock::time_point time);
@@ -80,6 +83,7 @@ class Player final : public PointHooks {
   std::vector<std::optional<std::uint32_t>>
       recorded_;  ///< by point of the map that is served: in the recording's
   const ReplayOptions options_;
+  std::atomic<bool> is_over_{false};
   const pid_t supervisor_;  ///< the process in which this was made
   SharedArray<Shared> shared_{1};
   UrgentMutex mutex_;  ///< of the next four, which the thread of the requests uses too

@@ -52,7 +52,7 @@ Message receive(int socket) {
   // At a terminal it stays in the supervisor's group: another one could not read what somebody types.
   if (!has_terminal()) ::setpgid(0, 0);
   if (!end_with_parent(parent, SIGTERM)) ::_exit(0);
-  SupervisorLink supervisor(std::move(channel));
+  SupervisorLink supervisor(std::move(channel), parent);
   ::_exit(work(supervisor));
 }
 

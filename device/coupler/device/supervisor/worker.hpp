@@ -22,7 +22,11 @@ namespace coupler::device {
 class SupervisorLink : public EventHandler {
  public:
   /// `channel` is a connected socket that keeps messages apart.
-  explicit SupervisorLink(Descriptor channel) : channel_(std::move(channel)) {}
+  SupervisorLink(Descriptor channel, pid_t supervisor)
+      : channel_(std::move(channel)), supervisor_(supervisor) {}
+
+  /// The supervisor's process id; it may have ended.
+  pid_t pid() const { return supervisor_; }
 
   /// Listens to it from now on.
   void watch(Loop& loop);
@@ -42,6 +46,7 @@ class SupervisorLink : public EventHandler {
 
  private:
   Descriptor channel_;
+  const pid_t supervisor_;
   Loop* loop_ = nullptr;
   bool wants_room_ = false;
   bool heard_ = true;  ///< since is_silent() was asked
