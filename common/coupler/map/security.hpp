@@ -13,6 +13,7 @@
 namespace coupler {
 
 constexpr std::uint16_t default_tls_port = 802;  ///< MBTPS 4
+constexpr std::size_t most_roles = 100;          ///< each has its rights for every point
 constexpr std::size_t longest_role_name = 64;    ///< bytes of UTF-8, as in a certificate
 
 /// Bits: what can be done with a point.

@@ -128,6 +128,7 @@ int drive(const Devices& devices, Node& node) {
   } catch (...) {  // XmlRpc's, which has no base
     failure = "ROS gave an answer that is none";
   }
+  if (Shutdown::has_failed_thread && !failure) failure.emplace("one of its threads has failed");
   const std::chrono::seconds patience(5 + drivers.size());
   Shutdown::begin_to_end(not_safe, patience);
   if (failure)

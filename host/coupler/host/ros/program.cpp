@@ -5,12 +5,16 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "coupler/base/ending_signals.hpp"
 #include "coupler/base/never_wait.hpp"
 #include "coupler/base/standard_files.hpp"
+#include "coupler/base/what_failed.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::host {
@@ -30,6 +34,17 @@ void on_signals(void (*handler)(int)) {
   std::signal(SIGALRM, handler);
 }
 
+std::string what_was_thrown() {
+  try {
+    if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::exception& error) {
+    return what_failed(error);
+  } catch (...) {
+    return "an exception of an unknown kind";
+  }
+  return "no exception";
+}
+
 /// Nothing has to be done at the end.
 [[noreturn]] void exit_at_once(int signal, int exit_code) {
   if (signal == SIGQUIT) die_of(signal);
@@ -39,6 +54,7 @@ void on_signals(void (*handler)(int)) {
 }  // namespace
 
 std::atomic<bool> Shutdown::requested{false};
+std::atomic<bool> Shutdown::has_failed_thread{false};
 
 void Shutdown::begin_driving() {
   Stage now = Stage::starting;
@@ -90,6 +106,16 @@ void never_wait_for_readers() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a log file that may not grow
   for (const int file : {STDOUT_FILENO, STDERR_FILENO}) never_wait_for_reader_of(file);
+}
+
+void end_safely_on_uncaught_exceptions() {
+  std::set_terminate([] {
+    const bool is_first = !Shutdown::has_failed_thread.exchange(true);
+    if (is_first) print_message("a thread has failed: " + what_was_thrown());
+    if (!Shutdown::is_driving() || ::gettid() == ::getpid()) std::abort();
+    Shutdown::requested = true;
+    for (;;) ::pause();
+  });
 }
 
 int end_of(const Options& arguments) {

@@ -22,7 +22,8 @@ int main_with(const Map* built_in, int argc, char** argv);
 
 /// How coupler::ending_signals (SIGINT, SIGTERM, SIGHUP, …) end a driver.
 struct Shutdown {
-  static std::atomic<bool> requested;  ///< by a signal; every wait looks at it
+  static std::atomic<bool> requested;  ///< by a signal, or a failed thread; every wait looks at it
+  static std::atomic<bool> has_failed_thread;
 
   /// Before an output may be driven: from now on the shutdown must be orderly. Does not return if a second
   /// signal ends the program at this moment.
@@ -50,6 +51,10 @@ void begin_program();
 /// From now on no thread waits for whoever reads standard output and standard error, and none ends the
 /// program by going away.
 void never_wait_for_readers();
+
+/// An exception that no thread has caught is told and, once an output may be driven, requests the shutdown;
+/// its thread stands still. The main thread's ends the program at once.
+void end_safely_on_uncaught_exceptions();
 
 /// Where the arguments end the program: prints their text, and returns the exit code.
 int end_of(const Options& arguments);

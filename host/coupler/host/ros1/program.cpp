@@ -182,6 +182,7 @@ int main_with(const Map* built_in, int argc, char** argv) {
   const Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
   if (arguments.exit_code) return end_of(arguments);
   never_wait_for_readers();
+  end_safely_on_uncaught_exceptions();
   try {
     return end_with(run(built_in, arguments));
   } catch (const std::exception& error) {  // no thread or no memory is left

@@ -125,6 +125,7 @@ int main_with(const Map* built_in, int argc, char** argv) {
   Arguments arguments = parse_arguments({argv, static_cast<std::size_t>(argc)});
   if (arguments.exit_code) return end_of(arguments);
   never_wait_for_readers();
+  end_safely_on_uncaught_exceptions();
   Shutdown::request_on_signals();
   try {
     return end_with(Program(built_in, std::move(arguments)).run());

@@ -112,6 +112,20 @@ TEST(Security, Without_plain_clients_may_do_nothing) {
   EXPECT_FALSE(owned->map().security.plain);
 }
 
+// Each has rights for every point, and its index has 16 bits.
+TEST(Security, Has_at_most_a_hundred_roles) {
+  const auto with = [](int count) {
+    std::string text = "name: cell\nsecurity:\n  roles:\n";
+    for (int i = 0; i < count; ++i) text += "    r" + std::to_string(i) + ": {read: all}\n";
+    return load_map(text + "mapping: {coils: {lamp: 0}}\n", "cell");
+  };
+  EXPECT_TRUE(with(100).map);
+  const LoadResult many = with(101);
+  EXPECT_FALSE(many.map);
+  ASSERT_EQ(many.diagnostics.size(), 1U);
+  EXPECT_EQ(many.diagnostics[0].what, "there are 101 roles, and a map has at most 100");
+}
+
 TEST(Security, That_of_a_served_map_is_the_nodes_own) {
   const LoadResult loaded = load_served_map(
       "{name: cell, security: {roles: {operator: {certificate: any}}}, mapping: {coils: {lamp: 0}}}", "cell");
