@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Devices that refuse an address by silence or by nonsense, that acknowledge a write with nonsense, or that send bytes which
 nobody asked for: it costs what they refuse, and nothing else."""
+import socket
 import struct
 
 from coupler_driver.msg import PointStatus, Status
@@ -38,6 +39,7 @@ def adu(request, pdu, length):
 
 REFUSALS = {
     "silence": lambda request: None,
+    "the end of the connection": lambda request: request.connection.shutdown(socket.SHUT_RDWR),
     "an exception whose header says one byte more": lambda request: adu(request, b"\x83\x02", 4),
     "a byte behind the exception": lambda request: adu(request, b"\x83\x02\x00", 3),
     "a byte behind the exception that is counted": lambda request: adu(request, b"\x83\x02\x00", 4),

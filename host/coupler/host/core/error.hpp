@@ -21,7 +21,8 @@ struct NotConnected {
 /// The connection broke.
 struct TransportFailure {
   std::string why;
-  bool has_remedy = false;  ///< as above
+  bool has_remedy = false;           ///< as above
+  bool is_instead_of_reply = false;  ///< it came after the request: perhaps the device refuses that so
 };
 /// No complete reply within the device's timeout.
 struct Timeout {
@@ -59,7 +60,8 @@ bool is_no_right(const Error& error);
 /// A gateway is there and says that the unit behind it is not (exceptions 0A and 0B).
 bool is_unit_away(const Error& error);
 
-/// No reply, or none that can be one: of the device, or of this request only.
+/// No reply, the end of the connection instead, or no reply that can be one: of the device, or of this
+/// request only.
 bool is_no_reply(const Error& error);
 
 /// Its text says what to do: no general advice need follow.

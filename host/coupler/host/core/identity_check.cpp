@@ -65,9 +65,9 @@ std::string silence_text(const Map& known, const Error& error) {
         known.connection.unit, to_string(error), line_remedy(known.connection));
   return fmt::format(
       "{}, but unit {} does not answer the request for its identity: {}; check that the device runs, and "
-      "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, or "
-      "answers "
-      "nonsense, give its map 'verify: off', or start with --verify off (a client: Options::verify)",
+      "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, closes "
+      "the connection or answers nonsense, give its map 'verify: off', or start with --verify off (a client: "
+      "Options::verify)",
       is_unit_away(error) ? "the gateway answers" : "connected", known.connection.unit, to_string(error));
 }
 

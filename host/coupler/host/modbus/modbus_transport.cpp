@@ -21,6 +21,7 @@ Error receive_error(int error, std::chrono::milliseconds timeout) {
   switch (error) {
     case ETIMEDOUT: return Timeout{timeout};
     case EMBBADDATA: return BadFrame{"not Modbus/TCP: longer than a reply can be"};
+    case ECONNRESET: return closed_instead_of_reply();  // libmodbus says so of both ways to end
     default: return TransportFailure{modbus_strerror(error)};
   }
 }

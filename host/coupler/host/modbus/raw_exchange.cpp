@@ -79,7 +79,7 @@ Result<> receive_frame(int socket, std::chrono::milliseconds timeout, Deadline d
     const std::size_t most = take == Take::all ? room.size() : std::min(room.size(), missing(framer.rest()));
     const auto got = ::recv(socket, room.data(), most, 0);
     waits = got <= 0;
-    if (got == 0) return fail(TransportFailure{"the device closed the connection"});
+    if (got == 0 || (got < 0 && errno == ECONNRESET)) return fail(closed_instead_of_reply());
     if (got > 0)
       framer.filled(static_cast<std::size_t>(got));
     else if (errno != EAGAIN && errno != EINTR)

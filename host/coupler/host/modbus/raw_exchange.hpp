@@ -19,6 +19,11 @@ std::string shown_bytes(modbus::Bytes bytes);
 /// BadFrame that says what was asked and what came, from the function code on or both as a whole.
 BadFrame bad_reply(std::string_view what, modbus::Bytes asked, modbus::Bytes came);
 
+/// Perhaps because of the request.
+inline TransportFailure closed_instead_of_reply() {
+  return {"the device closed the connection", false, true};
+}
+
 /// BadFrame unless `reply` has the transaction and the unit of `request`.
 Result<> check_header(const modbus::Frame& reply, const modbus::Frame& request);
 
