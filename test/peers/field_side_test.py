@@ -14,6 +14,7 @@ import tempfile
 import peer
 
 try:
+    import foreign_server
     from panel_client import Page, Panel, is_left_out
 except ImportError as error:
     peer.skip(f"python3-pymodbus is missing ({error}); run scripts/install-packages test")
@@ -86,6 +87,39 @@ def a_page_plays_the_machine(port, client, checks):
 
 
 
+def nothing_else_has_a_field_side(folder, checks):
+    """A panel would write to real outputs there."""
+    file = folder / "cell.yaml"
+    strange = foreign_server.Device({"coils": {0: False}, "holding_registers": {0: 0}, "discrete_inputs": {0: False}})
+    with foreign_server.serving(strange) as port, Program(COUPLER, "panel", file, "--at", f"127.0.0.1:{port}", "--field",
+                                                          "--write") as panel:
+        checks.equal("a foreign device", (panel.wait(), "has no field side" in panel.text()), (3, True))
+    file.write_text(MAP.replace("timeout: 20s", "timeout: 20s\nunit: 247"), encoding="utf-8")
+    with Node(NODE, file) as node, Program(COUPLER, "panel", file, "--at", f"127.0.0.1:{node.port}", "--field",
+                                           "--write") as panel:
+        checks.equal("a node whose own unit is 247", (panel.wait(), "has no field side" in panel.text()), (3, True))
+    with peer.silent_port() as port, Program(COUPLER, "panel", file, "--at", f"127.0.0.1:{port}", "--field") as panel:
+        checks.equal("nobody", (panel.wait(), "check that a node serves there" in panel.text()), (3, True))
+
+
+def what_was_set_outlasts_a_reload(file, node, client, checks):
+    before = (client.read_discrete_inputs(0, 3, 1).bits[:3], client.read_input_registers(0, 4, 1).registers)
+    file.write_text(MAP + "    # read again\n", encoding="utf-8")
+    said = subprocess.run([NODE, "--reload", str(node.process.pid)], capture_output=True, text=True, check=False)
+    checks.equal("the map is read again", said.returncode, 0)
+    client.close()
+    client.connect()
+    after = (client.read_discrete_inputs(0, 3, 1).bits[:3], client.read_input_registers(0, 4, 1).registers)
+    checks.equal("what was set is as before", after, before)
+    file.write_text(MAP.replace("level: {", "level: {units: 0.1V, ").replace(", scale: 0.1", "").replace("REAL", "NOPE"),
+                    encoding="utf-8")
+    said = subprocess.run([NODE, "--reload", str(node.process.pid)], capture_output=True, text=True, check=False)
+    checks.equal("a wrong map: the first error, and no warning, is the reason",
+                 (said.returncode, "error: " in said.stderr and "'NOPE'" in said.stderr, "warning" in said.stderr),
+                 (1, True, False))
+    file.write_text(MAP, encoding="utf-8")
+
+
 def main():
     checks = peer.Checks()
     with tempfile.TemporaryDirectory() as folder:
@@ -98,7 +132,10 @@ def main():
             a_pwm_is_a_pwm(client, checks)
             if not is_left_out(COUPLER):
                 a_page_plays_the_machine(node.port, client, checks)
+            what_was_set_outlasts_a_reload(file, node, client, checks)
             client.close()
+        if not is_left_out(COUPLER):
+            nothing_else_has_a_field_side(file.parent, checks)
         file.write_text(MAP.replace("safe: 25", "safe: 125"), encoding="utf-8")
         with Program(NODE, file, "--sim", "--port", "0") as node:
             checks.equal("a PWM's safe value of 125 %", (node.wait(), "a PWM takes 0 to 100 %" in node.text()), (1, True))

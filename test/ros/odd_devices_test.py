@@ -131,6 +131,13 @@ class OddDevices(testing.RosTest):
             self.assertTrue(answer.message.startswith("not taken: ") and said in answer.message, answer)
         self.assertEqual(device.accepted, 1)
 
+    def test_one_that_ends_each_connection_after_some_replies_refuses_no_address(self):
+        device, path = self.start()
+        device.answers_per_connection = 3
+        driver = self.driver(f"_map:={path}", f"_port:={device.port}")
+        wait_until(lambda: device.accepted > 8, "some connections")
+        self.assertNotIn("cannot be read", driver.output)
+
 
 def _add(kind, table, call):
     for number, (name, answer) in enumerate(table.items(), 1):

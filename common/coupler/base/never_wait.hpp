@@ -98,8 +98,10 @@ inline void forward_by_thread(int file) {
 /// collector that hangs. What cannot be written at once is dropped. To be called before any other thread
 /// writes.
 inline void never_wait_for_reader_of(int file) {
-  // A terminal with "stty tostop" stops a process of the background that writes.
+  // A terminal with "stty tostop" stops a process of the background that writes, and a file that may not grow
+  // ends it.
   std::signal(SIGTTOU, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   struct stat now {};
   if (::fstat(file, &now) != 0 || S_ISREG(now.st_mode)) return;
   const int own = open_again(file);

@@ -181,7 +181,8 @@ void add_import(Program& program, Exit& exit) {
       .type_name("KIND");
   command
       .add_option("--columns", arguments->columns,
-                  "Headings of a table that are not understood: name=Tag,address=Reg")
+                  "Headings of a table that are not understood, or have two meanings: name=Tag,address=Reg, "
+                  "scale=Gain (a factor) or divisor=Gain")
       .type_name("LIST");
   command.add_flag("--force", arguments->force, "Replace a map that is there with --out");
   command.add_flag("--list", arguments->list, "Print the formats");

@@ -27,12 +27,12 @@ std::vector<std::string_view> column_names() {
 
 /// The heading's own meaning, or what --columns says of it.
 Meaning meaning_of(std::string_view heading, const ImportOptions& options) {
-  const Meaning own = formats::meaning_of(heading);
+  Meaning own = formats::meaning_of(heading);
   for (const auto& [column, given] : options.columns) {
     if (lower(given) != lower(heading)) continue;
     Meaning meaning = formats::meaning_of(column);
-    if (meaning.key == own.key && own.reading == Reading::function_codes) return own;
-    return meaning;
+    const bool says_less = meaning.reading == Reading::plain && own.reading != Reading::factor_or_divisor;
+    return meaning.key == own.key && says_less ? own : meaning;
   }
   return own;
 }
@@ -121,7 +121,8 @@ void refuse_two_meanings(const std::vector<Column>& columns, const std::vector<R
       if (i >= row.size()) return false;
       std::string number = row[i].text;
       std::replace(number.begin(), number.end(), ',', '.');
-      return loader::parse_number(number).value_or(1) != 1;
+      const double factor = loader::parse_number(number).value_or(1);
+      return factor != 1 && factor != 0;
     });
     if (differs == rows.end()) continue;
     const Cell& heading = rows.front()[i];

@@ -71,8 +71,10 @@ constexpr Heading headings[] = {
     {"writable", "access", Reading::may_be_written},
     {"writeable", "access", Reading::may_be_written},
     {"writeenable", "access", Reading::may_be_written},
+    {"write", "access", Reading::may_be_written},
     {"canwrite", "access", Reading::may_be_written},
     {"readonly", "access", Reading::may_not_be_written},
+    {"ro", "access", Reading::may_not_be_written},
     {"factor", "scale"},
     {"multiplier", "scale"},
     {"divisor", "scale", Reading::divisor},
@@ -185,8 +187,10 @@ std::string_view without_fc(std::string_view text) {
 /// Of a column such as "Writable", where people tick rows and leave the others empty.
 std::optional<bool> answer(std::string_view text) {
   const std::string word = lower(text);
-  if (word == "x" || word == "1") return true;
-  if (word.empty() || word == "-" || word == "0") return false;
+  for (const std::string_view yes : {"x", "1", "y", "\u2713", "\u2714"})
+    if (word == yes) return true;
+  for (const std::string_view no : {"", "-", "0", "n", "n/a", "\u2717", "\u2718"})
+    if (word == no) return false;
   return loader::parse_boolean(word);
 }
 

@@ -88,7 +88,8 @@ void write_further(const Further& further, std::uint16_t* area) {
                                    static_cast<std::uint8_t>(machine.hostname[i + 1]));
   area[at_functions] = static_cast<std::uint16_t>(
       (further.functions.tells_changes ? Functions::tells_changes_bit : 0) |
-      (further.functions.schedules_outputs ? Functions::schedules_outputs_bit : 0));
+      (further.functions.schedules_outputs ? Functions::schedules_outputs_bit : 0) |
+      (further.functions.has_field_side ? Functions::has_field_side_bit : 0));
   codec::encode(further.watchdog_timeout, Order::ABCD, area + at_watchdog_timeout);
 }
 
@@ -105,7 +106,8 @@ Further read_further(Span<const std::uint16_t> further) {
   }
   if (further.size() > functions)
     read.functions = {(further[functions] & Functions::tells_changes_bit) != 0,
-                      (further[functions] & Functions::schedules_outputs_bit) != 0};
+                      (further[functions] & Functions::schedules_outputs_bit) != 0,
+                      (further[functions] & Functions::has_field_side_bit) != 0};
   if (further.size() >= timeout + 2)
     read.watchdog_timeout = codec::decode<std::uint32_t>(&further[timeout], Order::ABCD);
   return read;

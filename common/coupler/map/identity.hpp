@@ -134,8 +134,10 @@ struct Machine {
 struct Functions {
   static constexpr std::uint16_t tells_changes_bit = 1;      ///< FC 65
   static constexpr std::uint16_t schedules_outputs_bit = 2;  ///< FC 66
+  static constexpr std::uint16_t has_field_side_bit = 4;     ///< coupler/map/field_side.hpp
   bool tells_changes = false;
   bool schedules_outputs = false;
+  bool has_field_side = false;
 };
 
 /// The further fields.

@@ -186,13 +186,17 @@ TEST(CsvImport, A_column_of_what_may_be_written_is_the_access) {
     return csv.result.maps.empty() ? csv.said : csv.text();
   };
   for (const char* heading : {"writable", "Writeable", "Can write"}) {
-    for (const char* cell : {"yes", "TRUE", "1", "x", "RW"})
+    for (const char* cell : {"yes", "TRUE", "1", "x", "RW", "Y", "\u2713"})
       EXPECT_THAT(access(heading, cell), HasSubstr("a: {address: 1, type: INT, access: read_write}")) << cell;
-    for (const char* cell : {"no", "FALSE", "0", "", "-", "ro"})
+    for (const char* cell : {"no", "FALSE", "0", "", "-", "ro", "N", "n/a"})
       EXPECT_THAT(access(heading, cell), HasSubstr("a: {address: 1, type: INT, access: read}")) << cell;
   }
   EXPECT_THAT(access("read only", "yes"), HasSubstr("a: {address: 1, type: INT, access: read}"));
   EXPECT_THAT(access("ReadOnly", "no"), HasSubstr("a: {address: 1, type: INT, access: read_write}"));
+  formats::ImportOptions options{"m", {}};
+  options.columns = {{"access", "Writable"}};
+  EXPECT_THAT(Imported("csv", "table,name,address,type,Writable\nhr,a,1,INT,no\n", options).text(),
+              HasSubstr("access: read}"));
   EXPECT_THAT(access("writable", "perhaps"), HasSubstr("given:2:12: error: 'access' must be one of"));
   EXPECT_EQ(Imported("csv", "table,name,address,type,writable\nir,a,1,INT,no\nir,b,2,INT,\n").said, "");
 }

@@ -76,6 +76,33 @@ TEST_F(FieldSide, An_input_with_a_value_from_elsewhere_is_refused) {
   EXPECT_EQ(play(pdu(22, {0, 0, 0})), refused(22, 1));
 }
 
+TEST_F(FieldSide, It_is_for_clients_that_may_read_every_point) {
+  NodeUnderTest node(
+      MapBuilder().many(Table::discrete_inputs, 0, 2).everybody_may({"discrete_inputs_0"}, {}).build());
+  node.lines.simulated = true;
+  std::array<std::uint8_t, modbus::max_adu_size> adu{};
+  for (const Pdu& request : {pdu(5, {0, 0xFF00}), pdu(1, {0, 1})}) {
+    ASSERT_EQ(node.handler.handle_from_field(request, node.session, node.now, adu), 2U);
+    EXPECT_EQ(adu[1], 1);
+  }
+}
+
+TEST_F(FieldSide, The_identity_says_that_there_is_one) {
+  const auto functions = [](NodeUnderTest& node) {
+    constexpr std::uint16_t at = identity::reserved.start() + identity::at_functions;
+    return node.ask(pdu(4, {at, 1}))[3] & identity::Functions::has_field_side_bit;
+  };
+  node_.handler.set_machine({});
+  EXPECT_NE(functions(node_), 0);
+  node_.lines.simulated = false;
+  node_.handler.set_machine({});
+  EXPECT_EQ(functions(node_), 0);
+  NodeUnderTest own(MapBuilder().coil("lamp", 0).unit(field_unit).build());
+  own.lines.simulated = true;
+  own.handler.set_machine({});
+  EXPECT_EQ(functions(own), 0);
+}
+
 TEST_F(FieldSide, It_feeds_no_watchdog) {
   ask(1, pdu(5, {0, 0xFF00}));
   node_.now += std::chrono::milliseconds(60);

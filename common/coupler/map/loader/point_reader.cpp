@@ -2,10 +2,13 @@
 #include "coupler/map/loader/point_reader.hpp"
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "coupler/map/loader/reader.hpp"
+#include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -117,23 +120,31 @@ void read_access(const Reader& reader, Point& point, const Context& context) {
                            "remove 'access'");
 }
 
+/// Of "0.1V", "10 W": the power of ten, and the unit alone behind it. Empty if it is anything else.
+std::pair<std::string_view, std::string_view> power_and_unit(std::string_view units) {
+  for (const std::string_view power : {"0.001", "0.01", "0.1", "10", "100", "1000"}) {
+    if (units.substr(0, power.size()) != power) continue;
+    std::string_view unit = units.substr(power.size());
+    unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
+    const auto is_of_unit = [](char c) {
+      return is_letter(c) || c == '%' || c == '/' || (static_cast<unsigned char>(c) & 0x80U) != 0;
+    };
+    const bool is_unit = !unit.empty() && unit[0] != '/' && std::all_of(unit.begin(), unit.end(), is_of_unit);
+    if (is_unit) return {power, unit};
+  }
+  return {};
+}
+
 /// "0.1V" in a maker's table means a register in tenths of a volt.
 void warn_of_scaled_units(const Reader& reader, const Point& point, const Context& context) {
-  if (holds_bits(point.table) || reader.has("scale")) return;
-  const std::string_view units = point.units;
-  const std::string_view number = units.substr(0, units.find_first_not_of("0123456789.,"));
-  std::string factor{number};
-  std::replace(factor.begin(), factor.end(), ',', '.');
-  const auto value = parse_number(factor);
-  if (!value || *value == 1) return;
-  std::string_view rest = units.substr(number.size());
-  rest.remove_prefix(std::min(rest.find_first_not_of(" *"), rest.size()));
-  if (rest.empty() || rest[0] == '/' || rest[0] == '-') return;
-  context.problems.warning(reader.find("units")->at,
-                           fmt::format("the units {} do not scale the value: {} is published as it is in "
-                                       "the register",
-                                       shown(units), shown(point.name)),
-                           fmt::format("write 'scale: {}' and the units {}", factor, shown(rest)));
+  if (!codec::is_scalable(point.format.type) || reader.has("scale")) return;
+  const auto [power, unit] = power_and_unit(point.units);
+  if (unit.empty()) return;
+  context.problems.warning(
+      reader.find("units")->at,
+      fmt::format("the units {} do not scale the value: {} is published as it is in the register",
+                  shown(point.units), shown(point.name)),
+      fmt::format("write 'scale: {}' and the units {}", power, shown(unit)));
 }
 
 void check_has_options(const Entry& entry, const Context& context) {

@@ -62,6 +62,7 @@ void Handler::set_machine(const identity::Machine& machine) {
   identity::Functions functions;
   functions.tells_changes = changes_.are_told();
   functions.schedules_outputs = can_schedule();
+  functions.has_field_side = has_field_side();
   write_identity(map_, machine_, functions, image_);
 }
 

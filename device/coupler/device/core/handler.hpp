@@ -17,6 +17,7 @@
 #include "coupler/device/core/rights.hpp"
 #include "coupler/device/core/statistics.hpp"
 #include "coupler/device/core/watchdog.hpp"
+#include "coupler/map/field_side.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/server.hpp"
@@ -62,9 +63,10 @@ class Handler {
   /// the watchdog keeps in its safe state; 06 no place left to schedule such an output.
   std::size_t handle(modbus::Bytes request, ClientSession& session, TimePoint now, Span<std::uint8_t> reply);
   /// Whether there is a field side (coupler/map/field_side.hpp).
-  bool has_field_side() const { return hardware_.is_simulated(); }
-  /// Answers there. It has FC 1 … 6, 15 and 16, feeds no watchdog, and is in no statistics. Exceptions as
-  /// handle()'s; 02 also an input that has its value from elsewhere: a wire, a counter, a firmware's code.
+  bool has_field_side() const { return hardware_.is_simulated() && map_.connection.unit != field_unit; }
+  /// Answers there. It has FC 1 … 6, 15 and 16, feeds no watchdog, and is for clients that may read every
+  /// point. Its requests are not counted. Exceptions as handle()'s; 02 also an input that has its value from
+  /// elsewhere: a wire, a counter, a firmware's code.
   std::size_t handle_from_field(modbus::Bytes request, ClientSession& session, TimePoint now,
                                 Span<std::uint8_t> reply);
 

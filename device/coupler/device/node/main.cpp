@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // coupler-node: serves a map that it reads at the start, and again at SIGHUP.
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -50,11 +51,13 @@ class MapInput {
     return told;
   }
 
-  /// Returns the first of them.
+  /// Returns the first error.
   tl::unexpected<std::string> tell(const Diagnostics& diagnostics) const {
-    const Diagnostics some = shortened(diagnostics);
-    for (const Diagnostic& diagnostic : some) log_.tell(diagnostic);
-    return tl::unexpected(some.empty() ? std::string() : to_string(some.front()));
+    for (const Diagnostic& diagnostic : shortened(diagnostics)) log_.tell(diagnostic);
+    const auto error = std::find_if(diagnostics.begin(), diagnostics.end(), [](const Diagnostic& diagnostic) {
+      return diagnostic.severity == Diagnostic::Severity::error;
+    });
+    return tl::unexpected(error == diagnostics.end() ? std::string() : to_string(*error));
   }
 
   /// A file that does not exist, or cannot be examined, is reported when it is read.
@@ -64,7 +67,11 @@ class MapInput {
     return !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
   }
   static Diagnostic irregular(const std::string& path) {
-    return {Diagnostic::Severity::error, path, 0, 0, "it is not a regular file",
+    return {Diagnostic::Severity::error,
+            path,
+            0,
+            0,
+            "it is not a regular file",
             "a running node reads only regular files: write the map to one, or restart the node"};
   }
 

@@ -73,7 +73,7 @@ tl::expected<std::unique_ptr<ServingContext>, ServeError> ServingContext::prepar
   context->listener.allowed = *std::move(allowed);
   context->state = std::make_unique<SharedState>(
       map, TimePoint::clock::now(), before == nullptr ? this_machine() : before->state->machine());
-  if (before != nullptr) context->state->prepare_take_over(*before->state);
+  if (before != nullptr) context->state->prepare_take_over(*before->state, options.simulated);
   if (options.simulated && std::any_of(map.points.begin(), map.points.end(), is_analogue)) {
     context->simulated = std::make_unique<SimulatedChannels>(context->state->image());
     context->analogue = std::make_unique<AnaloguePoints>(map, context->state->image(), *context->simulated);

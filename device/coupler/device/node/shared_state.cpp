@@ -27,9 +27,9 @@ bool same_hardware(const Point& a, const Point& b) {
   return hardware(a) == hardware(b);
 }
 
-/// Others have the value that their map says.
-bool may_change(const Point& point) {
-  return is_writable(point) || point.counter.present() || point.latched.present();
+/// Others have the value that their map says, unless somebody sets them from the field side.
+bool may_change(const Point& point, bool has_field_side) {
+  return has_field_side || is_writable(point) || point.counter.present() || point.latched.present();
 }
 
 }  // namespace
@@ -47,10 +47,10 @@ SharedState::SharedState(const Map& map, TimePoint now, NodeMemory size, const i
       links_(size.links),
       machine_(machine) {}
 
-void SharedState::prepare_take_over(const SharedState& before) {
+void SharedState::prepare_take_over(const SharedState& before, bool has_field_side) {
   LookupByName known(before.map_.points, [](const Point& point) { return point.name; });
   for (const Point& point : map_.points) {
-    if (!may_change(point)) continue;
+    if (!may_change(point, has_field_side)) continue;
     const Point* old = known.find(point.name);
     if (old == nullptr || !same_value(*old, point)) continue;
     // A point that shares its register leaves the others' bits alone.

@@ -27,7 +27,7 @@ class SharedState {
 
   /// Finds out what take_over() from this other state, of another map, is to copy: that takes its time if
   /// there are many points.
-  void prepare_take_over(const SharedState& before);
+  void prepare_take_over(const SharedState& before, bool has_field_side = false);
   /// Takes over from the other state what both have: statistics, the watchdog's state, and the value of
   /// every point that has the same name, table, type and layout in both; and scheduled outputs and pulses
   /// that have begun, if they fit().

@@ -223,7 +223,10 @@ Result<> DeviceReader::ask(const ReadSpan& span, std::vector<ReadSpan>& next) {
     next.push_back(span);
     return {};
   }
-  Result<> answer = transport_.read(span.table, span.range, registers_.data());
+  return take(span, transport_.read(span.table, span.range, registers_.data()), next);
+}
+
+Result<> DeviceReader::take(const ReadSpan& span, Result<> answer, std::vector<ReadSpan>& next) {
   if (answer) {
     keep(span);
     answered_ = {span.table, span.range};
@@ -250,6 +253,12 @@ Result<> DeviceReader::connect_again() {
 Result<> DeviceReader::without(const ReadSpan& span, const host::Error& error, std::vector<ReadSpan>& next) {
   if (!answered_ || is_node_) return tl::make_unexpected(error);
   if (auto again = connect_again(); !again) return again;
+  if (is_closed(error)) {  // by a device that does so after some requests, or for another client, it is
+                           // answered now
+    Result<> alone = transport_.read(span.table, span.range, registers_.data());
+    if (alone || !is_no_reply(alone.error())) return take(span, std::move(alone), next);
+    if (auto again = connect_again(); !again) return again;
+  }
   if (auto other = transport_.ask(*answered_); !other) return other;
   return in_parts(span, {{}, to_string(error) + ", though others have one; asked again now and then"}, next);
 }

@@ -50,6 +50,7 @@ class DeviceReader {
   void plan();
   host::Result<> read_all();
   host::Result<> ask(const ReadSpan& span, std::vector<ReadSpan>& next);
+  host::Result<> take(const ReadSpan& span, host::Result<> answer, std::vector<ReadSpan>& next);
   /// What was wrong with a request.
   struct Refusal {
     std::optional<modbus::Exception> code;  ///< nullopt: there was no reply, or none that can be one

@@ -2,10 +2,10 @@
 #include "coupler/host/cli/field_map.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 
+#include "coupler/host/core/node_map.hpp"
 #include "coupler/host/modbus/multi_unit_transport.hpp"
 #include "coupler/map/field_side.hpp"
 #include "coupler/map/fingerprint.hpp"
@@ -22,7 +22,8 @@ bool is_free_input(const Point& point, const Map& node) {
 
 }  // namespace
 
-FieldMap::FieldMap(const Map& node) : points_(node.points.begin(), node.points.end()), map_(node) {
+FieldMap::FieldMap(const Map& node)
+    : node_(node.connection), points_(node.points.begin(), node.points.end()), map_(node) {
   for (Point& point : points_) {
     point.access = is_free_input(point, node) ? Access::read_write : Access::read;
     point.table = seen_from_field(point.table);
@@ -39,15 +40,17 @@ FieldMap::FieldMap(const Map& node) : points_(node.points.begin(), node.points.e
 }
 
 std::string FieldMap::why_missing() const {
-  if (map_.points.empty()) return {};
-  const auto transport = host::make_transport(map_.connection);
-  const Point& point = map_.points[0];
-  std::array<std::uint16_t, modbus::max_read_registers> registers{};
-  auto answer = transport->connect();
-  if (answer) answer = transport->read(point.table, modbus::Range::of(point.address, 1), registers.data());
-  if (answer) return {};
-  return fmt::format("unit {} of {} does not answer: {}", field_unit, node_address_text(map_.connection),
-                     host::to_string(answer.error()));
+  const auto transport = host::make_transport(node_);
+  const auto connected = transport->connect();
+  if (!connected) return host::to_string(connected.error()) + "; check that a node serves there";
+  const auto head = host::read_identity(*transport);
+  if (!head) return "the device does not say what it is: " + host::to_string(head.error());
+  const auto further = *head ? host::read_further(*transport) : identity::Further{};
+  if (!further) return "the node does not say what it can do: " + host::to_string(further.error());
+  if (further->functions.has_field_side) return {};
+  return fmt::format(
+      "{} has no field side; only a coupler-node that runs with --sim has one, and whose own unit is not {}",
+      node_address_text(node_), field_unit);
 }
 
 }  // namespace coupler::cli

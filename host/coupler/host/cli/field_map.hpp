@@ -19,10 +19,11 @@ class FieldMap {
 
   const Map& map() const { return map_; }
 
-  /// Asks once. Empty: the node has such a side; otherwise why not, and what to do.
+  /// Asks the node once. Empty: it has such a side; otherwise why not, and what to do.
   std::string why_missing() const;
 
  private:
+  const Connection node_;
   std::vector<Point> points_;
   Map map_;
 };

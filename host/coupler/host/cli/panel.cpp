@@ -159,8 +159,7 @@ Exit panel(const DeviceArgument& argument, const PanelOptions& options) {
   const Map& original = options.field ? field.map() : found->map;
   if (options.field)
     if (const std::string why = field.why_missing(); !why.empty())
-      return complain("panel", failed, "there is no field side: " + why,
-                      "give --field only for a node that runs with --sim");
+      return complain("panel", failed, "--field: " + why, {});
   const OnlyLooking looking(original);
   const Map& map = looking.map();
   host::SteadyClock clock;

@@ -77,7 +77,6 @@ Exit record(const Map& original, const RecordOptions& options) {
   if (!file) return complain("record", bad_call, file.error(), {});
   const auto transport = host::make_transport(map.connection);
   never_wait_for_reader_of(STDERR_FILENO);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is said, and others go on
   if (options.file != "-") std::signal(SIGPIPE, SIG_IGN);  // a recording outlives the reader of its messages
   host::SteadyClock clock;
   host::SteadyClock pause;

@@ -124,9 +124,22 @@ Result<> Device::go_on_without(const Error& error) {
     poller_.ended_connection();
     return tl::make_unexpected(error);
   }
+  if (is_closed(error)) {
+    const Result<> alone = ask_alone();
+    if (alone) poller_.acquit();
+    if (alone || !is_no_reply(alone.error())) return tl::make_unexpected(error);
+  }
   if (auto again = connect_again(); !again) return again;
   poller_.set_aside(error);
   return {};
+}
+
+/// Some devices end each connection after a number of requests, or for another client's. They answer this
+/// request if it is the first one.
+Result<> Device::ask_alone() {
+  transport_.close();
+  const Result<> connected = transport_.connect();
+  return connected ? transport_.ask(poller_.current()) : connected;
 }
 
 Result<> Device::connect_again() {

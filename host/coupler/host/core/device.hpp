@@ -116,6 +116,7 @@ class Device {
   Result<> read_or_write();
   Result<> read(Time until);
   Result<> go_on_without(const Error& error);
+  Result<> ask_alone();
   Result<> connect_again();
   Result<> serve_watchdog();
   Time due() const;

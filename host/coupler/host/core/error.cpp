@@ -36,9 +36,13 @@ bool is_unit_away(const Error& error) {
 }
 
 bool is_no_reply(const Error& error) {
-  const auto* broken = std::get_if<TransportFailure>(&error);
   return std::holds_alternative<Timeout>(error) || std::holds_alternative<BadFrame>(error) ||
-         (broken != nullptr && broken->is_instead_of_reply);
+         is_closed(error);
+}
+
+bool is_closed(const Error& error) {
+  const auto* broken = std::get_if<TransportFailure>(&error);
+  return broken != nullptr && broken->is_instead_of_reply;
 }
 
 bool has_remedy(const Error& error) {

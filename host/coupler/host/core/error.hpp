@@ -64,6 +64,9 @@ bool is_unit_away(const Error& error);
 /// request only.
 bool is_no_reply(const Error& error);
 
+/// The device ended the connection in place of a reply.
+bool is_closed(const Error& error);
+
 /// Its text says what to do: no general advice need follow.
 bool has_remedy(const Error& error);
 

@@ -63,10 +63,19 @@ std::string silence_text(const Map& known, const Error& error) {
         "addresses it does not have, or answers nonsense, give its map 'verify: off', or start with --verify "
         "off (a client: Options::verify)",
         known.connection.unit, to_string(error), line_remedy(known.connection));
+  if (is_closed(error))
+    return fmt::format(
+        "connected, but instead of answering the request for its identity {}; it may take no connections "
+        "from "
+        "this machine (a node's 'allow'), have as many as it can, or be starting. If it is a foreign coupler "
+        "that does so with addresses it does not have, give its map 'verify: off', or start with --verify "
+        "off "
+        "(a client: Options::verify)",
+        to_string(error));
   return fmt::format(
       "{}, but unit {} does not answer the request for its identity: {}; check that the device runs, and "
-      "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, closes "
-      "the connection or answers nonsense, give its map 'verify: off', or start with --verify off (a client: "
+      "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, or "
+      "answers nonsense, give its map 'verify: off', or start with --verify off (a client: "
       "Options::verify)",
       is_unit_away(error) ? "the gateway answers" : "connected", known.connection.unit, to_string(error));
 }

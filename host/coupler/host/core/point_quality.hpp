@@ -35,6 +35,11 @@ struct PointQuality {
   std::string why{};                                  ///< what came instead of a reply; empty: there was one
   std::optional<WriteResult::Outcome> last_write{};   ///< of the last one that no newer one superseded
   std::string last_write_text{};                      ///< to_string() of its result
+
+  /// Of one that is refused now; 0: something else came instead of a reply, as `why` says.
+  unsigned refused_with() const {
+    return why.empty() && last_exception ? static_cast<unsigned>(*last_exception) : 0;
+  }
 };
 
 /// "good", "never read" …

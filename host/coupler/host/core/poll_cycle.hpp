@@ -75,6 +75,8 @@ class PollCycle {
   void ended_connection();
   /// It has not been by chance if it does so now: SetAside::is_suspected().
   bool is_suspected() const { return aside_.is_suspected(current()); }
+  /// That was not because of current().
+  void acquit() { aside_.answered(current()); }
   /// current() ended the connection again, though others were answered before, and after it over another one:
   /// it is parted as if it were rejected, and what is left is set aside. Returns those points; none if they
   /// were set aside before.

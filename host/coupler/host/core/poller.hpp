@@ -41,6 +41,8 @@ class Poller {
   // The request that step() made has ended the connection. As PollCycle's:
   void ended_connection() { cycle_.ended_connection(); }
   bool is_suspected() const { return cycle_.is_suspected(); }
+  void acquit() { cycle_.acquit(); }
+  Unreadable current() const { return {cycle_.current().table, cycle_.current().range}; }
   void set_aside(const Error& error);
   /// What was answered last over any connection; nullopt: nothing.
   const std::optional<Unreadable>& last_answered() const { return answered_; }

@@ -69,7 +69,7 @@ Time Writer::deadman_due(std::uint32_t point, bool is_away) const {
 
 /// A device that has gone cannot answer either; one that answers other requests, before and after, can.
 void Writer::suspect(const std::vector<Write>& writes, const Error& why) {
-  if (!is_no_reply(why)) return;
+  if (!is_no_reply(why) || is_closed(why)) return;
   for (const Write& write : writes) {
     if (suspects_.insert(write.point).second || last_written_.erase(write.point) == 0) continue;
     suspects_.erase(write.point);

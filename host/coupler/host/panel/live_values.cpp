@@ -118,12 +118,12 @@ void LiveValues::judge(const std::vector<PointQuality>& qualities, Time now) {
       // All else comes with values and the connection.
       const bool is_refused = quality == Quality::exception || quality == Quality::rejected;
       if (!is_refused && quality != Quality::stale) continue;
-      const unsigned code =
-          is_refused && qualities[i].last_exception ? static_cast<unsigned>(*qualities[i].last_exception) : 0;
+      const unsigned code = is_refused ? qualities[i].refused_with() : 0;
       State& state = points_[i];
-      if (state.quality == quality && state.exception == code) continue;
+      if (state.quality == quality && state.exception == code && state.why == qualities[i].why) continue;
       state.quality = quality;
       state.exception = code;
+      state.why = qualities[i].why;
       state.history.lose(now);
       state.revision = ++revision_;
       any = true;
@@ -174,8 +174,9 @@ std::string LiveValues::news(std::uint64_t& seen, Time earliest, Time until) {
       json["text"] = format_value(state.registers.data(), point);
       json["age"] = std::chrono::duration<double>(now - state.changed_at).count();
     }
-    if (state.quality == Quality::exception || state.quality == Quality::rejected)
-      json["exception"] = state.exception;
+    const bool is_refused = state.quality == Quality::exception || state.quality == Quality::rejected;
+    if (is_refused && state.exception != 0) json["exception"] = state.exception;
+    if (is_refused && !state.why.empty()) json["why"] = state.why;
     points[std::string(point.name)] = std::move(json);
   }
   ordered_json json{{"revision", revision_}, {"points", std::move(points)}};

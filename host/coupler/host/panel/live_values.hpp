@@ -54,6 +54,7 @@ class LiveValues : public Sink {
     std::vector<std::uint16_t> registers;  ///< empty: not read yet
     PointQuality::State quality = PointQuality::State::never_read;
     unsigned exception = 0;
+    std::string why;             ///< in place of an exception
     Time changed_at{};           ///< when it became another one
     std::uint64_t revision = 1;  ///< of the last change that a page is to see
     std::uint64_t changes = 0;   ///< since the first value

@@ -122,8 +122,7 @@ void Recorder::judge(const std::vector<PointQuality>& qualities, Time now) {
   for (std::uint32_t i = 0; i < points_.size(); ++i) {
     const Quality quality = qualities[i].state;
     if (quality != Quality::exception && quality != Quality::rejected) continue;
-    const unsigned code =
-        qualities[i].last_exception ? static_cast<unsigned>(*qualities[i].last_exception) : 0;
+    const unsigned code = qualities[i].refused_with();
     State& state = points_[i];
     const bool is_newer = state.read_at > now;  // it has been read since
     if (!online_ || is_newer || (state.quality == quality && state.exception == code)) continue;

@@ -65,6 +65,10 @@ class StartWatch {
   }
 
  private:
+  [[noreturn]] void end_at_once() {
+    const bool safe = stop_all(drivers_, &DeviceDriver::stop_device);
+    ::_exit(!safe ? not_safe : Shutdown::has_failed_thread ? wrong_input : 0);
+  }
   void watch() {
     constexpr auto soon = std::chrono::seconds(1);
     std::unique_lock lock(mutex_);
@@ -72,7 +76,7 @@ class StartWatch {
       if (!Shutdown::requested || !Shutdown::is_driving()) continue;
       const Time now = std::chrono::steady_clock::now();
       ended = std::min(ended, now);
-      if (now - ended > soon) ::_exit(stop_all(drivers_, &DeviceDriver::stop_device) ? 0 : not_safe);
+      if (now - ended > soon) end_at_once();
     }
   }
 
@@ -139,6 +143,7 @@ int drive(const Devices& devices, Node& node) {
   Shutdown::begin_to_end(exit_code, std::chrono::seconds(2));
   if (failure) node.log(Level::error, "the driver has to end: " + *failure);
   for (const auto& driver : drivers) driver->end_followers();
+  if (Shutdown::has_failed_thread) ::_exit(exit_code);  // it stands still, and would be waited for
   node.shut_down();
   return exit_code;
 }

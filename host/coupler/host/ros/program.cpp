@@ -104,16 +104,20 @@ void begin_program() {
 
 void never_wait_for_readers() {
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a log file that may not grow
   for (const int file : {STDOUT_FILENO, STDERR_FILENO}) never_wait_for_reader_of(file);
 }
 
 void end_safely_on_uncaught_exceptions() {
   std::set_terminate([] {
     const bool is_first = !Shutdown::has_failed_thread.exchange(true);
-    if (is_first) print_message("a thread has failed: " + what_was_thrown());
-    if (!Shutdown::is_driving() || ::gettid() == ::getpid()) std::abort();
-    Shutdown::requested = true;
+    const bool ends_in_order = Shutdown::is_driving() && ::gettid() != ::getpid();
+    if (ends_in_order) Shutdown::requested = true;  // first: there may be no memory for a message
+    try {
+      if (is_first) print_message("a thread has failed: " + what_was_thrown());
+    } catch (...) {
+      std::fputs("coupler_driver: a thread has failed\n", stderr);
+    }
+    if (!ends_in_order) std::abort();
     for (;;) ::pause();
   });
 }

@@ -53,7 +53,7 @@ void begin_program();
 void never_wait_for_readers();
 
 /// An exception that no thread has caught is told and, once an output may be driven, requests the shutdown;
-/// its thread stands still. The main thread's ends the program at once.
+/// its thread stands still, with the locks that it holds. The main thread's ends the program at once.
 void end_safely_on_uncaught_exceptions();
 
 /// Where the arguments end the program: prints their text, and returns the exit code.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "test/common/map/loader/loaded.hpp"
@@ -123,17 +124,19 @@ TEST(Point, Words_for_people_are_kept) {
 
 TEST(Point, Units_with_a_number_do_not_scale_and_that_is_said) {
   const auto said = [](const std::string& options) {
-    return text_of(
-        load_map(map_of("input_registers", "a: {address: 0, type: UINT, " + options + "}"), "m.yaml")
+    return test::text_of(
+        load_map(test::map_of("input_registers", "a: {address: 0, type: UINT, " + options + "}"), "m.yaml")
             .diagnostics);
   };
   EXPECT_THAT(
       said("units: 0.1V"),
       testing::HasSubstr("warning: the units '0.1V' do not scale the value: 'a' is published as it is "
                          "in the register; write 'scale: 0.1' and the units 'V'"));
-  EXPECT_THAT(said("units: '0,01 Hz'"), testing::HasSubstr("write 'scale: 0.01' and the units 'Hz'"));
+  EXPECT_THAT(said("units: 0.01 Hz"), testing::HasSubstr("write 'scale: 0.01' and the units 'Hz'"));
   for (const char* good :
-       {"units: 0.1V, scale: 0.1", "units: V", "units: 1/min", "units: 1", "units: 100", "units: m3/h"})
+       {"units: 0.1V, scale: 0.1", "units: V", "units: 1/min", "units: 1", "units: 100", "units: m3/h",
+        "units: '0=off, 1=on'", "units: '0 to 100 %'", "units: 0x01", "units: 16 bit", "units: 24h",
+        "units: '10^3 kWh'", "units: 1000 imp/kWh per phase", "units: '10, 20'", "units: '100: full'"})
     EXPECT_EQ(said(good), "") << good;
 }
 

@@ -112,6 +112,7 @@ function ageText(seconds) {
 }
 
 function qualityText(state) {
+  if (state.why !== undefined) return `${state.quality}: ${state.why}`;
   if (state.exception === undefined) return state.quality;
   return `${state.quality}: exception ${state.exception.toString(16).toUpperCase().padStart(2, "0")}`;
 }
