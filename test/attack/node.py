@@ -17,6 +17,7 @@ class Node(Served):
     def __init__(self, subject):
         super().__init__(subject.command, preexec_fn=ask_for_real_time)
         self.map_text = subject.map_text
+        self.is_simulated = "--sim" in subject.command
         self.certificates = subject.certificates
         at = re.search(r"TLS at \S+:(\d+)", self.log())
         self.tls_port = int(at[1]) if at else None
