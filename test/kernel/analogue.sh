@@ -170,8 +170,9 @@ stop node TERM || true
 cat "$(log node)"
 check "what cannot be driven at the end is said" says node 'not every output could be driven to its safe state'
 
-echo "# simulated, all of it is memory"
+echo "# simulated"
 plant_node analogue.yaml --sim
 check "an input keeps its initial value" [ "$(input_register 4)" = 0 ]
-check "an output takes every value" set_registers 2 1001
+check "a PWM takes 100 %" set_registers 2 1000
+refuse "and no more" set_registers 2 1001
 stop node TERM

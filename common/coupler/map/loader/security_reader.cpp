@@ -213,10 +213,10 @@ Security read_security(const Reader& top, const DraftPoints& drafts, std::uint16
     context.problems.error(entry->key_at, "'roles' has no role",
                            "add one, as in 'roles: {viewer: {read: all}}'");
   if (entry->children.size() > most_roles) {
-    context.problems.error(entry->key_at,
-                           fmt::format("there are {} roles, and a map has at most {}", entry->children.size(),
-                                       most_roles),
-                           "give clients with the same rights one role");
+    context.problems.error(
+        entry->key_at,
+        fmt::format("there are {} roles, and a map has at most {}", entry->children.size(), most_roles),
+        "give clients with the same rights one role");
     return {};
   }
   const std::vector<Point> points = in_order(drafts);

@@ -15,8 +15,7 @@ std::size_t Server::answer(const modbus::Frame& frame, ClientSession& session, T
   }
   adu = adu.from(before);
   if (!is_own) {
-    const std::size_t pdu =
-        handler_.handle_from_field(frame.pdu, session, now, adu.from(modbus::mbap_size));
+    const std::size_t pdu = handler_.handle_from_field(frame.pdu, session, now, adu.from(modbus::mbap_size));
     modbus::put_header(frame, pdu, adu.data());
     return before + modbus::mbap_size + pdu;
   }

@@ -33,8 +33,8 @@ class IoService {
   void run(const std::function<bool(TimePoint)>& is_over, const std::function<void()>& beat);
   /// Releases its clients; outputs stay as they are, and what clients have scheduled is cancelled.
   std::vector<OpenConnection> release();
-  /// The end: drives the outputs to their safe state, tells those that wait for changes, and logs why the node
-  /// ends, and the summary.
+  /// The end: drives the outputs to their safe state, tells those that wait for changes, and logs why the
+  /// node ends, and the summary.
   void end(std::string_view why);
   /// Drives the outputs to their safe state, and tells those that wait for changes. False: one of them could
   /// not be driven.
@@ -64,8 +64,8 @@ class IoService {
   std::uint32_t trips_;  ///< of the watchdog, that were logged
 };
 
-/// What a process that answered clients logs at its end. `why`: it ends. `safe`: all outputs are in their safe
-/// state. Statistics that are 0 are left out, but for requests and their exceptions.
+/// What a process that answered clients logs at its end. `why`: it ends. `safe`: all outputs are in their
+/// safe state. Statistics that are 0 are left out, but for requests and their exceptions.
 std::string shutdown_summary(std::string_view why, bool safe, const Statistics& statistics, TimePoint now);
 
 }  // namespace coupler::device

@@ -11,8 +11,8 @@ namespace coupler::device {
 struct ServeError {
   /// A wrong map stays wrong; what failed may work the next time, so a service is started again then.
   enum Reason : int { map_is_wrong = 1, device_failed = 3 };
-  Reason reason;       ///< also the exit status
-  std::string errors;  ///< one a line; empty: they are logged already
+  Reason reason;               ///< also the exit status
+  std::string errors;          ///< one a line; empty: they are logged already
   std::string first_logged{};  ///< of those
 };
 
