@@ -74,6 +74,7 @@ def a_pwm_is_a_pwm(client, checks):
 
 def a_page_plays_the_machine(port, client, checks):
     with Panel(COUPLER, f"127.0.0.1:{port}", None, "--field", "--write") as panel, Page(panel) as page:
+        page.await_online(True, checks)
         told = {point["name"]: "write" in point for point in panel.get("/points.json", page.token)["points"]}
         checks.equal("what can be set", told, {"lamp": False, "door": True, "lamp_burns": False, "plain": True, "level": True,
                                                "opened": False, "flow": True, "fan": False})
@@ -82,8 +83,9 @@ def a_page_plays_the_machine(port, client, checks):
         page.await_value("level", value=-4.5, checks=checks)
         checks.equal("the node's inputs", client.read_discrete_inputs(0, 3, 1).bits[:3], [False, False, True])
         checks.equal("its registers", client.read_input_registers(0, 4, 1).registers, [0x10000 - 45, 1, 0, 0x4020])
-        client.write_coil(0, True, 1)
-        page.await_value("lamp", value=True, checks=checks)
+        # Again and again: the node's watchdog may switch it off before the page has seen it.
+        peer.await_true("the page sees the lamp", lambda: page.value("lamp") is True, checks,
+                        poll=lambda: client.write_coil(0, True, 1))
 
 
 
