@@ -184,7 +184,7 @@ std::string_view without_fc(std::string_view text) {
   return text;
 }
 
-/// Of a column such as "Writable", where people tick rows and leave the others empty.
+/// Reads a cell of a column such as "Writable", where people tick rows and leave the others empty.
 std::optional<bool> answer(std::string_view text) {
   const std::string word = lower(text);
   for (const std::string_view yes : {"x", "1", "y", "\u2713", "\u2714"})

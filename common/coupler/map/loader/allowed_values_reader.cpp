@@ -71,7 +71,7 @@ bool is_identifier(std::string_view text) {
   });
 }
 
-/// Of one `values`, which may have a name for each number of a type.
+/// Remembers what one `values` has named so far: it may have a name for each number of a type.
 struct Seen {
   std::unordered_set<std::int64_t> values;
   std::unordered_set<std::string_view> names;

@@ -120,7 +120,8 @@ void read_access(const Reader& reader, Point& point, const Context& context) {
                            "remove 'access'");
 }
 
-/// Of "0.1V", "10 W": the power of ten, and the unit alone behind it. Empty if it is anything else.
+/// Parts "0.1V" or "10 W" into the power of ten and the unit alone behind it. Anything else gives two empty
+/// texts.
 std::pair<std::string_view, std::string_view> power_and_unit(std::string_view units) {
   for (const std::string_view power : {"0.001", "0.01", "0.1", "10", "100", "1000"}) {
     if (units.substr(0, power.size()) != power) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a Handler does for whoever plays the machine around a simulated node (coupler/map/field_side.hpp).
+// A Handler answers here whoever plays the machine around a simulated node (coupler/map/field_side.hpp).
 #include "coupler/device/core/handler.hpp"
 
 #include <algorithm>

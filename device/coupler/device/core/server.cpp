@@ -14,12 +14,9 @@ std::size_t Server::answer(const modbus::Frame& frame, ClientSession& session, T
     return before;
   }
   adu = adu.from(before);
-  if (!is_own) {
-    const std::size_t pdu = handler_.handle_from_field(frame.pdu, session, now, adu.from(modbus::mbap_size));
-    modbus::put_header(frame, pdu, adu.data());
-    return before + modbus::mbap_size + pdu;
-  }
-  const std::size_t pdu = handler_.handle(frame.pdu, session, now, adu.from(modbus::mbap_size));
+  const auto reply = adu.from(modbus::mbap_size);
+  const std::size_t pdu = is_own ? handler_.handle(frame.pdu, session, now, reply)
+                                 : handler_.handle_from_field(frame.pdu, session, now, reply);
   if (session.wait) {
     session.wait->transaction = frame.transaction;
     session.wait->unit = frame.unit;

@@ -85,7 +85,6 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
     return ServeError::device_failed;
   }
   const Signals signals(loop);
-  const pid_t parent = supervisor.pid();
   supervisor.watch(loop);
   if (hooks_) waker_ = std::make_unique<LoopWaker>(loop);
   if (hooks_ && !hooks_->begin(waker_.get())) return ServeError::device_failed;
@@ -100,7 +99,7 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
       },
       [&] { supervisor.beat(); });
   if (signals.stop() != 0)
-    service.end(why_it_ends(signals.stop(), parent));
+    service.end(why_it_ends(signals.stop(), supervisor.pid()));
   else if (supervisor.wants_room())
     for (const OpenConnection& client : service.release()) supervisor.give(client);
   else

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -155,11 +156,11 @@ Exit panel(const DeviceArgument& argument, const PanelOptions& options) {
   }
   const auto found = get_device("panel", argument);
   if (!found) return found.error();
-  const FieldMap field(found->map);
-  const Map& original = options.field ? field.map() : found->map;
+  std::optional<FieldMap> field;
   if (options.field)
-    if (const std::string why = field.why_missing(); !why.empty())
+    if (const std::string why = field.emplace(found->map).why_missing(); !why.empty())
       return complain("panel", failed, "--field: " + why, {});
+  const Map& original = field ? field->map() : found->map;
   const OnlyLooking looking(original);
   const Map& map = looking.map();
   host::SteadyClock clock;
