@@ -75,6 +75,13 @@ def a_silent_device_holds_nothing_up(checks):
             checks.equal("a silent device: status", program.wait(peer.PATIENCE), 0)
 
 
+def awaits_signals(program):
+    """Whether it has blocked SIGINT, for the thread that takes it with sigwait()."""
+    status = pathlib.Path(f"/proc/{program.pid}/status").read_text(encoding="ascii")
+    blocked = next(line.split()[1] for line in status.splitlines() if line.startswith("SigBlk:"))
+    return int(blocked, 16) >> (signal.SIGINT - 1) & 1 == 1
+
+
 def nobody_reads(what, command, checks, folder=None):
     """Neither its messages nor its output, where that is not a recording in the folder."""
     for kind, make in ("pipe", os.pipe), ("socket", lambda: tuple(end.detach() for end in socket.socketpair())):
@@ -86,7 +93,8 @@ def nobody_reads(what, command, checks, folder=None):
             if folder:
                 peer.await_true(f"{what}: it records", lambda path=path: is_recorded(path), checks)
             else:
-                time.sleep(0.5)
+                peer.await_true(f"{what}: it awaits signals", lambda program=program: awaits_signals(program), checks)
+                time.sleep(0.5)  # so that it is writing to what nobody reads
             program.send_signal(signal.SIGINT)
             try:
                 checks.equal(f"{what}: status", program.wait(peer.PATIENCE / 6), 0)
