@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coupler/modbus/rtu_frame.hpp"
+#include "test/fuzz/pieces.hpp"
 #include "test/fuzz/require.hpp"
 
 namespace coupler::fuzz {
@@ -19,13 +20,6 @@ using Outcome = RtuFramer::Outcome;
 using Frame = std::array<std::uint8_t, max_rtu_size>;
 
 constexpr std::uint8_t unit = 17;
-
-Bytes take(Bytes& input, std::size_t most) {
-  const std::size_t size = input.empty() ? 0 : std::min<std::size_t>({input[0], most, input.size() - 1});
-  const Bytes taken = input.empty() ? input : input.sub(1, size);
-  input = input.empty() ? input : input.from(1 + size);
-  return taken;
-}
 
 Outcome feed(RtuFramer& framer, Bytes bytes) {
   for (std::size_t at = 0; at < bytes.size();) {
@@ -57,13 +51,13 @@ void check_next(RtuFramer& framer, Bytes request) {
 }
 
 void receive(Bytes input) {
-  const Bytes request = take(input, max_pdu_size);
+  const Bytes request = take_piece(input, max_pdu_size);
   if (request.empty() || (request[0] & exception_bit) != 0) return;
   RtuFramer framer;
   framer.expect(unit, request);
   std::vector<std::uint8_t> come;
   while (!input.empty()) {
-    const Bytes piece = take(input, input.size());
+    const Bytes piece = take_piece(input, input.size());
     come.insert(come.end(), piece.begin(), piece.end());
     if (feed(framer, piece) == Outcome::reply) return check(framer, request, come);
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -10,17 +9,12 @@
 #include <utility>
 
 #include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/modbus/tcp_framer.hpp"
 #include "coupler/host/modbus/tls_link.hpp"
-#include "coupler/modbus/frame.hpp"
-
-struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for its context
 
 namespace coupler::host {
 
-/// A Modbus/TCP device, or a gateway. libmodbus holds the connection and receives the replies to reads.
-/// Everything else is our own: libmodbus does not compare unit ids, does not report exception codes above 0B,
-/// cannot send a write in one thread and receive the answer in another, and its connect can neither be
-/// interrupted nor resolve names in the background.
+/// A Modbus/TCP device, or a gateway. docs/decisions/0001 says why libmodbus does not do this.
 class ModbusTransport : public MultiUnitTransport {
  public:
   explicit ModbusTransport(const Connection& connection);
@@ -54,17 +48,21 @@ class ModbusTransport : public MultiUnitTransport {
  private:
   /// To be called before a request is sent.
   Result<> make_ready();
-  void throw_away(std::uint64_t bytes);
-  /// Of an exception whose header lies about its length: what follows cannot be trusted.
-  modbus::Bytes take_lying_exception(const modbus::Framer& framer, const Result<modbus::Bytes>& reply);
-  modbus::Frame next_header();
+  /// Gives a request the next transaction number and the unit that is selected.
+  void build(TcpRequest& request, modbus::Bytes pdu);
+  Result<> put(const TcpRequest& request);
+  /// The PDU of the reply, valid until the next call. `has_come`: a part of it has, and the rest comes within
+  /// a timeout from now.
+  Result<modbus::Bytes> receive_reply(const TcpRequest& request, Deadline deadline, bool has_come = false);
+  /// BadFrame in place of `error` if what has come is noise.
+  tl::unexpected<Error> no_reply(const TcpRequest& request, Error error) const;
   /// The answer to a wait comes before that to the request which has been sent now.
   Result<> receive_wait_before(const Deadline& deadline);
   Result<> take_wait_reply(const Result<modbus::Bytes>& pdu);
 
   /// A wait for changes that is outstanding.
   struct Wait {
-    modbus::Frame header;
+    TcpRequest request;
     Time sent{};
     Deadline answer_by;
   };
@@ -78,22 +76,18 @@ class ModbusTransport : public MultiUnitTransport {
   std::optional<TlsTexts> tls_;    ///< nullopt: plain Modbus/TCP
   std::unique_ptr<TlsLink> link_;  ///< of a connection with TLS
   std::chrono::milliseconds timeout_{0};
-  std::unique_ptr<_modbus, void (*)(_modbus*)> context_;
   Event interrupted_;
   Wakeup wakeup_;
-  modbus::Frame sent_;  ///< the header of the request whose answer is awaited
-  std::array<std::uint8_t, modbus::max_adu_size> reply_{};
+  std::uint16_t transaction_;  ///< of the last request
+  TcpRequest sent_;            ///< its answer is awaited
   Deadline answer_by_{std::chrono::milliseconds(0)};
-  std::uint8_t function_ = 0;  ///< of that request
-  bool is_first_ = true;       ///< nothing has been answered over this connection
-  std::uint64_t unasked_ = 0;  ///< bytes thrown away over this connection
-  bool is_untrusted_ = false;  ///< the connection is made anew before the next request
+  TcpFramer framer_;
   std::atomic<std::uint64_t> discarded_{0};
   std::optional<Wait> wait_;
   std::optional<WaitAnswer> wait_answer_;  ///< until it is taken
   /// Between the owner and other threads, of what follows; never held during a request.
   mutable std::mutex socket_mutex_;
-  int socket_ = -1;
+  Descriptor socket_;
   std::optional<Certificates> certificates_;
 };
 

@@ -3,8 +3,8 @@
 
 #include <array>
 
+#include "coupler/host/modbus/bad_reply.hpp"
 #include "coupler/host/modbus/modbus_transport.hpp"
-#include "coupler/host/modbus/raw_exchange.hpp"
 #include "coupler/host/modbus/rtu_transport.hpp"
 #include "coupler/map/functions.hpp"
 #include "coupler/modbus/file_record.hpp"

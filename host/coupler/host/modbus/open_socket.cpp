@@ -5,7 +5,6 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
-#include <sys/select.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -87,8 +86,6 @@ int connect_to(int fd, const addrinfo& address, const Deadline& deadline, const 
 tl::expected<Descriptor, std::string> try_address(const addrinfo& address, const Deadline& deadline,
                                                   const Event& interrupt) {
   Descriptor fd(::socket(address.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, IPPROTO_TCP));
-  // libmodbus waits with select(), which knows no descriptor above FD_SETSIZE.
-  if (fd.get() >= FD_SETSIZE) return tl::make_unexpected("too many open files");
   const int error = fd.get() < 0 ? errno : connect_to(fd.get(), address, deadline, interrupt);
   if (error != 0) return tl::make_unexpected(std::strerror(error));
   const int on = 1;

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/modbus/tcp_framer.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/host/modbus/bad_reply.hpp"
+#include "coupler/modbus/frame.hpp"
+
+namespace coupler::host {
+namespace {
+
+constexpr std::size_t at_protocol = 2;
+constexpr std::size_t at_length = 4;
+constexpr std::size_t at_unit = 6;
+constexpr std::size_t at_function = 7;
+constexpr std::size_t at_count = 8;          ///< of a reply to a read; of an exception: its code
+constexpr std::size_t exception_length = 3;  ///< the unit, the function code and that of the exception
+constexpr std::size_t exception_size = at_length + 2 + exception_length;
+
+/// A device that sends without end is not listened to for ever.
+constexpr std::uint64_t most_skipped = 16384;
+
+bool is_read(std::uint8_t function) { return function >= 1 && function <= 4; }
+
+/// RFC 8446 5.1: what a device with TLS answers to plain Modbus. A Modbus header has a protocol of 0 there.
+bool is_tls_alert(modbus::Bytes adu) { return adu[0] == 0x15 && adu[1] == 3 && adu[at_protocol] == 3; }
+
+/// What has the right transaction is the reply, however wrong the rest is: the error says what is wrong. So
+/// it is with a TLS alert.
+bool begins_reply(modbus::Bytes bytes, const TcpRequest& request) {
+  if (bytes.size() < 2) return false;
+  const std::uint16_t begin = modbus::get_u16(bytes.data());
+  return begin == request.transaction() || begin == 0x1503;
+}
+
+/// Whether a reply to this request, or to another one with the same function code, may begin so, as far as it
+/// has come.
+bool may_begin_reply(modbus::Bytes bytes, const TcpRequest& request) {
+  if (begins_reply(bytes, request)) return true;
+  for (std::size_t i = at_protocol; i < std::min(bytes.size(), at_length + 1); ++i)
+    if (bytes[i] != 0) return false;
+  if (bytes.size() > at_unit && bytes[at_unit] != request.unit()) return false;
+  if (bytes.size() <= at_function) return true;
+  const std::size_t length = bytes[at_length + 1];
+  const std::uint8_t function = bytes[at_function];
+  if (function == (request.function() | modbus::exception_bit)) return length == exception_length;
+  if (function != request.function()) return false;
+  return !is_read(function) || bytes.size() <= at_count || length == at_count + 1 - at_unit + bytes[at_count];
+}
+
+std::optional<BadFrame> mismatch(modbus::Bytes adu, const TcpRequest& request) {
+  const std::uint16_t transaction = modbus::get_u16(adu.data());
+  if (transaction != request.transaction())
+    return BadFrame{fmt::format("the reply to another request: transaction {}, where {} was asked",
+                                transaction, request.transaction())};
+  if (adu[at_unit] != request.unit())
+    return BadFrame{
+        fmt::format("unit {0} answered a request to unit {1}; if the device is unit {0}, "
+                    "set `unit: {0}`",
+                    adu[at_unit], request.unit())};
+  return std::nullopt;
+}
+
+}  // namespace
+
+void TcpRequest::set(std::uint16_t transaction, std::uint8_t unit, modbus::Bytes pdu) {
+  modbus::put_header({transaction, unit, {}}, pdu.size(), adu_.data());
+  std::copy(pdu.begin(), pdu.end(), adu_.begin() + modbus::mbap_size);
+  size_ = modbus::mbap_size + pdu.size();
+}
+
+void TcpFramer::reset() {
+  begin_ = end_ = 0;
+  is_first_ = is_trusted_ = true;
+  has_noise_ = false;
+  skipped_before_ = skipped_;
+}
+
+Span<std::uint8_t> TcpFramer::room() {
+  if (begin_ != 0) {
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+  }
+  return Span<std::uint8_t>(buffer_).from(end_);
+}
+
+TcpFramer::Outcome TcpFramer::next(const TcpRequest& request) {
+  // What comes before the answer to a wait is the reply to a request behind it.
+  const bool is_wait = request.function() == static_cast<std::uint8_t>(modbus::Function::wait_for_changes);
+  if (!is_wait && (is_first_ || has_noise_))
+    while (!rest().empty() && !may_begin_reply(rest(), request)) skip(1);
+  if (skipped_ - skipped_before_ > most_skipped) return refuse(*noise(request));
+
+  const modbus::Bytes adu = rest();
+  if (adu.size() <= at_unit) return Outcome::nothing;
+  if (is_tls_alert(adu))
+    return refuse(
+        NotConnected{"the device speaks TLS at this port; reach it by tls:// (docs/security.md)", true});
+  const std::size_t length = modbus::get_u16(&adu[at_length]);
+  if (modbus::get_u16(&adu[at_protocol]) != 0 || length < 2 || length > 1 + modbus::max_pdu_size)
+    return refuse(BadFrame{"not Modbus/TCP: " + shown_bytes(adu)});
+  if (auto wrong = mismatch(adu, request)) return refuse(*std::move(wrong));
+
+  const std::size_t size = at_unit + length;
+  if (adu.size() <= at_function) return Outcome::nothing;
+  if (adu[at_function] == (request.function() | modbus::exception_bit)) {
+    if (adu.size() < std::min(size, exception_size)) return Outcome::nothing;
+    is_trusted_ = length == exception_length;
+    return take(std::min(size, exception_size));
+  }
+  // A frame whose header and byte count differ is malformed now, and not late when no more comes.
+  if (adu[at_function] == request.function() && is_read(request.function()) && size > at_count) {
+    if (adu.size() <= at_count) return Outcome::nothing;
+    const std::size_t left = size - at_count - 1;
+    if (adu[at_count] != left)
+      return refuse(
+          bad_reply(fmt::format("the byte count is {}, where the header leaves {}", adu[at_count], left),
+                    request.pdu(), adu.first(std::min(adu.size(), size))));
+  }
+  return adu.size() < size ? Outcome::nothing : take(size);
+}
+
+TcpFramer::Outcome TcpFramer::take(std::size_t bytes) {
+  pdu_ = rest().first(bytes).from(modbus::mbap_size);
+  begin_ += bytes;
+  is_first_ = false;
+  return Outcome::reply;
+}
+
+TcpFramer::Outcome TcpFramer::refuse(Error problem) {
+  problem_ = std::move(problem);
+  return Outcome::bad;
+}
+
+void TcpFramer::skip(std::size_t bytes) {
+  for (const std::uint8_t byte : rest().first(bytes)) {
+    const std::uint64_t since_drop = skipped_++ - skipped_before_;
+    if (since_drop < first_skipped_.size()) first_skipped_[since_drop] = byte;
+  }
+  begin_ += bytes;
+  has_noise_ = has_noise_ || bytes > 0;
+}
+
+void TcpFramer::drop() {
+  skip(rest().size());
+  skipped_before_ = skipped_;
+}
+
+std::optional<BadFrame> TcpFramer::noise(const TcpRequest& request) const {
+  const std::uint64_t skipped = skipped_ - skipped_before_;
+  if (skipped == 0 || begins_reply(rest(), request)) return std::nullopt;
+  const auto shown = std::min<std::uint64_t>(skipped, first_skipped_.size());
+  return BadFrame{fmt::format("{} bytes have come, and none of them begins a reply: {}",
+                              skipped + rest().size(),
+                              shown_bytes({first_skipped_.data(), static_cast<std::size_t>(shown)}))};
+}
+
+}  // namespace coupler::host

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "coupler/base/span.hpp"
+#include "coupler/host/core/error.hpp"
+#include "coupler/modbus/limits.hpp"
+#include "coupler/modbus/pdu.hpp"
+
+namespace coupler::host {
+
+/// A request as it goes out over Modbus/TCP: the MBAP header and the PDU (TCP 3.1).
+class TcpRequest {
+ public:
+  /// A PDU of 1 … 253 bytes.
+  void set(std::uint16_t transaction, std::uint8_t unit, modbus::Bytes pdu);
+
+  modbus::Bytes adu() const { return modbus::Bytes(adu_).first(size_); }
+  modbus::Bytes pdu() const { return adu().from(modbus::mbap_size); }
+  std::uint16_t transaction() const { return modbus::get_u16(adu_.data()); }
+  std::uint8_t unit() const { return adu_[modbus::mbap_size - 1]; }
+  std::uint8_t function() const { return adu_[modbus::mbap_size]; }
+
+ private:
+  std::array<std::uint8_t, modbus::max_adu_size> adu_{};
+  std::size_t size_ = 0;
+};
+
+/// Finds replies in what comes over one Modbus/TCP connection, by transaction, unit and length.
+///
+/// Before the first reply, and after bytes that nobody asked for, everything is skipped that cannot begin the
+/// reply: the greeting of a serial server, a heartbeat, a frame for another client. Otherwise the first byte
+/// that comes must begin it.
+///
+/// Fill room(), say how much with filled(), then look with next(). It needs no socket.
+class TcpFramer {
+ public:
+  enum class Outcome {
+    nothing,  ///< more bytes are needed
+    reply,    ///< pdu() is the reply
+    bad,      ///< problem() says why this is no reply to the request
+  };
+
+  /// There is a new connection.
+  void reset();
+
+  /// Where the next received bytes go; never empty after next() found nothing. Ends the validity of pdu().
+  Span<std::uint8_t> room();
+  void filled(std::size_t bytes) { end_ += bytes; }
+
+  Outcome next(const TcpRequest& request);
+  /// An exception, of two bytes at most, or any other reply.
+  modbus::Bytes pdu() const { return pdu_; }
+  /// BadFrame; NotConnected if the device speaks TLS.
+  const Error& problem() const { return problem_; }
+
+  /// False after an exception whose header says another length than it has: nobody knows where the next
+  /// reply begins, so the connection must not be used again.
+  bool is_trusted() const { return is_trusted_; }
+
+  /// No reply is awaited: what has come is unasked for. A new count of skipped bytes begins.
+  void drop();
+  /// Bytes that next() and drop() have skipped, over all connections.
+  std::uint64_t skipped() const { return skipped_; }
+  /// Set if bytes were skipped since the last drop(), and what has come behind them does not begin the reply.
+  std::optional<BadFrame> noise(const TcpRequest& request) const;
+
+ private:
+  modbus::Bytes rest() const { return {buffer_.data() + begin_, end_ - begin_}; }
+  void skip(std::size_t bytes);
+  Outcome take(std::size_t bytes);
+  Outcome refuse(Error problem);
+
+  std::array<std::uint8_t, 2 * modbus::max_adu_size>
+      buffer_{};  ///< a wait for changes and a read may end at once
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+  modbus::Bytes pdu_;
+  Error problem_;
+  bool is_first_ = true;    ///< no reply has come over this connection
+  bool has_noise_ = false;  ///< bytes were skipped over this connection
+  bool is_trusted_ = true;
+  std::uint64_t skipped_ = 0;
+  std::uint64_t skipped_before_ = 0;             ///< of these, before the last drop()
+  std::array<std::uint8_t, 9> first_skipped_{};  ///< since then, to be shown
+};
+
+}  // namespace coupler::host
