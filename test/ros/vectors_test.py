@@ -79,12 +79,13 @@ class Vectors(testing.RosTest):
     at_once = True
     peer = Peer
 
-    def check(self, path, *program):
+    def check(self, path, *program, name=None):
         """`program`: a generated driver, or the driver with its map."""
         vectors = vectors_of(path)
-        points = [Tested(point, i, "/" + self.name) for i, point in enumerate(vectors["points"])]
+        name = name or self.name
+        points = [Tested(point, i, "/" + name) for i, point in enumerate(vectors["points"])]
         with self.peer() as peer:
-            arguments = (*program, f"_name:={self.name}", *peer.way, f"_timeout:={NO_TIMEOUT}")
+            arguments = (*program, f"_name:={name}", *peer.way, f"_timeout:={NO_TIMEOUT}")
             with process.Process(*process.driver_arguments(arguments)) as driver:
                 driver.wait_for("connected")
                 self.check_reading(peer, points)
@@ -136,7 +137,8 @@ class Vectors(testing.RosTest):
         for number in range(5):
             with self.subTest(map=number):
                 path = pathlib.Path(os.environ["RANDOM_MAPS"]) / f"random_{number}.yaml"
-                self.check(path, process.BUILD / f"test/bin/random_{number}_driver")
+                # The master remembers the type of a topic for which a subscriber of the last map is still there.
+                self.check(path, process.BUILD / f"test/bin/random_{number}_driver", name=f"{self.name}_{number}")
 
 
 if __name__ == "__main__":
