@@ -54,20 +54,16 @@ class Impostor : public host::Transport {
   Result<> connect() override { return {}; }
   void close() override { sent_.reset(); }
   void interrupt() override {}
-  Result<> read_bits(Table, modbus::Range, std::uint8_t*) override { return unexpected(); }
-  Result<> read_registers(Table, modbus::Range, std::uint16_t*) override { return unexpected(); }
-  Result<> read_file_record(std::uint16_t, std::uint16_t, Span<std::uint16_t>) override {
-    return unexpected();
-  }
-  Result<> send(const modbus::WriteRequest&) override { return unexpected(); }
-  Result<> receive(const modbus::WriteRequest&) override { return unexpected(); }
+  Result<Bytes> exchange(Bytes) override { return unexpected(); }
+  Result<> send_pdu(Bytes) override { return {}; }
+  Result<Bytes> receive_pdu() override { return unexpected(); }
   Woken wait_until(Time) override { return Woken::by_time; }
   void wake() override {}
 
  private:
-  static Result<> unexpected() {
+  static Result<Bytes> unexpected() {
     require(false, "a listener only waits for changes");
-    return {};
+    return Bytes();
   }
 
   host::Clock& clock_;

@@ -9,7 +9,7 @@
 
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/map/identity.hpp"
-#include "coupler/modbus/file_record.hpp"
+#include "coupler/modbus/server.hpp"
 #include "test/fuzz/require.hpp"
 
 namespace coupler::fuzz {
@@ -23,34 +23,31 @@ class Impostor : public host::Transport {
  public:
   explicit Impostor(Bytes answers) : answers_(answers) {}
 
-  Result<> read_registers(Table, modbus::Range range, std::uint16_t* registers) override {
-    const Bytes bytes = take(2 * range.count());
-    for (std::size_t i = 0; i < bytes.size() / 2; ++i) registers[i] = modbus::get_u16(&bytes[2 * i]);
-    return done();
-  }
-
-  Result<> read_file_record(std::uint16_t file, std::uint16_t record,
-                            Span<std::uint16_t> registers) override {
-    require(file > 0 && !registers.empty() && registers.size() <= modbus::max_file_registers &&
-                record + registers.size() <= modbus::records_per_file,
-            "the driver asks for records that a file can have");
+  Result<Bytes> exchange(Bytes request) override {
+    const auto parsed = modbus::parse_request(request);
+    require(parsed.has_value(), "the driver asks for what there can be");
+    if (const auto* read = std::get_if<modbus::Read>(&*parsed)) return area(*read);
+    const auto* groups = std::get_if<modbus::FileGroups>(&*parsed);
+    require(groups != nullptr && groups->size() == 1, "the driver only reads the area and the file");
+    const auto registers = (*groups)[0].registers;
     const Bytes size = take(1);
     if (size.empty()) return host::fail(host::NotConnected{});
     const bool right = size[0] == 255;
-    const Bytes reply = right ? reply_around(take(2 * registers.size()), registers.size()) : take(size[0]);
-    const auto parsed = modbus::parse_file_reply(reply, registers);
-    require(parsed || !right, "a right reply is taken");
-    if (parsed) return done();
-    if (parsed.error().exception) return host::fail(host::ExceptionReply{*parsed.error().exception});
-    return host::fail(host::BadFrame{});
+    const Bytes reply = right ? reply_around(take(std::size_t{2} * registers), registers) : take(size[0]);
+    std::array<std::uint16_t, modbus::max_file_registers> taken{};
+    require(!right || modbus::parse_file_reply(reply, Span<std::uint16_t>(taken).first(registers)),
+            "a right reply is taken");
+    return answer(reply);
+  }
+  Result<> send_pdu(Bytes) override { return {}; }
+  Result<Bytes> receive_pdu() override {
+    require(false, "the driver only reads the area and the file");
+    return Bytes();
   }
 
   Result<> connect() override { return {}; }
   void close() override {}
   void interrupt() override {}
-  Result<> read_bits(Table, modbus::Range, std::uint8_t*) override { return unexpected(); }
-  Result<> send(const modbus::WriteRequest&) override { return unexpected(); }
-  Result<> receive(const modbus::WriteRequest&) override { return unexpected(); }
   Woken wait_until(host::Time) override { return Woken::by_time; }
   void wake() override {}
 
@@ -69,13 +66,16 @@ class Impostor : public host::Transport {
     return Bytes(pdu_.data(), reply.size());
   }
 
-  Result<> done() const {
-    if (answers_.empty()) return host::fail(host::NotConnected{});
-    return {};
+  Result<Bytes> area(const modbus::Read& read) {
+    std::array<std::uint16_t, modbus::max_read_registers> registers{};
+    const Bytes bytes = take(2 * read.range.count());
+    for (std::size_t i = 0; i < bytes.size() / 2; ++i) registers[i] = modbus::get_u16(&bytes[2 * i]);
+    const auto all = Span<const std::uint16_t>(registers).first(read.range.count());
+    return answer(Bytes(pdu_.data(), modbus::reply_registers(read.function, all, pdu_)));
   }
-  static Result<> unexpected() {
-    require(false, "the driver only reads the area and the file");
-    return {};
+  Result<Bytes> answer(Bytes reply) const {
+    if (answers_.empty()) return host::fail(host::NotConnected{});
+    return reply;
   }
 
   Bytes answers_;

@@ -7,12 +7,31 @@
 namespace coupler::modbus {
 namespace {
 
-/// The `size` bytes of the values.
-tl::expected<const std::uint8_t*, ReplyError> values_in(const ReadRequest& request, Bytes reply,
-                                                        std::size_t size) {
-  if (reply.size() != 2 + size || reply[0] != request.function() || reply[1] != size)
-    return tl::unexpected(reply_error(request.function(), reply));
-  return reply.data() + 2;
+bool is_single_write(Function function) {
+  return function == Function::write_single_coil || function == Function::write_single_register;
+}
+
+/// `reply` has so many bytes, and begins with `same` bytes of the request.
+bool repeats(Bytes request, Bytes reply, std::size_t size, std::size_t same) {
+  return reply.size() == size && std::equal(reply.begin(), reply.begin() + same, request.begin());
+}
+
+bool holds(Bytes reply, std::size_t bytes) { return reply.size() == 2 + bytes && reply[1] == bytes; }
+
+/// `reply` has the function code of the request.
+bool fits(Bytes request, Bytes reply) {
+  switch (static_cast<Function>(request[0])) {
+    case Function::read_coils:
+    case Function::read_discrete_inputs: return holds(reply, (get_u16(&request[3]) + 7U) / 8U);
+    case Function::read_holding_registers:
+    case Function::read_input_registers: return holds(reply, std::size_t{2} * get_u16(&request[3]));
+    case Function::write_single_coil:
+    case Function::write_single_register:
+    case Function::mask_write_register: return repeats(request, reply, request.size(), 3);
+    case Function::write_multiple_coils:
+    case Function::write_multiple_registers: return repeats(request, reply, 5, 5);
+    default: return true;
+  }
 }
 
 }  // namespace
@@ -25,17 +44,15 @@ ReadRequest::ReadRequest(Function function, Range range) {
 }
 
 tl::expected<void, ReplyError> take_bits(const ReadRequest& request, Bytes reply, std::uint8_t* bits) {
-  const auto values = values_in(request, reply, (request.count() + 7U) / 8U);
-  if (!values) return tl::unexpected(values.error());
-  for (std::size_t i = 0; i < request.count(); ++i) bits[i] = (*values)[i / 8] >> i % 8 & 1;
+  if (auto answers = check_reply(request.pdu(), reply); !answers) return answers;
+  for (std::size_t i = 0; i < request.count(); ++i) bits[i] = reply[2 + i / 8] >> i % 8 & 1;
   return {};
 }
 
 tl::expected<void, ReplyError> take_registers(const ReadRequest& request, Bytes reply,
                                               std::uint16_t* registers) {
-  const auto values = values_in(request, reply, std::size_t{2} * request.count());
-  if (!values) return tl::unexpected(values.error());
-  for (std::size_t i = 0; i < request.count(); ++i) registers[i] = get_u16(*values + 2 * i);
+  if (auto answers = check_reply(request.pdu(), reply); !answers) return answers;
+  for (std::size_t i = 0; i < request.count(); ++i) registers[i] = get_u16(&reply[2 + 2 * i]);
   return {};
 }
 
@@ -82,16 +99,10 @@ WriteRequest WriteRequest::mask(std::uint16_t address, std::uint16_t and_mask, s
   return request;
 }
 
-tl::expected<void, ReplyError> check_reply(const WriteRequest& request, Bytes reply) {
-  const Bytes asked = request.pdu();
-  const bool several = request.function() == Function::write_multiple_coils ||
-                       request.function() == Function::write_multiple_registers;
-  const std::size_t same = several ? 5 : 3;
-  if (reply.size() != (several ? 5 : asked.size()) || !std::equal(&reply[0], &reply[0] + same, asked.begin()))
-    return tl::unexpected(reply_error(asked[0], reply));
-  const bool single = request.function() == Function::write_single_coil ||
-                      request.function() == Function::write_single_register;
-  if (single && get_u16(&reply[3]) != get_u16(&asked[3]))
+tl::expected<void, ReplyError> check_reply(Bytes request, Bytes reply) {
+  if (reply.empty() || reply[0] != request[0] || !fits(request, reply))
+    return tl::unexpected(reply_error(request[0], reply));
+  if (is_single_write(static_cast<Function>(request[0])) && get_u16(&reply[3]) != get_u16(&request[3]))
     return tl::unexpected(ReplyError{std::nullopt, get_u16(&reply[3])});
   return {};
 }

@@ -53,6 +53,7 @@ class RtuFramer {
   void expect(std::uint8_t unit, Bytes pdu);
   /// The whole frame of the request.
   Bytes request() const { return Bytes(request_).first(request_size_); }
+  Bytes request_pdu() const { return request().sub(1, request_size_ - rtu_overhead); }
 
   /// Where the next received bytes go; never empty. Ends the validity of pdu().
   Span<std::uint8_t> room();
@@ -79,7 +80,6 @@ class RtuFramer {
  private:
   enum class Found { none, beginning, reply };
 
-  Bytes request_pdu() const { return request().sub(1, request_size_ - 3); }
   static bool is_its_own_reply(Bytes pdu) { return reply_size(pdu, pdu) == pdu.size(); }
   void skip_echo();
   bool echo_may_come() const;

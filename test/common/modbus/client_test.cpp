@@ -82,30 +82,30 @@ TEST(WriteRequest, The_reply_repeats_where_it_was_written_and_how_much) {
   const std::uint8_t good[] = {0x10, 0, 1, 0, 2};
   const std::uint8_t less[] = {0x10, 0, 1, 0, 1};
   const std::uint8_t elsewhere[] = {0x10, 0, 2, 0, 2};
-  EXPECT_TRUE(check_reply(request, good));
-  EXPECT_FALSE(check_reply(request, less));
-  EXPECT_FALSE(check_reply(request, elsewhere));
+  EXPECT_TRUE(check_reply(request.pdu(), good));
+  EXPECT_FALSE(check_reply(request.pdu(), less));
+  EXPECT_FALSE(check_reply(request.pdu(), elsewhere));
 }
 
 TEST(WriteRequest, An_acknowledgement_of_another_value_is_told_with_that_value) {
   const std::uint8_t other_register[] = {6, 0, 1, 0, 9};
-  EXPECT_EQ(check_reply(WriteRequest::register_value(1, 3), other_register).error().other_value, 9);
-  EXPECT_TRUE(check_reply(WriteRequest::register_value(1, 9), other_register));
+  EXPECT_EQ(check_reply(WriteRequest::register_value(1, 3).pdu(), other_register).error().other_value, 9);
+  EXPECT_TRUE(check_reply(WriteRequest::register_value(1, 9).pdu(), other_register));
   const std::uint8_t off[] = {5, 0, 1, 0, 0};
-  EXPECT_EQ(check_reply(WriteRequest::coil(1, true), off).error().other_value, 0);
-  EXPECT_TRUE(check_reply(WriteRequest::coil(1, false), off));
+  EXPECT_EQ(check_reply(WriteRequest::coil(1, true).pdu(), off).error().other_value, 0);
+  EXPECT_TRUE(check_reply(WriteRequest::coil(1, false).pdu(), off));
 }
 
 TEST(WriteRequest, An_exception_brings_its_code_whatever_it_is) {
   const std::uint8_t reply[] = {0x85, 0x60};
-  const auto checked = check_reply(WriteRequest::coil(1, true), reply);
+  const auto checked = check_reply(WriteRequest::coil(1, true).pdu(), reply);
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().exception, static_cast<Exception>(0x60));
 }
 
 TEST(WriteRequest, The_exception_of_another_function_is_no_answer) {
   const std::uint8_t reply[] = {0x86, 2};
-  const auto checked = check_reply(WriteRequest::coil(1, true), reply);
+  const auto checked = check_reply(WriteRequest::coil(1, true).pdu(), reply);
   ASSERT_FALSE(checked);
   EXPECT_FALSE(checked.error().exception);
 }

@@ -3,24 +3,29 @@
 
 #include <algorithm>
 
+#include "coupler/map/functions.hpp"
 #include "coupler/map/identity.hpp"
+#include "coupler/modbus/server.hpp"
 
 namespace coupler::host::test {
 
 TimedDevice::~TimedDevice() = default;
 
-Result<> TimedDevice::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
+Result<modbus::Bytes> TimedDevice::exchange(modbus::Bytes pdu) {
+  const auto request = modbus::parse_request(pdu);
+  const auto* read = request ? std::get_if<modbus::Read>(&*request) : nullptr;
+  if (read == nullptr || holds_bits(table_of(read->function))) return FakeDevice::exchange(pdu);
   clock_.advance(reply_time);
-  if (is_mute && range.start() < identity::reserved.start()) {
+  if (is_mute && read->range.start() < identity::reserved.start()) {
     requests.emplace_back("unanswered");
     return fail(Timeout{std::chrono::milliseconds(3000)});
   }
-  return FakeDevice::read_registers(table, range, registers);
+  return FakeDevice::exchange(pdu);
 }
 
-Result<> TimedDevice::receive(const modbus::WriteRequest& request) {
+Result<modbus::Bytes> TimedDevice::receive_pdu() {
   clock_.advance(reply_time);
-  return FakeDevice::receive(request);
+  return FakeDevice::receive_pdu();
 }
 
 DeviceTest::DeviceTest() = default;

@@ -22,8 +22,8 @@ class TimedDevice : public FakeDevice {
   Duration reply_time{0};
   bool is_mute = false;  ///< answers the question for its identity only
 
-  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
-  Result<> receive(const modbus::WriteRequest& request) override;
+  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
+  Result<modbus::Bytes> receive_pdu() override;
 
  private:
   FakeClock& clock_;

@@ -6,26 +6,36 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/functions.hpp"
 #include "coupler/map/identity.hpp"
-#include "coupler/modbus/server.hpp"
 
 namespace coupler::host::test {
 namespace {
 
-/// "write coil 5", "write registers 7+4", "write mask 3"
-std::string describe(const modbus::WriteRequest& request) {
-  const auto parsed = modbus::parse_request(request.pdu());
-  switch (request.function()) {
-    case modbus::Function::write_single_coil: return fmt::format("write coil {}", request.address());
-    case modbus::Function::write_single_register: return fmt::format("write register {}", request.address());
-    case modbus::Function::mask_write_register: return fmt::format("write mask {}", request.address());
-    case modbus::Function::write_multiple_coils:
-      return fmt::format("write coils {}+{}", request.address(),
-                         std::get<modbus::WriteBits>(*parsed).range.count());
-    default:
-      return fmt::format("write registers {}+{}", request.address(),
-                         std::get<modbus::WriteRegisters>(*parsed).range.count());
-  }
+std::string describe(const modbus::Read& read) {
+  return fmt::format("read {} {}+{}", to_string(table_of(read.function)), read.range.start(),
+                     read.range.count());
+}
+
+/// "read coils 0+3", "write coil 5", "write registers 7+4", "write mask 3" …
+std::string describe(modbus::Bytes pdu) {
+  const auto request = modbus::parse_request(pdu);
+  if (!request) return "schedule";  // all else that the driver sends is right
+  if (const auto* read = std::get_if<modbus::Read>(&*request)) return describe(*read);
+  if (const auto* groups = std::get_if<modbus::FileGroups>(&*request))
+    return fmt::format("read file {} {}+{}", (*groups)[0].file, (*groups)[0].record, (*groups)[0].registers);
+  if (const auto* cancel = std::get_if<modbus::CancelOutput>(&*request))
+    return fmt::format("cancel {}", cancel->number);
+  const bool is_single = pdu.size() == 5;
+  if (const auto* bits = std::get_if<modbus::WriteBits>(&*request))
+    return is_single ? fmt::format("write coil {}", bits->range.start())
+                     : fmt::format("write coils {}+{}", bits->range.start(), bits->range.count());
+  if (const auto* words = std::get_if<modbus::WriteRegisters>(&*request))
+    return is_single ? fmt::format("write register {}", words->range.start())
+                     : fmt::format("write registers {}+{}", words->range.start(), words->range.count());
+  if (const auto* mask = std::get_if<modbus::MaskWrite>(&*request))
+    return fmt::format("write mask {}", mask->range.start());
+  return "schedule";
 }
 
 }  // namespace
@@ -62,20 +72,6 @@ void FakeDevice::change(Table table, std::uint16_t address, bool value) {
 void FakeDevice::decide(std::uint16_t number, modbus::Change::Kind kind, modbus::Reason reason) {
   changes.push_back(
       {static_cast<std::uint8_t>(reason), kind, number, now().time_since_epoch() + clock_is_ahead});
-}
-
-Result<modbus::ScheduleReply> FakeDevice::schedule(const modbus::ScheduleRequest& request) {
-  answer_wait();
-  const auto parsed = modbus::parse_schedule_request(request.pdu());
-  const auto* const cancel = parsed ? std::get_if<modbus::CancelOutput>(&*parsed) : nullptr;
-  requests.push_back(cancel != nullptr ? fmt::format("cancel {}", cancel->number) : "schedule");
-  if (const auto error = planned()) return tl::make_unexpected(*error);
-  if (!parsed) return fail(ExceptionReply{parsed.error()});
-  if (cancel != nullptr) return modbus::ScheduleReply{cancel->number, {}, {}};
-  scheduled.push_back(std::get<modbus::ScheduleOutput>(*parsed));
-  const modbus::Bytes packed = std::exchange(scheduled.back().values, {});
-  scheduled_values.assign(packed.begin(), packed.end());
-  return modbus::ScheduleReply{static_cast<std::uint16_t>(scheduled.size()), {}, {}};
 }
 
 Result<> FakeDevice::send_wait(const modbus::ChangesRequest& request) {
@@ -141,17 +137,21 @@ Result<> FakeDevice::connect() {
   return {};
 }
 
-Result<> FakeDevice::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
-  return read(table, range, [&](std::uint32_t i, std::uint16_t value) { bits[i] = value != 0 ? 1 : 0; });
+Result<modbus::Bytes> FakeDevice::exchange(modbus::Bytes pdu) {
+  answer_wait();
+  requests.push_back(describe(pdu));
+  const bool is_read = pdu[0] <= static_cast<std::uint8_t>(modbus::Function::read_input_registers);
+  if (is_read && during_read) during_read();
+  if (const auto error = planned()) return tl::make_unexpected(*error);
+  const auto size = carry_out(pdu);
+  if (!size) return tl::make_unexpected(size.error());
+  return modbus::Bytes(reply_).first(*size);
 }
 
-Result<> FakeDevice::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
-  return read(table, range, [&](std::uint32_t i, std::uint16_t value) { registers[i] = value; });
-}
-
-Result<> FakeDevice::send(const modbus::WriteRequest&) {
+Result<> FakeDevice::send_pdu(modbus::Bytes pdu) {
   if (!connected) return fail(NotConnected{"not connected"});
   if (fail_send) return tl::make_unexpected(*fail_send);
+  sent_.assign(pdu.begin(), pdu.end());
   const std::lock_guard lock(mutex_);
   senders.push_back(std::this_thread::get_id());
   answered_ = true;
@@ -159,15 +159,18 @@ Result<> FakeDevice::send(const modbus::WriteRequest&) {
   return {};
 }
 
-Result<> FakeDevice::receive(const modbus::WriteRequest& request) {
+Result<modbus::Bytes> FakeDevice::receive_pdu() {
   {
     const std::lock_guard lock(mutex_);
     answered_ = false;
   }
   answer_wait();
-  requests.push_back(describe(request));
+  const modbus::Bytes pdu(sent_.data(), sent_.size());
+  requests.push_back(describe(pdu));
   if (const auto error = planned()) return tl::make_unexpected(*error);
-  return carry_out(request);
+  const auto size = carry_out(pdu);
+  if (!size) return tl::make_unexpected(size.error());
+  return modbus::Bytes(reply_).first(*size);
 }
 
 Transport::Woken FakeDevice::wait_until(Time time) {
@@ -194,18 +197,6 @@ void FakeDevice::wake() {
   woken_.notify_all();
 }
 
-Result<> FakeDevice::read_file_record(std::uint16_t number, std::uint16_t record,
-                                      Span<std::uint16_t> registers) {
-  requests.push_back(fmt::format("read file {} {}+{}", number, record, registers.size()));
-  if (const auto error = planned()) return tl::make_unexpected(*error);
-  if (file.empty()) return fail(ExceptionReply{modbus::Exception::illegal_function});
-  for (std::size_t i = 0; i < registers.size(); ++i) {
-    const std::size_t at = 2 * ((number - 1) * std::size_t{modbus::records_per_file} + record + i);
-    registers[i] = static_cast<std::uint16_t>(byte(at) << 8 | byte(at + 1));
-  }
-  return {};
-}
-
 std::optional<Error> FakeDevice::planned() {
   if (!connected) return Error(NotConnected{"not connected"});
   if (wait_ && drops_waits) return Error(BadFrame{"the reply to another request"});
@@ -217,44 +208,68 @@ std::optional<Error> FakeDevice::planned() {
   return error;
 }
 
-Result<> FakeDevice::read(Table table, modbus::Range range,
-                          const std::function<void(std::uint32_t, std::uint16_t)>& put) {
-  answer_wait();
-  requests.push_back(fmt::format("read {} {}+{}", to_string(table), range.start(), range.count()));
-  if (during_read) during_read();
-  if (const auto error = planned()) return tl::make_unexpected(*error);
-  for (std::uint32_t i = 0; i < range.count(); ++i)
-    if (missing.count({table, range.start() + i}) != 0)
-      return fail(ExceptionReply{modbus::Exception::illegal_data_address});
-  for (std::uint32_t i = 0; i < range.count(); ++i) {
-    const auto found = values.find({table, range.start() + i});
-    put(i, found == values.end() ? std::uint16_t{0} : found->second);
+Result<std::size_t> FakeDevice::carry_out(modbus::Bytes pdu) {
+  const auto request = modbus::parse_request(pdu);
+  if (!request) return fail(ExceptionReply{request.error()});
+  if (const auto* wanted = std::get_if<modbus::Read>(&*request)) return read(*wanted);
+  if (const auto* groups = std::get_if<modbus::FileGroups>(&*request)) return read_file(*groups);
+  if (const auto* cancel = std::get_if<modbus::CancelOutput>(&*request))
+    return reply_schedule(cancel->number);
+  if (const auto* output = std::get_if<modbus::ScheduleOutput>(&*request)) {
+    scheduled.push_back(*output);
+    const modbus::Bytes packed = std::exchange(scheduled.back().values, {});
+    scheduled_values.assign(packed.begin(), packed.end());
+    return reply_schedule(static_cast<std::uint16_t>(scheduled.size()));
   }
-  return {};
+  Result<> done;
+  if (const auto* bits = std::get_if<modbus::WriteBits>(&*request))
+    done = write(Table::coils, bits->range,
+                 [&](std::uint32_t i) { return std::uint16_t(bits->packed[i / 8] >> i % 8 & 1); });
+  if (const auto* words = std::get_if<modbus::WriteRegisters>(&*request))
+    done = write(Table::holding_registers, words->range,
+                 [&](std::uint32_t i) { return modbus::get_u16(&words->values[2 * i]); });
+  if (const auto* mask = std::get_if<modbus::MaskWrite>(&*request))
+    done = write(Table::holding_registers, mask->range, [&](std::uint32_t) {
+      const std::uint16_t old = values[{Table::holding_registers, mask->range.start()}];
+      return static_cast<std::uint16_t>((old & mask->and_mask) | (mask->or_mask & ~mask->and_mask));
+    });
+  if (!done) return tl::make_unexpected(done.error());
+  return modbus::reply_written(pdu, reply_);
 }
 
-Result<> FakeDevice::carry_out(const modbus::WriteRequest& request) {
-  const auto parsed = modbus::parse_request(request.pdu());
-  if (!parsed) return fail(ExceptionReply{parsed.error()});
-  if (const auto* bits = std::get_if<modbus::WriteBits>(&*parsed))
-    return put(Table::coils, bits->range,
-               [&](std::uint32_t i) { return std::uint16_t(bits->packed[i / 8] >> i % 8 & 1); });
-  if (const auto* registers = std::get_if<modbus::WriteRegisters>(&*parsed))
-    return put(Table::holding_registers, registers->range,
-               [&](std::uint32_t i) { return modbus::get_u16(&registers->values[2 * i]); });
-  const auto& mask = std::get<modbus::MaskWrite>(*parsed);
-  const std::uint16_t old = values[{Table::holding_registers, mask.range.start()}];
-  return put(Table::holding_registers, mask.range, [&](std::uint32_t) {
-    return static_cast<std::uint16_t>((old & mask.and_mask) | (mask.or_mask & ~mask.and_mask));
-  });
+Result<std::size_t> FakeDevice::read(const modbus::Read& request) {
+  const Table table = table_of(request.function);
+  std::vector<std::uint16_t> found;
+  for (std::uint32_t i = request.range.start(); i < request.range.end(); ++i) {
+    if (missing.count({table, i}) != 0) return fail(ExceptionReply{modbus::Exception::illegal_data_address});
+    const auto value = values.find({table, i});
+    found.push_back(value == values.end() ? std::uint16_t{0} : value->second);
+  }
+  const Span<const std::uint16_t> all(found.data(), found.size());
+  return holds_bits(table) ? modbus::reply_bits(request.function, all, reply_)
+                           : modbus::reply_registers(request.function, all, reply_);
 }
 
-Result<> FakeDevice::put(Table table, modbus::Range range,
-                         const std::function<std::uint16_t(std::uint32_t)>& get) {
+Result<std::size_t> FakeDevice::read_file(const modbus::FileGroups& groups) {
+  if (file.empty()) return fail(ExceptionReply{modbus::Exception::illegal_function});
+  const modbus::FileRecord wanted = groups[0];
+  modbus::FileReply reply(reply_);
+  const auto bytes = reply.add(wanted.registers);
+  const std::size_t first = 2 * ((wanted.file - 1) * std::size_t{modbus::records_per_file} + wanted.record);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = byte(first + i);
+  return reply.size();
+}
+
+std::size_t FakeDevice::reply_schedule(std::uint16_t number) {
+  return modbus::reply_schedule({number, {}, {}}, reply_);
+}
+
+Result<> FakeDevice::write(Table table, modbus::Range range,
+                           const std::function<std::uint16_t(std::uint32_t)>& value) {
   for (std::uint32_t i = 0; i < range.count(); ++i)
     if (!missing_for_reads_only && missing.count({table, range.start() + i}) != 0)
       return fail(ExceptionReply{modbus::Exception::illegal_data_address});
-  for (std::uint32_t i = 0; i < range.count(); ++i) values[{table, range.start() + i}] = get(i);
+  for (std::uint32_t i = 0; i < range.count(); ++i) values[{table, range.start() + i}] = value(i);
   return {};
 }
 

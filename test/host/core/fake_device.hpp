@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -15,6 +16,7 @@
 
 #include "coupler/host/core/transport.hpp"
 #include "coupler/map/map.hpp"
+#include "coupler/modbus/server.hpp"
 
 namespace coupler::host::test {
 
@@ -77,18 +79,16 @@ class FakeDevice : public Transport {
     wait_.reset();
   }
   void interrupt() override {}
-  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
-  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
+  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
+  Result<> send_pdu(modbus::Bytes pdu) override;
+  /// Requests take effect when their answer is fetched.
+  Result<modbus::Bytes> receive_pdu() override;
   Turn await_turn(Time, bool) override { return !await_read || await_read() ? Turn::read : Turn::none; }
   void await_turn_to_write(const std::function<bool()>&) override {
     if (await_write) await_write();
   }
   bool reserve() override { return !refuse_send; }
   void give_back() override { ++given_back; }
-  Result<> send(const modbus::WriteRequest&) override;
-  /// Requests take effect when their answer is fetched.
-  Result<> receive(const modbus::WriteRequest& request) override;
-  Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request) override;
   bool can_wait() const override { return can_wait_for_changes; }
   Result<> send_wait(const modbus::ChangesRequest& request) override;
   Result<> receive_wait() override;
@@ -97,21 +97,24 @@ class FakeDevice : public Transport {
   /// Until somebody waits in wait_until(), with nothing to wake him.
   void await_idle();
   void wake() override;
-  Result<> read_file_record(std::uint16_t number, std::uint16_t record,
-                            Span<std::uint16_t> registers) override;
 
  private:
   void answer_functions(std::uint32_t watchdog_timeout, bool schedules);
   std::optional<Error> planned();
-  Result<> read(Table table, modbus::Range range,
-                const std::function<void(std::uint32_t i, std::uint16_t value)>& put);
-  Result<> carry_out(const modbus::WriteRequest& request);
-  Result<> put(Table table, modbus::Range range, const std::function<std::uint16_t(std::uint32_t i)>& get);
+  /// Each returns the size of the reply in reply_.
+  Result<std::size_t> carry_out(modbus::Bytes pdu);
+  Result<std::size_t> read(const modbus::Read& request);
+  Result<std::size_t> read_file(const modbus::FileGroups& groups);
+  Result<> write(Table table, modbus::Range range,
+                 const std::function<std::uint16_t(std::uint32_t i)>& value);
+  std::size_t reply_schedule(std::uint16_t number);
   void answer_wait();
   std::uint8_t byte(std::size_t at) const {
     return at < file.size() ? static_cast<std::uint8_t>(file[at]) : 0;
   }
 
+  std::vector<std::uint8_t> sent_;  ///< the write in progress
+  std::array<std::uint8_t, modbus::max_pdu_size> reply_{};
   std::optional<modbus::ChangesRequest> wait_;
   Time wait_sent_{};
   std::optional<WaitAnswer> wait_answer_;

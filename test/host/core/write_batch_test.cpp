@@ -116,8 +116,8 @@ struct WriteExchangeTest : testing::Test {
     device.connected = true;
     WriteBatch batch(owned->map());
     batch.add(write);
-    const auto request = send(batch, owned->map(), device);
-    return request ? device.receive(*request) : Result<>(tl::make_unexpected(request.error()));
+    const auto sent = send(batch, owned->map(), device);
+    return sent ? device.receive() : sent;
   }
   std::uint16_t holding(std::uint32_t address) { return device.values[{Table::holding_registers, address}]; }
   FakeDevice device;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <future>
 #include <thread>
 
@@ -33,7 +34,7 @@ struct ModbusTransportTest : testing::Test {
   ModbusTransportTest() { EXPECT_TRUE(transport.connect()); }
   Result<> write(const WriteRequest& request) {
     if (auto sent = transport.send(request); !sent) return sent;
-    return transport.receive(request);
+    return transport.receive();
   }
   test::ModbusServer server;
   ModbusTransport transport{connection_to(server.port())};
@@ -95,7 +96,7 @@ TEST_F(ModbusTransportTest, What_was_sent_is_answered_while_its_sender_does_othe
   ASSERT_TRUE(transport.send(request));
   EXPECT_EQ(transport.wait_until(std::chrono::steady_clock::now() + std::chrono::seconds(20)),
             Transport::Woken::by_bytes);
-  EXPECT_TRUE(transport.receive(request));
+  EXPECT_TRUE(transport.receive());
 }
 
 TEST_F(ModbusTransportTest, A_wait_ends_by_time_or_by_a_call_even_one_that_came_before) {
@@ -124,7 +125,7 @@ TEST(ModbusTransport, A_late_answer_to_an_earlier_write_is_a_bad_frame) {
   ASSERT_TRUE(transport.connect());
   const auto request = WriteRequest::coil(1, true);
   ASSERT_TRUE(transport.send(request));
-  EXPECT_TRUE(is<BadFrame>(transport.receive(request)));
+  EXPECT_TRUE(is<BadFrame>(transport.receive()));
 }
 
 TEST(ModbusTransport, An_exception_code_that_no_specification_has_is_told) {
@@ -139,7 +140,7 @@ TEST(ModbusTransport, An_exception_code_that_no_specification_has_is_told) {
   ASSERT_TRUE(transport.connect());
   const auto request = WriteRequest::coil(1, true);
   ASSERT_TRUE(transport.send(request));
-  EXPECT_EQ(exception_in(transport.receive(request).error())->code, static_cast<modbus::Exception>(0x60));
+  EXPECT_EQ(exception_in(transport.receive().error())->code, static_cast<modbus::Exception>(0x60));
 }
 
 TEST(ModbusTransport, A_code_that_libmodbus_keeps_to_itself_is_told) {
@@ -240,6 +241,59 @@ TEST(ModbusTransport, A_reply_whose_header_does_not_fit_is_a_bad_frame) {
     const auto read = transport.read_registers(Table::holding_registers, Range::of(1, 1), &word);
     EXPECT_TRUE(is<BadFrame>(read));
     EXPECT_EQ(word, 0);
+  }
+}
+
+TEST(ModbusTransport, A_confirmation_of_another_value_is_told_with_that_value) {
+  test::LoopbackServer stubborn([](int fd) {
+    std::uint8_t query[12];
+    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+    query[11] = 9;
+    return ::send(fd, query, sizeof query, MSG_NOSIGNAL) > 0;
+  });
+  ModbusTransport transport(connection_to(stubborn.port()));
+  ASSERT_TRUE(transport.connect());
+  ASSERT_TRUE(transport.send(WriteRequest::register_value(1, 7)));
+  const auto confirmed = transport.receive();
+  ASSERT_TRUE(is<ExceptionReply>(confirmed));
+  EXPECT_EQ(exception_in(confirmed.error())->other_value, 9);
+}
+
+TEST(ModbusTransport, Bytes_that_nobody_asked_for_are_discarded_and_counted) {
+  test::LoopbackServer babbler([](int fd) {
+    std::uint8_t query[12];
+    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+    const std::uint8_t reply[] = {query[0], query[1], 0, 0, 0, 5, query[6], 3, 2, 0, 7, 'a', 'b', 'c'};
+    return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
+  });
+  ModbusTransport transport(connection_to(babbler.port()));
+  ASSERT_TRUE(transport.connect());
+  std::uint16_t word = 0;
+  for (const std::uint64_t before : {0U, 3U, 6U}) {
+    ASSERT_TRUE(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word));
+    EXPECT_EQ(word, 7);
+    EXPECT_EQ(transport.discarded(), before);
+  }
+}
+
+TEST(ModbusTransport, After_an_exception_with_a_wrong_length_the_connection_is_made_anew) {
+  std::atomic<int> ended{0};
+  test::LoopbackServer sloppy([&ended](int fd) {
+    std::uint8_t query[12];
+    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) {
+      ++ended;
+      return false;
+    }
+    const std::uint8_t reply[] = {query[0], query[1], 0, 0, 0, 4, query[6], 0x83, 2};
+    return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
+  });
+  ModbusTransport transport(connection_to(sloppy.port()));
+  ASSERT_TRUE(transport.connect());
+  std::uint16_t word = 0;
+  for (const int before : {0, 1, 2}) {
+    EXPECT_TRUE(
+        is<ExceptionReply>(transport.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+    EXPECT_EQ(ended, before);
   }
 }
 

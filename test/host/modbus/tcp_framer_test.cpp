@@ -133,6 +133,12 @@ TEST_F(TcpFramerTest, Before_the_first_reply_another_request_is_answered_to_be_t
   EXPECT_THAT(problem(), testing::HasSubstr("another request"));
 }
 
+TEST_F(TcpFramerTest, Before_the_answer_to_a_wait_nothing_is_skipped) {
+  ask({65, 1, 0, 0, 0, 9, 0, 0, 0, 0});
+  EXPECT_EQ(receive({1, 3, 0, 0, 0, 4, 5, 1, 1, 1}), Outcome::bad) << "the reply to the read behind it";
+  EXPECT_THAT(problem(), testing::HasSubstr("another request"));
+}
+
 TEST_F(TcpFramerTest, What_came_without_a_request_is_dropped_and_may_come_again) {
   receive_first_reply();
   const Adu beat{0, 0, 0, 0, 0, 2, 99, 8};

@@ -70,10 +70,10 @@ TEST_F(UnitTransportTest, A_write_is_not_sent_straight_through_while_another_uni
   ASSERT_TRUE(unit(1).reserve());
   ASSERT_TRUE(unit(1).send(request));
   EXPECT_FALSE(unit(2).reserve());
-  EXPECT_TRUE(unit(1).receive(request));
+  EXPECT_TRUE(unit(1).receive());
   ASSERT_TRUE(unit(2).reserve());
   ASSERT_TRUE(unit(2).send(request));
-  EXPECT_TRUE(unit(2).receive(request));
+  EXPECT_TRUE(unit(2).receive());
 }
 
 TEST_F(UnitTransportTest, Who_closes_while_its_answer_is_to_come_gives_its_turn_back) {
@@ -98,7 +98,7 @@ TEST_F(UnitTransportTest, Who_closes_does_not_wait_for_the_requests_of_others) {
   ASSERT_TRUE(unit(1).send(request));
   auto closing = std::async(std::launch::async, [this] { unit(2).close(); });
   EXPECT_EQ(closing.wait_for(std::chrono::seconds(20)), std::future_status::ready);
-  EXPECT_TRUE(unit(1).receive(request));
+  EXPECT_TRUE(unit(1).receive());
 }
 
 TEST_F(UnitTransportTest, The_last_one_that_closes_ends_the_connection) {
@@ -117,7 +117,7 @@ TEST_F(UnitTransportTest, A_read_that_waits_for_its_turn_makes_room_when_its_uni
   unit(2).wake();
   EXPECT_EQ(waiting.get(), Transport::Turn::none);
   EXPECT_EQ(unit(2).await_turn(std::chrono::steady_clock::now() + milliseconds(1)), Transport::Turn::none);
-  EXPECT_TRUE(unit(1).receive(request));
+  EXPECT_TRUE(unit(1).receive());
   ASSERT_EQ(unit(2).await_turn(Time::max()), Transport::Turn::read);
   EXPECT_FALSE(unit(3).reserve());
   EXPECT_TRUE(read(2));
@@ -130,11 +130,11 @@ TEST_F(UnitTransportTest, Who_has_awaited_its_turn_to_write_is_the_next_to_write
   ASSERT_TRUE(unit(1).send(request));
   auto waiting = std::async(std::launch::async, [this] { unit(2).await_turn_to_write(never); });
   EXPECT_EQ(waiting.wait_for(milliseconds(20)), std::future_status::timeout);
-  EXPECT_TRUE(unit(1).receive(request));
+  EXPECT_TRUE(unit(1).receive());
   waiting.get();
   EXPECT_FALSE(unit(3).reserve());
   ASSERT_TRUE(unit(2).send(request));
-  EXPECT_TRUE(unit(2).receive(request));
+  EXPECT_TRUE(unit(2).receive());
   EXPECT_TRUE(read(3));
 }
 
@@ -150,7 +150,7 @@ TEST_F(UnitTransportTest, Who_waits_to_write_gives_up_when_asked_to_and_is_woken
   is_enough = true;
   unit(2).wake();
   waiting.get();
-  EXPECT_TRUE(unit(1).receive(request));
+  EXPECT_TRUE(unit(1).receive());
   EXPECT_TRUE(read(3));
 }
 
@@ -174,7 +174,7 @@ TEST_F(UnitTransportTest, An_interrupt_ends_the_wait_for_a_turn_to_write) {
   unit(2).interrupt();
   waiting.get();
   EXPECT_FALSE(unit(2).send(request));
-  EXPECT_TRUE(unit(1).receive(request));
+  EXPECT_TRUE(unit(1).receive());
   EXPECT_TRUE(read(3));
 }
 
@@ -197,7 +197,7 @@ TEST_F(UnitTransportTest, An_interrupt_ends_the_wait_for_a_turn) {
   auto waiting = std::async(std::launch::async, [this] { return read(2); });
   unit(2).interrupt();
   EXPECT_FALSE(waiting.get());
-  EXPECT_TRUE(unit(1).receive(request));
+  EXPECT_TRUE(unit(1).receive());
   EXPECT_TRUE(read(3));
 }
 
@@ -207,11 +207,11 @@ TEST_F(UnitTransportTest, Who_writes_safe_values_has_every_turn_until_they_are_w
   ASSERT_TRUE(unit(1).send(request));
   unit(2).rank(Rank::safe);
   auto others = std::async(std::launch::async, [this] { return read(3); });
-  EXPECT_TRUE(unit(1).receive(request));
+  EXPECT_TRUE(unit(1).receive());
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(unit(2).send(request));
     EXPECT_FALSE(unit(1).reserve());
-    EXPECT_TRUE(unit(2).receive(request));
+    EXPECT_TRUE(unit(2).receive());
     EXPECT_EQ(others.wait_for(milliseconds(20)), std::future_status::timeout);
   }
   unit(2).rank(Rank::read);

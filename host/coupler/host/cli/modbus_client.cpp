@@ -20,7 +20,6 @@ host::Result<scan::IdentificationPage> read_identification(host::MultiUnitTransp
   if (!reply) return tl::make_unexpected(reply.error());
   std::array<modbus::IdentificationObject, modbus::max_identification_objects> objects{};
   const auto taken = modbus::take_device_identification(*reply, objects);
-  if (!taken && taken.error().exception) return host::fail(host::ExceptionReply{*taken.error().exception});
   if (!taken) return host::fail(host::BadFrame{"no device identification"});
   scan::IdentificationPage page;
   for (std::size_t i = 0; i < taken->count; ++i)

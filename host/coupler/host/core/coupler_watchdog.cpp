@@ -27,7 +27,7 @@ Result<std::optional<RejectedStep>> write_step(const Step& step, Transport& tran
                            ? modbus::WriteRequest::coil(step.address, step.value != 0)
                            : modbus::WriteRequest::register_value(step.address, step.value);
   Result<> done = transport.send(request);
-  if (done) done = transport.receive(request);
+  if (done) done = transport.receive();
   if (done) return std::nullopt;
   const ExceptionReply* exception = exception_in(done.error());
   if (exception == nullptr || is_unit_away(done.error())) return tl::make_unexpected(done.error());

@@ -3,16 +3,16 @@
 
 namespace coupler::host {
 
-void DeviceStatistics::answered(Duration after, const Result<>& result) {
+void DeviceStatistics::answered(Duration after, const Error* error) {
   const std::lock_guard lock(mutex_);
   ++now_.requests;
-  const ExceptionReply* exception = result ? nullptr : exception_in(result.error());
+  const ExceptionReply* exception = error != nullptr ? exception_in(*error) : nullptr;
   if (exception != nullptr && !exception->other_value)
     ++now_.exceptions[static_cast<std::size_t>(exception->code)];
-  if (result || exception != nullptr)
+  if (error == nullptr || exception != nullptr)
     now_.latency.add(after);
   else
-    ++(std::holds_alternative<Timeout>(result.error()) ? now_.timeouts : now_.failures);
+    ++(std::holds_alternative<Timeout>(*error) ? now_.timeouts : now_.failures);
 }
 
 void DeviceStatistics::wrote(WriteResult::Outcome outcome) {

@@ -58,7 +58,8 @@ struct DeviceSnapshot {
 /// Counts what a device does; read from any thread. Allocates nothing but error texts.
 class DeviceStatistics {
  public:
-  void answered(Duration after, const Result<>& result);
+  /// A request; `error` is null if it was answered as it should be.
+  void answered(Duration after, const Error* error);
   void wrote(WriteResult::Outcome outcome);
   void cycle_ended(Duration after, std::uint64_t overruns);
   void rejected();

@@ -20,16 +20,15 @@ void PacedTransport::ended_at(Time time, Duration rest) {
   ready_ = rest > Duration::zero() ? time + rest : Time::min();
 }
 
-Result<> PacedTransport::answered(Result<> result) {
+void PacedTransport::answered(const Error* error) {
   ended_at(clock_.now(), gap_);
-  if (const ExceptionReply* exception = result ? nullptr : exception_in(result.error()))
-    seen_.set(static_cast<std::size_t>(exception->code));
-  statistics_.answered(answered_ - begun_, result);
-  const bool is_reply = result || exception_in(result.error()) != nullptr;
+  const ExceptionReply* exception = error != nullptr ? exception_in(*error) : nullptr;
+  if (exception != nullptr) seen_.set(static_cast<std::size_t>(exception->code));
+  statistics_.answered(answered_ - begun_, error);
+  const bool is_reply = error == nullptr || exception != nullptr;
   if (is_reply) ++replies_;
-  unit_answers_ = is_reply && (result || !is_unit_away(result.error()));
+  unit_answers_ = is_reply && (exception == nullptr || !is_unit_away(*error));
   give(transport_.take_wait_answer());
-  return result;
 }
 
 void PacedTransport::give(const std::optional<WaitAnswer>& answer) {
@@ -45,32 +44,19 @@ Result<> PacedTransport::connect() {
   return result;
 }
 
-Result<> PacedTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
-  return paced([&] { return transport_.read_bits(table, range, bits); });
-}
-Result<> PacedTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
-  return paced([&] { return transport_.read_registers(table, range, registers); });
-}
-Result<> PacedTransport::read_file_record(std::uint16_t file, std::uint16_t record,
-                                          Span<std::uint16_t> registers) {
-  return paced([&] { return transport_.read_file_record(file, record, registers); });
+Result<modbus::Bytes> PacedTransport::exchange(modbus::Bytes pdu) {
+  pause();
+  return answered(transport_.exchange(pdu));
 }
 
-Result<> PacedTransport::send(const modbus::WriteRequest& request) {
+Result<> PacedTransport::send_pdu(modbus::Bytes pdu) {
   pause();
-  return transport_.send(request);
+  return transport_.send_pdu(pdu);
 }
-Result<> PacedTransport::receive(const modbus::WriteRequest& request) {
-  Result<> result = answered(transport_.receive(request));
+
+Result<modbus::Bytes> PacedTransport::receive_pdu() {
+  auto reply = answered(transport_.receive_pdu());
   written_ = stamp_between(begun_, answered_);
-  return result;
-}
-
-Result<modbus::ScheduleReply> PacedTransport::schedule(const modbus::ScheduleRequest& request) {
-  pause();
-  Result<modbus::ScheduleReply> reply = transport_.schedule(request);
-  if (const auto taken = answered(reply ? Result<>{} : tl::make_unexpected(reply.error())); !taken)
-    return tl::make_unexpected(taken.error());
   return reply;
 }
 

@@ -36,9 +36,9 @@ class PacedTransport : public Transport {
   Result<> connect() override;
   void close() override { transport_.close(); }
   void interrupt() override { transport_.interrupt(); }
-  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
-  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
-  Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
+  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
+  Result<> send_pdu(modbus::Bytes pdu) override;
+  Result<modbus::Bytes> receive_pdu() override;
   void rank(Rank rank) override { transport_.rank(rank); }
   Turn await_turn(Time until, bool write_waits = false) override {
     pause();  // before the turn, which others wait for
@@ -50,9 +50,6 @@ class PacedTransport : public Transport {
   }
   bool reserve() override { return transport_.reserve(); }
   void give_back() override { transport_.give_back(); }
-  Result<> send(const modbus::WriteRequest& request) override;
-  Result<> receive(const modbus::WriteRequest& request) override;
-  Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request) override;
   bool can_wait() const override { return transport_.can_wait(); }
   Result<> send_wait(const modbus::ChangesRequest& request) override;
   Result<> receive_wait() override;
@@ -91,13 +88,13 @@ class PacedTransport : public Transport {
   void pause();
   /// The next request is made no sooner than `rest` later.
   void ended_at(Time time, Duration rest);
-  Result<> answered(Result<> result);
-  void give(const std::optional<WaitAnswer>& answer);
-  template <class Request>
-  Result<> paced(Request&& request) {
-    pause();
-    return answered(request());
+  void answered(const Error* error);
+  template <class T>
+  Result<T> answered(Result<T> result) {
+    answered(result ? nullptr : &result.error());
+    return result;
   }
+  void give(const std::optional<WaitAnswer>& answer);
 
   Transport& transport_;
   Clock& clock_;

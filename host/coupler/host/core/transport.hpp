@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -15,7 +13,6 @@
 #include "coupler/map/table.hpp"
 #include "coupler/modbus/changes.hpp"
 #include "coupler/modbus/client.hpp"
-#include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/range.hpp"
 #include "coupler/modbus/scheduled_output.hpp"
 
@@ -50,7 +47,7 @@ struct Certificates {
 };
 
 /// The port to one unit of a Modbus device. One request is in flight at a time; its reply is awaited for the
-/// device's timeout at most. It belongs to one thread; another may call reserve(), give_back() and send()
+/// device's timeout at most. It belongs to one thread; another may call reserve(), give_back() and send_pdu()
 /// while it knows, by a lock of its own, that the owner does nothing but wait_until(). interrupt() and wake()
 /// may come from anywhere.
 class Transport {
@@ -62,21 +59,31 @@ class Transport {
   /// Ends the call in progress; it and every later one fail at once.
   virtual void interrupt() = 0;
 
+  /// Sends a PDU and waits for the reply. Returns its PDU, valid until the next request: of the function that
+  /// was asked for, and as modbus::check_reply() wants it. A read's reply that came too late is a Timeout.
+  virtual Result<modbus::Bytes> exchange(modbus::Bytes pdu) = 0;
+  /// The first half of exchange(): does not wait for the reply. receive_pdu() must follow before any other
+  /// request.
+  virtual Result<> send_pdu(modbus::Bytes pdu) = 0;
+  /// The second half: the reply to what was sent, at the latest a timeout after that.
+  virtual Result<modbus::Bytes> receive_pdu() = 0;
+
+  // What the PDUs mean.
+
   /// FC 1 or 2: `range.count()` (at most 2000) elements of 0 or 1.
-  virtual Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) = 0;
+  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits);
   /// FC 3 or 4: `range.count()` (at most 125) registers.
-  virtual Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) = 0;
+  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers);
   /// read_bits() or read_registers(), bits as 0 or 1.
-  Result<> read(Table table, modbus::Range range, std::uint16_t* values) {
-    if (!holds_bits(table)) return read_registers(table, range, values);
-    std::array<std::uint8_t, modbus::max_read_bits> bits{};
-    Result<> answer = read_bits(table, range, bits.data());
-    if (answer) std::copy_n(bits.begin(), range.count(), values);
-    return answer;
-  }
+  Result<> read(Table table, modbus::Range range, std::uint16_t* values);
   /// FC 20 with one group: fills `registers` (1 … 121) from a file.
-  virtual Result<> read_file_record(std::uint16_t file, std::uint16_t record,
-                                    Span<std::uint16_t> registers) = 0;
+  Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers);
+  /// send_pdu() of a write. receive() must follow.
+  Result<> send(const modbus::WriteRequest& request) { return send_pdu(request.pdu()); }
+  /// Its confirmation.
+  Result<> receive();
+  /// FC 66. Where units share a connection, none of them can.
+  Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request);
 
   // For units that share a connection, and take turns. A transport in front of another one hands these on.
 
@@ -88,24 +95,14 @@ class Transport {
   /// request or another call must follow. Turn::none after wake(), or at `until`: something else may come
   /// before a read.
   virtual Turn await_turn(Time /*until*/, bool /*write_waits*/ = false) { return Turn::read; }
-  /// Waits until a send() would wait for nobody else's request, or would fail; or until `ends()` is true,
+  /// Waits until a send_pdu() would wait for nobody else's request, or would fail; or until `ends()` is true,
   /// which is called at first and after each wake(). A request or give_back() must follow.
   virtual void await_turn_to_write(const std::function<bool()>& /*ends*/) {}
-  /// Whether a send() made now would wait for nobody else's request. If true, send() or give_back() must
-  /// follow.
+  /// Whether a send_pdu() made now would wait for nobody else's request. If true, send_pdu() or give_back()
+  /// must follow.
   virtual bool reserve() { return true; }
   /// No request follows: the turn, if it was this unit's, is for others.
   virtual void give_back() {}
-
-  /// Sends and does not wait for the answer. receive() must follow before any other request.
-  virtual Result<> send(const modbus::WriteRequest& request) = 0;
-  /// The answer to what was sent, at the latest a timeout after that.
-  virtual Result<> receive(const modbus::WriteRequest& request) = 0;
-
-  /// FC 66. Where units share a connection, none of them can.
-  virtual Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& /*request*/) {
-    return fail(ExceptionReply{modbus::Exception::illegal_function});
-  }
 
   // A wait for changes (function code 65) may be outstanding while other requests are made: the device
   // answers it then at once, and before them.

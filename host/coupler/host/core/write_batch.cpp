@@ -17,8 +17,8 @@ bool is_neighbour(Range a, Range b) { return a.end() == b.start() || b.end() == 
 
 Result<> write_batch(const WriteBatch& batch, const Map& map, Transport& transport,
                      std::vector<RejectedValue>& rejected) {
-  const Result<modbus::WriteRequest> request = send(batch, map, transport);
-  Result<> answer = request ? transport.receive(*request) : Result<>(tl::make_unexpected(request.error()));
+  Result<> answer = send(batch, map, transport);
+  if (answer) answer = transport.receive();
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   if (exception == nullptr || is_unit_away(answer.error())) return answer;
   if (batch.writes().size() == 1) {
@@ -92,15 +92,14 @@ WriteRequest WriteBatch::request(std::uint16_t before) const {
   return coils ? WriteRequest::coils(range_.start(), used) : WriteRequest::registers(range_.start(), used);
 }
 
-Result<modbus::WriteRequest> send(const WriteBatch& batch, const Map& map, Transport& transport) {
+Result<> send(const WriteBatch& batch, const Map& map, Transport& transport) {
   std::uint16_t before = 0;
   const Point& point = map.points[batch.writes().front().point];
   if (needs_read(map, point))
     if (auto read = transport.read_registers(point.table, read_range(point), &before); !read)
       return tl::make_unexpected(read.error());
   const modbus::WriteRequest request = batch.request(before);
-  if (auto sent = transport.send(request); !sent) return tl::make_unexpected(sent.error());
-  return request;
+  return transport.send(request);
 }
 
 Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map,

@@ -46,9 +46,9 @@ class WriteBatch {
   modbus::Range range_ = modbus::Range::of(0, 1);  ///< of all together
 };
 
-/// Sends the request of a batch, after the read that a part of a register may need, and returns it for
-/// Transport::receive(). After an error it was not sent.
-Result<modbus::WriteRequest> send(const WriteBatch& batch, const Map& map, Transport& transport);
+/// Sends the request of a batch, after the read that a part of a register may need. Transport::receive() must
+/// follow, but not after an error: nothing was sent then.
+Result<> send(const WriteBatch& batch, const Map& map, Transport& transport);
 
 /// A value that the device did not take.
 struct RejectedValue {

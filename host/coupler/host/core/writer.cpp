@@ -83,11 +83,10 @@ bool Writer::send_now() {
     transport_.give_back();
     return false;
   }
-  sent_ = batch_.request();
-  const auto sent = transport_.send(*sent_);
-  if (sent) return true;
+  const auto sent = transport_.send(batch_.request());
+  is_sent_ = sent.has_value();
+  if (is_sent_) return true;
   send_error_ = sent.error();
-  sent_.reset();
   wait_again();
   return false;
 }
@@ -112,7 +111,7 @@ void Writer::fire_deadmen() {
 
 Result<> Writer::step() {
   if (send_error_) return tl::make_unexpected(*std::exchange(send_error_, std::nullopt));
-  if (sent_) return finish(transport_.receive(*sent_));
+  if (is_sent_) return finish(transport_.receive());
   if (is_safe_asked()) return make_safe();
   fire_deadmen();
   if (queue_.empty()) {
@@ -129,8 +128,8 @@ Result<> Writer::step() {
     transport_.give_back();
     return {};
   }
-  const auto request = send(batch_, map_, transport_);
-  return request ? finish(transport_.receive(*request)) : not_sent(request.error());
+  const auto sent = send(batch_, map_, transport_);
+  return sent ? finish(transport_.receive()) : not_sent(sent.error());
 }
 
 void Writer::wait_again() {
@@ -150,7 +149,7 @@ void Writer::drop_late() {
 }
 
 Result<> Writer::finish(const Result<>& answer) {
-  sent_.reset();
+  is_sent_ = false;
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   if (!answer && exception == nullptr) return answer;  // disconnected() tells them
   std::swap(batch_, done_);
@@ -288,7 +287,7 @@ bool Writer::shut_down(bool connected) {
     sink_.on_report(Level::error, "no output could be set to its safe value: not connected");
     return false;
   }
-  if (sent_) finish(transport_.receive(*sent_));
+  if (is_sent_) finish(transport_.receive());
   auto rejected = write_safe_values();
   // It may be there, behind a line that garbled one frame. There is no later chance.
   if (!rejected && is_unit_away(rejected.error())) rejected = write_safe_values();

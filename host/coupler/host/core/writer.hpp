@@ -69,7 +69,7 @@ class Writer {
   /// must come first. True if there is nothing else to do until the answer has come.
   bool send_now();
   /// An answer is to come to what send_now() has sent, or it could not.
-  bool awaits_answer() const { return sent_ || send_error_; }
+  bool awaits_answer() const { return is_sent_ || send_error_; }
 
   /// When step() has something to do; the past if it has now.
   Time due() const {
@@ -145,11 +145,11 @@ class Writer {
   std::vector<Write> safe_values_;
   std::vector<bool> is_safe_point_;  ///< by point: safe_values_ has one
   Calls safe_calls_;
-  std::vector<bool> acknowledged_;            ///< by point: a write, and no value has been shown since
-  WriteBatch batch_;                          ///< in flight
-  WriteBatch done_;                           ///< answered; kept for its memory
-  std::optional<modbus::WriteRequest> sent_;  ///< batch_, where send_now() has sent it
-  std::optional<Error> send_error_;           ///< why send_now() could not send
+  std::vector<bool> acknowledged_;   ///< by point: a write, and no value has been shown since
+  WriteBatch batch_;                 ///< in flight
+  WriteBatch done_;                  ///< answered; kept for its memory
+  bool is_sent_ = false;             ///< batch_ is, by send_now()
+  std::optional<Error> send_error_;  ///< why send_now() could not send
   bool is_node_ = false;
   bool merges_ = true;  ///< the device takes several values in one request
   std::uint64_t dropped_ = 0;

@@ -81,7 +81,7 @@ void Writer::suspect(const std::vector<Write>& writes, const Error& why) {
 }
 
 void Writer::disconnected(const Error& why) {
-  sent_.reset();
+  is_sent_ = false;
   send_error_.reset();
   safe_calls_.close(to_string(why));
   std::swap(batch_, done_);

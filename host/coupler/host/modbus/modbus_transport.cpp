@@ -134,8 +134,8 @@ Result<> ModbusTransport::put(const TcpRequest& request) {
       TransportFailure{sent < 0 ? std::strerror(errno) : "only a part of the request could be sent"});
 }
 
-Result<modbus::Bytes> ModbusTransport::receive_reply(const TcpRequest& request, Deadline deadline,
-                                                     bool has_come) {
+Result<modbus::Bytes> ModbusTransport::await_reply(const TcpRequest& request, Deadline deadline,
+                                                   bool has_come) {
   for (bool waits = !has_come;;) {
     const auto outcome = framer_.next(request);
     discarded_ = framer_.skipped();
@@ -161,12 +161,6 @@ tl::unexpected<Error> ModbusTransport::no_reply(const TcpRequest& request, Error
   return failed(std::move(error));
 }
 
-Result<modbus::Bytes> ModbusTransport::ask(const modbus::ReadRequest& request) {
-  auto reply = exchange(request.pdu());
-  if (reply && answer_by_.has_passed()) return fail(Timeout{timeout_});
-  return reply;
-}
-
 Result<> ModbusTransport::send_pdu(modbus::Bytes pdu) {
   if (auto ready = make_ready(); !ready) return ready;
   answer_by_ = Deadline(timeout_);
@@ -174,18 +168,9 @@ Result<> ModbusTransport::send_pdu(modbus::Bytes pdu) {
   return put(sent_);
 }
 
-Result<modbus::Bytes> ModbusTransport::receive_pdu() {
+Result<modbus::Bytes> ModbusTransport::receive_reply() {
   if (auto before = receive_wait_before(answer_by_); !before) return tl::make_unexpected(before.error());
-  return receive_reply(sent_, answer_by_);
-}
-
-Result<modbus::ScheduleReply> ModbusTransport::schedule(const modbus::ScheduleRequest& request) {
-  const auto reply = exchange(request.pdu());
-  if (!reply) return tl::make_unexpected(reply.error());
-  const auto parsed = modbus::parse_schedule_reply(*reply);
-  if (parsed) return *parsed;
-  if (parsed.error().exception) return fail(ExceptionReply{*parsed.error().exception});
-  return fail(BadFrame{"not the reply to a request to schedule"});
+  return await_reply(sent_, answer_by_);
 }
 
 Result<> ModbusTransport::send_wait(const modbus::ChangesRequest& request) {
@@ -200,12 +185,12 @@ Result<> ModbusTransport::send_wait(const modbus::ChangesRequest& request) {
 
 Result<> ModbusTransport::receive_wait() {
   if (!wait_) return fail(NotConnected{"nothing was asked for"});
-  return take_wait_reply(receive_reply(wait_->request, wait_->answer_by, true));
+  return take_wait_reply(await_reply(wait_->request, wait_->answer_by, true));
 }
 
 Result<> ModbusTransport::receive_wait_before(const Deadline& deadline) {
   if (!wait_) return {};
-  return take_wait_reply(receive_reply(wait_->request, deadline));
+  return take_wait_reply(await_reply(wait_->request, deadline));
 }
 
 Result<> ModbusTransport::take_wait_reply(const Result<modbus::Bytes>& pdu) {

@@ -25,7 +25,6 @@ class ModbusTransport : public MultiUnitTransport {
   Result<> connect() override;
   void close() override;
   void interrupt() override;
-  Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request) override;
   bool can_wait() const override { return true; }
   Result<> send_wait(const modbus::ChangesRequest& request) override;
   Result<> receive_wait() override;
@@ -36,14 +35,16 @@ class ModbusTransport : public MultiUnitTransport {
   Woken wait_until(Time time) override;
   void wake() override { wakeup_.call(); }
 
+  Result<> send_pdu(modbus::Bytes pdu) override;
   Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout) override;
   Result<> open(const Event& interrupt) override;
   void hang_up() override;
 
  protected:
-  Result<modbus::Bytes> ask(const modbus::ReadRequest& request) override;
-  Result<> send_pdu(modbus::Bytes pdu) override;
-  Result<modbus::Bytes> receive_pdu() override;
+  modbus::Bytes sent() const override { return sent_.pdu(); }
+  Result<modbus::Bytes> receive_reply() override;
+  bool is_late() const override { return answer_by_.has_passed(); }
+  std::chrono::milliseconds timeout() const override { return timeout_; }
 
  private:
   /// To be called before a request is sent.
@@ -53,7 +54,7 @@ class ModbusTransport : public MultiUnitTransport {
   Result<> put(const TcpRequest& request);
   /// The PDU of the reply, valid until the next call. `has_come`: a part of it has, and the rest comes within
   /// a timeout from now.
-  Result<modbus::Bytes> receive_reply(const TcpRequest& request, Deadline deadline, bool has_come = false);
+  Result<modbus::Bytes> await_reply(const TcpRequest& request, Deadline deadline, bool has_come = false);
   /// BadFrame in place of `error` if what has come is noise.
   tl::unexpected<Error> no_reply(const TcpRequest& request, Error error) const;
   /// The answer to a wait comes before that to the request which has been sent now.

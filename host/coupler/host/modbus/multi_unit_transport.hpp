@@ -7,12 +7,11 @@
 #include "coupler/host/core/transport.hpp"
 #include "coupler/host/modbus/wait.hpp"
 #include "coupler/map/map.hpp"
-#include "coupler/modbus/client.hpp"
 
 namespace coupler::host {
 
-/// A connection over which requests can go to any unit, one after the other. It carries a PDU and brings that
-/// of the reply, over Modbus/TCP or RTU; what they mean is the same over both.
+/// A connection over which requests can go to any unit, one after the other, by Modbus/TCP or RTU. What is
+/// right for a reply is the same over both.
 class MultiUnitTransport : public Transport {
  public:
   /// The unit of the next requests, and how long their answers may take.
@@ -27,21 +26,17 @@ class MultiUnitTransport : public Transport {
   /// A request to the unit that was selected last would be sent without delay.
   virtual bool can_send() const { return true; }
 
-  /// Sends any PDU. Returns that of the reply, which may be an exception, valid until the next request.
-  virtual Result<modbus::Bytes> exchange(modbus::Bytes pdu);
-
-  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
-  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
-  Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
-  Result<> send(const modbus::WriteRequest& request) override { return send_pdu(request.pdu()); }
-  Result<> receive(const modbus::WriteRequest& request) override;
+  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
+  Result<modbus::Bytes> receive_pdu() override;
 
  protected:
-  /// exchange() of a request that reads.
-  virtual Result<modbus::Bytes> ask(const modbus::ReadRequest& request) { return exchange(request.pdu()); }
-  // The two halves of exchange().
-  virtual Result<> send_pdu(modbus::Bytes pdu) = 0;
-  virtual Result<modbus::Bytes> receive_pdu() = 0;
+  /// The PDU of the request in progress.
+  virtual modbus::Bytes sent() const = 0;
+  /// The PDU that has come in answer to it.
+  virtual Result<modbus::Bytes> receive_reply() = 0;
+  /// That came, or was looked at, after its time.
+  virtual bool is_late() const = 0;
+  virtual std::chrono::milliseconds timeout() const = 0;
 };
 
 /// What `connection` needs.

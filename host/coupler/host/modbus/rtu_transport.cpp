@@ -37,6 +37,14 @@ bool is_readable(int fd) {
   return ::poll(&wanted, 1, 0) > 0;
 }
 
+/// What a unit repeats of a write (MAP 6.5, 6.6, 6.11, 6.12, 6.16).
+modbus::Bytes confirmation(modbus::Bytes pdu) {
+  const auto function = static_cast<modbus::Function>(pdu[0]);
+  const bool several = function == modbus::Function::write_multiple_coils ||
+                       function == modbus::Function::write_multiple_registers;
+  return several ? pdu.first(5) : pdu;
+}
+
 /// A gateway that has gone without a word is noticed although nobody closes the connection for a timeout.
 void notice_loss(int socket, std::chrono::milliseconds timeout) {
   const auto longest = static_cast<unsigned>(std::max(timeout, std::chrono::milliseconds(3000)).count());
@@ -115,21 +123,11 @@ Result<modbus::Bytes> RtuTransport::exchange(modbus::Bytes pdu) {
   return MultiUnitTransport::exchange(pdu);
 }
 
-Result<modbus::Bytes> RtuTransport::ask(const modbus::ReadRequest& request) {
-  auto reply = exchange(request.pdu());
-  if (reply && is_late_) return fail(Timeout{timeout_});
-  return reply;
-}
-
-Result<> RtuTransport::receive(const modbus::WriteRequest& request) {
-  return unit_ == rtu_broadcast ? Result<>{} : MultiUnitTransport::receive(request);
-}
-
 /// Whether the line has an echo: a read tells, also one that is refused or not answered.
 Result<> RtuTransport::look_for_echo(std::uint16_t address, Table table) {
   const modbus::ReadRequest request(read_function(table), modbus::Range::of(address, 1));
   if (auto sent = send_frame(request.pdu()); !sent) return sent;
-  const auto reply = receive_pdu();
+  const auto reply = receive_reply();
   if (reply || std::holds_alternative<Timeout>(reply.error()) ||
       std::holds_alternative<BadFrame>(reply.error()))
     return {};
@@ -157,7 +155,8 @@ Result<> RtuTransport::send_frame(modbus::Bytes pdu) {
   return put(frame);
 }
 
-Result<modbus::Bytes> RtuTransport::receive_pdu() {
+Result<modbus::Bytes> RtuTransport::receive_reply() {
+  if (unit_ == rtu_broadcast) return confirmation(sent());
   for (;;) {
     switch (wait(fd_, answer_by_)) {
       case Woken::by_call:

@@ -40,13 +40,14 @@ class RtuTransport : public MultiUnitTransport {
   bool is_bus() const override { return true; }
   bool can_send() const override;
   Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
-  Result<> receive(const modbus::WriteRequest& request) override;
+  Result<> send_pdu(modbus::Bytes pdu) override;
   std::uint64_t discarded() const override { return discarded_; }
 
  protected:
-  Result<modbus::Bytes> ask(const modbus::ReadRequest& request) override;
-  Result<> send_pdu(modbus::Bytes pdu) override;
-  Result<modbus::Bytes> receive_pdu() override;
+  modbus::Bytes sent() const override { return framer_.request_pdu(); }
+  Result<modbus::Bytes> receive_reply() override;
+  bool is_late() const override { return is_late_; }
+  std::chrono::milliseconds timeout() const override { return timeout_; }
 
  private:
   Woken wait(int fd, Time until);

@@ -124,9 +124,9 @@ void UnitTransport::unanswered() {
 }
 
 /// The request of this turn has ended.
-Result<> UnitTransport::done(Result<> result) {
+void UnitTransport::done(const Error* error) {
   shared_->answered = std::chrono::steady_clock::now();
-  const Error* error = result || exception_in(result.error()) != nullptr ? nullptr : &result.error();
+  if (error != nullptr && exception_in(*error) != nullptr) error = nullptr;
   const bool is_lost = error != nullptr && std::holds_alternative<TransportFailure>(*error);
   if (error != nullptr && !is_lost) unanswered();
   if (is_lost) {
@@ -135,30 +135,26 @@ Result<> UnitTransport::done(Result<> result) {
     if (!interrupted_.is_set()) ++shared_->ended;
   }
   release();
-  return result;
 }
 
-template <class Request>
-Result<> UnitTransport::in_turn(Request&& request) {
-  if (auto taken = take(rank_); !taken) return taken;
-  if (auto prepared = prepare(); !prepared) {
-    release();
-    return prepared;
-  }
-  return done(request(*shared_->transport));
+Result<modbus::Bytes> UnitTransport::done(const Result<modbus::Bytes>& reply) {
+  if (reply) std::copy(reply->begin(), reply->end(), reply_.begin());
+  const std::size_t size = reply ? reply->size() : 0;
+  done(reply ? nullptr : &reply.error());
+  if (!reply) return reply;
+  return modbus::Bytes(reply_).first(size);
 }
 
-Result<> UnitTransport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
-  return in_turn([&](MultiUnitTransport& transport) { return transport.read_bits(table, range, bits); });
+Result<> UnitTransport::begin(Rank rank) {
+  if (auto taken = take(rank); !taken) return taken;
+  Result<> prepared = prepare();
+  if (!prepared) release();
+  return prepared;
 }
-Result<> UnitTransport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
-  return in_turn(
-      [&](MultiUnitTransport& transport) { return transport.read_registers(table, range, registers); });
-}
-Result<> UnitTransport::read_file_record(std::uint16_t file, std::uint16_t record,
-                                         Span<std::uint16_t> registers) {
-  return in_turn(
-      [&](MultiUnitTransport& transport) { return transport.read_file_record(file, record, registers); });
+
+Result<modbus::Bytes> UnitTransport::exchange(modbus::Bytes pdu) {
+  if (auto begun = begin(rank_); !begun) return tl::make_unexpected(begun.error());
+  return done(shared_->transport->exchange(pdu));
 }
 
 Transport::Turn UnitTransport::await_turn(Time until, bool write_waits) {
@@ -191,22 +187,21 @@ void UnitTransport::give_back() {
   if (std::exchange(has_turn_, false)) release();
 }
 
-Result<> UnitTransport::send(const modbus::WriteRequest& request) {
+Result<> UnitTransport::send_pdu(modbus::Bytes pdu) {
   const bool reserved = std::exchange(reserved_, false);
-  if (auto taken = take(Rank::write); !taken) return taken;
-  if (auto prepared = prepare(); !prepared) {
-    release();
-    return prepared;
+  if (auto begun = begin(Rank::write); !begun) return begun;
+  if (auto sent = shared_->transport->send_pdu(pdu); !sent) {
+    done(&sent.error());
+    return sent;
   }
-  if (auto sent = shared_->transport->send(request); !sent) return done(sent);
   in_flight_ = true;
-  if (reserved) wake();  // no thread polls a shared socket: the owner must call receive()
+  if (reserved) wake();  // no thread polls a shared socket: the owner must call receive_pdu()
   return {};
 }
 
-Result<> UnitTransport::receive(const modbus::WriteRequest& request) {
+Result<modbus::Bytes> UnitTransport::receive_pdu() {
   in_flight_ = false;
-  return done(shared_->transport->receive(request));
+  return done(shared_->transport->receive_pdu());
 }
 
 }  // namespace coupler::host

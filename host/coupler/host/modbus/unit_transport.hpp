@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -42,16 +43,14 @@ class UnitTransport : public Transport {
   Result<> connect() override;
   void close() override;
   void interrupt() override;
-  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override;
-  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override;
-  Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) override;
+  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
+  Result<> send_pdu(modbus::Bytes pdu) override;
+  Result<modbus::Bytes> receive_pdu() override;
   void rank(Rank rank) override;
   Turn await_turn(Time until, bool write_waits = false) override;
   void await_turn_to_write(const std::function<bool()>& ends) override;
   bool reserve() override;
   void give_back() override;
-  Result<> send(const modbus::WriteRequest& request) override;
-  Result<> receive(const modbus::WriteRequest& request) override;
   std::uint64_t discarded() const override { return shared_->transport->discarded(); }
   std::optional<Certificates> certificates() const override { return shared_->transport->certificates(); }
   Woken wait_until(Time time) override { return wait_for(wakeup_, interrupted_, -1, time); }
@@ -61,13 +60,14 @@ class UnitTransport : public Transport {
   Result<> take(Rank rank);
   void release();
   bool is_lost() const { return connected_ && ended_ != shared_->ended; }
-  template <class Request>
-  Result<> in_turn(Request&& request);
+  /// take() and prepare().
+  Result<> begin(Rank rank);
   Result<> prepare();
   void wait_until_past(Time time);
   Result<> open();
   Time ready() const;
-  Result<> done(Result<> result);
+  void done(const Error* error);
+  Result<modbus::Bytes> done(const Result<modbus::Bytes>& reply);
   void unanswered();
 
   std::shared_ptr<SharedConnection> shared_;
@@ -84,7 +84,8 @@ class UnitTransport : public Transport {
   std::uint64_t ended_ = 0;  ///< SharedConnection::ended when it connected
   bool has_turn_ = false;    ///< for the request that follows
   bool reserved_ = false;    ///< by reserve()
-  bool in_flight_ = false;   ///< it has the turn until receive()
+  bool in_flight_ = false;   ///< it has the turn until receive_pdu()
+  std::array<std::uint8_t, modbus::max_pdu_size> reply_{};  ///< the connection's is soon that of another unit
 };
 
 }  // namespace coupler::host

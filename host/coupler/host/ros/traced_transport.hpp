@@ -11,6 +11,8 @@
 
 #include "coupler/host/core/transport.hpp"
 #include "coupler/host/ros/node.hpp"
+#include "coupler/map/functions.hpp"
+#include "coupler/modbus/server.hpp"
 
 namespace coupler::host {
 
@@ -21,7 +23,7 @@ class TracedTransport : public Transport {
   TracedTransport(std::string name, std::unique_ptr<Transport> transport, Node& log)
       : name_(std::move(name)), transport_(std::move(transport)), log_(log) {}
 
-  /// Of the last read. In its thread only.
+  /// Of the last exchange(). In its thread only.
   Time read_sent_at() const { return read_sent_; }
 
   Result<> connect() override {
@@ -30,22 +32,17 @@ class TracedTransport : public Transport {
   }
   void close() override { transport_->close(); }
   void interrupt() override { transport_->interrupt(); }
-  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits) override {
+  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override {
     read_sent_ = now();
-    return trace(transport_->read_bits(table, range, bits), read_sent_,
-                 [&] { return describe_read(table, range); });
+    return trace(transport_->exchange(pdu), read_sent_, [&] { return describe(pdu); });
   }
-  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers) override {
-    read_sent_ = now();
-    return trace(transport_->read_registers(table, range, registers), read_sent_,
-                 [&] { return describe_read(table, range); });
+  Result<> send_pdu(modbus::Bytes pdu) override {
+    write_sent_ = now();
+    if (log_.shows_debug()) written_ = describe(pdu);
+    return transport_->send_pdu(pdu);
   }
-  Result<> read_file_record(std::uint16_t file, std::uint16_t record,
-                            Span<std::uint16_t> registers) override {
-    read_sent_ = now();
-    return trace(transport_->read_file_record(file, record, registers), read_sent_, [&] {
-      return fmt::format("read file {} from {}, {} registers", file, record, registers.size());
-    });
+  Result<modbus::Bytes> receive_pdu() override {
+    return trace(transport_->receive_pdu(), write_sent_, [&] { return written_; });
   }
   void rank(Rank rank) override { transport_->rank(rank); }
   Turn await_turn(Time until, bool write_waits = false) override {
@@ -56,24 +53,6 @@ class TracedTransport : public Transport {
   }
   bool reserve() override { return transport_->reserve(); }
   void give_back() override { transport_->give_back(); }
-  Result<> send(const modbus::WriteRequest& request) override {
-    write_sent_ = now();
-    return transport_->send(request);
-  }
-  Result<> receive(const modbus::WriteRequest& request) override {
-    return trace(transport_->receive(request), write_sent_, [&] {
-      return fmt::format("write by FC {} at {}: {:02x}", static_cast<int>(request.function()),
-                         request.address(), fmt::join(request.pdu().begin() + 3, request.pdu().end(), " "));
-    });
-  }
-  Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request) override {
-    const Time begun = now();
-    Result<modbus::ScheduleReply> reply = transport_->schedule(request);
-    trace(reply ? Result<>{} : tl::make_unexpected(reply.error()), begun, [&] {
-      return fmt::format("schedule: {:02x}", fmt::join(request.pdu().begin() + 1, request.pdu().end(), " "));
-    });
-    return reply;
-  }
   bool can_wait() const override { return transport_->can_wait(); }
   Result<> send_wait(const modbus::ChangesRequest& request) override {
     return transport_->send_wait(request);
@@ -82,7 +61,7 @@ class TracedTransport : public Transport {
   std::optional<WaitAnswer> take_wait_answer() override {
     std::optional<WaitAnswer> answer = transport_->take_wait_answer();
     if (answer)
-      trace(answer->reply ? Result<>{} : tl::make_unexpected(answer->reply.error()), answer->sent,
+      trace(answer->reply ? nullptr : &answer->reply.error(), answer->sent,
             [&] { return fmt::format("wait for changes: {}", answer->reply ? answer->reply->count : 0); });
     return answer;
   }
@@ -95,17 +74,32 @@ class TracedTransport : public Transport {
  private:
   static Time now() { return std::chrono::steady_clock::now(); }
 
-  static std::string describe_read(Table table, modbus::Range range) {
-    return fmt::format("read {} {} to {}", to_string(table), range.start(), range.last());
+  static std::string describe(modbus::Bytes pdu) {
+    const auto request = modbus::parse_request(pdu);
+    if (const auto* read = request ? std::get_if<modbus::Read>(&*request) : nullptr)
+      return fmt::format("read {} {} to {}", to_string(table_of(read->function)), read->range.start(),
+                         read->range.last());
+    if (const auto* groups = request ? std::get_if<modbus::FileGroups>(&*request) : nullptr) {
+      const modbus::FileRecord wanted = (*groups)[0];
+      return fmt::format("read file {} from {}, {} registers", wanted.file, wanted.record, wanted.registers);
+    }
+    if (pdu[0] == static_cast<std::uint8_t>(modbus::Function::schedule_output))
+      return fmt::format("schedule: {:02x}", fmt::join(pdu.begin() + 1, pdu.end(), " "));
+    return fmt::format("write by FC {} at {}: {:02x}", pdu[0], modbus::get_u16(&pdu[1]),
+                       fmt::join(pdu.begin() + 3, pdu.end(), " "));
   }
 
+  template <class T, class Describe>
+  Result<T> trace(Result<T> result, Time begun, Describe describe) {
+    trace(result ? nullptr : &result.error(), begun, describe);
+    return result;
+  }
   template <class Describe>
-  Result<> trace(Result<> result, Time begun, Describe describe) {
-    if (!log_.shows_debug()) return result;
+  void trace(const Error* error, Time begun, Describe describe) {
+    if (!log_.shows_debug()) return;
     const std::chrono::duration<double, std::milli> took = now() - begun;
     log_.log_debug(fmt::format("{}: {}: {} after {:.3f} ms", name_, describe(),
-                               result ? std::string("ok") : to_string(result.error()), took.count()));
-    return result;
+                               error == nullptr ? std::string("ok") : to_string(*error), took.count()));
   }
 
   std::string name_;
@@ -113,6 +107,7 @@ class TracedTransport : public Transport {
   Node& log_;
   Time read_sent_{};
   Time write_sent_{};
+  std::string written_;  ///< the write in progress, where it is shown
 };
 
 }  // namespace coupler::host
