@@ -58,10 +58,9 @@ class WriteRequest {
   std::size_t size_ = 5;
 };
 
-/// Whether the PDU `reply` answers `request`, as far as it can be told without knowing the device: the
-/// function code; of a read (FC 1 to 4) the length; of a write what it repeats, but not the masks of FC 22.
-/// An error, too, if a reply to FC 5 or 6 repeats another value: some devices answer with the value that they
-/// stored instead.
+/// Checks that the PDU `reply` answers the PDU `request`: the function code; the length of a read (FC 1 to
+/// 4); what a write repeats, but not the masks of FC 22. A reply to FC 5 or 6 that repeats another value is
+/// an error, too: some devices answer with the value that they stored instead.
 tl::expected<void, ReplyError> check_reply(Bytes request, Bytes reply);
 
 }  // namespace coupler::modbus

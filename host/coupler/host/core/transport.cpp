@@ -11,7 +11,7 @@
 namespace coupler::host {
 namespace {
 
-/// Of a reply that exchange() has found right, as far as it looks.
+/// exchange() checks only the function code of other replies than those to FC 1 to 6, 15, 16 and 22.
 Error error_in(const modbus::ReplyError& error) {
   if (error.exception) return ExceptionReply{*error.exception};
   return BadFrame{"not the reply to this request"};

@@ -46,96 +46,97 @@ struct Certificates {
   bool has_pin = false;  ///< the device's is believed for that, beyond its end
 };
 
-/// The port to one unit of a Modbus device. One request is in flight at a time; its reply is awaited for the
-/// device's timeout at most. It belongs to one thread; another may call reserve(), give_back() and send_pdu()
-/// while it knows, by a lock of its own, that the owner does nothing but wait_until(). interrupt() and wake()
-/// may come from anywhere.
+/// A client's connection to one unit of a Modbus device. One request is in flight at a time, and its reply is
+/// awaited for the device's timeout at most. The object belongs to one thread. Another thread may call
+/// reserve(), give_back() and send_pdu() while a lock of its own guarantees that the owner is in
+/// wait_until(). Any thread may call interrupt() and wake().
 class Transport {
  public:
   virtual ~Transport() = default;
 
   virtual Result<> connect() = 0;
   virtual void close() = 0;
-  /// Ends the call in progress; it and every later one fail at once.
+  /// Ends the call in progress. That call and every later one fail at once.
   virtual void interrupt() = 0;
 
-  /// Sends a PDU and waits for the reply. Returns its PDU, valid until the next request: of the function that
-  /// was asked for, and as modbus::check_reply() wants it. A read's reply that came too late is a Timeout.
+  /// Sends a PDU and waits for the reply. Returns the PDU of the reply, which has passed
+  /// modbus::check_reply() and is valid until the next request. An exception is an ExceptionReply. A reply to
+  /// a read that came after the timeout is a Timeout.
   virtual Result<modbus::Bytes> exchange(modbus::Bytes pdu) = 0;
-  /// The first half of exchange(): does not wait for the reply. receive_pdu() must follow before any other
-  /// request.
+  /// The first half of exchange(): sends, and does not wait for the reply. receive_pdu() must follow before
+  /// any other request.
   virtual Result<> send_pdu(modbus::Bytes pdu) = 0;
-  /// The second half: the reply to what was sent, at the latest a timeout after that.
+  /// The second half: waits for the reply, until a timeout after the request at most.
   virtual Result<modbus::Bytes> receive_pdu() = 0;
 
-  // What the PDUs mean.
+  // Requests, and what their replies mean.
 
-  /// FC 1 or 2: `range.count()` (at most 2000) elements of 0 or 1.
+  /// FC 1 or 2: fills `bits` with `range.count()` (at most 2000) elements of 0 or 1.
   Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits);
-  /// FC 3 or 4: `range.count()` (at most 125) registers.
+  /// FC 3 or 4: fills `registers` with `range.count()` (at most 125) registers.
   Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers);
-  /// read_bits() or read_registers(), bits as 0 or 1.
+  /// Calls read_bits() or read_registers(). A bit becomes 0 or 1.
   Result<> read(Table table, modbus::Range range, std::uint16_t* values);
   /// FC 20 with one group: fills `registers` (1 … 121) from a file.
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers);
-  /// send_pdu() of a write. receive() must follow.
+  /// Sends a write. receive() must follow.
   Result<> send(const modbus::WriteRequest& request) { return send_pdu(request.pdu()); }
-  /// Its confirmation.
+  /// Waits for the confirmation of a write.
   Result<> receive();
-  /// FC 66. Where units share a connection, none of them can.
+  /// FC 66. Only a node understands it, and only over a connection that can_wait().
   Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request);
 
-  // For units that share a connection, and take turns. A transport in front of another one hands these on.
+  // Units that share a connection take turns. A transport in front of another one passes these calls on.
 
-  /// Sets the rank of the reads that follow, and of the writes if it is Rank::safe. Otherwise writes are
+  /// Sets the rank of the reads that follow. Rank::safe is the rank of writes, too; otherwise they have
   /// Rank::write.
   virtual void rank(Rank /*rank*/) {}
   enum class Turn { none, read, write };
-  /// Waits until a read, or with `write_waits` a write, would be sent at once: whichever comes first. That
-  /// request or another call must follow. Turn::none after wake(), or at `until`: something else may come
-  /// before a read.
+  /// Waits until a read would be sent at once, or a write if `write_waits`, whichever comes first. That
+  /// request or another call must follow. Returns Turn::none after wake() or at `until`.
   virtual Turn await_turn(Time /*until*/, bool /*write_waits*/ = false) { return Turn::read; }
-  /// Waits until a send_pdu() would wait for nobody else's request, or would fail; or until `ends()` is true,
-  /// which is called at first and after each wake(). A request or give_back() must follow.
+  /// Waits until send_pdu() would not have to wait for another unit's request, or would fail, or until
+  /// `ends()` returns true. `ends()` is called at first and after each wake(). A request or give_back() must
+  /// follow.
   virtual void await_turn_to_write(const std::function<bool()>& /*ends*/) {}
-  /// Whether a send_pdu() made now would wait for nobody else's request. If true, send_pdu() or give_back()
-  /// must follow.
+  /// Returns whether send_pdu() would not have to wait for another unit's request. If it returns true,
+  /// send_pdu() or give_back() must follow.
   virtual bool reserve() { return true; }
-  /// No request follows: the turn, if it was this unit's, is for others.
+  /// Gives the turn to the other units, because no request follows.
   virtual void give_back() {}
 
   // A wait for changes (function code 65) may be outstanding while other requests are made: the device
   // answers it then at once, and before them.
 
-  /// Where units share a connection, none of them can.
+  /// Returns false where units share a connection, and on a serial line.
   virtual bool can_wait() const { return false; }
-  /// Sends and does not wait for the answer. There must be none outstanding.
+  /// Sends a wait and does not wait for its answer. No other wait may be outstanding.
   virtual Result<> send_wait(const modbus::ChangesRequest& /*request*/) {
     return fail(NotConnected{"this connection cannot wait for changes"});
   }
-  /// To be called when bytes have come, or a timeout after the wait is over. An answer that has begun is
-  /// awaited for a timeout at most.
+  /// Receives the answer. Call it when bytes have come, or a timeout after the end of the wait. The rest of
+  /// an answer that has begun is awaited for a timeout at most.
   virtual Result<> receive_wait() { return fail(NotConnected{"nothing was asked for"}); }
-  /// The answer that receive_wait() or another request has received: once.
+  /// Returns the answer that receive_wait() or another request has received, once.
   virtual std::optional<WaitAnswer> take_wait_answer() { return std::nullopt; }
 
-  /// Bytes that came after their time, or were no reply: of all units that share the connection. From
-  /// any thread.
+  /// The number of received bytes that were late or did not belong to a reply, for all units that share the
+  /// connection. Any thread may call it.
   virtual std::uint64_t discarded() const { return 0; }
 
-  /// Of the last connection that was made; nullopt: none with TLS. From any thread.
+  /// The certificates of the last connection; nullopt if it had no TLS. Any thread may call it.
   virtual std::optional<Certificates> certificates() const { return std::nullopt; }
 
-  /// wait_until() returned for bytes, and nothing was asked: throws them away where that can be done. An
-  /// error means that the connection has ended, or can no longer be used.
+  /// Discards bytes that came while no request was outstanding. An error means that the connection has ended
+  /// or must not be used any more.
   virtual Result<> discard_unasked() {
     return fail(TransportFailure{"the device closed the connection, or sent an unexpected reply"});
   }
 
   enum class Woken { by_time, by_call, by_bytes };
-  /// Returns when bytes have come (or the connection has ended), after wake(), or at `time`.
+  /// Returns when bytes have come, when the connection has ended, after wake(), or at `time`.
   virtual Woken wait_until(Time time) = 0;
-  /// Ends the wait in progress, or the next one.
+  /// Ends the wait_until() in progress, or else the next one.
   virtual void wake() = 0;
 };
 

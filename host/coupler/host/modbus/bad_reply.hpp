@@ -9,10 +9,10 @@
 
 namespace coupler::host {
 
-/// "03 04 00 14 …": sixteen of them at most.
+/// Shows at most sixteen bytes, as in "03 04 00 14".
 std::string shown_bytes(modbus::Bytes bytes);
 
-/// BadFrame that says what was asked and what came, from the function code on or both as a whole.
+/// Makes an error that shows the request and the reply: `asked` and `came` are two PDUs, or two ADUs.
 BadFrame bad_reply(std::string_view what, modbus::Bytes asked, modbus::Bytes came);
 
 }  // namespace coupler::host

@@ -47,28 +47,29 @@ class ModbusTransport : public MultiUnitTransport {
   std::chrono::milliseconds timeout() const override { return timeout_; }
 
  private:
-  /// To be called before a request is sent.
+  /// Prepares the connection for a request.
   Result<> make_ready();
-  /// Gives a request the next transaction number and the unit that is selected.
+  /// Builds a request to the selected unit with the next transaction number.
   void build(TcpRequest& request, modbus::Bytes pdu);
   Result<> put(const TcpRequest& request);
-  /// The PDU of the reply, valid until the next call. `has_come`: a part of it has, and the rest comes within
-  /// a timeout from now.
+  /// Waits for the reply. Its PDU is valid until the next call. If `has_come`, a part of it has come, and the
+  /// rest must follow within a timeout from now.
   Result<modbus::Bytes> await_reply(const TcpRequest& request, Deadline deadline, bool has_come = false);
-  /// BadFrame in place of `error` if what has come is noise.
+  /// Returns a BadFrame instead of `error` if noise has come.
   tl::unexpected<Error> no_reply(const TcpRequest& request, Error error) const;
-  /// The answer to a wait comes before that to the request which has been sent now.
+  /// Receives the answer to an outstanding wait, which comes before the reply to the request that was just
+  /// sent.
   Result<> receive_wait_before(const Deadline& deadline);
   Result<> take_wait_reply(const Result<modbus::Bytes>& pdu);
 
-  /// A wait for changes that is outstanding.
+  /// An outstanding wait for changes.
   struct Wait {
     TcpRequest request;
     Time sent{};
     Deadline answer_by;
   };
 
-  /// Says why a connection with TLS has ended.
+  /// Returns the reason that the TLS connection gives for its end, or else `error`.
   tl::unexpected<Error> failed(Error error) const;
 
   std::string host_;

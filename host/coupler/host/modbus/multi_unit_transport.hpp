@@ -10,20 +10,20 @@
 
 namespace coupler::host {
 
-/// A connection over which requests can go to any unit, one after the other, by Modbus/TCP or RTU. What is
-/// right for a reply is the same over both.
+/// A connection that carries requests to any unit, one after the other, by Modbus/TCP or RTU. A reply has to
+/// pass the same checks over both.
 class MultiUnitTransport : public Transport {
  public:
-  /// The unit of the next requests, and how long their answers may take.
+  /// Sets the unit of the next requests, and the time within which it must reply.
   virtual Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout) = 0;
   /// connect() that ends when `interrupt` is set.
   virtual Result<> open(const Event& interrupt) = 0;
-  /// From any thread: ends the request in progress; connect() is possible again.
+  /// Ends the request in progress. connect() is possible again. Any thread may call it.
   virtual void hang_up() = 0;
-  /// Other units can be asked while the answer of one is late: only its own requests could take that for
-  /// theirs.
+  /// Returns true if other units can be asked while the reply of one unit is late, because its late reply can
+  /// only be taken for the reply to another request to the same unit.
   virtual bool is_bus() const { return false; }
-  /// A request to the unit that was selected last would be sent without delay.
+  /// Returns whether a request to the selected unit would be sent without delay.
   virtual bool can_send() const { return true; }
 
   Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
@@ -32,14 +32,14 @@ class MultiUnitTransport : public Transport {
  protected:
   /// The PDU of the request in progress.
   virtual modbus::Bytes sent() const = 0;
-  /// The PDU that has come in answer to it.
+  /// Waits for the PDU of its reply.
   virtual Result<modbus::Bytes> receive_reply() = 0;
-  /// That came, or was looked at, after its time.
+  /// Returns whether that reply came, or was looked at, after the timeout.
   virtual bool is_late() const = 0;
   virtual std::chrono::milliseconds timeout() const = 0;
 };
 
-/// What `connection` needs.
+/// Makes the kind of connection that `connection` describes.
 std::unique_ptr<MultiUnitTransport> make_transport(const Connection& connection);
 
 }  // namespace coupler::host

@@ -22,7 +22,7 @@ constexpr std::size_t at_count = 8;          ///< of a reply to a read; of an ex
 constexpr std::size_t exception_length = 3;  ///< the unit, the function code and that of the exception
 constexpr std::size_t exception_size = at_length + 2 + exception_length;
 
-/// A device that sends without end is not listened to for ever.
+/// The limit for a device that sends noise without end.
 constexpr std::uint64_t most_skipped = 16384;
 
 bool is_read(std::uint8_t function) { return function >= 1 && function <= 4; }
@@ -30,16 +30,16 @@ bool is_read(std::uint8_t function) { return function >= 1 && function <= 4; }
 /// RFC 8446 5.1: what a device with TLS answers to plain Modbus. A Modbus header has a protocol of 0 there.
 bool is_tls_alert(modbus::Bytes adu) { return adu[0] == 0x15 && adu[1] == 3 && adu[at_protocol] == 3; }
 
-/// What has the right transaction is the reply, however wrong the rest is: the error says what is wrong. So
-/// it is with a TLS alert.
+/// Bytes with the right transaction are the reply, even if the rest is wrong, so that the error can say what
+/// is wrong. The same is true of a TLS alert.
 bool begins_reply(modbus::Bytes bytes, const TcpRequest& request) {
   if (bytes.size() < 2) return false;
   const std::uint16_t begin = modbus::get_u16(bytes.data());
   return begin == request.transaction() || begin == 0x1503;
 }
 
-/// Whether a reply to this request, or to another one with the same function code, may begin so, as far as it
-/// has come.
+/// Returns whether `bytes` may be the beginning of a reply to this request, or to another request with the
+/// same function code.
 bool may_begin_reply(modbus::Bytes bytes, const TcpRequest& request) {
   if (begins_reply(bytes, request)) return true;
   for (std::size_t i = at_protocol; i < std::min(bytes.size(), at_length + 1); ++i)
@@ -91,7 +91,7 @@ Span<std::uint8_t> TcpFramer::room() {
 }
 
 TcpFramer::Outcome TcpFramer::next(const TcpRequest& request) {
-  // What comes before the answer to a wait is the reply to a request behind it.
+  // Bytes before the answer to a wait can be the reply to the request that was sent after the wait.
   const bool is_wait = request.function() == static_cast<std::uint8_t>(modbus::Function::wait_for_changes);
   if (!is_wait && (is_first_ || has_noise_))
     while (!rest().empty() && !may_begin_reply(rest(), request)) skip(1);
@@ -114,7 +114,8 @@ TcpFramer::Outcome TcpFramer::next(const TcpRequest& request) {
     is_trusted_ = length == exception_length;
     return take(std::min(size, exception_size));
   }
-  // A frame whose header and byte count differ is malformed now, and not late when no more comes.
+  // If header and byte count contradict each other, the missing bytes may never come: this is an error now,
+  // not a timeout later.
   if (adu[at_function] == request.function() && is_read(request.function()) && size > at_count) {
     if (adu.size() <= at_count) return Outcome::nothing;
     const std::size_t left = size - at_count - 1;

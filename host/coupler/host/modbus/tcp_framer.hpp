@@ -13,10 +13,10 @@
 
 namespace coupler::host {
 
-/// A request as it goes out over Modbus/TCP: the MBAP header and the PDU (TCP 3.1).
+/// The ADU of a request over Modbus/TCP: the MBAP header and the PDU (TCP 3.1).
 class TcpRequest {
  public:
-  /// A PDU of 1 … 253 bytes.
+  /// `pdu` has 1 … 253 bytes.
   void set(std::uint16_t transaction, std::uint8_t unit, modbus::Bytes pdu);
 
   modbus::Bytes adu() const { return modbus::Bytes(adu_).first(size_); }
@@ -32,11 +32,12 @@ class TcpRequest {
 
 /// Finds replies in what comes over one Modbus/TCP connection, by transaction, unit and length.
 ///
-/// Before the first reply, and after bytes that nobody asked for, everything is skipped that cannot begin the
-/// reply: the greeting of a serial server, a heartbeat, a frame for another client. Otherwise the first byte
-/// that comes must begin it.
+/// Before the first reply, and once a connection has brought bytes that nobody asked for, the framer skips
+/// what cannot begin the reply: the greeting of a serial server, a heartbeat, a frame for another client.
+/// Otherwise the reply must begin with the first byte.
 ///
-/// Fill room(), say how much with filled(), then look with next(). It needs no socket.
+/// Write received bytes into room(), call filled() with their number, then next(). The framer needs no
+/// socket.
 class TcpFramer {
  public:
   enum class Outcome {
@@ -45,28 +46,29 @@ class TcpFramer {
     bad,      ///< problem() says why this is no reply to the request
   };
 
-  /// There is a new connection.
+  /// Begins with a new connection.
   void reset();
 
-  /// Where the next received bytes go; never empty after next() found nothing. Ends the validity of pdu().
+  /// The place for the next bytes. It is never empty after Outcome::nothing. The call invalidates pdu().
   Span<std::uint8_t> room();
   void filled(std::size_t bytes) { end_ += bytes; }
 
   Outcome next(const TcpRequest& request);
-  /// An exception, of two bytes at most, or any other reply.
+  /// The PDU of the reply. That of an exception has two bytes at most.
   modbus::Bytes pdu() const { return pdu_; }
-  /// BadFrame; NotConnected if the device speaks TLS.
+  /// A BadFrame, or NotConnected if the device speaks TLS.
   const Error& problem() const { return problem_; }
 
-  /// False after an exception whose header says another length than it has: nobody knows where the next
-  /// reply begins, so the connection must not be used again.
+  /// Returns false after an exception whose length is not that in its header. It is not known then where the
+  /// next reply begins, so the connection must be closed.
   bool is_trusted() const { return is_trusted_; }
 
-  /// No reply is awaited: what has come is unasked for. A new count of skipped bytes begins.
+  /// Skips all bytes that have come, because no request is outstanding, and starts a new noise().
   void drop();
-  /// Bytes that next() and drop() have skipped, over all connections.
+  /// The number of bytes that next() and drop() have skipped over all connections.
   std::uint64_t skipped() const { return skipped_; }
-  /// Set if bytes were skipped since the last drop(), and what has come behind them does not begin the reply.
+  /// Returns an error if bytes were skipped since the last drop(), and those behind them do not begin the
+  /// reply.
   std::optional<BadFrame> noise(const TcpRequest& request) const;
 
  private:

@@ -85,7 +85,7 @@ class UnitTransport : public Transport {
   bool has_turn_ = false;    ///< for the request that follows
   bool reserved_ = false;    ///< by reserve()
   bool in_flight_ = false;   ///< it has the turn until receive_pdu()
-  std::array<std::uint8_t, modbus::max_pdu_size> reply_{};  ///< the connection's is soon that of another unit
+  std::array<std::uint8_t, modbus::max_pdu_size> reply_{};  ///< a copy, since another unit's reply comes next
 };
 
 }  // namespace coupler::host
