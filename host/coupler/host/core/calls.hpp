@@ -13,8 +13,8 @@
 
 namespace coupler::host {
 
-/// Calls from any thread that the connection's owner carries out: `What` is asked for. `Answer{{}, why}`
-/// says why not.
+/// Calls that any thread makes and the connection's owner carries out. `What` says what is asked for.
+/// `Answer{{}, why}` refuses a call.
 template <class What, class TheAnswer>
 class CallQueue {
  public:
@@ -24,7 +24,7 @@ class CallQueue {
     std::promise<Answer> answer;
   };
 
-  /// Answered at once if there is no connection.
+  /// Makes a call. It is answered at once if there is no connection.
   std::future<Answer> ask(const What& what = {}) {
     const std::lock_guard lock(mutex_);
     Call call{what, {}};
@@ -38,14 +38,14 @@ class CallQueue {
     return answer;
   }
   bool any() const { return any_; }
-  /// A call waits of which `which(what)` is true.
+  /// Returns whether a call waits for which `which(what)` is true.
   template <class Which>
   bool any_of(Which which) {
     if (!any_) return false;
     const std::lock_guard lock(mutex_);
     return find(which) != waiting_.end();
   }
-  /// The oldest of them, for the caller to answer; nullopt: none waits.
+  /// Takes the oldest of them, which the caller has to answer; nullopt if none waits.
   template <class Which>
   std::optional<Call> take_one_of(Which which) {
     const std::lock_guard lock(mutex_);
@@ -62,12 +62,12 @@ class CallQueue {
     answer_all(answer);
   }
 
-  /// There is a connection.
+  /// Allows calls, because there is a connection.
   void open() {
     const std::lock_guard lock(mutex_);
     closed_.clear();
   }
-  /// There is no connection: calls that wait, and new ones, are answered with `why`.
+  /// Answers the calls that wait, and all new ones, with `why`, because the connection has ended.
   void close(const std::string& why) {
     const std::lock_guard lock(mutex_);
     closed_ = why;
@@ -86,7 +86,7 @@ class CallQueue {
   }
 
   std::mutex mutex_;
-  std::string closed_ = "not connected";  ///< why; empty while open
+  std::string closed_ = "not connected";  ///< the reason; empty while there is a connection
   std::deque<Call> waiting_;
   std::atomic<bool> any_{false};  ///< waiting_ is not empty
 };
@@ -96,7 +96,7 @@ struct CallAnswer {
   std::string text;
 };
 
-/// To reset the coupler's watchdog, to write the safe values.
+/// Calls that reset the coupler's watchdog, or write the safe values.
 using Calls = CallQueue<std::monostate, CallAnswer>;
 
 }  // namespace coupler::host

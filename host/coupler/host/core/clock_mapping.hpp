@@ -9,7 +9,7 @@
 
 namespace coupler::host {
 
-/// A request and its reply, each with the times at both ends.
+/// The times of a request and its reply at both ends.
 struct Exchange {
   Time sent{};
   modbus::NodeTime arrived{};
@@ -17,43 +17,44 @@ struct Exchange {
   Time received{};
 };
 
-/// Maps a node's clock to ours. The offset (ours minus the node's) is known to lie between two bounds: a
-/// request does not arrive before it was sent, and a reply is not received before it was sent. Exchanges
-/// that took long bound it loosely, and the best ones stay in force: a bound is kept until a newer one is
-/// closer than what the drift since then has made of it.
+/// Maps a node's clock to ours. The offset (ours minus the node's) lies between two bounds, because a request
+/// does not arrive before it was sent, and a reply is not received before it was sent. An exchange that took
+/// long gives loose bounds. A bound is kept until a newer one is closer than the old one has become by drift.
 ///
-/// It holds for two clocks that drift apart by at most `most_drift`, and whose drift changes by at most
-/// `most_wander` from one measurement of it to the end of the next.
+/// The mapping is right for two clocks that drift apart by at most `most_drift`, if the drift changes by at
+/// most `most_wander` from one measurement of it to the end of the next.
 class ClockMapping {
  public:
   static constexpr double most_drift = 500e-6;
   static constexpr double most_wander = 20e-6;
 
   enum class Outcome {
-    taken,    ///< where it contradicts what was known by a millisecond at most, the mapping begins with it
-    jumped,   ///< it contradicts what was known: one of the clocks has jumped. The mapping begins with it
-    refused,  ///< no two clocks can have these times; nothing is known any more
+    taken,    ///< the exchange was used; if it contradicts the mapping by a millisecond at most, the mapping
+              ///< begins anew with it
+    jumped,   ///< the exchange contradicts the mapping, so one of the clocks has jumped; the mapping begins
+              ///< anew with it
+    refused,  ///< no two clocks can have these times, and the mapping is empty now
   };
   Outcome add(const Exchange& exchange);
   void forget();
 
-  /// nullopt: nothing is known yet, or the time is none that such a clock can have.
+  /// Returns nullopt if nothing is known yet, or if such a clock cannot have this time.
   std::optional<Stamp> map(modbus::NodeTime at) const;
-  /// The node's time that map() maps to `at`, as well as is known now; nullopt as above.
+  /// Returns the node's time that map() maps to `at`, as well as it is known now; nullopt as above.
   std::optional<modbus::NodeTime> node_time(Time at) const;
 
  private:
-  /// Between which two speeds the offset changes; nanoseconds a nanosecond.
+  /// The two speeds between which the offset changes, in nanoseconds for each nanosecond.
   struct Drift {
     double least = -most_drift;
     double most = most_drift;
   };
-  /// The least or most offset in nanoseconds, as of a node's time.
+  /// The least or the greatest offset in nanoseconds, at a time of the node.
   struct Bound {
     modbus::NodeTime as_of{};
     double offset = 0;
   };
-  /// Both, as of one time.
+  /// Both bounds at one time.
   struct Interval {
     modbus::NodeTime as_of{};
     double least = 0;
@@ -71,7 +72,7 @@ class ClockMapping {
   Bound most_;
   Drift drift_;
   Interval reference_;  ///< the drift is measured from here
-  Time base_{};         ///< our time at base_node_: offsets are small numbers beside it
+  Time base_{};         ///< our time at base_node_, beside which offsets are small numbers
   modbus::NodeTime base_node_{};
 };
 

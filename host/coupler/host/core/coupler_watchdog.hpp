@@ -22,37 +22,40 @@ struct RejectedStep {
   modbus::Exception code;
 };
 
-/// "writing 5 to holding_registers 4096: exception 02 (illegal data address)", and what to do about it.
+/// Returns a text as "writing 5 to holding_registers 4096: exception 02 (illegal data address)", and what to
+/// do about it.
 std::string to_string(const RejectedStep& rejected);
 
-/// Makes the writes (FC 5 or 6) in order, up to the first that is rejected.
+/// Sends the writes (FC 5 or 6) in order, up to the first one that is rejected.
 Result<std::optional<RejectedStep>> write_steps(Span<const WatchdogSequences::Write> steps,
                                                 Transport& transport);
 
-/// Whether the place holds the value. False if it cannot be read.
+/// Returns whether the place holds the value, and false if it cannot be read.
 Result<bool> has_value(const WatchdogSequences::Write& place, Transport& transport);
 
 /// Uses the coupler's own watchdog as Map::coupler_watchdog says: arms it at each connect, feeds it, notices
 /// that it has expired, resets it and arms it again. Each write is a request of its own.
 ///
-/// ask_reset() may be called from any thread, all else only from the one that uses the transport.
+/// Any thread may call ask_reset(). Only the thread that uses the transport may call the other functions.
 class CouplerWatchdog {
  public:
-  /// Everything given by reference must outlive it.
+  /// All references must outlive the object.
   CouplerWatchdog(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
                   Sink& sink);
 
-  /// Resets it, also where the map wants no automatic reset.
+  /// Resets the watchdog, even if the map wants no automatic reset.
   std::future<Calls::Answer> ask_reset() { return resets_.ask(); }
 
-  /// A new connection, on which nothing has been written. An error means that it can no longer be used.
+  /// Starts with a new connection, before anything is written. An error means that the connection can no
+  /// longer be used.
   Result<> connected();
-  /// There is no connection: resets that wait are answered with `why`.
+  /// Answers the resets that wait with `why`, because the connection has ended.
   void disconnected(const std::string& why);
 
-  /// When step() has something to do; Time::max() if there is no watchdog.
+  /// The time at which step() has something to do; Time::max() if there is no watchdog.
   Time due() const;
-  /// Does it. True if it had expired and is fed again; outputs are as the coupler left them.
+  /// Feeds the watchdog, or tries to reset it. Returns true if it had expired and is fed again. The outputs
+  /// are then as the coupler left them.
   Result<bool> step();
 
  private:
@@ -75,8 +78,8 @@ class CouplerWatchdog {
   Sink& sink_;
   WatchdogStatus status_;
   bool connected_ = false;
-  std::size_t turn_ = 0;  ///< the next of WatchdogSequences::feed
-  Time next_{};           ///< when to feed, or to try again
+  std::size_t turn_ = 0;  ///< the index of the next write in WatchdogSequences::feed
+  Time next_{};           ///< the time to feed, or to try again
   Calls resets_;
 };
 

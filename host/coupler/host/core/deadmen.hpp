@@ -10,27 +10,28 @@
 
 namespace coupler::host {
 
-/// The deadman of each point that has one. It is armed by the first message, and again by the first one after
-/// it has expired.
+/// The deadmen of the points that have one. The first message arms a deadman, and so does the first message
+/// after it has expired.
 class Deadmen {
  public:
-  /// What `map` views must outlive it.
+  /// The storage of `map` must outlive the object.
   explicit Deadmen(const Map& map);
 
-  /// A message has come for the point. From any thread. True if that armed it: there is a new deadline to
-  /// wait for.
+  /// Notes a message for the point. Any thread may call it. Returns true if the message armed the deadman, so
+  /// that there is a new deadline to wait for.
   bool fed(std::uint32_t point, Time now);
   /// The earliest deadline; Time::max() if none is armed.
   Time due() const;
   struct Expired {
     std::uint32_t point;
-    bool again;  ///< it was before, since the last message
+    bool again;  ///< it has expired before, since the last message
   };
-  /// A point whose deadline has passed: it is disarmed, and its value is to be written.
+  /// Returns a point whose deadline has passed. Its deadman is disarmed, and its value has to be written.
   std::optional<Expired> take_expired(Time now);
-  /// Nothing has been done about it yet.
+  /// Undoes take_expired(): nothing was written.
   void put_back(const Expired& expired);
-  /// The value could not be written: it is to be tried again from `when` on, unless a message comes first.
+  /// Notes that the value could not be written. It is tried again from `when` on, unless a message comes
+  /// first.
   void retry(std::uint32_t point, Time when);
 
  private:

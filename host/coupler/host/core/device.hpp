@@ -40,10 +40,10 @@ class Device {
 
   /// Queues a write. Its listener gets the result.
   void push(const Write& write) { writer_.push(write); }
-  /// A value that is not valid for its point: counted, and reported to the listener.
+  /// Counts a value that is not valid for its point, and reports it to the listener.
   void refuse(const Write& write, std::string_view why) { writer_.refuse(write, why); }
 
-  /// As Writer's.
+  /// See Writer.
   void report_held_back() {
     writer_.report_held_back();
     listener_.report_held_back();
@@ -51,36 +51,37 @@ class Device {
 
   /// Resets the coupler's own watchdog.
   std::future<Calls::Answer> reset_watchdog() { return watchdog_.ask_reset(); }
-  /// As Writer::ask_safe().
+  /// See Writer::ask_safe().
   std::future<Calls::Answer> make_safe() { return writer_.ask_safe(); }
-  /// As OutputScheduler::ask().
+  /// See OutputScheduler::ask().
   std::future<ScheduleAnswer> schedule(const ScheduledWrite& what) { return scheduler_.ask(what); }
-  /// stop() has requests to make because of what was scheduled.
+  /// Returns whether stop() has to send requests because of scheduled outputs.
   bool has_to_end() const { return scheduler_.is_busy(); }
-  /// It has answered the last request: its outputs may have been written, and can be.
+  /// Returns whether the device answered the last request, so that its outputs may have been written and can
+  /// be written now.
   bool answers() const { return transport_.unit_answers(); }
 
-  /// Sends what is queued without waiting for anything, if that is possible now. If false, step() must be
-  /// called.
+  /// Sends what is queued, if that is possible without waiting. If it returns false, step() must be called.
   bool send_now() { return is_verified() && !is_read_first(clock_.now()) && writer_.send_now(); }
 
-  /// Does what is due, at most one read or one write, and returns the time of what is due next: now or
-  /// earlier if there is more to do. A write in the queue is always due while connected.
+  /// Makes at most one request that is due. Returns the time of the next one, which is not later than now if
+  /// more is due already. A queued write is always due while connected.
   Time step();
-  /// Bytes have come while no step() ran: an answer to send_now(), or else the end of the connection.
+  /// Handles bytes that have come while no step() ran: the answer to send_now(), or else the end of the
+  /// connection.
   void arrived();
-  /// step() has thrown: the connection is closed, and tried again after the back-off. Returns when.
+  /// Closes the connection after step() has thrown. Returns when to call step() again, after the back-off.
   Time give_up(const std::string& why) {
     lost(TransportFailure{why});
     return retry_at_;
   }
   /// From now on a lost connection is not logged.
   void end_comes() { ending_ = true; }
-  /// The program ends: outputs are set as `on_shutdown` says, and the connection is closed for good. False if
-  /// an output should have its safe value but does not.
+  /// Ends: sets outputs as `on_shutdown` says, and closes the connection for good. Returns false if an output
+  /// should have its safe value but does not.
   bool stop();
 
-  /// Whether somebody wants the values of a point (index into Map::points); as ToldBits'.
+  /// Sets whether somebody wants the values of a point (index into Map::points). See ToldBits.
   void want(std::uint32_t point, bool wanted) { poller_.want(point, wanted); }
 
   DeviceSnapshot statistics() const {
@@ -90,12 +91,12 @@ class Device {
   }
   std::vector<PointQuality> qualities() const { return qualities_.snapshot(clock_.now()); }
   PointQuality quality(std::uint32_t point) const { return qualities_.of(point, clock_.now()); }
-  /// Changes whenever qualities() or the connection in statistics() changes, unless only by the passing of
-  /// time.
+  /// A number that changes with qualities() and with the connection in statistics(), but not by the mere
+  /// passing of time.
   std::uint64_t revision() const { return statistics_.revision() + qualities_.revision(); }
 
  private:
-  /// Each includes what the ones before it say.
+  /// Each state includes those before it.
   enum class State {
     none,
     open,      ///< there is a connection, to the device or to its gateway
@@ -128,7 +129,7 @@ class Device {
   void answered();
   void came_online();
   void lost(const Error& error);
-  /// Of a connection that comes and goes.
+  /// Limits the log lines about a connection that comes and goes.
   void tell(Level level, std::string text);
   void tell_what_waits();
 
@@ -149,23 +150,25 @@ class Device {
   Backoff backoff_;
 
   LineLimit lines_{std::chrono::seconds(10), 6};
-  Level level_ = Level::info;  ///< of the newest
-  bool holds_line_ = false;    ///< it waits
+  Level level_ = Level::info;  ///< of the newest line
+  bool holds_line_ = false;    ///< a line waits to be logged
   std::atomic<bool> ending_{false};
   State state_ = State::none;
   bool wrote_last_ = false;  ///< the last request was a write: an overdue read goes before the next one
   std::uint64_t replies_at_connect_ = 0;  ///< PacedTransport::replies() when the maps were verified
-  /// A verified device is online at once. Not one that answered nothing else the last time: it would flicker.
+  /// A verified device is online at once, unless it answered nothing else the last time: `online` would
+  /// flicker.
   bool identity_suffices_ = true;
-  /// Connections in a row that ended before the first wait had its answer. One may end so by chance.
+  /// The number of connections in a row that ended before the first wait was answered. One of them may be
+  /// chance.
   int unheard_waits_ = 0;
   Time retry_at_ = Time::min();
-  std::string last_error_text_;             ///< of the last attempt, so that it is logged once
-  bool explains_silence_ = true;            ///< until the identity was answered, or silence_text() logged
-  bool is_node_ = false;                    ///< of this project, as far as it was asked
-  identity::Further node_;                  ///< what it says of itself; empty if it is none
-  std::string peer_;                        ///< which machine it is, if a node says so
-  std::uint64_t reported_fingerprint_ = 0;  ///< whose differences have been logged
+  std::string last_error_text_;   ///< that of the last attempt; the same text is logged once
+  bool explains_silence_ = true;  ///< false once the identity was answered, or silence_text() was logged
+  bool is_node_ = false;          ///< the device is a node of this project, as far as it was asked
+  identity::Further node_;        ///< what the node says of itself; empty if it is no node
+  std::string peer_;              ///< the machine that the node runs on, if it says so
+  std::uint64_t reported_fingerprint_ = 0;  ///< the fingerprint of the map whose differences have been logged
   std::optional<Time> reported_difference_at_;
 };
 

@@ -19,22 +19,22 @@ namespace coupler::host {
 /// The state of the coupler's own watchdog.
 struct WatchdogStatus {
   enum class State : std::uint8_t {
-    not_fed,  ///< not connected, or it could not be armed
-    fed,      ///< armed, where the coupler lets the host do that
-    expired   ///< outputs are as the coupler leaves them then
+    not_fed,  ///< not connected, or arming failed
+    fed,      ///< armed, if the host can arm it
+    expired   ///< the outputs are as the coupler leaves them
   };
   State state = State::not_fed;
-  std::uint64_t expiries = 0;  ///< that were noticed
+  std::uint64_t expiries = 0;  ///< the number of expiries that were noticed
   std::string error_text;      ///< what is wrong and what to do, while it is expired or could not be armed
 };
 
 /// The state of a device at one moment. Counts are since the program began.
 struct DeviceSnapshot {
   bool online = false;
-  std::string trouble;                        ///< why it is not online
+  std::string trouble;                        ///< the reason why it is not online
   std::optional<Identity::Verdict> identity;  ///< at the last connect; nullopt: not asked
-  identity::Machine machine{};                ///< of a node, at the last connect, as far as known
-  std::uint64_t connections = 0;              ///< that were made and proven; all but the first are reconnects
+  identity::Machine machine{};                ///< that of a node at the last connect, as far as it is known
+  std::uint64_t connections = 0;              ///< proven ones; all but the first are reconnects
   std::uint64_t requests = 0;
   std::uint64_t timeouts = 0;
   std::uint64_t failures = 0;                   ///< requests that ended the connection in another way
@@ -42,23 +42,23 @@ struct DeviceSnapshot {
   std::uint64_t discarded = 0;                  ///< Transport::discarded()
   std::uint64_t rejected_ranges = 0;
   std::uint64_t overruns = 0;
-  std::uint64_t changes = 0;                                  ///< that a node has told
-  std::uint64_t changes_lost = 0;                             ///< that it could not tell any more
+  std::uint64_t changes = 0;       ///< the number of changes that a node has told
+  std::uint64_t changes_lost = 0;  ///< the number of changes that it could not tell any more
   std::array<std::uint64_t, WriteResult::outcomes> writes{};  ///< by outcome
   WatchdogStatus watchdog;                                    ///< the coupler's own
-  std::optional<Certificates> certificates;                   ///< at the last connect, if that has TLS
-  Histogram latency;                                          ///< from request to answer
-  Histogram cycles;  ///< from the deadline of a polling cycle to its last answer
+  std::optional<Certificates> certificates;                   ///< those of the last connection, if it has TLS
+  Histogram latency;                                          ///< from request to reply
+  Histogram cycles;  ///< from the deadline of a polling cycle to its last reply
 
   std::uint64_t written(WriteResult::Outcome outcome) const {
     return writes[static_cast<std::size_t>(outcome)];
   }
 };
 
-/// Counts what a device does; read from any thread. Allocates nothing but error texts.
+/// Counts what a device does. Any thread may read the counts. Only error texts allocate memory.
 class DeviceStatistics {
  public:
-  /// A request; `error` is null if it was answered as it should be.
+  /// Counts a request. `error` is null if its reply was no exception.
   void answered(Duration after, const Error* error);
   void wrote(WriteResult::Outcome outcome);
   void cycle_ended(Duration after, std::uint64_t overruns);
@@ -70,7 +70,7 @@ class DeviceStatistics {
   void offline(const std::string& trouble);
 
   DeviceSnapshot snapshot() const;
-  /// Changes whenever `online`, `trouble` or `identity` is set.
+  /// A number that changes whenever `online`, `trouble` or `identity` is set.
   std::uint64_t revision() const { return revision_; }
 
  private:

@@ -14,7 +14,7 @@
 
 namespace coupler::host {
 
-/// Which points are to be read: set by any thread, taken by the connection's own.
+/// The points that are to be read: any thread sets them, and the connection's thread takes them.
 class ReadDemand {
  public:
   void set(std::uint32_t point, bool wanted) {
@@ -23,7 +23,7 @@ class ReadDemand {
     any_ = true;
   }
 
-  /// Calls f(point, wanted) for what was set since the last call, in order.
+  /// Calls f(point, wanted), in order, for what was set since the last call.
   template <class F>
   void take(F&& f) {
     if (!any_) return;
@@ -40,46 +40,48 @@ class ReadDemand {
   std::atomic<bool> any_{false};
   std::mutex mutex_;
   std::vector<std::pair<std::uint32_t, bool>> given_;
-  std::vector<std::pair<std::uint32_t, bool>> taken_;  ///< kept for its memory
+  std::vector<std::pair<std::uint32_t, bool>> taken_;  ///< a member, so that its memory is used again
 };
 
-/// Runs a device in its own thread, so that a dead one slows no other. That thread owns the connection, and
-/// it alone receives. While it waits, another thread may send a write by itself; the answer wakes the owner.
-/// So a write to an idle device needs no switch of threads.
+/// Runs a device in a thread of its own, so that a dead device slows no other. That thread owns the
+/// connection, and only it receives. While it waits, another thread may send a write itself, and the reply
+/// wakes the owner. So a write to an idle device needs no switch of threads.
 class DeviceThread {
  public:
-  /// With Poll::subscribed no point is wanted at first. Nothing is asked of the device before start().
+  /// With Poll::subscribed no point is wanted at first. No request is sent before start().
   DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink,
                Poll poll = Poll::all);
-  /// Ends the request in progress and waits for the thread: milliseconds, or, where outputs are to go to
-  /// their safe values, most of a second at the worst; a tenth for a device that is offline.
+  /// Ends the request in progress and waits for the thread. That takes milliseconds. If outputs have to get
+  /// their safe values, it takes most of a second at the worst, or a tenth of a second for a device that is
+  /// offline.
   ~DeviceThread() { end(); }
   DeviceThread(const DeviceThread&) = delete;
   DeviceThread& operator=(const DeviceThread&) = delete;
-  /// Once, in any thread; after end() it does nothing. Throws std::system_error if no thread can be had.
+  /// Call it once, from any thread. After end() it does nothing. Throws std::system_error if no thread can be
+  /// started.
   void start();
-  /// What the destructor does, once, in any thread. False if an output should have its safe value but does
-  /// not.
+  /// Does what the destructor does. Call it once, from any thread. Returns false if an output should have its
+  /// safe value but does not.
   bool end();
 
-  // From any thread, after start(); none of them waits for a request.
+  // Any thread may call these functions after start(). None of them waits for a request.
 
-  /// Sends a write at once if the connection is idle, otherwise queues it. The sink may call it.
+  /// Sends a write at once if the connection is idle, or else queues it. The sink may call it.
   void write(const Write& write);
   /// Counts a value that is not valid for its point, and reports it to the listener.
   void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
-  /// As Writer's. To be called a few times a second.
+  /// See Writer. Call it a few times a second.
   void report_held_back() { device_.report_held_back(); }
-  /// Whether somebody wants the values of a point (index into Map::points). One that is wanted still is read
-  /// soon where its changes are told: somebody new has seen none of its values.
+  /// Sets whether somebody wants the values of a point (index into Map::points). If a point whose changes are
+  /// told was wanted already, it is read soon, because the new reader has seen none of its values.
   void want(std::uint32_t point, bool wanted);
   /// Resets the coupler's own watchdog. The answer comes after a few timeouts at most.
   std::future<Calls::Answer> reset_watchdog();
-  /// Writes what `on_shutdown: safe` would. The answer comes after the request in flight and these writes; at
-  /// once if there is no connection.
+  /// Writes the safe values. The answer comes after the request in flight and these writes, or at once if
+  /// there is no connection.
   std::future<Calls::Answer> make_safe();
-  /// The answer comes when the writes and requests before it are done, and a timeout after that at the
-  /// latest; at once if there is no connection. The outcome goes to the sink.
+  /// The answer comes a timeout after the end of the writes and requests before it, at the latest, or at once
+  /// if there is no connection. The outcome goes to the sink.
   std::future<ScheduleAnswer> schedule(const ScheduledWrite& what);
   DeviceSnapshot statistics() const { return device_.statistics(); }
   std::vector<PointQuality> qualities() const { return device_.qualities(); }
@@ -95,14 +97,14 @@ class DeviceThread {
   SteadyClock clock_;
   Device device_;
   ReadDemand demand_;
-  bool ends_safely_;  ///< writes safe values at the end
-  std::mutex turn_;   ///< held by whoever uses the connection; only the owner waits for it
+  bool ends_safely_;  ///< the device writes safe values at the end
+  std::mutex turn_;   ///< held by the thread that uses the connection; only the owner waits for it
   std::atomic<bool> stopping_{false};
-  std::atomic<bool> is_ending_{false};  ///< the thread makes no more steps, but puts outputs into safe states
-  std::atomic<std::thread::id> owner_{};  ///< has its turn while it calls the sink
+  std::atomic<bool> is_ending_{false};    ///< the thread only sets outputs to their safe values
+  std::atomic<std::thread::id> owner_{};  ///< the thread that holds turn_ while it calls the sink
   std::promise<void> stopped_;
-  bool ended_safely_ = true;  ///< once the thread has ended
-  std::mutex life_;           ///< held to start and to end it
+  bool ended_safely_ = true;  ///< valid once the thread has ended
+  std::mutex life_;           ///< held while the thread is started or ended
   std::thread thread_;        // last: it uses the others
 };
 

@@ -21,8 +21,8 @@ struct NotConnected {
 /// The connection broke.
 struct TransportFailure {
   std::string why;
-  bool has_remedy = false;           ///< as above
-  bool is_instead_of_reply = false;  ///< it came after the request: perhaps the device refuses that so
+  bool has_remedy = false;           ///< `why` says what to do
+  bool is_instead_of_reply = false;  ///< it came after a request, which the device may refuse in this way
 };
 /// No complete reply within the device's timeout.
 struct Timeout {
@@ -31,7 +31,8 @@ struct Timeout {
 /// The device refuses the request. Any code may arrive (MAP 7).
 struct ExceptionReply {
   modbus::Exception code;
-  /// There is no code: it acknowledges a write, but with this value instead of the one that was sent.
+  /// Set if there is no code: the device acknowledges a write, but with this value instead of the one that
+  /// was sent.
   std::optional<std::uint16_t> other_value{};
 };
 /// A reply that is not an answer to the request.
@@ -50,27 +51,28 @@ tl::unexpected<Error> fail(E error) {
   return tl::unexpected<Error>(Error(std::move(error)));
 }
 
-/// The exception code if the error is one. Every other error ends the connection: its late reply must never
-/// be taken for the answer to the next request.
+/// Returns the exception if the error is one. Every other error ends the connection, since a late reply must
+/// never be taken for the reply to the next request.
 const ExceptionReply* exception_in(const Error& error);
 
-/// Of a node, which knows every function: this client has no right to ask for that (exception 01).
+/// Returns whether a node refuses this client the right to the request (exception 01; a node knows every
+/// function).
 bool is_no_right(const Error& error);
 
-/// A gateway is there and says that the unit behind it is not (exceptions 0A and 0B).
+/// Returns whether a gateway says that it cannot reach the unit behind it (exceptions 0A and 0B).
 bool is_unit_away(const Error& error);
 
-/// No reply, the end of the connection instead, or no reply that can be one: of the device, or of this
-/// request only.
+/// Returns whether there was no reply, the end of the connection instead of one, or a malformed one: the
+/// device may be gone, or may refuse this request in this way.
 bool is_no_reply(const Error& error);
 
-/// The device ended the connection in place of a reply.
+/// Returns whether the device ended the connection instead of replying.
 bool is_closed(const Error& error);
 
-/// Its text says what to do: no general advice need follow.
+/// Returns whether the text of the error says what to do, so that no general advice need follow.
 bool has_remedy(const Error& error);
 
-/// "exception 02 (illegal data address)", "no reply within 3000 ms" …
+/// Returns a text as "exception 02 (illegal data address)" or "no reply within 3000 ms".
 std::string to_string(const Error& error);
 
 }  // namespace coupler::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What people ask of a point by its name.
+// Requests for a point by its name.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@
 
 namespace coupler::host {
 
-/// The point of that name. The error says that there is none, and which was meant.
+/// Returns the point of that name. The error says that there is none, and which one may be meant.
 tl::expected<const Point*, std::string> point_named(const Map& map, std::string_view name);
 
-/// A write of the value that the text says, as parse_value() takes it, to the point of that name. The error
-/// says why there can be none.
+/// Makes a write of the value in the text (see parse_value()) to the point of that name. The error says why
+/// that is impossible.
 tl::expected<Write, std::string> write_named(const Map& map, std::string_view name, std::string_view text);
 
 }  // namespace coupler::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node of this project says about itself: its identity and its map. Foreign couplers have neither.
+// The identity and the map of a node of this project. Foreign couplers have neither.
 #pragma once
 
 #include <functional>
@@ -12,36 +12,37 @@
 
 namespace coupler::host {
 
-/// load_served_map(), passed in so that the core needs no YAML.
+/// load_served_map(), which is passed in so that the core needs no YAML.
 using MapLoader = std::function<LoadResult(std::string_view text, std::string_view file)>;
 
-/// nullopt: a foreign coupler, which answers with an exception or with something else.
+/// Reads the head of the identity; nullopt for a foreign coupler, which answers with an exception or with
+/// something else.
 Result<std::optional<identity::Head>> read_identity(Transport& transport);
 
-/// All that a node of any age has in its identity area, or without the statistics, if they may not be read;
+/// Reads all that a node of any age has in its identity area, without the statistics if they may not be read;
 /// nullopt as above.
 Result<std::optional<identity::Report>> read_report(Transport& transport);
 
-/// Which machine a node runs on, hostname in printable ASCII, and what it can do. Empty: the node is older
-/// than these fields.
+/// Reads which machine the node runs on, with its hostname in printable ASCII, and what the node can do. Both
+/// are empty if the node is older than these fields.
 Result<identity::Further> read_further(Transport& transport);
 
-/// "cell-7, serial 0123456789abcdef", as far as it is known.
+/// Returns a text as "cell-7, serial 0123456789abcdef", as far as the machine is known.
 std::string to_string(const identity::Machine& machine);
 
-/// The text of the map by FC 20, unchecked.
+/// Reads the text of the map by FC 20, and does not check it.
 Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size);
 
-/// The head and the map's text as the node has them.
+/// The head of the identity and the text of the map, as the node has them.
 struct ServedMap {
   identity::Head head;
   std::string text;
 };
 
-/// Both, over a connection of its own, which is closed then; nullopt: a foreign coupler.
+/// Reads both over a connection of its own, which is closed afterwards; nullopt for a foreign coupler.
 Result<std::optional<ServedMap>> fetch_served_map(Transport& transport);
 
-/// The map in a text that was fetched, or what is wrong with it: its checksum, errors.
+/// Loads a map from a text that was read. The error says what is wrong: its checksum, or errors in the map.
 tl::expected<MapPtr, std::string> load_node_map(const std::string& text, const identity::Head& head,
                                                 const MapLoader& load);
 

@@ -12,30 +12,31 @@
 
 namespace coupler::host {
 
-/// Why an outcome is not heard.
+/// The reason why an outcome is not heard.
 inline constexpr const char* told_no_more = "the node tells changes no more";
 
-/// What a node has accepted to drive at a time, until it tells what became of that. Changes of bits are
-/// handed on.
+/// The scheduled outputs that a node has accepted, until it tells their outcome. Changes of bits are passed
+/// on.
 class NodeOutputs : public ChangeSink {
  public:
-  /// `bits` gets what is told of bits. Both must outlive it.
+  /// `bits` receives the changes of bits. Both must outlive the object.
   NodeOutputs(ChangeSink& bits, Clock& clock, ScheduledListener& outcomes)
       : bits_(bits), clock_(clock), outcomes_(outcomes) {}
 
-  /// The node's time for `due`, in the order with those that wait that it has here, and the same if it is the
-  /// same here: the mapping moves with each exchange. nullopt: the mapping does not know.
+  /// Returns the node's time for `due`. The order of the outputs that wait is kept, and equal times stay
+  /// equal, although the mapping moves with each exchange. Returns nullopt if the mapping does not know the
+  /// time.
   std::optional<modbus::NodeTime> node_due(Time due, const ClockMapping& mapping) const;
-  /// `number`: ScheduleReply's; `node_due`: ScheduleOutput's.
+  /// `number`: see ScheduleReply. `node_due`: see ScheduleOutput.
   void add(std::uint16_t number, modbus::NodeTime node_due, const AcceptedWrite& what);
   std::size_t size() const { return waiting_.size(); }
   /// The numbers of those that wait.
   std::vector<std::uint16_t> numbers() const;
-  /// It has this outcome now, if it waits still.
+  /// Reports the outcome of an output if it still waits.
   void settle(std::uint16_t number, ScheduledOutcome::Result result, const std::string& reason);
-  /// A write of its own to the point was carried out.
+  /// Notes that a write of its own to the point was carried out.
   void on_written(std::uint32_t point);
-  /// The outcomes will not be heard.
+  /// Reports that the outcomes will not be heard.
   void lose(const std::string& reason);
 
   void on_change(const modbus::Change& change, std::uint64_t number, Stamp stamp) override;
@@ -50,7 +51,7 @@ class NodeOutputs : public ChangeSink {
     std::uint16_t number;
     modbus::NodeTime node_due;
     AcceptedWrite what;
-    Time told_by;  ///< what has not been told by then was among the changes that were lost
+    Time told_by;  ///< an outcome that was not told by then was among the changes that were lost
   };
   void tell(const Waiting& which, ScheduledOutcome::Result result, Stamp at, const std::string& reason);
   template <class Which>

@@ -17,38 +17,40 @@
 
 namespace coupler::host {
 
-/// Made when the writes of its point that were queued before have their results: one of them would be another
-/// write to the same point, and cancel it.
+/// A call that is answered once the writes queued before it for the same point have their results: another
+/// write to the point would cancel it.
 struct AskedSchedule {
   ScheduledWrite what;
   std::uint32_t after = 0;  ///< WriteQueue::queued()
 };
 using ScheduleCalls = CallQueue<AskedSchedule, ScheduleAnswer>;
 
-/// Writes at a time: by a node that drives outputs by itself and tells what became of that, otherwise by the
-/// driver.
+/// Scheduled writes. A node with a timer carries them out and tells their outcome; otherwise the driver
+/// writes them.
 ///
-/// ask() and is_busy() may be called from any thread, all else only from the one that uses the transport.
+/// Any thread may call ask() and is_busy(). Only the thread that uses the transport may call the other
+/// functions.
 class OutputScheduler : private ScheduledListener, private WrittenListener {
  public:
-  /// `bits` gets what a node tells of bits. Everything given by reference must outlive it.
+  /// `bits` receives the changes of bits. All references must outlive the object.
   OutputScheduler(const Map& map, PacedTransport& transport, Clock& clock, Writer& writer, ChangeSink& bits,
                   Sink& sink);
 
-  /// To a writable point. Refused while there is no connection; what is not done when that ends is cancelled.
+  /// Schedules a write to a writable point. It is refused while there is no connection, and cancelled if the
+  /// connection ends before its time.
   std::future<ScheduleAnswer> ask(const ScheduledWrite& what) {
     return calls_.ask({what, writer_.queued(what.write.point)});
   }
-  /// shut_down() has something to do.
+  /// Returns whether shut_down() has something to do.
   bool is_busy() const { return busy_; }
 
-  /// Gets what a node tells.
+  /// The receiver of what a node tells.
   ChangeSink& changes() { return by_node_; }
 
-  /// A new connection; `by_node`: to a node that drives outputs at a time.
+  /// Starts with a new connection. `by_node`: it leads to a node that carries out scheduled outputs.
   void connected(bool by_node);
-  /// When queue_due() or step() has something to do; the past if it has now, or will have when the writer has
-  /// made the writes before.
+  /// The time at which queue_due() or step() has something to do. It is in the past if that is now, or as
+  /// soon as the writer has made the writes before.
   Time due(const ChangeListener& listener) const {
     return calls_.any() && is_ready(listener) ? Time::min() : by_driver_.due();
   }
@@ -61,11 +63,11 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   bool has_request(const ChangeListener& listener) {
     return is_ready(listener) && calls_.any_of([this](const AskedSchedule& asked) { return is_next(asked); });
   }
-  /// Makes one request. An error means that the connection can no longer be used.
+  /// Sends one request. An error means that the connection can no longer be used.
   Result<> step(const ChangeListener& listener);
-  /// There is no connection, and the writer knows that: what waits is cancelled.
+  /// Cancels what waits, because the connection has ended. The writer must know that already.
   void disconnected(const std::string& why);
-  /// The program ends, before the connection is closed if there is one: what waits is cancelled.
+  /// Cancels what waits, because the program ends. Call it before the connection is closed, if there is one.
   void shut_down(bool connected, const ChangeListener& listener);
 
  private:
@@ -74,7 +76,8 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   void on_written(const Write& write) override;
   void on_made_safe(const std::vector<Write>& values) override;
 
-  /// A node can be given a time once its clock is known: it answers the first wait for changes at once.
+  /// A node can be given a time once its clock is known, which is soon: it answers the first wait for changes
+  /// at once.
   bool is_ready(const ChangeListener& listener) const {
     return !node_can_ || !listener.is_active() || listener.has_heard();
   }
@@ -85,7 +88,7 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   }
   Result<> answer(const ScheduledWrite& what, std::promise<ScheduleAnswer>& to,
                   const ChangeListener& listener);
-  /// nullopt: the device does not do it.
+  /// Returns nullopt if the device does not do it.
   Result<std::optional<ScheduleAnswer>> give_to_node(const ScheduledWrite& what,
                                                      const ChangeListener& listener);
   ScheduleAnswer keep(const ScheduledWrite& what);
@@ -103,9 +106,9 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   ScheduleCalls calls_;
   ScheduledWrites by_driver_;
   NodeOutputs by_node_;
-  bool node_can_ = false;  ///< the device drives outputs at a time
+  bool node_can_ = false;  ///< the device carries out scheduled outputs
   std::uint32_t last_number_ = 0;
-  std::atomic<bool> busy_{false};  ///< something has been accepted and is not over
+  std::atomic<bool> busy_{false};  ///< a write was accepted and has no outcome yet
 };
 
 }  // namespace coupler::host

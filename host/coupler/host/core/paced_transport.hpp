@@ -13,11 +13,11 @@
 
 namespace coupler::host {
 
-/// Gets what a wait for changes has brought.
+/// Receives the answers to waits for changes.
 class WaitListener {
  public:
   virtual ~WaitListener() = default;
-  /// Before the answer to a request that was made meanwhile is given to anybody: it is newer.
+  /// Called before the reply to a request that was sent after the wait is used: that reply is newer.
   virtual void on_wait_answer(const WaitAnswer& answer) = 0;
 };
 
@@ -53,7 +53,7 @@ class PacedTransport : public Transport {
   bool can_wait() const override { return transport_.can_wait(); }
   Result<> send_wait(const modbus::ChangesRequest& request) override;
   Result<> receive_wait() override;
-  /// Gets the answers; take_wait_answer() has none.
+  /// Sets the receiver of the answers; take_wait_answer() returns none.
   void listen(WaitListener& listener) { listener_ = &listener; }
   Woken wait_until(Time time) override { return transport_.wait_until(time); }
   Result<> discard_unasked() override { return transport_.discard_unasked(); }
@@ -61,32 +61,33 @@ class PacedTransport : public Transport {
   std::optional<Certificates> certificates() const override { return transport_.certificates(); }
   void wake() override { transport_.wake(); }
 
-  /// Reads, only to see that the device answers. An exception is an answer, unless it says that the unit is
-  /// away.
+  /// Reads, only to see whether the device answers. An exception is an answer, unless it says that the unit
+  /// is away.
   Result<> ask(const Unreadable& place);
-  /// The same of the first point that can be read, or else of coil 0.
+  /// Does the same with the first readable point, or else with coil 0.
   Result<> keep_alive(const Map& map);
 
-  /// A request that is made now needs no pause.
+  /// Returns whether a request needs no pause now.
   bool is_ready() const { return clock_.now() >= ready_; }
-  /// When the last request was answered, well or not.
+  /// The time of the reply to the last request, or of its failure.
   Time last_answer() const { return answered_; }
-  /// Of the values in the last answer to a read: between the request's and its reply's time.
+  /// The stamp of the values in the last reply to a read, between the times of request and reply.
   Stamp last_stamp() const { return stamp_between(begun_, answered_); }
-  /// Of the last write that was answered: it was carried out between the request's and its reply's time.
+  /// The stamp of the last confirmed write, which was carried out between the times of request and reply.
   Stamp last_write() const { return written_; }
-  /// How many requests have been answered, also by an exception.
+  /// The number of requests that were answered, also by an exception.
   std::uint64_t replies() const { return replies_; }
-  /// From any thread: the last request over this connection was answered, and not for a unit that is away.
+  /// Returns whether the last request over this connection was answered by the unit, and not by a gateway for
+  /// a unit that is away. Any thread may call it.
   bool unit_answers() const { return unit_answers_; }
 
-  /// Whether a request has been answered with it since the last forget_exceptions().
+  /// Returns whether a request was answered with this exception since the last forget_exceptions().
   bool has_seen(modbus::Exception code) const { return seen_[static_cast<std::size_t>(code)]; }
   void forget_exceptions() { seen_.reset(); }
 
  private:
   void pause();
-  /// The next request is made no sooner than `rest` later.
+  /// The next request is sent no sooner than `rest` after `time`.
   void ended_at(Time time, Duration rest);
   void answered(const Error* error);
   template <class T>
@@ -102,13 +103,13 @@ class PacedTransport : public Transport {
   WaitListener* listener_ = nullptr;
   Duration gap_;
   Duration delay_;
-  Time ready_ = Time::min();  ///< no request before
-  Time begun_{};              ///< the request in flight
+  Time ready_ = Time::min();  ///< no request is sent before
+  Time begun_{};              ///< the time of the request in flight
   Time answered_{};
   Stamp written_{};
   std::uint64_t replies_ = 0;
   std::atomic<bool> unit_answers_{false};
-  std::bitset<256> seen_;  ///< exceptions
+  std::bitset<256> seen_;  ///< the exceptions that came
 };
 
 }  // namespace coupler::host

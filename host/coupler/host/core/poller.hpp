@@ -22,33 +22,34 @@ namespace coupler::host {
 /// Neither is one that changes are older than which still come: see ToldBits.
 class Poller {
  public:
-  /// Everything given by reference must outlive it.
+  /// All references must outlive the poller.
   Poller(const Map& map, PacedTransport& transport, Writer& writer, DeviceStatistics& statistics,
          PointQualities& qualities, Sink& sink);
 
-  /// A new connection; `is_node`: to a node of this project; `told`: that tells changes of its bits.
+  /// Starts with a new connection. `is_node`: it leads to a node of this project. `told`: the node tells
+  /// changes of its bits.
   void start(bool is_node, bool told);
-  /// When step() has something to do.
+  /// The time at which step() has something to do.
   Time due() const { return cycle_.due(); }
-  /// As PollCycle's.
+  /// See PollCycle.
   bool is_overdue(Time now) const { return cycle_.is_overdue(now); }
-  /// Whether step() would make a request now.
+  /// Returns whether step() would send a request now.
   bool has_request(Time now) { return cycle_.select(now) != nullptr; }
-  /// Makes the request that is due, if there is one and its turn comes before `until`. An error means that
-  /// the connection can no longer be used, or that the unit is away; any other exception is not an error.
+  /// Sends the request that is due, if there is one and its turn comes before `until`. An error means that
+  /// the connection can no longer be used, or that the unit is away. Any other exception is not an error.
   Result<> step(Time until = Time::max());
 
-  // The request that step() made has ended the connection. As PollCycle's:
+  // The request of step() has ended the connection. See PollCycle.
   void ended_connection() { cycle_.ended_connection(); }
   bool is_suspected() const { return cycle_.is_suspected(); }
   void acquit() { cycle_.acquit(); }
   Unreadable current() const { return {cycle_.current().table, cycle_.current().range}; }
   void set_aside(const Error& error);
-  /// What was answered last over any connection; nullopt: nothing.
+  /// The range that was answered last over any connection; nullopt if there is none.
   const std::optional<Unreadable>& last_answered() const { return answered_; }
 
   void want(std::uint32_t point, bool wanted) { told_.want(point, wanted); }
-  /// Gets the changes.
+  /// The receiver of changes.
   ChangeSink& changes() { return told_; }
 
  private:
@@ -71,8 +72,8 @@ class Poller {
   PollCycle cycle_;
   ToldBits told_;
   std::optional<Unreadable> answered_;
-  bool is_node_ = false;  ///< which knows every function: exception 01 is about rights
-  ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< kept for its memory
+  bool is_node_ = false;  ///< a node knows every function, so exception 01 is about rights
+  ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< a member, so that its memory is used again
   std::array<std::uint8_t, modbus::max_read_bits> bits_{};
   std::array<std::uint16_t, modbus::max_read_registers> registers_{};
 };

@@ -10,29 +10,29 @@
 
 namespace coupler::host {
 
-/// Whether a value that was read is news for those who listen: every one under `publish: always`; under
-/// `on_change` one that differs from the last news by more than the deadband, one that comes max_interval
-/// after it, and the first one after renew(). Allocates nothing once it is made.
+/// Decides whether a value that was read is published: each value under `publish: always`; under `on_change`
+/// a value that differs from the last published one by more than the deadband, one that comes max_interval
+/// after it, and the first one after renew(). Once it is made, it allocates no memory.
 class PublishPolicy {
  public:
-  /// The point must outlive it.
+  /// The point must outlive the policy.
   explicit PublishPolicy(const Point& point);
 
-  /// The point's registers as they came `at`; bit tables: each bit as one register, 0 or 1.
+  /// `registers` has the point's registers, or its bits as 0 or 1, as they were at the time `at`.
   bool calls_news(const std::uint16_t* registers, Time at);
 
-  /// When the value that was news last is so again. Time::max(): never.
+  /// The time at which the last published value is published again; Time::max(): never.
   Time repeat_at() const;
 
-  /// The next value is news whatever it is: the device was away, or a new listener has not seen the last one.
-  /// From any thread.
+  /// The next value is published, whatever it is, because the device was away or a new reader has not seen
+  /// the last one. Any thread may call it.
   void renew() { renewed_ = true; }
 
  private:
   bool differs(const std::uint16_t* registers) const;
 
   const Point& point_;
-  std::vector<std::uint16_t> last_;  ///< what was news last
+  std::vector<std::uint16_t> last_;  ///< the last published value
   Time last_at_{};
   std::atomic<bool> renewed_{true};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When something is due again: at a rate, or after a failure.
+// Times at which something is due again: at a rate, or after a failure.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 
 namespace coupler::host {
 
-/// `rate` in Hz, above 0.
+/// The period of a rate in Hz, above 0.
 inline Duration period_of(double rate) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.0 / rate));
 }
 
-/// Deadlines `period` apart, counted from the start and not from the last cycle: no drift. Deadlines that
-/// pass while a cycle runs are counted and left out, not caught up on.
+/// Deadlines that are `period` apart, counted from the start and not from the last cycle, so that they do not
+/// drift. Deadlines that pass while a cycle runs are left out and counted.
 class Schedule {
  public:
   explicit Schedule(Duration period) : period_(period) {}
@@ -25,7 +25,7 @@ class Schedule {
   Time due() const { return due_; }
   Duration period() const { return period_; }
 
-  /// The cycle of the current deadline has ended at `now`.
+  /// Notes that the cycle of the current deadline has ended at `now`.
   void advance(Time now) {
     due_ += period_;
     if (now < due_) return;
@@ -34,7 +34,7 @@ class Schedule {
     overruns_ += static_cast<std::uint64_t>(missed);
   }
 
-  /// Deadlines left out since construction.
+  /// The number of deadlines that were left out since construction.
   std::uint64_t overruns() const { return overruns_; }
 
  private:
@@ -43,7 +43,7 @@ class Schedule {
   std::uint64_t overruns_ = 0;
 };
 
-/// How long to wait before the next attempt: 0.1 s, doubling to 5 s.
+/// The time to wait before the next attempt: 0.1 s, doubling up to 5 s.
 class Backoff {
  public:
   Duration next() {

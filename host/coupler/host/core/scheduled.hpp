@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values that points are to have at a time, and what became of them.
+// Scheduled writes and their outcomes.
 #pragma once
 
 #include <chrono>
@@ -13,41 +13,41 @@
 
 namespace coupler::host {
 
-/// So many may wait at a device, and last.
+/// The limit of scheduled writes that may wait or last at a device.
 constexpr std::size_t max_scheduled = 64;
 
-/// A write that is to be made at a time.
+/// A write that is to be made at a given time.
 struct ScheduledWrite {
   Write write;
   Time due{};
-  std::chrono::milliseconds duration{};  ///< then the point has its value from before again; 0: for good
-  std::chrono::nanoseconds asked{};      ///< `due` as the caller said it: handed on
+  std::chrono::milliseconds duration{};  ///< after it the point has its former value again; 0: for good
+  std::chrono::nanoseconds asked{};      ///< `due` as the caller said it, to be passed on
 };
 
-/// What is answered at once.
+/// The answer to a call, at once.
 struct ScheduleAnswer {
-  std::uint32_t number = 0;  ///< ScheduledOutcome has it, too; 0: refused
-  std::string text;          ///< who does it, or why nobody does and what to do about it
+  std::uint32_t number = 0;  ///< the number that ScheduledOutcome has, too; 0: refused
+  std::string text;          ///< who does it; or why it is refused, and what to do
 };
 
-/// What became of a write that was accepted. Each has exactly one outcome.
+/// The outcome of a write that was accepted. Each has exactly one.
 struct ScheduledOutcome {
   enum class Result : std::uint8_t {
     done = 1,   ///< carried out
-    cancelled,  ///< not carried out, and it will not be
+    cancelled,  ///< not carried out, and will not be
     failed,     ///< the device could not carry it out
-    unknown     ///< the connection was lost, or the news of it, before it was known
+    unknown     ///< the connection, or the report of the outcome, was lost
   };
 
   std::uint32_t number = 0;
   std::uint32_t point = 0;  ///< index into Map::points
   Result result = Result::done;
-  std::string reason{};              ///< empty when done
-  std::chrono::nanoseconds asked{};  ///< ScheduledWrite's
+  std::string reason{};              ///< empty if `done`
+  std::chrono::nanoseconds asked{};  ///< see ScheduledWrite
   Time due{};
-  Stamp at{};  ///< when it was carried out; otherwise when that was known
+  Stamp at{};  ///< the time at which it was carried out, or at which its outcome was known
 
-  /// When done, from the time that was asked for to `at`; otherwise 0.
+  /// The delay from the time that was asked for to `at` if `done`; otherwise 0.
   Duration lateness() const { return result == Result::done ? at.at - due : Duration::zero(); }
 };
 
@@ -55,11 +55,12 @@ struct ScheduledOutcome {
 struct AcceptedWrite {
   std::uint32_t number = 0;
   ScheduledWrite what;
-  /// Another write to the point was carried out since: that one is the newer, or this one is cancelled.
+  /// Returns whether another write to the point was carried out since: then that one is newer, or this one is
+  /// cancelled.
   bool is_overwritten = false;
 };
 
-/// Gets the outcomes. Calls come from the connection's thread.
+/// Receives the outcomes. The connection's thread makes the calls.
 class ScheduledListener {
  public:
   virtual void on_outcome(const AcceptedWrite& which, ScheduledOutcome::Result result, Stamp at,
@@ -69,10 +70,11 @@ class ScheduledListener {
   ~ScheduledListener() = default;
 };
 
-/// Why its time or its duration is not possible, and what is; empty: they are. As a node has it.
+/// Returns why the time or the duration is impossible, and what is possible; empty if they are possible. The
+/// rules are those of a node.
 std::string why_impossible(const ScheduledWrite& what, Time now);
 
-/// In words. A node may have reasons that are not known here.
+/// Returns a text. A node may have reasons that are not known here.
 std::string to_string(modbus::Reason reason);
 
 }  // namespace coupler::host

@@ -12,32 +12,32 @@
 
 namespace coupler::host {
 
-/// The writes that the driver makes at a time with its own timer, for devices that have none. They are queued
+/// The scheduled writes that the driver makes with its own timer, for devices without one. They are queued
 /// when their time has come.
 ///
-/// They are for good: what ends by itself needs a timer that does not end with the driver.
+/// They have no duration: an output that ends by itself needs a timer that does not end with the driver.
 ///
-/// Another write to the point cancels what waits, unless that one was scheduled, too. All is for the thread
-/// that owns the connection.
+/// Another write to the point cancels those that wait, unless it was scheduled, too. Only the thread that
+/// owns the connection may use the object.
 class ScheduledWrites {
  public:
-  /// Everything given by reference must outlive it.
+  /// All references must outlive the object.
   ScheduledWrites(PacedTransport& transport, Clock& clock, Writer& writer, ScheduledListener& outcomes);
 
   void add(const AcceptedWrite& what);
-  /// How many wait or are being written.
+  /// The number of those that wait or are being written.
   std::size_t size() const { return entries_.size(); }
 
-  /// When queue_due() has something to do; Time::max(): never.
+  /// The time at which queue_due() has something to do; Time::max() if there is nothing.
   Time due() const { return due_; }
   /// Queues the writes whose time has come.
   void queue_due(Time now);
 
-  /// As WrittenListener's.
+  /// See WrittenListener.
   void on_written(const Write& write);
   void on_made_safe(const std::vector<Write>& values);
 
-  /// What waits is cancelled.
+  /// Cancels those that wait.
   void cancel(const std::string& reason);
 
  private:
@@ -54,7 +54,7 @@ class ScheduledWrites {
   static std::uint32_t point(const Entry& entry) { return entry.what.what.write.point; }
   static Time due(const Entry& entry);
   void find_due();
-  /// Those that wait and of which `which(entry)` is true.
+  /// Cancels those that wait and for which `which(entry)` is true.
   template <class Which>
   void cancel_if(Which which, Stamp at, const std::string& reason);
   Entry* next(Time now);

@@ -11,37 +11,40 @@
 
 namespace coupler::host {
 
-/// Requests that ended a connection over which others were answered before and after: many devices refuse an
-/// address by silence, or by a reply that is none. Such a request is parted like one that is refused; what is
-/// left of it is set aside, and tried again after 10 s, then after twice as long each time, up to 10 minutes.
-/// It outlives connections, since each of them would be ended again.
+/// Read requests that ended a connection although others were answered before and after: many devices refuse
+/// an address by silence, or by a malformed reply. Such a request is parted like one that is refused. What is
+/// left of it is set aside and tried again after 10 s, then after twice as long each time, up to 10 minutes.
+/// The list outlives connections, since each new one would be ended again.
 class SetAside {
  public:
-  /// The request has ended a connection, perhaps by chance.
+  /// Notes that the request has ended a connection, perhaps by chance.
   void suspect(const plan::ReadSpan& span);
-  /// If it ends a connection now, that is no chance: it did so when it was asked last, or is a part of one
-  /// that did.
+  /// Returns whether the request, or one that contained it, ended the connection when it was sent last, so
+  /// that another end is not chance.
   bool is_suspected(const plan::ReadSpan& span) const;
-  /// It has done so again. Neither it nor a part of it need be suspected first any more.
+  /// Notes that the request has ended a connection again. From now on a part of it need not be suspected
+  /// first.
   void convict(const plan::ReadSpan& span);
-  /// What is left of it once it is parted: points that one request reads.
+  /// Sets aside what is left of the request once it is parted: points that one request reads.
   void add(const plan::ReadSpan& span, Time now);
-  /// What had been tried again has ended a connection once more. False if the request is none of these.
+  /// Notes that a request that was tried again has ended a connection once more. Returns false if it was not
+  /// set aside.
   bool failed_again(const plan::ReadSpan& span, Time now);
-  /// The request was answered. True if it had been set aside.
+  /// Notes that the request was answered. Returns true if it had been set aside.
   bool answered(const plan::ReadSpan& span);
 
-  /// The request is set aside, also while it is being tried.
+  /// Returns whether the request is set aside, also while it is being tried again.
   bool has(const plan::ReadSpan& span) const { return rests(span, Time::min()); }
-  /// The request is set aside, and it is not its time.
+  /// Returns whether the request is set aside, and is not to be tried again yet.
   bool rests(const plan::ReadSpan& span, Time now) const;
-  /// When something is to be tried again; Time::max(): never.
+  /// The time at which something is to be tried again; Time::max() if nothing is.
   Time due() const;
-  /// The points that are to be tried again now: once, until the outcome is known.
+  /// Returns the points that are to be tried again now, once until the outcome is known.
   std::vector<std::uint32_t> take_due(Time now);
-  /// All that are set aside, also those that are being tried: a new connection begins without them.
+  /// Returns all points that are set aside, also those that are being tried again. A new connection begins
+  /// without them.
   std::vector<std::uint32_t> take_back();
-  /// No request of several points may contain one of these.
+  /// The ranges that no request for several points may contain.
   const std::vector<Unreadable>& ranges() const { return guilty_; }
 
  private:
@@ -57,7 +60,7 @@ class SetAside {
   };
   std::vector<Entry>::iterator find(const plan::ReadSpan& span);
 
-  std::vector<Unreadable> suspects_;  ///< they ended the connection when they were asked last
+  std::vector<Unreadable> suspects_;  ///< requests that ended the connection when they were sent last
   std::vector<Unreadable> guilty_;
   std::vector<Entry> entries_;
 };

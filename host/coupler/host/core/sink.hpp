@@ -14,8 +14,8 @@ using plan::ReadSpan;
 
 enum class Level { info, warning, error };
 
-/// Gets what a device reads and reports. Calls come from the connection's thread, and delay its next request.
-/// Only on_report() may also come from a thread that writes.
+/// Receives what a device reads and reports. The connection's thread makes the calls, and they delay its next
+/// request. Only on_report() may also be called by a thread that writes.
 class Sink {
  public:
   virtual ~Sink() = default;
@@ -23,17 +23,18 @@ class Sink {
   virtual void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) = 0;
   /// `registers[i]` is the register `span.range.start() + i`, as it was at `stamp`.
   virtual void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) = 0;
-  /// When the point's value is wanted once more though it is still the same: `max_interval` after it was
-  /// published last. Time::max(): never.
+  /// The time at which the point's value is wanted again even if it has not changed: `max_interval` after it
+  /// was published last. Time::max() if there is none.
   virtual Time repeat_at(std::uint32_t /*point*/) const { return Time::max(); }
-  /// Whether the device is a node of this project, where that is asked, before it is online.
+  /// Says whether the device is a node of this project, if that was asked, before the device is online.
   virtual void on_identified(bool /*is_node*/) {}
-  /// The device answers (or no longer does). Only changes; it begins offline.
+  /// Says that the device answers, or no longer answers. It is called at each change. A device begins
+  /// offline.
   virtual void on_online(bool online) = 0;
-  /// Why it does not answer; reported, too. Only what is new.
+  /// Says why the device does not answer, if that is new. It is also reported.
   virtual void on_loss(const std::string& /*why*/) {}
   virtual void on_report(Level level, const std::string& text) = 0;
-  /// What became of a write at a time.
+  /// Says what became of a scheduled write.
   virtual void on_scheduled(const ScheduledOutcome& /*outcome*/) {}
 };
 

@@ -5,13 +5,14 @@
 
 namespace coupler::host {
 
-/// When a value was true: between `at` - `uncertainty` and `at` + `uncertainty`.
+/// The time at which a value was true: between `at` - `uncertainty` and `at` + `uncertainty`.
 struct Stamp {
   Time at{};
   Duration uncertainty{};
 };
 
-/// Of a value that a device told between a request and its reply: the middle, and half of the distance.
+/// The stamp of a value that a device read between a request and its reply: the middle of the two times, and
+/// half of their distance.
 inline Stamp stamp_between(Time sent, Time received) {
   const Duration half = (received - sent) / 2;
   return {sent + half, received - sent - half};  // the greater half

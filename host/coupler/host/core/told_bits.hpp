@@ -14,34 +14,35 @@
 
 namespace coupler::host {
 
-/// The points of coils and discrete inputs at a node that tells changes. Each is read once; a change is then
-/// given to the sink as if the point had been read. Under `publish: on_change` it is not read again until
-/// something was missed: it rests.
+/// The coils and discrete inputs of a node that tells changes. Each point is read once. After that each
+/// change is given to the sink as if the point had been read. Under `publish: on_change` a point is not read
+/// again until changes were missed: it rests.
 ///
-/// An array whose bits change in one step of the node is shown once.
+/// An array whose bits change in one step of the node is published once.
 ///
-/// No value flickers back, and no change is left out for one that was read: where more changes follow than
-/// one answer holds, a value that is read meanwhile is newer than they are, and is not shown unless it is the
-/// one that was shown last. Only where changes were lost it is, and then those that it is newer than are not.
-/// A change is not shown either if it is older than a value that is to be written. Of one between the answers
-/// to the wait and to the read nobody can tell, so it is shown. A bit that was read has the level that it has
-/// had or has next, so it does not flicker even then; an array may.
+/// No value flickers back, and no change is left out because of a value that was read. If more changes follow
+/// than one reply holds, a value that is read meanwhile is newer than those changes, and is published only if
+/// it equals the last published value. It is also published after changes were lost; older changes are then
+/// discarded. A change that is older than a value that waits to be written is not published. A change between
+/// the replies to the wait and to the read cannot be ordered, so it is published. A single bit does not
+/// flicker even then, since the value that was read is its old or its new level. An array may flicker.
 class ToldBits : public ChangeSink {
  public:
-  /// Everything given by reference must outlive it.
+  /// All references must outlive the object.
   ToldBits(const Map& map, PollCycle& cycle, Writer& writer, PointQualities& qualities, Sink& sink);
 
-  /// A new connection, after PollCycle::start(). `told`: the device tells changes.
+  /// Starts with a new connection, after PollCycle::start(). `told`: the device tells changes.
   void start(bool told);
-  /// As PollCycle's. If it is wanted again, or still, it is read soon, since somebody has not seen it.
+  /// See PollCycle. If the point is wanted again, or was wanted already, it is read soon, because the new
+  /// reader has not seen its value.
   void want(std::uint32_t point, bool wanted);
-  /// What was read of some points may not be shown.
+  /// Returns whether there are points whose values must not be published as they were read.
   bool leaves_out_any() const { return active_ && more_follow_; }
-  /// Whether that is so of this point of the span. If somebody waits for it, it is read again when all
+  /// Returns whether this is such a point of the span. If somebody waits for it, it is read again when all
   /// changes have come.
   bool leave_out(std::uint32_t point, const ReadSpan& span, Span<const std::uint8_t> bits);
-  /// These points have been read, and are to be shown. Returns the stamp to show them with: that of a point
-  /// does not go back.
+  /// Notes that these points have been read and will be published. Returns the stamp to publish them with.
+  /// The stamp of a point never goes back.
   Stamp read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp);
 
   void on_change(const modbus::Change& change, std::uint64_t number, Stamp stamp) override;
@@ -54,17 +55,18 @@ class ToldBits : public ChangeSink {
  private:
   struct Told {
     std::uint32_t point;
-    std::size_t first;                ///< its bits begin there
-    bool known = false;               ///< they are those of the device
-    bool left_out = false;            ///< and somebody waits
-    std::uint64_t newer_than = 0;     ///< they are newer than this change
-    Stamp stamp{};                    ///< the last one
-    std::optional<Time> repeat_at{};  ///< as Sink's; nullopt: to be asked for
-    /// Bits of an array that change in one step are told one by one: shown when all of them have come.
+    std::size_t first;                ///< the index of its first bit
+    bool known = false;               ///< the bits are those of the device
+    bool left_out = false;            ///< a value was not published, and somebody waits for it
+    std::uint64_t newer_than = 0;     ///< the bits are newer than this change
+    Stamp stamp{};                    ///< the last published stamp
+    std::optional<Time> repeat_at{};  ///< see Sink; nullopt: has to be asked for
+    /// The node tells bits of an array that change in one step one by one. They are published when all have
+    /// come.
     std::optional<Stamp> pending{};
-    modbus::NodeTime pending_at{};  ///< the step's time
+    modbus::NodeTime pending_at{};  ///< the time of the step
   };
-  /// Its bits in what was read.
+  /// Takes its bits from what was read.
   const std::uint8_t* in(const ReadSpan& span, Span<const std::uint8_t> bits, const Told& told) const;
   const Point& point_of(const Told& told) const { return map_.points[told.point]; }
   bool rests(const Told& told) const;
@@ -83,13 +85,13 @@ class ToldBits : public ChangeSink {
   PointQualities& qualities_;
   Sink& sink_;
   std::vector<Told> points_;
-  std::vector<std::optional<std::uint32_t>> index_;          ///< in points_, by point
+  std::vector<std::optional<std::uint32_t>> index_;          ///< by point: the index in points_
   std::vector<std::pair<std::uint32_t, std::uint32_t>> at_;  ///< place of a bit, index in points_; sorted
   std::vector<std::uint8_t> bits_;
   bool active_ = false;
   std::uint64_t newest_ = 0;
-  bool more_follow_ = false;                                 ///< up to this
-  ReadSpan one_{Table::coils, modbus::Range::of(0, 1), {}};  ///< kept for its memory
+  bool more_follow_ = false;                                 ///< more changes follow, up to this number
+  ReadSpan one_{Table::coils, modbus::Range::of(0, 1), {}};  ///< a member, so that its memory is used again
 };
 
 }  // namespace coupler::host

@@ -8,8 +8,9 @@
 
 namespace coupler::host {
 
-/// The machine's wall clock beside its monotonic one. Both run at one rate, so that one difference lasts
-/// until somebody sets the wall clock: stamps do not tremble, and those of one request are equal.
+/// The difference between the machine's wall clock and its monotonic clock. Both run at one rate, so the
+/// difference stays the same until somebody sets the wall clock. So stamps do not jitter, and those of one
+/// request are equal.
 class WallTime {
  public:
   using Wall = std::chrono::nanoseconds;  ///< since 1970
@@ -31,7 +32,7 @@ class WallTime {
     if (was_set) ++times_set_;
     return unexplained > least_told ? moved : Duration::zero();
   }
-  /// Now.
+  /// Measures the difference now.
   Duration measure() {
     const Time before = std::chrono::steady_clock::now();
     const Wall wall = std::chrono::system_clock::now().time_since_epoch();
@@ -39,16 +40,16 @@ class WallTime {
   }
 
   Wall of(Time time) const { return time.time_since_epoch() + difference_; }
-  /// When the wall clock says `wall`, unless somebody sets it.
+  /// Returns the time at which the wall clock will show `wall`, unless somebody sets it.
   Time at(Wall wall) const { return Time(std::chrono::duration_cast<Duration>(wall - difference_)); }
-  /// They may say the same: nobody has set the wall clock between their measurements.
+  /// Returns whether nobody has set the wall clock between the two measurements, as far as can be told.
   bool agrees_with(const WallTime& other) const {
     return measured_ && other.measured_ &&
            std::chrono::abs(difference_ - other.difference_) <= error_ + other.error_;
   }
-  /// How often somebody has, as far as was measured.
+  /// The number of times that somebody has set it, as far as was measured.
   std::uint32_t times_set() const { return times_set_; }
-  /// How far of() and at() may be wrong.
+  /// The possible error of of() and at().
   Duration error() const { return error_; }
 
  private:

@@ -19,29 +19,29 @@
 
 namespace coupler::host {
 
-/// What became of a write. Every write has exactly one result.
+/// The result of a write. Every write has exactly one.
 struct WriteResult {
   enum class Outcome : std::uint8_t {
-    ok,          ///< acknowledged by the device, and read back where the map asks for that
-    superseded,  ///< a newer value of the same point took its place before it was sent, or its safe value
+    ok,          ///< the device acknowledged it, and it reads back if the map asks for that
+    superseded,  ///< a newer value of the same point, or its safe value, replaced it before it was sent
     exception,   ///< the device answered with an exception
-    not_taken,   ///< acknowledged with another value, or something else (or nothing) reads back
-    lost,        ///< sent, but the connection broke before the answer: it may have been carried out or not
-    dropped,     ///< never sent: not connected, too many writes wait, or it waited longer than it may
-    kept,        ///< not connected: written when the device is back, unless a newer value comes before
-    refused      ///< not a value of that point
+    not_taken,   ///< the device acknowledged another value, or another value or none reads back
+    lost,        ///< the connection broke between request and reply; the write may have been carried out
+    dropped,     ///< never sent: not connected, too many writes are queued, or it waited longer than it may
+    kept,        ///< not connected; sent when the device is back, unless a newer value comes first
+    refused      ///< the point cannot have this value
   };
   static constexpr std::size_t outcomes = 8;
 
   Outcome outcome = Outcome::ok;
-  std::optional<modbus::Exception> exception{};  ///< of the write, or with not_taken of the read-back
+  std::optional<modbus::Exception> exception{};  ///< that of the write; with not_taken that of the read-back
   std::string_view
       why{};  ///< exception, lost, dropped, refused, not_taken by its acknowledgement; valid during the call
   Span<const std::uint16_t> written{};  ///< not_taken, as Point::initial; valid during the call
-  Span<const std::uint16_t> found{};    ///< not_taken: what reads back; empty if nothing could be read
+  Span<const std::uint16_t> found{};  ///< not_taken: the value that reads back; empty if it could not be read
 };
 
-/// As messages have it, where 0 is none.
+/// The exception code as messages have it: 0 is none.
 constexpr std::uint8_t outcome_number(WriteResult::Outcome outcome) {
   return static_cast<std::uint8_t>(static_cast<std::uint8_t>(outcome) + 1);
 }
@@ -49,22 +49,23 @@ constexpr std::uint8_t outcome_number(WriteResult::Outcome outcome) {
 /// "ok", "superseded", …, "not taken"; each is another word.
 std::string_view to_string(WriteResult::Outcome outcome);
 
-/// What happened; it begins with the outcome's word: "exception 02 (illegal data address)", "lost: no reply
+/// A text that begins with the outcome's word, as "exception 02 (illegal data address)" or "lost: no reply
 /// …".
 std::string to_string(const WriteResult& result);
 
-/// Gets the result of a write.
+/// Receives the result of a write.
 class WriteListener {
  public:
-  /// Called once, from any thread (also from within the call that makes the write). It must wait for nothing.
+  /// Called once, from any thread, perhaps from within the call that makes the write. It must not wait for
+  /// anything.
   virtual void on_result(const WriteResult& result) = 0;
 
  protected:
   ~WriteListener() = default;
 };
 
-/// Waits for the result of one write. It must not be used in a thread that the result needs: the
-/// connection's, or ROS's network thread.
+/// Waits for the result of one write. It must not be used in the connection's thread or in ROS's network
+/// thread, since the result comes from there.
 class WriteTicket : public WriteListener {
  public:
   struct Outcome {
@@ -79,7 +80,7 @@ class WriteTicket : public WriteListener {
     known_.notify_all();  // under the lock: the waiting thread may destroy the ticket as soon as it is free
   }
 
-  /// Waits until the write has its result: a few timeouts of the device at most.
+  /// Waits until the write has its result, a few timeouts of the device at most.
   Outcome wait() {
     std::unique_lock lock(mutex_);
     known_.wait(lock, [this] { return outcome_.has_value(); });
@@ -92,18 +93,18 @@ class WriteTicket : public WriteListener {
   std::optional<Outcome> outcome_;
 };
 
-/// A value on its way to the device, encoded. It owns its registers, so that a queue of them allocates
+/// An encoded value on its way to the device. It owns its registers, so that a queue of writes allocates
 /// nothing.
 struct Write {
   std::uint32_t point = 0;  ///< index into Map::points
-  /// range(point).count() of them are used. Coils: bit i % 16 of element i / 16, so that one coil is the
-  /// first, 0 or 1.
+  /// range(point).count() elements are used. Coil i is bit i % 16 of element i / 16, so a single coil is
+  /// element 0 with 0 or 1.
   std::array<std::uint16_t, modbus::max_read_registers> registers{};
-  bool ordered = false;               ///< keeps its place in the queue: its caller waits for its own result
-  bool of_deadman = false;            ///< made by the driver because no message came
-  bool of_schedule = false;           ///< made by the driver because its time has come
-  Time until = Time::max();           ///< if it still waits then, it is dropped
-  WriteListener* listener = nullptr;  ///< gets the result; lives until then
+  bool ordered = false;      ///< keeps its place in the queue, because its caller waits for its result
+  bool of_deadman = false;   ///< made by the driver, because no message came
+  bool of_schedule = false;  ///< made by the driver, because its time has come
+  Time until = Time::max();  ///< it is dropped if it is still queued then
+  WriteListener* listener = nullptr;  ///< receives the result; must live until then
 
   bool bit(std::size_t i) const { return (registers[i / 16] >> i % 16 & 1U) != 0; }
   void set_bit(std::size_t i) {
@@ -111,12 +112,12 @@ struct Write {
   }
 };
 
-/// A write of a value as a point's `initial`, `safe_value` and deadman have it: one element for each bit in
-/// bit tables. Empty is all zero.
+/// Makes a write of a value in the form of a point's `initial` and `safe_value`: bit tables have one element
+/// for each bit. An empty value is all zero.
 Write make_write(const Map& map, std::uint32_t point, Span<const std::uint16_t> value);
 
-/// The safe value of each output, by Point::safe and Point::safe_value; none for those that hold theirs. A
-/// register without a safe value of its own is left alone unless it is an analogue output.
+/// Returns a write of the safe value for each output, by Point::safe and Point::safe_value, except for those
+/// that hold their values. A register that has no safe value is left alone unless it is an analogue output.
 std::vector<Write> safe_values(const Map& map);
 
 }  // namespace coupler::host

@@ -13,27 +13,28 @@
 
 namespace coupler::host {
 
-/// A write to the point takes a read before: it is a part of a register, and the device has no FC 22 (mask
-/// write).
+/// Returns whether a write to the point needs a read before it, because the point is a part of a register and
+/// the device has no FC 22 (mask write).
 bool needs_read(const Map& map, const Point& point);
 
-/// The writes of one request: one, or several that are neighbours both in the queue and in the device.
+/// The writes of one request: a single one, or several that are neighbours both in the queue and in the
+/// device.
 class WriteBatch {
  public:
   /// The map must outlive the batch.
   explicit WriteBatch(const Map& map) : map_(&map) {}
 
-  /// Takes the write if it is the first one or goes into the same request: a neighbour in the same table,
-  /// within the limits of a request, neither of them `write_function: single`, `write_queue: every` or part
-  /// of a register.
+  /// Adds the write if it is the first one or fits into the same request: it is a neighbour in the same
+  /// table, within the limits of a request, and neither of them has `write_function: single`, `write_queue:
+  /// every` or is part of a register.
   bool add(const Write& write);
   void clear() { writes_.clear(); }
 
   bool empty() const { return writes_.empty(); }
-  /// In the order of add().
+  /// The writes in the order of add().
   const std::vector<Write>& writes() const { return writes_; }
 
-  /// `before`: the register as it is, where needs_read(). Not of an empty batch.
+  /// `before` is the value of the register if needs_read(). The batch must not be empty.
   modbus::WriteRequest request(std::uint16_t before = 0) const;
 
  private:
@@ -43,7 +44,7 @@ class WriteBatch {
 
   const Map* map_;
   std::vector<Write> writes_;
-  modbus::Range range_ = modbus::Range::of(0, 1);  ///< of all together
+  modbus::Range range_ = modbus::Range::of(0, 1);  ///< the range of all of them
 };
 
 /// Sends the request of a batch, after the read that a part of a register may need. Transport::receive() must
@@ -56,20 +57,20 @@ struct RejectedValue {
   ExceptionReply reply;
 };
 
-/// Writes values that no caller waits for, neighbours in one request. Returns those that were rejected; an
-/// error means that the connection broke, with the request of `broken`.
+/// Writes values that no caller waits for, neighbours in one request. Returns those that were rejected. An
+/// error means that the connection broke during the request of `broken`.
 Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map,
                                                 Transport& transport, std::vector<Write>* broken = nullptr);
 
-/// What a point holds after a write, compared with what was written.
+/// Compares what a point holds after a write with what was written.
 class ReadBack {
  public:
-  /// Reads the point where it reads back.
+  /// Reads the point from the place where it reads back.
   Result<> read(const Write& write, const Map& map, Transport& transport);
 
-  /// Only the point's own bits count.
+  /// Compares only the point's own bits.
   bool is_equal() const;
-  /// As Point::initial; valid as long as this.
+  /// The value that was read, in the form of Point::initial. It is valid as long as this object.
   Span<const std::uint16_t> written() const { return {written_.data(), count_}; }
   Span<const std::uint16_t> found() const { return {found_.data(), count_}; }
 

@@ -12,52 +12,52 @@
 
 namespace coupler::host {
 
-/// The writes that wait to be sent: first those to points of `priority: high`, then the others. What follows
-/// holds in each of these two classes by itself. All writes to a point are in its class, whoever makes them,
-/// so that an older value never comes after a newer one.
+/// The writes that wait to be sent: first those to points with `priority: high`, then the others. The rules
+/// below hold for each of these two classes. All writes to a point are in the class of the point, so that an
+/// older value is never sent after a newer one.
 ///
-/// A *number* has one waiting place. A newer value takes it, or goes to the end if an ordered write has been
-/// queued meanwhile: a number never overtakes an ordered write that was made before it.
+/// A *number* has one place in the queue. A newer value replaces the older one, at the end of the queue if an
+/// ordered write has been queued in between: a number never overtakes an older ordered write.
 ///
-/// *Ordered* are coils, bits and texts, points with `write_queue: every`, and Write::ordered. Each has a
-/// place of its own and they keep their order; but a value that equals the newest one of its point that waits
-/// joins that one.
+/// Writes to coils, bits, texts and points with `write_queue: every`, and those with Write::ordered, are
+/// *ordered*. Each has a place of its own, and they keep their order. A value that equals the newest queued
+/// value of its point joins it.
 ///
-/// The lock is never held across a request, so that push() never waits for one. The queue allocates only
+/// The lock is never held during a request, so push() never waits for one. The queue allocates memory only
 /// while it grows.
 class WriteQueue {
  public:
-  static constexpr std::size_t capacity = 1024;  ///< of ordered writes of a class
+  static constexpr std::size_t capacity = 1024;  ///< the limit of ordered writes in a class
 
   /// The map must outlive the queue.
   explicit WriteQueue(const Map& map);
 
   struct Pushed {
-    bool accepted = true;               ///< false: the queue is full, the write is not in it
-    std::optional<Write> superseded{};  ///< is no longer in it
+    bool accepted = true;               ///< false: the queue is full, and the write is not in it
+    std::optional<Write> superseded{};  ///< the write that is no longer in the queue
   };
   Pushed push(const Write& write);
 
-  /// Moves the first write, and those of its class behind it that go into the same request, to the empty
-  /// `batch`; only the first if not `merge`; none that needs a read before, if not `may_read`.
+  /// Moves the first write, and those behind it in its class that fit into the same request, to the empty
+  /// `batch`. Without `merge` it moves only the first, and without `may_read` none that needs a read before.
   void take(WriteBatch& batch, bool merge = true, bool may_read = true);
   std::optional<Write> take();
-  /// Takes the first write to one of the points (by index, as long as the map's).
+  /// Takes the first write to one of the points. `points` has an element for each point of the map.
   std::optional<Write> take_one_of(const std::vector<bool>& points);
   /// Takes the first write that has waited longer than it may.
   std::optional<Write> take_late(Time now);
-  /// Puts writes that were taken and not sent back to the front of their class, in their order.
+  /// Puts writes that were taken but not sent back to the front of their class, in their order.
   void put_back(const std::vector<Write>& writes);
   bool empty() const { return size_now_.load(std::memory_order_relaxed) == 0; }
 
-  /// A write from take() has its result.
+  /// Notes that a write from take() has its result.
   void settled(std::uint32_t point);
-  /// A value of the point was pushed and has no result yet.
+  /// Returns whether a value of the point was pushed and has no result yet.
   bool is_pending(std::uint32_t point) const;
   bool any_pending() const { return pending_writes_.load() != 0; }
-  /// How many writes of the point have taken a place so far; for has_results().
+  /// Returns how many writes to the point have taken a place so far, for has_results().
   std::uint32_t queued(std::uint32_t point) const;
-  /// So many of them, the oldest ones, have their results, however many have come since.
+  /// Returns whether the oldest so many of them have their results.
   bool has_results(std::uint32_t point, std::uint32_t queued) const;
 
  private:
@@ -67,24 +67,24 @@ class WriteQueue {
   struct Place {
     Write write;
     bool ordered;
-    std::uint64_t number;  ///< counts what was queued
+    std::uint64_t number;  ///< the number of the write among all that were queued
     Index before;
     Index behind;
   };
-  /// Of a point: its waiting writes that a newer one may replace.
+  /// The queued writes to a point that a newer one may replace.
   struct Waiting {
-    Index number = none;   ///< the place of a number
-    Index ordered = none;  ///< the newest ordered one
+    Index number = none;   ///< the place of the number
+    Index ordered = none;  ///< the place of the newest ordered write
     std::uint16_t pending = 0;
-    std::uint32_t settled = 0;  ///< were pending; it wraps
+    std::uint32_t settled = 0;  ///< writes that have their results; the count wraps
   };
 
-  /// A class: the writes of one priority, as a list through their places.
+  /// The writes of one class, as a linked list.
   struct Class {
     Index first = none;
     Index last = none;
-    std::size_t ordered = 0;         ///< how many
-    std::uint64_t last_ordered = 0;  ///< Place::number of the last that was queued
+    std::size_t ordered = 0;         ///< their number
+    std::uint64_t last_ordered = 0;  ///< Place::number of the newest one
   };
 
   void settle(Waiting& waiting);
@@ -105,7 +105,7 @@ class WriteQueue {
   std::uint64_t numbered_ = 0;
   std::vector<Waiting> waiting_;  ///< by point
   std::atomic<std::size_t> pending_writes_{0};
-  std::atomic<std::size_t> size_now_{0};  ///< without the lock
+  std::atomic<std::size_t> size_now_{0};  ///< read without the lock
   std::atomic<bool> any_may_be_late_{false};
 };
 

@@ -23,89 +23,91 @@ namespace coupler::host {
 /// Gets the writes that were carried out, in the connection's thread.
 class WrittenListener {
  public:
-  /// By a write of its own.
+  /// The point has been written by a write of its own.
   virtual void on_written(const Write& write) = 0;
-  /// These outputs have their safe values.
+  /// These outputs have been set to their safe values.
   virtual void on_made_safe(const std::vector<Write>& values) = 0;
 
  protected:
   ~WrittenListener() = default;
 };
 
-/// Writes to one device: sends what the queue holds, gives each write its result, and makes the writes of
-/// deadmen, after a reconnect and at the end.
+/// Writes to one device: sends the queued writes, reports the result of each, and makes the writes of
+/// deadmen, those after a reconnect and those at the end.
 ///
-/// push(), refuse(), ask_safe() and report_held_back() may be called from any thread, all else only from the
-/// one that uses the transport.
+/// Any thread may call push(), refuse(), ask_safe() and report_held_back(). Only the thread that uses the
+/// transport may call the other functions.
 class Writer {
  public:
-  /// Everything given by reference must outlive it.
+  /// All references must outlive the writer.
   Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
          PointQualities& qualities, Sink& sink);
 
   /// Before anything is written.
   void listen(WrittenListener& listener) { written_ = &listener; }
 
-  /// NaN and infinity are refused.
+  /// Refuses NaN and infinity.
   void push(const Write& write);
-  /// A value that is not valid for its point.
+  /// Reports a value that is not valid for its point.
   void refuse(const Write& write, std::string_view why);
-  /// Writes what `on_shutdown: safe` would, whatever that says: after the request in flight, and before all
-  /// that waits. What waits for these points is superseded.
+  /// Writes the safe values, whatever `on_shutdown` says, after the request in flight and before all that is
+  /// queued. Queued writes to these points are superseded.
   std::future<Calls::Answer> ask_safe();
-  /// Logs the lines about writes that were held back because there were too many. To be called now and then.
+  /// Logs the lines about writes that were held back because there were too many. Call it now and then.
   void report_held_back();
   bool is_safe_asked() const { return safe_calls_.any(); }
-  /// As WriteQueue's, from any thread.
+  /// See WriteQueue. Any thread may call it.
   std::uint32_t queued(std::uint32_t point) const { return queue_.queued(point); }
-  /// As WriteQueue's; one that was taken from there has none yet.
+  /// See WriteQueue. A write that was taken from the queue has no result yet.
   bool has_results(std::uint32_t point, std::uint32_t queued) const {
     const auto is_taken = [point](const Write& write) { return write.point == point; };
     const std::vector<Write>& taken = batch_.writes();
     return queue_.has_results(point, queued) && std::none_of(taken.begin(), taken.end(), is_taken);
   }
 
-  /// Sends the next writes without waiting for the answer, if nothing is in flight and no pause or reading
-  /// must come first. True if there is nothing else to do until the answer has come.
+  /// Sends the next writes without waiting for the reply, if nothing is in flight and no pause or read must
+  /// come first. Returns true if nothing else is to be done until the reply comes.
   bool send_now();
-  /// An answer is to come to what send_now() has sent, or it could not.
+  /// Returns whether the reply to what send_now() has sent is outstanding, or the error of send_now() is.
   bool awaits_answer() const { return is_sent_ || send_error_; }
 
-  /// When step() has something to do; the past if it has now.
+  /// The time at which step() has something to do; it is in the past if that is now.
   Time due() const {
     return batch_.empty() && queue_.empty() && !is_safe_asked() ? deadmen_.due() : Time::min();
   }
-  /// Waits for the answer to what is in flight, or makes the next request and waits for its answer. An error
-  /// means that the connection can no longer be used; an exception is not an error.
+  /// Waits for the reply to the request in flight, or sends the next request and waits for its reply. An
+  /// error means that the connection can no longer be used. An exception is not an error.
   Result<> step();
 
-  /// A new connection, or a coupler whose watchdog had switched its outputs off: under
-  /// `on_reconnect: restore` they get their last values.
+  /// Writes the last values of all outputs under `on_reconnect: restore`, for a new connection, or for a
+  /// coupler whose watchdog had switched its outputs off.
   Result<> reconnected();
-  /// The device is a node of this project, which knows every function: exception 01 is about rights.
+  /// Notes that the device is a node of this project. A node knows every function, so exception 01 is about
+  /// rights.
   void talks_to_node(bool is_node) { is_node_ = is_node; }
-  /// An output has this value now, by another way than a write: `on_reconnect: restore` brings it back.
+  /// Notes that an output has this value now without a write. `on_reconnect: restore` restores it.
   void remember(const Write& write);
-  /// There is no connection: all that was sent or queued gets its result.
+  /// Reports a result for all that was sent or queued, because the connection has ended.
   void disconnected(const Error& why);
-  /// Does what `on_shutdown` says, last before the connection is closed. False if an output should have its
-  /// safe value but does not.
+  /// Does what `on_shutdown` says, before the connection is closed. Returns false if an output should have
+  /// its safe value but does not.
   bool shut_down(bool connected);
 
-  /// A newer value of the point waits to be written than the one just read, which would flicker back. Where
-  /// writes never end, one value is shown after each that was acknowledged.
+  /// Returns whether a newer value than the one just read waits to be written, so that the value read must
+  /// not be published: it would flicker back. If writes never end, one value is published after each
+  /// acknowledged write.
   bool hides(std::uint32_t point) const { return queue_.is_pending(point) && !acknowledged_[point]; }
   bool hides_any() const { return queue_.any_pending(); }
-  /// Values of these points have been shown.
+  /// Notes that values of these points have been published.
   void shown(const std::vector<std::uint32_t>& points) {
     for (const std::uint32_t point : points) acknowledged_[point] = false;
   }
 
-  /// A write ended the last connection, and would be restored: it is to be seen first that the device answers
-  /// anything, since otherwise that is no fault of the write.
+  /// Returns whether a write ended the last connection and would be restored. Then the device has to answer
+  /// another request first, since otherwise the write may not be at fault.
   bool has_suspects() const { return !suspects_.empty(); }
 
-  /// How many writes were dropped since the last call.
+  /// Returns the number of writes that were dropped since the last call.
   std::uint64_t take_dropped() { return std::exchange(dropped_, 0); }
 
  private:
@@ -113,7 +115,7 @@ class Writer {
   void wait_again();
   Result<> not_sent(const Error& why);
   Result<> finish(const Result<>& answer);
-  /// `link`: what has become of the connection since the answer.
+  /// `link`: the state of the connection after the reply.
   Result<> finish_one(const Write& write, const Result<>& answer, const Result<>& link = {});
   Result<> verify(const Write& write, const Result<>& link);
   Result<> restore();
@@ -140,15 +142,15 @@ class Writer {
   WrittenListener* written_ = nullptr;
   WriteQueue queue_;
   Deadmen deadmen_;
-  std::map<std::uint32_t, Write> last_written_;  ///< by point, for `on_reconnect: restore`
+  std::map<std::uint32_t, Write> last_written_;  ///< by point; restored by `on_reconnect: restore`
   std::set<std::uint32_t> suspects_;             ///< points whose last write ended the connection
   std::vector<Write> safe_values_;
-  std::vector<bool> is_safe_point_;  ///< by point: safe_values_ has one
+  std::vector<bool> is_safe_point_;  ///< by point: whether safe_values_ has a value of it
   Calls safe_calls_;
-  std::vector<bool> acknowledged_;   ///< by point: a write, and no value has been shown since
+  std::vector<bool> acknowledged_;   ///< by point: a write was acknowledged, and no value was published since
   WriteBatch batch_;                 ///< in flight
-  WriteBatch done_;                  ///< answered; kept for its memory
-  bool is_sent_ = false;             ///< batch_ is, by send_now()
+  WriteBatch done_;                  ///< answered; a member, so that its memory is used again
+  bool is_sent_ = false;             ///< batch_ has been sent by send_now()
   std::optional<Error> send_error_;  ///< why send_now() could not send
   bool is_node_ = false;
   bool merges_ = true;  ///< the device takes several values in one request
