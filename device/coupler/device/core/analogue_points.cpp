@@ -22,7 +22,7 @@ void each_channel(const Map& map, Table table, Range touched, Use use) {
   });
 }
 
-/// What the point's registers say; not finite if a REAL or LREAL is not.
+/// Returns the value in the point's registers; it is not finite if a REAL or LREAL is not.
 double value_in(const Point& point, const std::uint16_t* registers) {
   return codec::published(registers, point.format, point.scale);
 }
@@ -112,7 +112,7 @@ bool AnaloguePoints::drive_each(Range holding, Span<std::uint16_t> next) {
 
 void AnaloguePoints::restore(Range holding, const Point& end) {
   each_channel(map_, Table::holding_registers, holding, [&](const Point& output) {
-    // What becomes of it is said by the channel.
+    // The channel reports the result.
     if (&output < &end)
       (void)channels_.drive(output, value_in(output, image_.find(output.table, range(output)).data()));
   });

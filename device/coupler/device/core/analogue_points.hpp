@@ -30,11 +30,11 @@ class AnaloguePoints {
   /// that is unplugged counts as driven: it has to come back so. False: there is one.
   [[nodiscard]] bool drive_each(modbus::Range holding, Span<std::uint16_t> next);
 
-  /// Whether drive() could do so, as far as that is known before it is tried.
+  /// Returns whether drive() could succeed, as far as that is known before it is tried.
   [[nodiscard]] tl::expected<void, modbus::Exception> check(modbus::Range holding,
                                                             Span<const std::uint16_t> next) const;
 
-  /// Whether the range has a register of an output.
+  /// Returns whether the range contains a register of an output.
   bool has_output(modbus::Range holding) const;
 
   /// Drives every output as drive() does one. Tries all of them; false if one cannot be driven.

@@ -35,7 +35,7 @@ class ChangeRing {
   /// Number of the newest change; 0: there was none.
   std::uint64_t newest() const { return newest_; }
 
-  /// Whether a client has something to hear: changes, or that its numbers mean nothing here.
+  /// Returns whether there is something to tell a client: changes, or that its numbers mean nothing here.
   bool has_news(const modbus::ChangesRequest& request) const {
     return begins_anew(request) || newest_ > request.seen;
   }

@@ -26,7 +26,7 @@ void Changes::begin(std::uint32_t epoch) {
   ring_.begin(epoch);
 }
 
-/// What was told of the cells.
+/// Returns the levels of the cells that were told last.
 Span<std::uint16_t> Changes::told(Span<const std::uint16_t> cells) const {
   return told_.sub(static_cast<std::size_t>(cells.begin() - image_->bits().begin()), cells.size());
 }

@@ -38,14 +38,14 @@ class Changes final : public ScheduleSink {
   void compare_all();
   /// A discrete input has this level since that time; the image shows it.
   void set_level(std::uint16_t input, bool level, TimePoint at);
-  /// Whether bits of the range have another level than the one that was told.
+  /// Returns whether bits of the range have another level than the one that was told last.
   bool differs(Table table, modbus::Range range) const;
   /// Something else that is told to whoever waits.
   void add_outcome(const modbus::Change& outcome, const ClientSession* owner) override;
   /// At least so many changes of bits were not seen.
   void lose(std::uint32_t count);
 
-  /// Whether what the session waits for is to be answered now: there is something that it may hear, or its
+  /// Returns whether the session's wait has to be answered now, because there is something to tell it or its
   /// time is over.
   bool is_due(ClientSession& session, const Rights& rights, TimePoint now) const {
     return now >= session.wait->until || HeardChanges(ring_, rights, session).has_news();

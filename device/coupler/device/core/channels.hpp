@@ -25,7 +25,7 @@ class Channels {
   /// The newest value of an input, without waiting for the hardware; nullopt: it cannot be read.
   [[nodiscard]] virtual std::optional<double> read(const Point& input, TimePoint now) = 0;
 
-  /// Whether an output can be driven to a finite value, as far as that is known before it is tried.
+  /// Returns whether an output can be driven to a finite value, as far as that is known before it is tried.
   [[nodiscard]] virtual bool accepts(const Point& output, double value) const = 0;
 
   /// False: the hardware behind an output is known to be unplugged.

@@ -19,14 +19,14 @@ struct Wait {
   std::uint8_t unit = 0;
 };
 
-/// What a client with limited rights has heard of changes. It counts only those that it may hear.
+/// The changes that a client with limited rights was told. It counts only those that the client may read.
 struct Heard {
   bool has_begun = false;
   std::uint64_t upto = 0;    ///< number of the last change of the node that was looked at for it
   std::uint64_t number = 0;  ///< of the last one that it heard, as it counts
 };
 
-/// What the node remembers of a connection, from when it is opened.
+/// The state that the node keeps for a connection, from when it is opened.
 struct ClientSession {
   bool is_plain = true;        ///< without TLS: its rights are those of Security::plain
   const Role* role = nullptr;  ///< of one with TLS; nullptr: none, so it has no rights

@@ -15,7 +15,7 @@ class Clock {
   ~Clock() = default;
 };
 
-/// As it stands in PDUs.
+/// Returns a time in the form that PDUs have.
 inline modbus::NodeTime node_time(TimePoint at) {
   return std::chrono::duration_cast<modbus::NodeTime>(at.time_since_epoch());
 }

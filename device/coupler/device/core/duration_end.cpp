@@ -16,7 +16,7 @@ namespace {
 
 using Registers = std::array<std::uint16_t, widest_number>;
 
-/// What an output has in its safe state, which is not Safe::hold.
+/// Returns the value of an output in its safe state, which is not Safe::hold.
 Registers safe_state_of(const Point& output) {
   Registers value{};
   if (is_analogue(output))

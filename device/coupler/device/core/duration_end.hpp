@@ -25,7 +25,7 @@ class DurationEnd {
   /// time.
   static constexpr std::chrono::milliseconds retry_period{100};
   bool of(ScheduledOutput& which, TimePoint now);
-  /// Whether all that have begun are over. Tries all of them.
+  /// Tries to end all outputs that have begun. Returns whether all are over.
   bool of_all(TimePoint now);
 
  private:

@@ -7,7 +7,7 @@
 
 namespace coupler::device {
 
-/// What happened on an input since it was last asked. Edges are logical (after active_low).
+/// The events on an input since it was asked last. Edges are logical (after active_low).
 struct Edges {
   std::uint32_t rising = 0;
   std::uint32_t falling = 0;
@@ -16,10 +16,10 @@ struct Edges {
   constexpr bool any() const { return (rising | falling | lost) != 0; }
 };
 
-/// Who is told of inputs by Lines::take_edges(). `input`: address of a discrete input.
+/// Receives the edges of inputs from Lines::take_edges(). `input` is the address of a discrete input.
 class EdgeSink {
  public:
-  /// For counters and latched points.
+  /// Receives the edges of counters and latched points.
   virtual void add(std::uint16_t input, const Edges& edges) = 0;
 
   /// The input has `level` since `at`: the time stamp of the edge, as precise as the hardware tells it. Each

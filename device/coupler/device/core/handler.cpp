@@ -16,14 +16,14 @@ namespace {
 using modbus::Exception;
 using modbus::Function;
 
-/// What the node says of all that it does, and so of its clients.
+/// Returns whether the range contains what the node says of all its clients.
 bool shows_statistics(Table table, modbus::Range range) {
   constexpr auto statistics = modbus::Range::of(identity::reserved.start() + identity::at_statistics,
                                                 identity::at_further - identity::at_statistics);
   return table == Table::input_registers && statistics.overlaps(range);
 }
 
-/// What a node has, and a coupler of another make has not.
+/// Returns whether a request concerns what a node has and a foreign coupler has not.
 bool is_of_nodes(Function function) {
   switch (function) {
     case Function::read_file_record:

@@ -24,7 +24,7 @@
 
 namespace coupler::device {
 
-/// What a node knows and remembers.
+/// The data of a node.
 struct NodeState {
   Image& image;  ///< shows outputs as the lines are driven
   Statistics& statistics;
@@ -41,7 +41,7 @@ class Handler {
   /// Map, state and clock outlive the handler. Without a clock times are those at which a turn began.
   Handler(const Map& map, Hardware hardware, const NodeState& state, const Clock* clock = nullptr);
 
-  /// Which machine the node says that it runs on; until then it says that it does not know.
+  /// Sets the machine on which the node says that it runs. Until then it says that it does not know.
   void set_machine(const identity::Machine& machine);
 
   /// From now on clients can schedule outputs and wait for changes (docs/time.md). Whoever calls handle() has
@@ -49,10 +49,10 @@ class Handler {
   /// number. Until then the node says that it does not know these functions.
   void tell_changes(std::uint32_t epoch, TimePoint now);
   const Changes& changes() const { return changes_; }
-  /// As Hooks'.
+  /// See Hooks.
   bool answers() const { return hardware_.answers(); }
   Rights rights_of(const ClientSession& session) const { return {map_, session}; }
-  /// Of a client with TLS, by the role in its certificate (empty: none), for ClientSession::role.
+  /// Returns the role with the name in a TLS client's certificate (empty: none), for ClientSession::role.
   const Role* role_of(std::string_view name) const { return map_.security.role_of(name); }
 
   /// Answers a request PDU (at least one byte) with a reply PDU in `reply` (at least max_pdu_size bytes);
@@ -62,7 +62,7 @@ class Handler {
   /// not allow, or that an output cannot take; 04 hardware that cannot be read or driven, or an output that
   /// the watchdog keeps in its safe state; 06 no place left to schedule such an output.
   std::size_t handle(modbus::Bytes request, ClientSession& session, TimePoint now, Span<std::uint8_t> reply);
-  /// Whether there is a field side (coupler/map/field_side.hpp).
+  /// Returns whether there is a field side (coupler/map/field_side.hpp).
   bool has_field_side() const { return hardware_.is_simulated() && map_.connection.unit != field_unit; }
   /// Answers there. It has FC 1 … 6, 15 and 16, feeds no watchdog, and is for clients that may read every
   /// point. Its requests are not counted. Exceptions as handle()'s; 02 also an input that has its value from
@@ -130,7 +130,7 @@ class Handler {
   /// Empty if one is not mapped, not writable, or holds in part a value that is only written as a whole: a
   /// counter's, or that of an analogue output.
   Span<std::uint16_t> writable_registers(modbus::Range range) const;
-  /// What next_ says would give a point of the range a value that the map does not allow.
+  /// Returns whether next_ would give a point of the range a value that the map does not allow.
   bool is_forbidden(Table table, modbus::Range written) const;
   bool is_forbidden(const Point& point, modbus::Range written) const;
   void put_next(const modbus::WriteBits& write);
@@ -144,8 +144,8 @@ class Handler {
   /// Pulses of the range that begin with what next_ says, before it is driven: they end all the same if this
   /// process dies meanwhile, and if that fails, for a line may have moved.
   void begin_pulses(modbus::Range coils, TimePoint now);
-  /// What was driven: a coil of the range that is 0 has no pulse, one that is 1 has all of it before it, or
-  /// as much as `longest`.
+  /// Notes what was driven: a coil of the range that is 0 has no pulse, and one that is 1 has its whole pulse
+  /// ahead, or at most `longest`.
   void follow_pulses(modbus::Range coils, TimePoint now,
                      std::chrono::milliseconds longest = std::chrono::milliseconds::max());
   /// A coil that was 1 when this process, or this map, came into force ends, too.

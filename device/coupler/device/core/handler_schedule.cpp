@@ -27,7 +27,7 @@ Span<std::uint16_t> Handler::writable(Table table, modbus::Range range) const {
   return table == Table::coils ? image_.find_writable(table, range) : writable_registers(range);
 }
 
-/// What a write of it would be answered now.
+/// Returns the exception that a write of this value would get now.
 tl::expected<void, Exception> Handler::check(const modbus::ScheduleOutput& wanted, Table table,
                                              const ClientSession& session) {
   if (writable(table, wanted.range).empty()) return tl::unexpected(Exception::illegal_data_address);

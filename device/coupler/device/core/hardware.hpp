@@ -25,7 +25,7 @@ class Hardware {
   Hardware(Lines& lines, AnaloguePoints* analogue = nullptr, HookedPoints* hooked = nullptr)
       : lines_(&lines), analogue_(analogue), hooked_(hooked) {}
 
-  /// What came by itself since the last call: edges, values that the firmware has set.
+  /// Takes what came by itself since the last call: edges, and values that the firmware has set.
   void take_news(TimePoint now, EdgeSink& sink, Changes& changes) {
     lines_->take_edges(now, sink);
     if (hooked_ != nullptr) hooked_->put_new_values(changes);
@@ -44,7 +44,7 @@ class Hardware {
     return true;
   }
 
-  /// What the firmware's code, if there is any, says of the node, of a request, and of a read.
+  /// Asks the firmware's code, if there is any, about the node, a request or a read.
   [[nodiscard]] bool shows_identity() const noexcept {
     return hooked_ == nullptr || hooked_->shows_identity();
   }
@@ -59,12 +59,12 @@ class Hardware {
     return lines_->pull(inputs, levels);
   }
 
-  /// Whether a firmware's code is behind points.
+  /// Returns whether a firmware's code is behind points.
   bool has_code() const { return hooked_ != nullptr; }
 
-  /// Whether the outputs of the range can be driven to what `next` says, as far as that is known before it is
-  /// tried; a firmware's code is not asked. Exceptions: 03 a value that an output cannot take, 04 hardware
-  /// that is unplugged.
+  /// Returns whether the outputs of the range can be driven to the values in `next`, as far as that is known
+  /// before it is tried. The firmware's code is not asked. Exceptions: 03 for a value that an output cannot
+  /// take, 04 for hardware that is unplugged.
   [[nodiscard]] tl::expected<void, modbus::Exception> check(Table table, modbus::Range range,
                                                             Span<const std::uint16_t> next) const {
     if (table == Table::coils && !lines_->are_plugged(range))
@@ -73,8 +73,8 @@ class Hardware {
     return {};
   }
 
-  /// Whether the range has an output. If so, a coil's level overwrites its element of `cells`; what a
-  /// register is driven to is in the image.
+  /// Returns whether the range contains an output. If so, a coil's level overwrites its element of `cells`;
+  /// the value of a register output is in the image.
   bool driven(Table table, modbus::Range range, Span<std::uint16_t> cells) const {
     const bool hooked = hooked_ != nullptr && hooked_->has_output(table, range);
     if (table == Table::coils) return lines_->driven(range, cells) || hooked;

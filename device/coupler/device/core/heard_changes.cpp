@@ -21,7 +21,7 @@ ChangesReply HeardChanges::reply() {
   Heard& heard = session_.heard;
   ChangesReply reply;
   reply.epoch = ring_.epoch();
-  // What it was told before and asks for again is not kept for it.
+  // Changes that the client was told before and asks for again are not kept for it.
   std::uint64_t lost = heard.number - request().seen;
   while (reply.count < reply.changes.size()) {
     const ChangeRing::Entry* next = skip();

@@ -18,7 +18,7 @@ class HeardChanges {
   HeardChanges(const ChangeRing& ring, const Rights& rights, ClientSession& session)
       : ring_(ring), rights_(rights), session_(session) {}
 
-  /// Whether there is something to tell.
+  /// Returns whether there is something to tell.
   bool has_news();
   /// The reply but for its times.
   modbus::ChangesReply reply();

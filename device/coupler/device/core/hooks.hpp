@@ -12,7 +12,8 @@
 
 namespace coupler::device {
 
-/// Who is to put what a firmware has set into the image soon, and not with the next request only.
+/// Wakes the thread that puts values of a firmware into the image, so that they do not wait for the next
+/// request.
 class Waker {
  public:
   /// Called in any thread.
@@ -43,11 +44,12 @@ class Hooks {
   /// they had.
   [[nodiscard]] virtual bool accept(std::uint32_t point, const std::uint16_t* registers) = 0;
 
-  /// Whether the node shows that it is one, by its identity area and by FC 20, 43, 65 and 66; asked once.
+  /// Returns whether the node shows that it is one, by its identity area and by FC 20, 43, 65 and 66. It is
+  /// asked once.
   [[nodiscard]] virtual bool shows_identity() const noexcept { return true; }
 
-  /// Whether the node answers; asked when a client has sent something. Otherwise its connection is closed, as
-  /// that to a device which has gone.
+  /// Returns whether the node answers. It is asked when a client has sent something. If the node does not
+  /// answer, the connection is closed, as that to a device which has gone.
   [[nodiscard]] virtual bool answers() { return true; }
 
   /// A client reads these addresses: the exception that it gets in place of them; nullopt: none. What the
@@ -80,14 +82,14 @@ class HookedPoints {
   /// again.
   [[nodiscard]] bool write(Table table, modbus::Range range, Span<const std::uint16_t> next);
 
-  /// As write(), but each for itself, and only about values that are not in force: overwrites in `next` those
-  /// that are refused with the values in force. False: there is one.
+  /// Checks each value by itself, as write() does, but only values that are not in force. Overwrites in
+  /// `next` those that are refused with the values in force. Returns false if there is one.
   [[nodiscard]] bool write_each(Table table, modbus::Range range, Span<std::uint16_t> next);
 
   /// Gives the points that write() has just accepted their values again.
   void take_back(Table table, modbus::Range range, Span<const std::uint16_t> next);
 
-  /// Whether the range has an address of such an output.
+  /// Returns whether the range contains an address of such an output.
   bool has_output(Table table, modbus::Range range) const;
 
   [[nodiscard]] bool shows_identity() const noexcept { return hooks_.shows_identity(); }

@@ -34,8 +34,8 @@ class Lines {
   /// then, or a level has to be looked at. It may be in the past. nullopt: not for that.
   virtual std::optional<TimePoint> next_change(TimePoint) const { return std::nullopt; }
 
-  /// Whether it has to be called then although nobody asks for changes: there are inputs to be debounced
-  /// whose edges nothing reports.
+  /// Returns whether it has to be called then although nobody asks for changes, because there are inputs to
+  /// be debounced whose edges nothing reports.
   virtual bool has_to_look() const { return false; }
 
   /// Drives those coils of the range that have a line. False if one cannot be driven: then the others are
@@ -63,7 +63,7 @@ class Lines {
   /// Drives every output to its safe state (`hold` stays). Tries all of them; false if one cannot be driven.
   [[nodiscard]] virtual bool drive_safe() = 0;
 
-  /// Whether somebody may play the machine: pull().
+  /// Returns whether somebody may play the machine by pull().
   virtual bool is_simulated() const { return false; }
   /// Gives those inputs of the range that have a simulated line a level from outside. False: one of them
   /// follows a wire, or cannot be reached; then none has changed.

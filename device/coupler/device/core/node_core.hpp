@@ -19,10 +19,10 @@ namespace coupler::device {
 /// some more.
 constexpr std::size_t kept_changes = 48;
 
-/// What the generated coupler::maps::NAME::NodeCore of every map has in common: a node in static memory, for
-/// microcontrollers. `Areas`, `Cells`, `Bits`, `Links` and `Pulses` are the map's NodeMemory, `Scheduled` is
-/// how many outputs clients can schedule. All of it is called in one task: requests, tick(), and what the
-/// firmware sets. No heap, no exceptions, no threads.
+/// The part that the generated coupler::maps::NAME::NodeCore of every map has in common: a node in static
+/// memory, for microcontrollers. `Areas`, `Cells`, `Bits`, `Links` and `Pulses` are the map's NodeMemory.
+/// `Scheduled` is the number of outputs that clients can schedule. One task makes all calls: requests,
+/// tick(), and the values that the firmware sets. It uses no heap, no exceptions and no threads.
 template <std::size_t Areas, std::size_t Cells, std::size_t Bits, std::size_t Links, std::size_t Pulses = 0,
           std::size_t KeptChanges = kept_changes, std::size_t Scheduled = 4>
 class NodeCore : public Hooks {
@@ -35,7 +35,7 @@ class NodeCore : public Hooks {
   /// Its tick() is called when time_until_due() has passed. Clients can wait for changes once the port has
   /// called its tell_changes(); then it also calls the server's answer_waiting().
   Handler& handler() { return handler_; }
-  /// What the port counts: connections, refusals, evictions, bad_frames, timeouts.
+  /// The counts of the port: connections, refusals, evictions, bad_frames, timeouts.
   Statistics& statistics() { return statistics_; }
   const OutputWatchdog& watchdog() const { return watchdog_; }
 

@@ -215,8 +215,8 @@ void OutputSchedule::outputs_went_safe(bool all, TimePoint now) {
   for (ScheduledOutput& one : places_) {
     if (one.state != State::begun) continue;
     one.safety = all ? Safety::reached : Safety::failed;
-    // What it was tried with is from before the safe state. At once: no write comes between that it would
-    // undo.
+    // The value that was tried is from before the safe state. It is driven at once, so no write comes between
+    // that it would undo.
     if (std::exchange(one.is_overdue, false)) one.at = now;
   }
   find_earliest();
@@ -249,7 +249,7 @@ ScheduledOutput* OutputSchedule::begun_after(const ScheduledOutput& which, std::
   return next;
 }
 
-/// Of those with this number in the order, or a higher one.
+/// Considers only entries with this number in the order, or a higher one.
 ScheduledOutput* OutputSchedule::first_begun(std::uint64_t order) {
   ScheduledOutput* first = nullptr;
   for (ScheduledOutput& one : places_)

@@ -16,7 +16,7 @@ namespace coupler::device {
 
 struct ClientSession;
 
-/// Who is told what became of scheduled outputs.
+/// Receives the outcomes of scheduled outputs.
 class ScheduleSink {
  public:
   /// The kind is done, cancelled or failed. `owner` scheduled it.
@@ -30,7 +30,7 @@ class ScheduleSink {
 struct ScheduledOutput {
   enum class State : std::uint8_t { free, waiting, begun };
 
-  /// Whether, since it has begun, the outputs were to go to their safe state.
+  /// Says whether the outputs had to go to their safe state since this one began.
   enum class Safety : std::uint8_t { unasked, reached, failed };
 
   State state = State::free;
@@ -43,16 +43,17 @@ struct ScheduledOutput {
   std::chrono::milliseconds duration{};
   std::uint64_t order = 0;  ///< in which they were accepted; of those that have begun, in which they did
   const ClientSession* owner = nullptr;  ///< whose it is, until its outcome is told
-  /// What the outputs are driven to; of one that has begun, what they were before. As on the wire.
+  /// The values that the outputs are driven to, or, once it has begun, the values from before. They are as on
+  /// the wire.
   std::array<std::uint8_t, std::size_t{2} * modbus::max_scheduled_registers> packed{};
 
   std::uint16_t value(std::size_t i) const;
   void set_value(std::size_t i, std::uint16_t value);
 };
 
-/// What clients have scheduled, and the pulses that run (Point::pulse), in a fixed number of places. It
-/// decides what is due and what is cancelled; others drive the outputs. Places may be in memory that outlives
-/// the process: what has begun there goes on.
+/// The outputs that clients have scheduled, and the pulses that run (Point::pulse), in a fixed number of
+/// places. It decides what is due and what is cancelled; its callers drive the outputs. The places may be in
+/// memory that outlives the process. Then outputs that have begun go on in the next process.
 class OutputSchedule {
  public:
   /// Those that wait in `places` are dropped: their clients are gone. `sink` may be null. Both outlive it.
@@ -70,10 +71,10 @@ class OutputSchedule {
   ScheduledOutput* add(const modbus::ScheduleOutput& wanted, Table table, TimePoint due,
                        const ClientSession& owner);
 
-  /// What is due or ends next; what is due at the same time is in the order in which it was accepted, after
-  /// what ends. Null: nothing until then.
+  /// Returns the entry that is due or ends next; null if there is none until then. At the same time ends come
+  /// first, and then entries in the order in which they were accepted.
   ScheduledOutput* due(TimePoint now);
-  /// Of all of them; TimePoint::max(): there is none.
+  /// The time at which the next of all entries is due or ends; TimePoint::max() if there is none.
   TimePoint earliest() const { return earliest_; }
 
   /// It is about to be driven until `end`: keeps the values from before, one for each address. If this

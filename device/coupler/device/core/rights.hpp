@@ -9,10 +9,10 @@
 
 namespace coupler::device {
 
-/// What a request without the right for it is answered.
+/// The exception that answers a request without the right to it.
 constexpr modbus::Exception no_right = modbus::Exception::illegal_function;
 
-/// What a client may do by its role. Without `security` in the map it may do everything. A right is asked for
+/// The rights of a client by its role. Without `security` in the map it may do everything. Rights are checked
 /// after the address was found to be mapped, and before a value is looked at (docs/security.md).
 class Rights {
  public:
@@ -20,13 +20,13 @@ class Rights {
   Rights(const Map& map, const ClientSession& client);
 
   bool are_limited() const { return are_limited_; }
-  /// Whether all points that have an address in the range may be read, or written.
+  /// Returns whether the client may read, or write, all points with an address in the range.
   bool may(Right right, Table table, modbus::Range range) const;
-  /// Whether all points that have one of the bits of a holding register may be written (FC 22).
+  /// Returns whether the client may write all points with one of these bits of a holding register (FC 22).
   bool may_write_bits(std::uint16_t address, std::uint16_t bits) const;
-  /// Whether there is a point that may be written.
+  /// Returns whether there is a point that the client may write.
   bool may_write_any() const;
-  /// Whether all that the node says of itself may be read: its map, and its statistics.
+  /// Returns whether the client may read all that the node says of itself: its map and its statistics.
   bool reads_all() const { return !are_limited_ || (role_ != nullptr && role_->reads_all); }
   bool may(Right right, const Point& point) const;
 

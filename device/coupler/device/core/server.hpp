@@ -17,7 +17,7 @@ class Server {
   Server(std::uint8_t unit, Handler& handler, Statistics& statistics)
       : unit_(unit), handler_(handler), statistics_(statistics) {}
 
-  /// As Hooks'.
+  /// See Hooks.
   bool answers() const { return handler_.answers(); }
 
   /// Writes the reply to `adu` and returns its size; 0: another unit's request, which gets no answer, or one
@@ -38,11 +38,11 @@ class Server {
   void end_session(const ClientSession& session, TimePoint now) { handler_.end_session(session, now); }
 
   const Changes& changes() const { return handler_.changes(); }
-  /// Of a client with TLS: Handler::role_of().
+  /// See Handler::role_of().
   const Role* role_of(std::string_view name) const { return handler_.role_of(name); }
-  /// Whether there is a point that it may write.
+  /// Returns whether there is a point that the client may write.
   bool may_write(const ClientSession& session) const { return handler_.rights_of(session).may_write_any(); }
-  /// Whether what the session waits for is to be answered now.
+  /// Returns whether the session's wait has to be answered now.
   bool is_due(ClientSession& session, TimePoint now) const {
     return handler_.changes().is_due(session, handler_.rights_of(session), now);
   }

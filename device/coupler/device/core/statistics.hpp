@@ -8,7 +8,7 @@
 
 namespace coupler::device {
 
-/// What happened since the start. Counters wrap.
+/// Counts since the start. The counters wrap.
 struct Statistics {
   TimePoint started{};
   std::uint32_t requests = 0;                    ///< answered, exceptions included

@@ -16,7 +16,7 @@ namespace coupler::device {
 /// client's outputs on.
 class OutputWatchdog {
  public:
-  /// What the identity area shows at at_watchdog_state.
+  /// The value that the identity area shows at at_watchdog_state.
   enum class State : std::uint16_t { absent, idle, armed, expired };
 
   explicit OutputWatchdog(const Watchdog& settings)

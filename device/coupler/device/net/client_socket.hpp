@@ -8,17 +8,17 @@
 
 namespace coupler::device {
 
-/// What the kernel holds for a client that does not read, in bytes.
+/// The number of bytes that the kernel holds for a client that does not read.
 constexpr int client_send_buffer = 16 * 1024;
 
-/// Of a client's TCP connection: no delay, an end that is noticed, a small send buffer.
+/// Sets the options of a client's TCP connection: no delay, an end that is noticed, a small send buffer.
 void configure_client(int socket);
 
 /// From now on the end of a client's TCP connection is noticed within some 5 s, though nobody says a word: a
 /// cable that was pulled, a machine without power.
 void notice_end_soon(int socket);
 
-/// Who is at the other end of a client's socket; nullopt: it has left.
+/// Returns the address at the other end of a client's socket; nullopt if the client has left.
 std::optional<sockaddr_storage> peer_of(int socket);
 
 /// The address of a client as text; "a client" if it has none.

@@ -44,7 +44,7 @@ void Connection::open(OpenConnection from, const IpAddress& origin, TimePoint no
   tls_ = from.tls;
   session_.is_plain = !tls_;
   if (tls_) session_.role = server_.role_of(tls_->role.view());
-  // Who may write nothing any more does not go on feeding the watchdog.
+  // A client that may no longer write anything no longer feeds the watchdog.
   session_.has_written = from.has_written && server_.may_write(session_);
   has_asked_ = from.has_asked;
   std::copy(from.unread.begin(), from.unread.end(), framer_.room().begin());
@@ -129,7 +129,7 @@ bool Connection::take_turn(TimePoint now, Receives receives) {
   if (has_output()) return true;
   if (receives == Receives::no) return !ended_;
   if (!ended_ && !receive()) return false;
-  // What has just been received came after `now`, and clients measure time by that.
+  // The bytes that have just been received came after `now`, and clients derive times from that.
   return answer(TimePoint::clock::now()) && (!ended_ || has_output());
 }
 
@@ -185,8 +185,8 @@ Outcome Connection::fill_output(TimePoint now) {
   return Outcome::frame;
 }
 
-/// What is scheduled is cancelled when its connection ends, which a pulled cable does not tell. With TLS the
-/// other process has the client's socket, and probes each.
+/// Scheduled outputs are cancelled when their connection ends, and a pulled cable does not show that. With
+/// TLS the other process has the client's socket, and probes every client.
 void Connection::be_probed() {
   if (!std::exchange(is_probed_, true)) notice_end_soon(socket_.get());
 }
@@ -194,7 +194,7 @@ void Connection::be_probed() {
 /// The reply to what it waits for has the time at which it leaves.
 void Connection::put_waiting() { output_end_ += server_.end_wait(session_, TimePoint::clock::now(), room()); }
 
-/// For the longest reply, and that to the request that waits.
+/// Returns whether there is room for the longest reply, and for the reply to the wait.
 bool Connection::has_room() const {
   return output_.size() - output_end_ >= (session_.wait ? 2 : 1) * modbus::max_adu_size;
 }

@@ -22,8 +22,8 @@ namespace coupler::device {
 /// client.
 class Connection final : public EventHandler {
  public:
-  /// For the rest of a frame once its beginning is there, and for a client to take a reply; absolute, so that
-  /// single bytes do not extend it.
+  /// The time limit for the rest of a frame whose beginning has come, and for a client to take a reply. It is
+  /// absolute, so that single bytes do not extend it.
   static constexpr std::chrono::seconds timeout{5};
 
   Connection(Loop& loop, Server& server, Waiters& waiters, Statistics& statistics, Log& log)
@@ -44,7 +44,7 @@ class Connection final : public EventHandler {
   void close();
 
   void ready(TimePoint now) override { have_turn(now, Receives::yes); }
-  /// What it waits for may be due. The socket is not looked at: the loop tells when something has come.
+  /// Answers a wait that may be due. It does not look at the socket: the loop reports when bytes have come.
   void answer_wait(TimePoint now) { have_turn(now, Receives::no); }
 
   /// When it is closed unless something happens; nullopt: never.
@@ -55,9 +55,9 @@ class Connection final : public EventHandler {
   /// It has written an output.
   bool has_written() const { return session_.has_written; }
   const IpAddress& origin() const { return origin_; }
-  /// For people: "10.0.0.6", with TLS "'cell1' (10.0.0.6, operator)".
+  /// A text for people: "10.0.0.6", or with TLS "'cell1' (10.0.0.6, operator)".
   std::string who() const;
-  /// Of its last whole frame, or of its beginning.
+  /// The time of its last whole frame, or of its beginning.
   TimePoint last_active() const { return last_active_; }
 
  private:

@@ -31,8 +31,8 @@ class AllowList {
   std::vector<Network> networks_;
 };
 
-/// What counts as one client where places are shared out: an IPv4 address, or the /64 of an IPv6 address. A
-/// machine can choose freely among the 2^64 addresses of its network.
+/// Returns what counts as one client when connections are shared out: an IPv4 address, or the /64 of an IPv6
+/// address, since a machine can choose freely among the 2^64 addresses of its network.
 IpAddress origin_of(const sockaddr_storage& peer);
 
 /// A non-blocking socket that listens.

@@ -13,8 +13,8 @@
 
 namespace coupler::device {
 
-/// What is called when a descriptor is ready. `ready` is called again as long as the descriptor stays ready,
-/// and may be called without reason: only non-blocking calls are safe in it.
+/// The function that is called when a descriptor is ready. It is called again as long as the descriptor stays
+/// ready, and may be called without reason, so it may only make non-blocking calls.
 class EventHandler {
  public:
   virtual void ready(TimePoint now) = 0;

@@ -20,7 +20,7 @@ class ShortText {
  public:
   static constexpr std::size_t capacity = 64;
   ShortText() = default;
-  /// What is too long is cut.
+  /// Texts that are too long are cut.
   explicit ShortText(std::string_view text);
   std::string_view view() const { return {bytes_.data(), size_}; }
   /// False: it is not one, but bytes that came from elsewhere.
@@ -31,7 +31,7 @@ class ShortText {
   std::uint8_t size_ = 0;
 };
 
-/// Who is at the other end of a TLS connection. Its socket leads to the process that does TLS.
+/// The client at the other end of a TLS connection. The socket leads to the process that does TLS.
 struct TlsPeer {
   sockaddr_storage address{};
   ShortText name;  ///< the common name of its certificate, for people
@@ -52,7 +52,7 @@ constexpr std::size_t longest_unread = modbus::max_adu_size;
 /// Replies are sent together, a few long ones or many short ones.
 constexpr std::size_t longest_unsent = 4 * modbus::max_adu_size;
 
-/// What send_client() sends has at most so many bytes.
+/// The limit, in bytes, of what send_client() sends.
 constexpr std::size_t longest_client_message = 4096;
 
 /// Both processes have the connection then. False: it was not taken.

@@ -11,7 +11,7 @@
 
 namespace coupler::device {
 
-/// Whether this process has a controlling terminal; one that was closed is none.
+/// Returns whether this process has a controlling terminal. One that was closed does not count.
 bool has_terminal();
 
 /// Turns SIGINT and SIGTERM into a request to stop and SIGHUP into one to reload, which the loop sees in its
@@ -31,7 +31,7 @@ class Signals : public EventHandler {
   int stop() const { return stop_; }
   /// The process that sent the last SIGHUP since the last call; 0: the kernel.
   std::optional<pid_t> take_reload() { return std::exchange(reload_, std::nullopt); }
-  /// Whether SIGTSTP came since the last call.
+  /// Returns whether SIGTSTP came since the last call.
   bool take_suspend() { return std::exchange(suspend_, false); }
 
   void ready(TimePoint now) override;

@@ -29,7 +29,7 @@ std::size_t affordable(std::size_t wanted) {
   return std::clamp<std::size_t>(files > other_files ? files - other_files : 1, 1, wanted);
 }
 
-/// What accept(2) calls an error although only this one client is concerned.
+/// Returns whether an error of accept(2) concerns only this one client.
 bool concerns_the_client(int error) {
   for (const int known : {EINTR, ECONNABORTED, EPROTO, EPERM, ENETDOWN, ENOPROTOOPT, EHOSTDOWN, ENONET,
                           EHOSTUNREACH, EOPNOTSUPP, ENETUNREACH})

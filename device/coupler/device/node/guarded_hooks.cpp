@@ -60,7 +60,7 @@ std::optional<modbus::Exception> GuardedHooks::refuse_read(Table table, modbus::
   std::optional<modbus::Exception> refused;
   const bool was_asked = guard([&] { refused = hooks_.refuse_read(table, range); },
                                [&](const char* what) { log_limited("refuse_read()", what); });
-  // What `refused` was before is not to be relied on: GCC 12 forgets it with -O2.
+  // The former value of `refused` must not be relied on: GCC 12 forgets it with -O2.
   return was_asked ? refused : modbus::Exception::server_device_failure;
 }
 

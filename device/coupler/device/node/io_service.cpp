@@ -38,7 +38,8 @@ TimeUntilDue shorter(TimeUntilDue a, TimeUntilDue b) {
   return std::min(*a, *b);
 }
 
-/// For the first seconds of a machine without a source of random numbers, when the kernel has none.
+/// A substitute for the first seconds of a machine without a source of random numbers, when the kernel has
+/// none.
 std::uint32_t epoch_from_clock() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   const auto ns = static_cast<std::uint64_t>(std::chrono::nanoseconds(now).count());

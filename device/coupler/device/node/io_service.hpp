@@ -64,8 +64,9 @@ class IoService {
   std::uint32_t trips_;  ///< of the watchdog, that were logged
 };
 
-/// What a process that answered clients logs at its end. `why`: it ends. `safe`: all outputs are in their
-/// safe state. Statistics that are 0 are left out, but for requests and their exceptions.
+/// The lines that a process that answered clients logs at its end. `why` is the reason for the end. `safe`:
+/// all outputs are in their safe state. Statistics that are 0 are left out, except requests and their
+/// exceptions.
 std::string shutdown_summary(std::string_view why, bool safe, const Statistics& statistics, TimePoint now);
 
 }  // namespace coupler::device

@@ -32,7 +32,7 @@ class MapInput {
     return {[this] { return read(); }, log_.descriptor()};
   }
 
-  /// For a node that serves: only a regular file is read. Others may have no end, or block.
+  /// A node that serves reads only a regular file. Others may have no end, or block.
   ReadMap again() const {
     if (path_ == "-") return {};
     const auto read = [this]() -> tl::expected<MapPtr, std::string> {

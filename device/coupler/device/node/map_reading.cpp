@@ -20,7 +20,7 @@ namespace {
 
 enum Status { done, logged, too_large, no_settings };
 
-/// What was written to the memory.
+/// Returns the text that was written to the memory.
 std::string text_in(int memory) {
   std::array<char, 1024> text{};
   const ssize_t size = ::pread(memory, text.data(), text.size(), 0);

@@ -27,7 +27,7 @@ struct ReadMap {
   bool reads_something() const { return read || built_in != nullptr; }
 };
 
-/// What was read.
+/// The map that was read.
 struct MapRead {
   MapPtr map{};           ///< null: the one that is built in
   Descriptor settings{};  ///< memory with TlsSettings, if the map has TLS
@@ -59,7 +59,7 @@ class MapReading final : public EventHandler {
  private:
   /// More than the largest map file (loader) needs.
   static constexpr std::size_t room = std::size_t{256} << 20;
-  /// What the process leaves behind.
+  /// The result that the process leaves behind.
   struct Made {
     const OwnedMap* map = nullptr;
   };

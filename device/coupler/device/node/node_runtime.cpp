@@ -124,7 +124,7 @@ void NodeRuntime::beat() {
   manager_.beat();
 }
 
-/// Who limits what can be written, and leaves some of it to everybody, is to know it.
+/// Somebody who limits what can be written, but leaves some of it to everybody, should know that.
 void NodeRuntime::warn_of_open_outputs() {
   const Security& security = context_->map->security;
   if (!security.plain) return;

@@ -28,8 +28,8 @@ struct Ending {
   TimePoint now = TimePoint::clock::now();
 };
 
-/// Whether only a firmware's code is behind it, which hears of the end of a pulse. That is called in the
-/// worker process only: the next one ends it.
+/// Returns whether only a firmware's code is behind the output. That code hears of the end of a pulse, and is
+/// called in the worker process only: the next worker ends the pulse.
 bool is_for_code(const ServingContext& context, const ScheduledOutput& begun) {
   const auto points = touched_points(*context.map, begun.table, begun.range);
   return context.hooked && std::none_of(points.begin(), points.end(), has_hardware) &&

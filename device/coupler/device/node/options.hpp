@@ -11,7 +11,7 @@
 
 namespace coupler::device {
 
-/// What is played in place of hardware.
+/// The recording that is played instead of hardware.
 struct ReplayArguments {
   std::string file;  ///< empty: nothing
   double speed = 1;

@@ -18,7 +18,7 @@ class OutputParts {
   explicit OutputParts(ServingContext& context);
 
   std::size_t size() const { return context_.wiring->output_groups() + devices_.size(); }
-  /// For the log: "gpiochip0 lines 5 (GPIO5), 6 (GPIO6)", "mcp4725 (setpoint, level)".
+  /// Returns a text for the log: "gpiochip0 lines 5 (GPIO5), 6 (GPIO6)", "mcp4725 (setpoint, level)".
   std::string name(std::size_t part) const;
   /// Drives its outputs to their safe state. Tries all of them; false if one cannot be driven.
   [[nodiscard]] bool drive_safe(std::size_t part);

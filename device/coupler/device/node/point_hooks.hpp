@@ -39,16 +39,16 @@ class UrgentMutex {
   pthread_mutex_t mutex_;
 };
 
-/// What was set of a point since it was put into the image: the last value, of bits, whose changes are told,
-/// the ones before as well, as far as there is room. It is no member of PointHooks, whose names hide those of
-/// firmware.
+/// The values that were set of a point since it was put into the image: the last one, and, of bits whose
+/// changes are told, the ones before as well, as far as there is room. It is no member of PointHooks, whose
+/// names hide those of firmware.
 struct NewValues {
   std::vector<std::uint16_t> registers;
   std::uint32_t lost = 0;  ///< changes of bits before the last value for which there was no room
 };
 
-/// What the generated hooks of every map have in common: values <-> registers, and values that any thread
-/// sets.
+/// The part that the generated hooks of every map have in common: the conversion between values and
+/// registers, and values that any thread sets.
 class PointHooks : public Hooks {
  public:
   void put_new_values(Image& image, Changes& changes) override;

@@ -19,7 +19,7 @@ class ServiceManager {
 
   bool is_there() const { return socket_.is_open(); }
 
-  /// What the first beat() reports.
+  /// The state that the first beat() reports.
   void set_status(std::string status) { status_ = std::move(status); }
   /// The node's loop turns. The first call reports that the node is ready, with the status. Later ones feed
   /// the manager's watchdog, at twice the rate that it asks for. Never blocks.

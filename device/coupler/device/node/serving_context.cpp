@@ -13,7 +13,7 @@
 namespace coupler::device {
 namespace {
 
-/// Where the node before this one listened.
+/// The address at which the node before this one listened.
 struct Before {
   const std::string& address;
   std::uint16_t port;

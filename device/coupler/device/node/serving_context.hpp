@@ -19,15 +19,15 @@
 
 namespace coupler::device {
 
-/// Whether a node can serve this map, which is stricter than a map of any other coupler. The error names the
-/// points that prevent it, one a line, and what to do.
+/// Checks whether a node can serve this map, which is stricter than the rules for a map of any other coupler.
+/// The error names the points that prevent it, one a line, and what to do.
 tl::expected<void, std::string> check_servable(const Map& map);
 
 /// A map and all that it takes to serve it. It outlives the processes that do.
 struct ServingContext {
-  /// What is needed to serve the map, after `before` (null: there was no other). The network and channels
-  /// come first, so a program that then cannot serve the outputs does not touch them: to request a line
-  /// drives it; to open a channel does not. `hooks` may be null.
+  /// Makes what is needed to serve the map, after `before` (null if there was no other). Network and channels
+  /// come first, so a program that then cannot serve the outputs does not touch them: requesting a line
+  /// drives it, but opening a channel does not. `hooks` may be null.
   static tl::expected<std::unique_ptr<ServingContext>, ServeError> prepare(const Map& map, MapPtr owner,
                                                                            const Options& options,
                                                                            const ServingContext* before,
@@ -60,9 +60,9 @@ struct ServingContext {
     prepared = nullptr;
   }
 
-  /// Whether clients need not notice when one is replaced by the other.
+  /// Returns whether clients need not notice when one is replaced by the other.
   bool looks_like(const ServingContext& other) const;
-  /// Whether its watchdog has expired.
+  /// Returns whether its watchdog has expired.
   bool has_expired() const { return state->watchdog().state() == OutputWatchdog::State::expired; }
   /// Once it is in force.
   Hardware hardware() const { return {wiring->lines(), analogue.get(), hooked.get()}; }

@@ -18,7 +18,7 @@ Statistics started_at(TimePoint now) {
   return statistics;
 }
 
-/// Whether both drive the same, as far as the map says.
+/// Returns whether both drive the same hardware, as far as the map says.
 bool same_hardware(const Point& a, const Point& b) {
   const auto hardware = [](const Point& p) {
     return std::tie(p.line.chip, p.line.offset, p.line.name, p.iio.device, p.iio.channel, p.pwm.chip,

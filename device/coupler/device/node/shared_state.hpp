@@ -14,9 +14,8 @@
 
 namespace coupler::device {
 
-/// What a node knows, for as long as its map stays the same: values, statistics, watchdog, scheduled outputs.
-/// It is shared with forked processes, so a worker process that is started anew goes on where the one before
-/// ended.
+/// The state of a node for as long as its map stays the same: values, statistics, watchdog, scheduled
+/// outputs. It is shared with forked processes, so a new worker process goes on where the one before ended.
 class SharedState {
  public:
   /// Initial values. The map outlives it.
@@ -33,8 +32,8 @@ class SharedState {
   /// that have begun, if they fit().
   void take_over(const SharedState& before, TimePoint now);
 
-  /// Whether an output of `before`, for which take_over() was prepared, is of the same points here, at the
-  /// same addresses, with the same hardware behind them.
+  /// Returns whether an output of `before`, for which take_over() was prepared, belongs to the same points
+  /// here, at the same addresses, with the same hardware behind them.
   bool fits(const ScheduledOutput& begun, const SharedState& before) const;
 
   Image& image() { return image_; }

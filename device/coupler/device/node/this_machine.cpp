@@ -50,8 +50,8 @@ bool is_filler(std::string text) {
          std::find(fillers.begin(), fillers.end(), text) != fillers.end();
 }
 
-/// Whether its maker gave it to this interface alone: the second hexadecimal digit has the bit "local"
-/// otherwise, and machines of one kind may all have the same.
+/// Returns whether the maker gave the address to this interface alone. Otherwise the bit "local" in the
+/// second hexadecimal digit is set, and machines of one kind may all have the same address.
 bool is_unique(const std::string& mac) {
   return mac.size() > 1 && std::string_view("014589cd").find(mac[1]) != std::string_view::npos;
 }

@@ -10,13 +10,13 @@
 
 namespace coupler::device {
 
-/// What tells this machine from others, the first that is there: the board's serial number (device tree,
-/// DMI), the permanent MAC address of its first network interface, its machine-id. Empty: none is. What a
-/// service may not read is not there for it. `root` is where / is.
+/// Returns what tells this machine from others, the first of these that exists: the board's serial number
+/// (device tree, DMI), the permanent MAC address of its first network interface, its machine-id. It is empty
+/// if there is none. Files that a service may not read do not exist for it. `root` is where / is.
 std::string find_serial(const std::string& root = {});
 
-/// What is shown of a serial. A machine-id is a secret (machine-id(5)): the prefix keeps its hash from being
-/// compared with what other programs derive from it. 0: the serial is empty.
+/// Returns what is shown of a serial; 0 if the serial is empty. A machine-id is a secret (machine-id(5)): the
+/// prefix keeps its hash from being compared with what other programs derive from it.
 std::uint64_t hashed_serial(std::string_view serial);
 
 /// Its hostname, with ? for what is not printable ASCII, and its hashed serial. It reads a few small files,

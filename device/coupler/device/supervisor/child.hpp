@@ -36,7 +36,7 @@ class Child {
   std::optional<int> kill();
 
  private:
-  /// For one that was killed: the kernel takes its time to free what it had.
+  /// The time limit for a child that was killed: the kernel needs time to free its memory.
   static constexpr std::chrono::seconds timeout{1};
 
   Child(pid_t pid, Descriptor descriptor) : pid_(pid), descriptor_(std::move(descriptor)) {}
@@ -52,8 +52,7 @@ bool ended_well(int status);
 /// Ends the process that calls it when its parent does. False: it has ended already.
 bool end_with_parent(pid_t parent, int signal);
 
-/// For a child that must not hold what its parent has: all descriptors but 0 to 2 and those that are kept (-1
-/// is none).
+/// Closes the descriptors of the parent in a child: all but 0 to 2 and those that are kept (-1 is none).
 void close_descriptors(std::initializer_list<int> kept);
 
 }  // namespace coupler::device

@@ -14,7 +14,7 @@
 namespace coupler::device {
 namespace {
 
-/// What is read of a file: more than what is needed of either.
+/// Holds what is read of a file, which is more than is needed of either.
 using Text = std::array<char, 128>;
 
 Descriptor open_of(const std::string& process, const char* name) {

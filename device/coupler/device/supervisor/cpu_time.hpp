@@ -12,7 +12,7 @@
 
 namespace coupler::device {
 
-/// What the kernel says of the main thread of a process.
+/// The times that the kernel reports for the main thread of a process.
 struct CpuTimes {
   std::chrono::nanoseconds ran{0};
   /// Ready to run without a CPU. The kernel adds a wait only when it ends.
@@ -38,10 +38,10 @@ class WaitEstimate {
 /// not taken for it.
 class CpuWait {
  public:
-  /// Where the kernel does not count waits (no SCHED_INFO), or the files cannot be read, no time passes.
+  /// If the kernel does not count waits (no SCHED_INFO), or the files cannot be read, no time passes.
   explicit CpuWait(pid_t pid);
 
-  /// Whether the kernel counts waits, and the process could be looked at when this was made.
+  /// Returns whether the kernel counts waits, and the process could be looked at when this object was made.
   bool is_counted() const { return schedstat_.is_open() && stat_.is_open(); }
   /// The time that its main thread has waited for the CPU in its life.
   std::chrono::nanoseconds sample(TimePoint now);

@@ -32,7 +32,7 @@ class Silence {
     const nanoseconds elapsed = now - last_;
     const nanoseconds counted = std::min(elapsed, longest_turn_);
     nanoseconds starved = waited - last_waited_;
-    // What does not count is not deducted either.
+    // Time that does not count is not deducted either.
     if (elapsed > counted) starved = std::min(starved, counted);
     last_ = now;
     last_waited_ = waited;

@@ -19,7 +19,7 @@ using std::chrono::milliseconds;
 
 /// How often the processes are looked at at least.
 constexpr milliseconds turn{100};
-/// For all that were killed: the kernel takes its time to free what they had.
+/// The time limit for all processes that were killed: the kernel needs time to free their memory.
 constexpr milliseconds time_to_die{1000};
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace coupler::device {
 
-/// What became of outputs that were to go to their safe state.
+/// The result for outputs that were to go to their safe state.
 enum class SafeOutcome : std::uint8_t {
   safe,
   failed,   ///< one of them could not be driven, or the process for them died

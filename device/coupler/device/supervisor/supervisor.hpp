@@ -16,8 +16,8 @@
 
 namespace coupler::device {
 
-/// What a supervisor has its worker processes do. The supervisor calls it, unless a function says otherwise;
-/// it waits for nothing there.
+/// The work of a supervisor's worker processes. The supervisor makes the calls, unless a function says
+/// otherwise, and no call may wait.
 class Workload {
  public:
   /// The life of a worker process: answers clients, beginning with `clients`, until a signal asks to stop or

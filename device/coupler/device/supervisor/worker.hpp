@@ -58,7 +58,7 @@ class SupervisorLink : public EventHandler {
 /// orphan then: if it was stopped, the kernel makes it go on.
 class Worker final : public EventHandler {
  public:
-  /// What it does; this process is its supervisor.
+  /// Its work. This process is its supervisor.
   using Work = std::function<int(SupervisorLink&)>;
 
   /// Starts it; `loop` is this process's. `on_beat` is called for each of its beats. The error is an errno.
@@ -70,7 +70,7 @@ class Worker final : public EventHandler {
 
   pid_t pid() const { return child_.pid(); }
   bool has_ended() const { return ended_; }
-  /// Of its last beat, or of its start.
+  /// The time of its last beat, or of its start.
   TimePoint last_beat() const { return last_beat_; }
 
   /// The signal that asks it to end: SIGINT or SIGTERM.
