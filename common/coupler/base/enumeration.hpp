@@ -35,7 +35,7 @@ constexpr const Word<E>* find_word(E value) {
   return nullptr;
 }
 
-/// As a map writes it; otherwise its name in C++.
+/// Returns the word for it in a map; otherwise its name in C++.
 template <class E, class = decltype(enumeration(E{}))>
 constexpr std::string_view to_string(E value) {
   const Word<E>* found = find_word(value);
@@ -43,7 +43,7 @@ constexpr std::string_view to_string(E value) {
   return found->word.empty() ? found->name : found->word;
 }
 
-/// What the word of a map stands for.
+/// Returns the enumerator that the word of a map stands for.
 template <class E>
 constexpr std::optional<E> parse_word(std::string_view word) {
   for (const Word<E>& each : enumeration_of<E>.words)

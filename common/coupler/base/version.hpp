@@ -5,7 +5,7 @@
 
 namespace coupler {
 
-/// Of this project; CMakeLists.txt says the same, which coupler/cli checks.
+/// The version of this project. CMakeLists.txt has the same; coupler/cli checks that.
 constexpr std::string_view version = "0.1.0";
 
 }  // namespace coupler

@@ -7,8 +7,8 @@
 
 namespace coupler {
 
-/// What an exception says. Where std::thread has thrown it because there was none to be had, with what to do
-/// about it.
+/// Returns the text of an exception. If std::thread threw it because no thread could be started, the text
+/// says what to do about that.
 inline std::string what_failed(const std::exception& error) {
   const auto* of_system = dynamic_cast<const std::system_error*>(&error);
   if (of_system == nullptr || of_system->code() != std::errc::resource_unavailable_try_again)

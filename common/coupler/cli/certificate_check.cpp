@@ -19,7 +19,7 @@
 namespace coupler::cli {
 namespace {
 
-/// Of the first file that this user cannot read: why.
+/// Returns why this user cannot read the first of the files that cannot be read.
 std::optional<std::string> why_not_here(const CredentialFiles& files) {
   for (const std::string_view path : {files.certificate, files.key, files.ca, files.revoked}) {
     if (path.empty()) continue;

@@ -8,8 +8,8 @@
 
 namespace coupler::cli {
 
-/// What the files say that `security:` and `tls:` of a map name. A map is often checked elsewhere than where
-/// it is used: files that this user cannot read are none of its errors.
+/// The findings in the files that `security:` and `tls:` of a map name. A map is often checked on another
+/// machine than the one that uses it, so files that this user cannot read are not errors of the map.
 struct CertificateFindings {
   std::vector<std::string> lines;     ///< for people: until when they are good, or why nothing is known
   std::vector<std::string> problems;  ///< why node or driver would not begin with them, and what to do

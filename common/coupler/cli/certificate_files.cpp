@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a file that is being written. No certificate's name begins with a dot.
+/// Returns the path of a file while it is being written. No certificate's name begins with a dot.
 fs::path unfinished(const fs::path& path) { return path.parent_path() / ("." + path.filename().string()); }
 
 void delete_unfinished(const fs::path& folder) {

@@ -97,8 +97,8 @@ tl::expected<tls::Subject, std::string> client_of(const std::string& text) {
   return tls::Subject{name, false, {}, role};
 }
 
-/// Whether what a subject's folder has is of DIR/authority, which may have been put away. `authority`: its
-/// certificate; empty: it is not there.
+/// Checks that the certificate in a subject's folder is from DIR/authority, which may have been put away.
+/// `authority` is its certificate; empty if it is not there.
 tl::expected<void, std::string> expect_authority(const fs::path& own, const std::string& authority) {
   if (!fs::exists(own / "authority.pem")) return {};
   const auto text = read_pem_file("authority's certificate", "authority.pem", own.string());
@@ -191,7 +191,7 @@ std::string lines_for_map(const tls::Subject& subject, const std::string& stem,
   return text;
 }
 
-/// Of the clients; "viewer" if there are none.
+/// Returns the roles of the clients; "viewer" if there are none.
 std::vector<std::string> roles_of(const std::vector<tls::Subject>& subjects) {
   std::vector<std::string> roles;
   for (const tls::Subject& subject : subjects)
@@ -206,8 +206,8 @@ std::string what_it_is(const tls::Subject& subject) {
                               : fmt::format("a client with the role {}", subject.role);
 }
 
-/// Whether the newest certificate of the folder is the subject's, and good for long; it tells that, or what
-/// becomes of it. The error: the folder is another one's.
+/// Returns whether the newest certificate of the folder is the subject's and good for long, and reports that
+/// or what is done about it. It is an error if the folder belongs to another subject.
 tl::expected<bool, std::string> is_kept(const fs::path& own, const std::string& stem,
                                         const tls::Subject& subject) {
   const auto text = read_pem_file("certificate", stem + ".pem", own.string());

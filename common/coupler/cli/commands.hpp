@@ -16,7 +16,7 @@ namespace coupler::cli {
 
 using command_line::Program;
 
-/// What the program's exit status means: a contract for scripts.
+/// The exit statuses of the program, which are a contract for scripts.
 enum Exit : int {
   ok = 0,
   bad_input = 1,  ///< the map is wrong

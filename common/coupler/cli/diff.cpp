@@ -131,8 +131,8 @@ Severity severity_of(const std::string& name) {
   return Severity::documentation;
 }
 
-/// What a node serves is loaded without what is about its own clients. A file beside it is loaded in the same
-/// way, or its map would differ from itself.
+/// A map from a node is loaded without the part about its own clients. A file beside it is loaded in the same
+/// way, or the map would differ from itself.
 MapPtr comparable(const MapArgument& side, const MapArgument& other) {
   if (side.node || !other.node) return side.loaded.map;
   const MapPtr served = load_served_map(side.loaded.map->map().text, "").map;

@@ -59,7 +59,8 @@ bool is_url_part(std::string_view text) {
   });
 }
 
-/// Where the pages link to: relative to their folder, or on a forge. Standard input and a node have no links.
+/// Returns the target of the links in the pages: relative to their folder, or on a forge. Standard input and
+/// a node have no links.
 std::string url_of_map(const Arguments& arguments) {
   if (arguments.map == "-" || names_a_node(arguments.map)) return {};
   const fs::path map = fs::absolute(arguments.map).lexically_normal();

@@ -20,7 +20,7 @@ namespace {
 
 constexpr auto schema_name = "map.schema.json";
 
-/// What a first map is to begin with.
+/// The choices for a first map.
 struct Starter {
   std::string name;     ///< of the device
   std::string address;  ///< of a coupler; empty: an example. A node has none in its map

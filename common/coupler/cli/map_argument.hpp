@@ -15,7 +15,7 @@
 
 namespace coupler::cli {
 
-/// What a help text calls it.
+/// The description of the argument in a help text.
 constexpr auto map_help =
     "YAML or JSON file; - is standard input; tcp:// or tls://HOST[:PORT][/UNIT] is a node";
 

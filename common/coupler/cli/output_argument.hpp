@@ -10,7 +10,7 @@
 
 namespace coupler::cli {
 
-/// As --out, in the place of a file.
+/// The word that stands for standard output in place of a file.
 constexpr std::string_view standard_output = "-";
 
 /// It is not given, or standard output.

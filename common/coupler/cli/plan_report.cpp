@@ -35,7 +35,7 @@ std::string milliseconds_text(std::chrono::duration<double, std::milli> time) {
   return digits(time.count(), 4) + " ms";
 }
 
-/// What is read: "12 registers and 3 bits".
+/// Returns a text for what is read: "12 registers and 3 bits".
 std::string amount(const plan::Cost& cost) {
   if (cost.bits == 0) return counted(cost.registers, "register");
   if (cost.registers == 0) return counted(cost.bits, "bit");

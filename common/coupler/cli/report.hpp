@@ -12,10 +12,10 @@ namespace coupler::cli {
 /// "device.yaml: ok: device, 3 points (1 coil, 2 discrete inputs), fingerprint 0123456789abcdef"
 std::string summary(const std::string& file, const Map& map);
 
-/// Which role may read and write which points, as a table; empty without `security`.
+/// Returns a table of the points that each role may read and write; empty without `security`.
 std::string rights_table(const Map& map);
 
-/// What was written of a lock, as lines; empty if nothing was.
+/// Returns the lines that say what was written of a lock; empty if nothing was.
 std::string lock_report(const NewLock& lock);
 
 /// One line of JSON: {file, ok, name, points, fingerprint, lock, diagnostics: [{severity, file, line, column,

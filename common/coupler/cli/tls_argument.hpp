@@ -21,7 +21,7 @@ struct TlsProblem {
   std::string remedy;
 };
 
-/// What a place with tls:// misses, and what to do; nullopt: nothing.
+/// Returns what is missing for a place with tls://, and what to do; nullopt if nothing is.
 std::optional<std::string> tls_problem(const Tls& tls);
 
 /// Puts the options in the place of what `tls` says. nullopt: the two and the place fit together.

@@ -77,8 +77,8 @@ constexpr unsigned width(Type type) {
 
 constexpr bool is_float(Type type) { return type == Type::REAL || type == Type::LREAL; }
 
-/// Where the bytes of a value stand in its registers. A is the most significant byte.
-/// Values of one register know ABCD ("AB") and BADC ("BA") only.
+/// The order of the bytes of a value in its registers. A is the most significant byte. Values of one register
+/// have ABCD ("AB") and BADC ("BA") only.
 enum class Order : std::uint8_t {
   ABCD,  ///< big endian throughout
   CDAB,  ///< registers reversed: the least significant register first

@@ -34,7 +34,7 @@ ScaleError encode_published(double value, const Format& format, const Scale& sca
 /// The same for a measurement: a value out of range becomes the nearest end of the range. `value` is not NaN.
 void encode_nearest(double value, const Format& format, const Scale& scale, std::uint16_t* registers);
 
-/// What is published once registers have held a value as well as they can.
+/// Returns what is published after registers have been set to a value as well as they can hold it.
 double nearest_published(double value, const Format& format, const Scale& scale);
 
 struct PublishedRange {

@@ -23,7 +23,8 @@ std::size_t decode_text(const std::uint16_t* registers, const Format& format, ch
 /// The same. `text` keeps its capacity from call to call.
 void decode_text(const std::uint16_t* registers, const Format& format, std::string& text);
 
-/// Whether it is UTF-8 (RFC 3629) without control characters: those below U+0020, and U+007F to U+009F.
+/// Returns whether a text is UTF-8 (RFC 3629) without control characters: those below U+0020, and U+007F to
+/// U+009F.
 bool is_plain_text(std::string_view text);
 
 /// Why a text does not fit into a STRING.

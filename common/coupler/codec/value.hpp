@@ -24,7 +24,8 @@ Value decode(const std::uint16_t* registers, const Format& format);
 /// says what is wrong, as in "300 does not fit into USINT (0 to 255)"; the registers are then unchanged.
 tl::expected<void, std::string> encode(const Value& value, const Format& format, std::uint16_t* registers);
 
-/// As a person reads it: "true", "-5", "3.14" (shortest text that reads back the same), the text itself.
+/// Returns a text for people: "true", "-5", "3.14" (the shortest text that reads back the same), the text
+/// itself.
 std::string to_string(const Value& value);
 
 /// A finite number with the fewest digits that tell it from its neighbours of the same type, always with a

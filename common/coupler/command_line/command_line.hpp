@@ -34,7 +34,7 @@ class Option {
   Option no_extra_values();     ///< the same, but the help text says "..." of a list
   Option delimiter(char sign);  ///< between the values of a list
 
-  // What a value may be.
+  // The values that an option may have.
   Option in_range(int min, int max);
   Option in_range(double min, double max);
   Option one_of(std::vector<std::string> values);

@@ -43,7 +43,7 @@ bool is_systemd_credential(const std::string& path) {
   return folder != nullptr && *folder != '\0' && starts_with(path, std::string(folder) + "/");
 }
 
-/// What is wrong with the permissions of a key, and what to do.
+/// Returns what is wrong with the permissions of a key, and what to do.
 std::optional<std::string> why_not_secret(const struct stat& file, const std::string& path) {
   const auto others = [&](const char* who, const char* what) {
     return fmt::format("{} may {} it; 'chmod 600 {}' keeps it to its owner", who, what, path);

@@ -9,7 +9,8 @@
 
 namespace coupler {
 
-/// What one side of a TLS connection shows of itself, and whom it believes. Each is PEM text (RFC 7468).
+/// The certificate that one side of a TLS connection shows, and those that it believes. Each is PEM text (RFC
+/// 7468).
 struct Credentials {
   std::string certificate;  ///< its own, with those that lead from it to an authority; of several keys, too
   std::string key;          ///< of the certificate

@@ -19,7 +19,7 @@ std::chrono::system_clock::time_point warns_from(const Validity& validity);
 /// "expires on …; renew it", or that it has; nullopt: there is more left.
 std::optional<std::string> expiry_text(const Validity& validity, std::chrono::system_clock::time_point now);
 
-/// As expiry_text(), or that it has not begun and what to do.
+/// Returns expiry_text(), or that the validity has not begun, and what to do.
 std::optional<std::string> time_problem(const Validity& validity, std::chrono::system_clock::time_point now);
 
 /// "2026-11-26 08:30 UTC"

@@ -15,7 +15,7 @@ namespace {
 using codec::Order;
 using codec::Type;
 
-/// As one word of a POSIX shell: the map's address and file name are any text.
+/// Returns a text as one word of a POSIX shell, since the map's address and file name are any text.
 std::string quoted(std::string_view text) {
   constexpr std::string_view plain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";

@@ -13,8 +13,8 @@
 
 namespace coupler::docs {
 
-/// What the pages say of where they come from. No time and no folder of this machine: the same map gives the
-/// same bytes anywhere.
+/// The origin of the pages, as they show it. It has no time and no folder of this machine, so that the same
+/// map gives the same bytes anywhere.
 struct Provenance {
   std::string file;     ///< the map's file name, without its folder
   std::string url;      ///< where a reader finds the file, to which "#L12" is added; empty: no links
@@ -53,7 +53,7 @@ struct Document {
 /// `lines`: of the points in the file, as LoadResult::point_lines; empty: unknown.
 Document make_document(const Map& map, Span<const int> lines, Provenance provenance);
 
-/// What the map says of the device as a whole, in a fixed order, without groups that do not concern it.
+/// The properties of the device as a whole, in a fixed order, without groups that do not concern it.
 std::vector<FactGroup> facts_of(const Map& map);
 
 /// mbpoll reads the first point of each address space with the point's type, or as registers if mbpoll does
@@ -64,7 +64,7 @@ std::vector<Command> mbpoll_commands(const Map& map);
 /// first writable one.
 std::vector<Command> ros_commands(const Map& map, const std::string& file);
 
-/// Where in the map's file the point stands, "device.yaml#L12"; empty if that is unknown.
+/// The place of the point in the map's file, "device.yaml#L12"; empty if it is unknown.
 std::string source_link(const Document& document, const PointDescription& point);
 
 /// How many points are in that table.

@@ -112,7 +112,7 @@ Drawing draw_text(const Point& point) {
   return drawing;
 }
 
-/// What shares the register of `first` and is of its kind, the first bit or byte of all on the left.
+/// Returns the points of one kind that share the register of `first`, with the first bit or byte on the left.
 std::vector<const Point*> neighbours(const Map& map, const Point& first) {
   std::vector<const Point*> found;
   for (const Point& point : map.points)

@@ -32,7 +32,7 @@ struct Drawing {
 /// None for a map without registers, one for each order that it uses.
 std::vector<Drawing> drawings_of(const Map& map);
 
-/// For a block of text in a font of one width.
+/// Draws it as a block of text in a font of one width.
 std::string as_text(const Drawing& drawing);
 
 /// An element of an HTML page, which gives it its colours.

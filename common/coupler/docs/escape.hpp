@@ -7,11 +7,12 @@
 
 namespace coupler::docs {
 
-/// For text and quoted attributes of HTML.
+/// Escapes a text for the text and quoted attributes of HTML.
 std::string html(std::string_view text);
 
-/// For the inline text of GitHub-flavoured Markdown, also within a cell of a table: a backslash before all
-/// punctuation that means something inside of a line, HTML's entities for what HTML would see.
+/// Escapes a text for the inline text of GitHub-flavoured Markdown, also within a cell of a table: a
+/// backslash before all punctuation that means something within a line, and HTML's entities for what HTML
+/// would interpret.
 std::string markdown(std::string_view text);
 
 /// Without line breaks and other control characters, which would end what the text stands in.

@@ -24,7 +24,7 @@ std::string both(const std::string& a, std::string_view between, const std::stri
   return a + std::string(between) + b;
 }
 
-/// Of several addresses, that no line ends between the two.
+/// Keeps a line from ending between two of several addresses.
 std::string unbroken(const std::string& addresses) {
   std::string out;
   for (const char c : addresses) out += c == ' ' ? std::string("&nbsp;") : std::string(1, c);

@@ -8,7 +8,7 @@
 
 namespace coupler::docs {
 
-/// What the pages say of one point: texts that are not yet escaped for any format. Empty: nothing to say.
+/// The texts of the pages about one point, not yet escaped for any format. An empty text is left out.
 struct PointDescription {
   std::string name;
   std::string description;

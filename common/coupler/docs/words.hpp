@@ -29,7 +29,8 @@ std::string words(const EdgeOf& edge);
 /// point).
 std::string range_words(const Point& point);
 
-/// What registers as Point::initial mean, as it is published: "on", "2.5", "1, 2, 3", "0 each".
+/// Returns what registers in the form of Point::initial mean, as it is published: "on", "2.5", "1, 2, 3", "0
+/// each".
 std::string value_words(const Point& point, Span<const std::uint16_t> registers);
 
 /// The message type of the point's topics, "std_msgs/Float32". coupler/host/ros/message.hpp chooses it for

@@ -64,7 +64,7 @@ Cells cells_of(const Point& point) {
   return cells;
 }
 
-/// What the host does with the point has a meaning for it.
+/// Returns whether keys about the subject have a meaning for the point.
 bool applies(About about, const Point& point) {
   if (about == About::reading) return is_readable(point);
   return about != About::writing || is_writable(point);

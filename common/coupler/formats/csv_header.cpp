@@ -41,7 +41,7 @@ bool is_known(const Column& column) {
   return column.described != nullptr || column.key == "table" || column.key == "name" || column.key == "unit";
 }
 
-/// What becomes of a column that is none of a point's.
+/// Reports how a column is treated that is not a property of a point.
 void report_unknown(const Cell& heading, std::string_view key, Problems& problems) {
   const auto names = column_names();
   const std::string_view near = nearest(key, names);

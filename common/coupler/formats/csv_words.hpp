@@ -27,7 +27,7 @@ struct Meaning {
 };
 Meaning meaning_of(std::string_view heading);
 
-/// What the function codes in a cell do; none: it has none.
+/// The meaning of the function codes in a cell; `none` if it has none.
 enum class Codes { none, read, write, read_and_write };
 
 /// The table that a cell names, or why it names none.
@@ -45,8 +45,8 @@ TableWord read_table(std::string_view text, bool function_codes);
 /// The table that a Modicon address of five or six digits begins with: "40001".
 std::optional<Table> table_of_modicon(std::string_view address);
 
-/// Of `access`: "read" for "RO", "read_write" for "R/W", or for "yes" below `may_be_written`; the text itself
-/// if it is no word that is known.
+/// Returns the word for `access`: "read" for "RO", "read_write" for "R/W" or for "yes" below
+/// `may_be_written`, and the text itself if the word is not known.
 std::string_view access_of(std::string_view text, Reading reading);
 
 /// The factor that does the same; nullopt if the cell is no number, or 0.

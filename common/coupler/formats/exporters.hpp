@@ -14,7 +14,7 @@
 
 namespace coupler::formats {
 
-/// What an export leaves out, and of which points.
+/// Warns of the keys that an export leaves out, with the points concerned.
 class ConversionWarnings {
  public:
   /// Warnings with the same `what` become one that lists their points.
@@ -80,7 +80,7 @@ Span<const Exporter> exporters();
 /// The exporter of that name, or nullptr.
 const Exporter* find_exporter(std::string_view name);
 
-// What several of those functions need.
+// Functions that several exporters need.
 
 /// Warns of what only a node or this project's driver uses: other programs that read a device have no word
 /// for it.
@@ -99,7 +99,7 @@ class UniqueNames {
   std::set<std::string> taken_;
 };
 
-/// What an escape of a string's characters stands for.
+/// Says whether the escapes in a string stand for characters or for bytes.
 enum class Escapes : std::uint8_t { characters, bytes };
 
 /// The text in double quotes, with a backslash before quotes and backslashes. `control` is a format of fmt

@@ -121,7 +121,7 @@ void add_climate(Entity& entity) {
   Settings& settings = entity.settings();
   const Table table = Entity::table_of("input_type", "holding", settings);
   Temperatures temperatures(entity);
-  // What can be written gets its place first.
+  // Points that can be written get their places first.
   for (const auto& [suffix, address] : targets_of(settings))
     temperatures.add(suffix, Table::holding_registers, address, PointUse::both, "target");
   temperatures.add("", table, entity.address(), PointUse::read, "current");

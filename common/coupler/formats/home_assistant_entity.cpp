@@ -26,7 +26,7 @@ constexpr Input inputs[] = {{"coil", Table::coils},
                             {"holding", Table::holding_registers},
                             {"holdings", Table::holding_registers}};
 
-/// Of each platform, what only Home Assistant uses.
+/// The keys of each platform that only Home Assistant uses.
 constexpr std::string_view own_keys[] = {"unique_id", "device_class",     "state_class",
                                          "precision", "lazy_error_count", "temp_step"};
 

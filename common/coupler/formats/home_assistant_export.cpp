@@ -54,7 +54,7 @@ std::string_view data_type_of(Type type) {
   }
 }
 
-/// Of types that Home Assistant only has as numbers: what its file says they are.
+/// Returns the type that the file has for a type that Home Assistant only has as a number.
 std::string_view read_back_as(Type type) {
   switch (type) {
     case Type::WORD: return "UINT";
@@ -210,7 +210,8 @@ class EntityWriter {
     if (point.scale.gain != 1) out += fmt::format("{}scale: {}\n", indent, point.scale.gain);
     if (point.scale.offset != 0) out += fmt::format("{}offset: {}\n", indent, point.scale.offset);
     if (!point.units.empty()) out += fmt::format("{}unit_of_measurement: {}\n", indent, text(point.units));
-    // Of each sensor, in the order of the file: so Home Assistant numbers those that are alike.
+    // Each sensor gets its id in the order of the file, because Home Assistant numbers sensors with equal
+    // names in that order.
     const std::string id = sensor_ids_.make(entity_id(name_of(point, element)), point.name);
     if (!point.values.empty()) add_template(name_of(point, element), id, point);
   }

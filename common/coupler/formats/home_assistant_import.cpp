@@ -137,7 +137,7 @@ const Entry* choose(const std::vector<const Entry*>& hubs, const std::string& wa
   return nullptr;
 }
 
-/// What the map says of the connection.
+/// Reads what the map says about the connection.
 class HubReader {
  public:
   HubReader(const Entry& hub, Problems& problems) : hub_(hub), settings_(hub, problems) {}

@@ -16,7 +16,8 @@ using loader::shown;
 
 namespace {
 
-/// What YAML 1.1, Home Assistant's, takes for octal: 010, but neither "010" in quotes nor 08.
+/// Reads a number that YAML 1.1, which Home Assistant uses, takes for octal: 010, but neither "010" in quotes
+/// nor 08.
 std::optional<unsigned> octal(const Entry& given, Problems& problems) {
   constexpr std::size_t longest = 9;
   const std::string& text = given.text;

@@ -51,7 +51,7 @@ class Settings {
 /// nullopt if it is not a whole number up to `most`. 010 is 8 as in Home Assistant's YAML, with a warning.
 std::optional<unsigned> whole_of(const loader::Entry& given, unsigned most, loader::Problems& problems);
 
-/// What Home Assistant does with a point.
+/// The use that Home Assistant makes of a point.
 enum class PointUse : std::uint8_t { read, write, both };
 
 /// A point before it is a part of the map.

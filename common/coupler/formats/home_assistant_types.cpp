@@ -34,7 +34,7 @@ constexpr TypeOf types[] = {
     {"", 'c', 1, "CHAR"},
 };
 
-/// What is done with the registers before they are a value.
+/// The change of order that registers need before they are a value.
 struct Swap {
   bool words = false;  ///< the registers are reversed
   bool bytes = false;  ///< the two bytes of each are

@@ -144,7 +144,7 @@ bool has_points(const Entry& map) {
                                            [](const Entry& table) { return !table.children.empty(); });
 }
 
-/// Of several; one alone without points is an error of its map.
+/// Leaves out units without points, if there are several. A single map without points is an error of its own.
 void leave_out_empty_units(std::vector<ForeignUnit>& units, Problems& problems) {
   const bool any =
       std::any_of(units.begin(), units.end(), [](const auto& unit) { return has_points(unit.map); });

@@ -14,7 +14,7 @@ loader::Entry scalar(std::string_view key, std::string text, loader::Position at
 
 loader::Entry section(std::string_view key, loader::Position at);
 
-/// As loader::child(), to be changed.
+/// Does what loader::child() does, for a node that will be changed.
 loader::Entry* find(loader::Entry& parent, std::string_view key);
 
 /// The section of that key, added at the end if it is not there.

@@ -76,7 +76,7 @@ Entry point_at(const Value& value, Table table) {
   return point;
 }
 
-/// What stands in the file is written unless it is the default; ModbusPal takes -32768 to 65535.
+/// A value in the file is written unless it is the default. ModbusPal takes -32768 to 65535.
 void add_initial(const Value& value, Table table, std::string_view type, Entry& point, Problems& problems) {
   const auto number = loader::parse_integer(value.value);
   const bool fits = number && *number >= -32768 && *number <= 65535;

@@ -74,7 +74,7 @@ void read_server(const Entry& server, ForeignUnit& unit, Problems& problems) {
       if (loader::parse_unsigned(entry.text))
         unit.map.children.push_back(scalar("port", entry.text, entry.at));
     } else if (entry.key == "host") {
-      // Where it listens to all is no place to connect to.
+      // An address that listens on all interfaces is not an address to connect to.
       if (!entry.text.empty() && entry.text != "0.0.0.0" && entry.text != "::")
         unit.map.children.push_back(scalar("address", entry.text, entry.at));
     } else if (entry.key == "device_id") {

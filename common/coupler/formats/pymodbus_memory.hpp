@@ -42,7 +42,7 @@ struct SimulatedValue {
   loader::Position at;
 };
 
-/// Where a cell is in the tables.
+/// The place of a cell in the tables.
 struct SimulatedPlace {
   Table table;
   unsigned address;  ///< of its register or of its first bit

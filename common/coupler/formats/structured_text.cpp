@@ -52,7 +52,7 @@ struct Text {
   }
   std::string operator()(float value) const { return upper_exponent(codec::decimal(value)); }
   std::string operator()(double value) const { return upper_exponent(codec::decimal(value)); }
-  /// As an array of bytes.
+  /// A text is an array of bytes.
   std::string operator()(const std::string&) const { return {}; }
 };
 

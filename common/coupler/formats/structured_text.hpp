@@ -44,7 +44,7 @@ std::string lreal(double value);
 std::string scaled(const std::string& raw, const codec::Scale& scale);
 std::string unscaled(const std::string& value, const codec::Scale& scale);
 
-/// What the variable is at start, ":= [1, 2]" without the ":=". Empty: nothing but zeros.
+/// Returns the initial value of the variable, ":= [1, 2]" without the ":=". It is empty if all of it is zero.
 std::string initial_value(const Point& point);
 
 // Allowed values: structured_text_allowed.cpp
@@ -71,12 +71,13 @@ struct Block {
   std::string name;
 };
 
-/// As coupler/plan reads the map.
+/// Returns the blocks that are read, as coupler/plan reads the map.
 std::vector<Block> read_blocks(const Map& map);
 /// Points that follow one another are written together; parts of one register always are.
 std::vector<Block> write_blocks(const Map& map);
 
-/// What a part of the write image is at start, from start_registers(); empty: nothing but zeros.
+/// Returns the initial value of a part of the write image, from start_registers(). It is empty if all of it
+/// is zero.
 std::string initial_image(const Block& block, const Map& map);
 
 /// Bits in a register that is written, of a point that is only read. A device takes whole registers.
@@ -92,7 +93,7 @@ std::vector<ReadOnlyBits> read_only_bits(const Map& map, const std::vector<Block
 
 // Statements: structured_text_code.cpp
 
-/// What converts between REAL or LREAL and its bits.
+/// The functions that convert between REAL or LREAL and their bits.
 struct FloatFunctions {
   std::string to_real, from_real, to_lreal, from_lreal;
 };

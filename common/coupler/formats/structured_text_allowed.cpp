@@ -56,15 +56,15 @@ std::string below(T most) {
     middle += 0.5;
   else if (std::is_same_v<T, float> && most != last)
     middle = (end + static_cast<double>(std::nextafter(most, last))) / 2;
-  // As an LREAL the last integer of 64 bits is the first one beyond.
+  // The last integer of 64 bits becomes the first one beyond as an LREAL.
   const bool is_beyond = std::is_integral_v<T> && most == last;
   return middle == end && !is_beyond ? "<= " + lreal(end) : "< " + lreal(middle);
 }
 
 }  // namespace
 
-// As the driver judges (coupler/map/allowed_values.cpp): by the value that the registers would hold, between
-// those nearest to the bounds. A comparison with NaN is false.
+// Checks a value as the driver does (coupler/map/allowed_values.cpp): the value that the registers would hold
+// has to be between those nearest to the bounds. A comparison with NaN is false.
 std::string allowed(const Point& point, const std::string& variable) {
   const Registers min = at_bound(point.bounds.min, point);
   const Registers max = at_bound(point.bounds.max, point);

@@ -55,7 +55,7 @@ class Expressions {
 
   std::string variable() const { return access_.variable + (is_array_ ? "[i]" : ""); }
 
-  // Of a coil or a discrete input.
+  // Returns the byte of a coil or a discrete input.
   std::string byte() const {
     return fmt::format("{}[{}]", access_.block,
                        is_array_ ? bit_index() + " / 8" : fmt::to_string(access_.offset / 8));
@@ -76,7 +76,7 @@ class Expressions {
   std::string swapped(std::string word) const {
     return codec::bytes_swapped(format_.order) ? fmt::format("ROL({}, 8)", word) : std::move(word);
   }
-  /// Which register holds the `k`-th 16 bits, the most significant first.
+  /// Returns the register that holds the `k`-th 16 bits, the most significant first.
   std::string ordered_word(unsigned k) const {
     return word(codec::words_reversed(format_.order) ? codec::registers(format_) - 1 - k : k);
   }

@@ -33,7 +33,7 @@ std::string place_text(Table table, modbus::Range range) {
   return fmt::format("{} {}", text, range.start());
 }
 
-/// What a person wants to know beside the declaration.
+/// Returns the comment beside the declaration.
 std::string remarks(const Point& point, modbus::Range place) {
   std::string text = place_text(point.table, place);
   const codec::Format& format = point.format;
@@ -75,7 +75,7 @@ class Writer {
   }
 
  private:
-  /// What is read, or what is written.
+  /// The variables that are read, or those that are written.
   struct Side {
     std::string verb;
     std::vector<st::Block> blocks;

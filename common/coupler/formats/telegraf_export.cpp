@@ -36,7 +36,7 @@ std::string_view register_of(Table table) {
   return {};
 }
 
-/// For values of one register Telegraf has only ABCD and DCBA, whatever their type.
+/// Telegraf has only ABCD and DCBA for values of one register, whatever their type.
 std::string_view byte_order_of(const Point& point) {
   if (holds_bits(point.table)) return "ABCD";
   if (codec::width(point.format.type) <= 16)
@@ -112,7 +112,7 @@ void add_warnings(const Point& point, ConversionWarnings& warnings) {
                  "with an older one delete the sections [[processors.enum]]", point.name);
 }
 
-/// Whether the point can be a field; warns if it cannot.
+/// Returns whether the point can be a field, and warns if it cannot.
 bool is_field(const Point& point, ConversionWarnings& warnings) {
   if (!is_readable(point))
     warnings.add("write-only points are left out", "no action is needed: Telegraf only reads", point.name);

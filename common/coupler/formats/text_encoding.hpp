@@ -6,7 +6,7 @@
 
 namespace coupler::formats {
 
-/// What a text was written in.
+/// The encoding in which a text was written.
 enum class WrittenIn { utf8, utf16, windows_1252 };
 
 struct Utf8 {

@@ -9,8 +9,8 @@
 
 namespace coupler::generate {
 
-/// What generated files say of where they come from. No path, no time: the same map gives the same bytes
-/// anywhere.
+/// The origin of generated files, as they show it. It has no path and no time, so that the same map gives the
+/// same bytes anywhere.
 struct Provenance {
   std::string name;     ///< NAME in NAME_map.cpp and coupler::maps::NAME; is_identifier() holds
   std::string source;   ///< the map's file name, without its folder

@@ -88,7 +88,7 @@ constexpr auto dispatch_form = R"(
   }}
 )";
 
-/// What differs between the members of the two.
+/// The parts in which the members of the two differ.
 struct Style {
   std::string (*type)(const Point&);       ///< of a decoded value
   std::string (*parameter)(const Point&);  ///< of on_POINT and set_POINT

@@ -35,10 +35,10 @@ std::string cpp_number(const Point& point);
 /// The C++ type of its value: "bool", "::std::array<float, 4>" …
 std::string cpp_type(const Point& point);
 
-/// Where it is: "holding_registers 3-4", "coils 0", "holding_registers 7, bit 3".
+/// Returns the place of a point: "holding_registers 3-4", "coils 0", "holding_registers 7, bit 3".
 std::string place(const Point& point);
 
-/// What it is, in what units and range, and where, for a documentation comment: one line.
+/// Returns one line for a documentation comment: what the point is, its units, range and place.
 std::string documentation(const Point& point);
 
 }  // namespace coupler::generate

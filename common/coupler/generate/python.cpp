@@ -90,7 +90,7 @@ std::string bound(const Point& point, double number) {
   return codec::decimal(codec::nearest_published(number, point.format, point.scale));
 }
 
-/// What the values of a register point are, as arguments of Spec.
+/// Returns the values of a register point as arguments of Spec.
 std::string format_arguments(const Point& point) {
   const codec::Format& format = point.format;
   std::string out;
@@ -107,7 +107,7 @@ std::string format_arguments(const Point& point) {
   return out;
 }
 
-/// Which values may be written.
+/// Returns the values that may be written.
 std::string allowed_arguments(const Point& point, std::string_view member) {
   std::string out;
   const auto [min, max, nonfinite] = point.bounds;
@@ -196,7 +196,7 @@ class {class_name}({base}):
         super().__init__({place_names}, unit, timeout, verify)
 {points})";
 
-/// What the constructor takes to find the coupler.
+/// The parameters of the constructor that say where the coupler is.
 std::string place_arguments(const Connection& connection) {
   const auto given = [](std::string_view place) {
     return place.empty() ? std::string() : " = " + python_literal(place);

@@ -121,8 +121,8 @@ std::string values_name(const Point& point, std::size_t index) {
   return point.values.empty() ? "{}" : fmt::format("values_of_point_{}", index);
 }
 
-/// What few points have behind counter and latched: count, scale, iio, pwm, safe registers, read address,
-/// bounds, names of values, pulse, host.
+/// Returns the members behind counter and latched, which few points have: count, scale, iio, pwm, safe
+/// registers, read address, bounds, names of values, pulse, host.
 std::string rest(const Point& point, std::size_t index) {
   return fmt::format("{}, {}, {}, {}, {}, {}, {}, {}, {}ms, {}", point.count, aggregate(point.scale),
                      aggregate(point.iio), aggregate(point.pwm), registers(point.safe_value),
@@ -163,7 +163,7 @@ std::string row(const NamedValue& named) {
   return fmt::format("    {{{}, {}}},\n", code(named.value), literal(named.name));
 }
 
-/// What the host writes for the watchdog of a coupler.
+/// Returns the row of a write by the host for the watchdog of a coupler.
 std::string row(const WatchdogSequences::Write& write) {
   return fmt::format("    {{{}, {}, {}, {}}},\n", enumerator(write.table), write.address, write.value,
                      write.if_different);

@@ -12,7 +12,7 @@
 
 namespace coupler {
 
-/// What forbids a value.
+/// The rule that forbids a value.
 enum class Forbidden : std::uint8_t { nonfinite, below_min, above_max, unnamed };
 
 /// The map says which values may be written; otherwise all that the type can hold may be, if they are finite.
@@ -31,7 +31,7 @@ struct ForbiddenValue {
 };
 std::optional<ForbiddenValue> find_forbidden(const Point& point, const std::uint16_t* registers);
 
-/// What the map calls the value in these registers; empty: nothing.
+/// Returns the name of the value in these registers; empty if the map has none.
 std::string_view name_of_value(const Point& point, const std::uint16_t* registers);
 
 }  // namespace coupler

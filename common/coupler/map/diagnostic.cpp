@@ -76,8 +76,8 @@ SourceSnippet snippet(std::string_view line, int column) {
   return shown;
 }
 
-/// What stands below the text: blanks as wide as what is before the caret, "^", and "~" to the end of the
-/// word.
+/// Returns the line below the text: blanks as wide as what is before the caret, "^", and "~" to the end of
+/// the word.
 std::string underline(const SourceSnippet& snippet) {
   const std::string_view text = snippet.text;
   std::string below;
@@ -110,7 +110,7 @@ std::string source_lines(int line, const SourceSnippet& source, const Style& sty
                      style.end);
 }
 
-/// What is wrong, and what to do unless `what` says that already.
+/// Returns what is wrong, and what to do unless `what` says that already.
 std::string message(const Diagnostic& d) {
   return printable_lines(d.remedy.empty() ? d.what : fmt::format("{}; {}", d.what, d.remedy));
 }

@@ -54,8 +54,8 @@ void quote(Diagnostics& diagnostics, std::string_view text);
 
 enum class Colour { no, yes };
 
-/// For people: to_string(), the source line and a caret below its place, then the notes in the same way. Ends
-/// with a newline. Colours are those of ANSI terminals.
+/// Returns a text for people: to_string(), the source line and a caret below its place, then the notes in the
+/// same way. It ends with a newline. Colours are those of ANSI terminals.
 std::string render(const Diagnostic& diagnostic, Colour colour);
 
 /// Yes for a terminal, unless NO_COLOR (no-color.org) is set.

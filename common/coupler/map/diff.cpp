@@ -29,7 +29,7 @@ std::string place(const Point& point) {
   return fmt::format("{} {}, {}", to_string(point.table), point.address, to_string(point.format.type));
 }
 
-/// As a map has it; the canonical line's hexadecimal floats are for machines.
+/// Returns the value as a map has it. The hexadecimal floats of the canonical line are for machines.
 std::string scale(const Point& point) {
   if (!point.scale.present()) return "none";
   if (point.scale.offset == 0) return fmt::to_string(point.scale.gain);

@@ -16,7 +16,7 @@ struct FieldChange {
   std::string newer;
 };
 
-/// What happened to one point between two maps.
+/// The difference of one point between two maps.
 struct Difference {
   enum class Kind { missing, added, changed };  ///< missing: in the old map only; added: in the new map only
   Kind kind;

@@ -12,8 +12,8 @@ namespace coupler {
 /// A node whose own unit id this is has no such side.
 constexpr std::uint8_t field_unit = 247;
 
-/// What a client of field_unit calls the node's table: its coils are the node's discrete inputs, its holding
-/// registers the node's input registers, and the other way round.
+/// Returns the node's table for the table that a client of field_unit names: its coils are the node's
+/// discrete inputs, its holding registers the node's input registers, and the other way round.
 constexpr Table seen_from_field(Table table) {
   switch (table) {
     case Table::coils: return Table::discrete_inputs;

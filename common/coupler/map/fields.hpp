@@ -48,7 +48,7 @@ inline std::string written(const Tls& tls) {
                      tls.name.empty() ? "" : " as ", tls.name);
 }
 
-/// What a key of a point is about.
+/// The subject of a key of a point.
 enum class About { point, reading, writing };
 
 template <class Struct, class Value>

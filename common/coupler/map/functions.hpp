@@ -29,8 +29,8 @@ constexpr Table table_of(modbus::Function read) {
   }
 }
 
-/// For `count` coils or holding registers in one request: one alone has a function of its own, unless the map
-/// wants the other one.
+/// Returns the function code for `count` coils or holding registers in one request. A single one has a
+/// function code of its own, unless the map wants the other one.
 constexpr modbus::Function write_function(Table table, std::size_t count, HostOptions::WriteFunction wanted) {
   const bool single = count == 1 && wanted != HostOptions::WriteFunction::multiple;
   if (table == Table::coils)

@@ -27,7 +27,7 @@ constexpr Enumeration<Drive, 3> enumeration(Drive) {
            {Drive::open_source, "open_source"}}};
 }
 
-/// What an output does when no client controls it any more.
+/// The behaviour of an output that no client controls any more.
 enum class Safe : std::uint8_t { off, on, hold };
 constexpr Enumeration<Safe, 3> enumeration(Safe) {
   return {"Safe", {{Safe::off, "off"}, {Safe::on, "on"}, {Safe::hold, "hold"}}};
@@ -65,7 +65,7 @@ struct Pwm {
   constexpr bool present() const { return !chip.empty(); }
 };
 
-/// What a PWM can be driven to.
+/// Returns whether a PWM can be driven to this value.
 constexpr bool is_duty_cycle(double percent) { return percent >= 0 && percent <= 100; }
 
 enum class Edge : std::uint8_t { rising, falling, both };

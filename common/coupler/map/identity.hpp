@@ -72,7 +72,7 @@ struct Head {
   std::uint32_t map_crc = 0;
 };
 
-/// What a node of this map says of itself.
+/// Returns what a node of this map says of itself.
 Head head_of(const Map& map);
 
 /// Registers at_magic … at_map_crc + 1; the rest of the area is the node's own.
@@ -82,7 +82,7 @@ void write_head(const Head& head, std::uint16_t* area);
 /// coupler.
 std::optional<Head> read_head(const std::array<std::uint16_t, head_size>& area);
 
-/// What at_watchdog_state holds, by value.
+/// The names of the values of at_watchdog_state.
 constexpr std::array<std::string_view, 4> watchdog_states{"not configured", "idle", "armed", "expired"};
 
 /// A counter of the statistics.
@@ -109,7 +109,7 @@ constexpr std::array<Counter, 15> counters{{
     {at_watchdog_trips, "watchdog_trips", "times the watchdog expired"},
 }};
 
-/// What every node says of itself.
+/// The part of the identity that every node has.
 struct Report {
   Head head;
   std::uint16_t watchdog_state = 0;
@@ -124,13 +124,13 @@ std::optional<Report> read_report(const std::array<std::uint16_t, report_size>& 
 /// The same without the statistics.
 std::optional<Report> read_report_head(const std::array<std::uint16_t, head_size>& area);
 
-/// Which machine a node runs on: two nodes with one map are told apart by it.
+/// The machine that a node runs on. It tells two nodes with one map apart.
 struct Machine {
   std::uint64_t serial = 0;         ///< a hash; 0: unknown
   std::array<char, 64> hostname{};  ///< zeros behind it, if it is shorter; empty: unknown
 };
 
-/// What the node can do that Modbus does not say. An older node can none of it.
+/// The capabilities of the node that Modbus does not tell. An older node has none of them.
 struct Functions {
   static constexpr std::uint16_t tells_changes_bit = 1;      ///< FC 65
   static constexpr std::uint16_t schedules_outputs_bit = 2;  ///< FC 66
@@ -157,8 +157,8 @@ void write_further(const Further& further, std::uint16_t* area);
 /// `further` is from at_serial on, as many registers as the node has; what it does not have stays unknown.
 Further read_further(Span<const std::uint16_t> further);
 
-/// Where a piece of the map's text is, for FC 20: two bytes a record, most significant first,
-/// records_per_file records a file, files from 1 upward; an odd last byte is followed by a zero.
+/// The place of a piece of the map's text, for FC 20: two bytes a record, most significant first,
+/// records_per_file records a file, files from 1 upward. An odd last byte is followed by a zero.
 using modbus::FileRecord;
 
 /// The record of the `first`-th register of the text (first = byte offset / 2), as many registers as one

@@ -19,7 +19,7 @@ namespace coupler {
 /// not compile.
 constexpr int model_version = 12;
 
-/// Where the coupler is. ROS parameters and arguments override it.
+/// The place of the coupler. ROS parameters and arguments override it.
 struct Connection {
   std::string_view address;  ///< host name or IP address; empty: not in the map
   std::uint16_t port = modbus::default_port;
@@ -49,7 +49,7 @@ struct Polling {
   std::uint16_t register_gap = 12;
 };
 
-/// What the device can take in one request, and how often.
+/// The limits of the device: how much it takes in one request, and how often.
 struct Limits {
   std::uint16_t read_registers = 125;
   std::uint16_t read_bits = 2000;
@@ -80,7 +80,7 @@ struct Service {
   bool readback = false;  ///< compare an output's level after driving it
 };
 
-/// What the host does when the link comes and goes.
+/// The behaviour of the host when the connection comes and goes.
 enum class OnReconnect : std::uint8_t {
   drop,    ///< writes that found no link are lost
   restore  ///< the last value of every output that was written is written again
@@ -96,7 +96,7 @@ constexpr Enumeration<OnShutdown, 2> enumeration(OnShutdown) {
   return {"OnShutdown", {{OnShutdown::hold, "hold"}, {OnShutdown::safe, "safe"}}};
 }
 
-/// Which points the driver reads.
+/// The choice of the points that the driver reads.
 enum class Poll : std::uint8_t {
   all,
   subscribed  ///< those with subscribers
@@ -105,7 +105,7 @@ constexpr Enumeration<Poll, 2> enumeration(Poll) {
   return {"Poll", {{Poll::all, "all"}, {Poll::subscribed, "subscribed"}}};
 }
 
-/// What the host does if the device's map is another one.
+/// The behaviour of the host if the device has another map.
 enum class Verify : std::uint8_t {
   require,  ///< do not talk to the device
   warn,     ///< report it and go on

@@ -14,7 +14,7 @@
 
 namespace coupler {
 
-/// Where a device is.
+/// The place of a device.
 struct NodeAddress {
   std::string_view host;  ///< a part of the argument: a name or an address, IPv6 without its brackets
   std::uint16_t port = modbus::default_port;
@@ -27,8 +27,8 @@ struct NodeAddress {
 /// The argument means a device, well written or not.
 bool names_a_node(std::string_view argument);
 
-/// Where a command expects a device in any case, "tcp://" may be left out ("tls://" if `otherwise` has that),
-/// and "rtu:" before a path.
+/// Completes the argument of a command that expects a device in any case: "tcp://" may be left out ("tls://"
+/// if `otherwise` has that), and so may "rtu:" before a path.
 std::string node_argument(const std::string& argument, const Connection& otherwise = {});
 
 /// "tcp://10.0.0.7", "tcp://cell:1502/3", "tcp://[fe80::1]:502", "rtu:/dev/ttyUSB0/17?baud=9600&parity=none".
@@ -36,7 +36,7 @@ std::string node_argument(const std::string& argument, const Connection& otherwi
 tl::expected<NodeAddress, NetworkError> parse_node_address(std::string_view argument,
                                                            const Connection& otherwise = {});
 
-/// For people: "cell port 1502", "/dev/ttyUSB0".
+/// Returns a text for people: "cell port 1502", "/dev/ttyUSB0".
 std::string place_text(const Connection& connection);
 
 /// The other way round: "tcp://cell:1502/3", "rtu:/dev/ttyUSB0/17".

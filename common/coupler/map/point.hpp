@@ -20,18 +20,18 @@ namespace coupler {
 /// How the host treats one point. It does not concern the coupler, so it is not in the fingerprint.
 struct HostOptions {
   enum class Publish : std::uint8_t { always, on_change };
-  /// Which function codes write it.
+  /// The function codes that write it.
   enum class WriteFunction : std::uint8_t {
     automatic,  ///< 5 or 6 for one address, 15 or 16 for several
     single,     ///< 5 or 6 only: never merged with its neighbours
     multiple    ///< 15 or 16, also for one address
   };
-  /// What a new value does to values of the same point that still wait to be sent.
+  /// The effect of a new value on values of the same point that still wait to be sent.
   enum class WriteQueue : std::uint8_t {
     latest,  ///< replaces one that is last in the queue
     every    ///< every value is sent, by itself
   };
-  /// Which writes go first of those that wait to be sent.
+  /// The priority of a write among those that wait to be sent.
   enum class Priority : std::uint8_t {
     normal,
     high  ///< before all that are normal
@@ -79,7 +79,7 @@ constexpr Enumeration<HostOptions::Priority, 2> enumeration(HostOptions::Priorit
   return {"HostOptions::Priority", {{Priority::normal, "normal"}, {Priority::high, "high"}}};
 }
 
-/// What the client may do with a point.
+/// The access that clients have to a point.
 enum class Access : std::uint8_t { read, write, read_write };
 constexpr Enumeration<Access, 3> enumeration(Access) {
   return {"Access", {{Access::read, "read"}, {Access::write, "write"}, {Access::read_write, "read_write"}}};
@@ -96,7 +96,7 @@ struct Bounds {
   bool allow_nonfinite = false;  ///< REAL and LREAL: NaN and the infinities may be written
 };
 
-/// What a value of an integer is called.
+/// The name of a value of an integer.
 struct NamedValue {
   std::int64_t value = 0;
   std::string_view name;  ///< an identifier
@@ -112,8 +112,8 @@ struct Point {
   /// The value at start: range(point).count() registers as they stand on the wire, the bits of other points
   /// zero (for bit tables as many elements, 0 or 1). Empty: all zero.
   Span<const std::uint16_t> initial;
-  /// Of outputs with hardware (a coil with a line, a register with `iio` or `pwm`) when the node stops, and
-  /// what the driver leaves behind under on_shutdown: safe, or when it is asked to.
+  /// The state of outputs with hardware (a coil with a line, a register with `iio` or `pwm`) when the node
+  /// stops. The driver leaves outputs in it under on_shutdown: safe, or when it is asked to.
   Safe safe = Safe::off;
   Line line;
   std::string_view description;
@@ -129,7 +129,7 @@ struct Point {
   /// Holding registers and coils: where the output reads back, if not at its own address.
   std::optional<std::uint16_t> read_address{};
   Bounds bounds{};
-  /// Of an integer without a scale: what its values are called, in ascending order; others are not written.
+  /// The names of the values of an integer without a scale, in ascending order. Other values are not written.
   Span<const NamedValue> values{};
   /// Coils of a node: how long 1 is driven; 0: until it is written otherwise. The host does not restore or
   /// verify what ends by itself.
@@ -143,7 +143,7 @@ constexpr modbus::Range range(const Point& point) {
                            static_cast<std::uint32_t>(point.count) * codec::registers(point.format));
 }
 
-/// Where the host reads it.
+/// The place where the host reads it.
 constexpr modbus::Range read_range(const Point& point) {
   return modbus::Range::of(point.read_address.value_or(point.address), range(point).count());
 }
@@ -158,7 +158,7 @@ constexpr bool has_hardware(const Point& point) {
   return point.line.present() || is_analogue(point) || point.counter.present() || point.latched.present();
 }
 
-/// What a client writes goes to the firmware's code if there is any, otherwise into memory.
+/// Values that a client writes go to the firmware's code if there is any, otherwise into memory.
 constexpr bool is_hooked_output(const Point& point) { return is_writable(point) && !has_hardware(point); }
 
 /// The firmware's code may set its value.

@@ -7,7 +7,7 @@
 
 namespace coupler {
 
-/// Whether a value of one means the same in the other, wherever they stand in their tables.
+/// Returns whether a value of one point means the same in the other, wherever they stand in their tables.
 inline bool same_value(const Point& a, const Point& b) {
   const auto layout = [](const Point& p) {
     const codec::Format& f = p.format;

@@ -19,7 +19,7 @@ constexpr std::size_t longest_role_name = 64;    ///< bytes of UTF-8, as in a ce
 /// Bits: what can be done with a point.
 enum class Right : std::uint8_t { read = 1, write = 2 };
 
-/// What clients of one role may do.
+/// The rights of the clients of one role.
 struct Role {
   std::string_view name;
   Span<const std::uint8_t> rights{};  ///< bits of Right for each of Map::points, in their order
@@ -50,7 +50,8 @@ struct Security {
   std::uint16_t port = default_tls_port;
 
   constexpr bool present() const { return !roles.empty() || files.present(); }
-  /// What a client with TLS may do; nullptr: nothing. `name` is the role in its certificate, empty: none.
+  /// Returns the rights of a client with TLS; nullptr if it has none. `name` is the role in its certificate;
+  /// empty if it has none.
   constexpr const Role* role_of(std::string_view name) const {
     for (const Role& role : roles)
       if (role.name == name) return &role;

@@ -7,7 +7,7 @@
 
 namespace coupler {
 
-/// What Tls says, with texts of its own.
+/// A copy of Tls that owns its texts.
 struct TlsTexts {
   std::string certificate{};
   std::string key{};

@@ -22,7 +22,7 @@ std::string encode_scaled(double value, const Point& point, std::uint16_t* regis
 /// The same for UTF-8 `text` and a STRING.
 std::string encode_string(std::string_view text, const Point& point, std::uint16_t* registers);
 
-/// What may be written to a number: "0 to 10 bar", "idle (0) or running (1)".
+/// Returns what may be written to a number: "0 to 10 bar", "idle (0) or running (1)".
 std::string allowed_text(const Point& point);
 
 /// Why the value must not be: "12 bar is above the maximum".

@@ -26,7 +26,7 @@ enum class Reason : std::uint8_t {
   locked = 8,       ///< the watchdog keeps outputs in their safe state until it is reset
 };
 
-/// What happened at a node.
+/// An event at a node.
 struct Change {
   /// Others may come from a newer node and mean nothing here. 2 is reserved: a register changed.
   enum class Kind : std::uint8_t {
@@ -40,7 +40,7 @@ struct Change {
   /// The function code that reads the bit (1 or 2); for scheduled outputs a Reason.
   std::uint8_t table = 0;
   Kind kind = Kind::off;
-  /// Of the bit; for scheduled outputs the number that ScheduleReply has.
+  /// The address of the bit, or for scheduled outputs the number that ScheduleReply has.
   std::uint16_t address = 0;
   /// The kernel's stamp of an edge; otherwise when it was done.
   NodeTime at{};

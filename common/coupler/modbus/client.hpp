@@ -28,10 +28,11 @@ class ReadRequest {
   std::array<std::uint8_t, 5> bytes_{};
 };
 
-/// What was read with FC 1 or 2: one element a bit, 0 or 1. `bits` has room for all that was asked for.
+/// Takes the values out of a reply to FC 1 or 2: one element a bit, 0 or 1. `bits` has room for all that was
+/// asked for.
 tl::expected<void, ReplyError> take_bits(const ReadRequest& request, Bytes reply, std::uint8_t* bits);
 
-/// What was read with FC 3 or 4.
+/// Takes the values out of a reply to FC 3 or 4.
 tl::expected<void, ReplyError> take_registers(const ReadRequest& request, Bytes reply,
                                               std::uint16_t* registers);
 

@@ -32,8 +32,8 @@ class Framer {
     bad,  ///< protocol id not 0 or length outside 2 … 254: the stream cannot be trusted any more, close it
   };
 
-  /// Where the next received bytes go. Never empty after next() found nothing: the buffer holds the longest
-  /// ADU. Ends the validity of frame().
+  /// The place for the next bytes. It is never empty after next() found nothing, because the buffer holds the
+  /// longest ADU. The call invalidates frame().
   Span<std::uint8_t> room();
   void filled(std::size_t bytes);
 
@@ -44,7 +44,7 @@ class Framer {
   /// Part of a frame is there and waits for the rest.
   bool is_partial() const { return begin_ != end_; }
 
-  /// What was filled in and is not part of a frame that next() has found.
+  /// The bytes that were filled in and are not part of a frame that next() has found.
   Bytes rest() const { return Bytes(buffer_.data() + begin_, end_ - begin_); }
 
   void reset() { begin_ = end_ = 0; }

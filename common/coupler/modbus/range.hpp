@@ -15,7 +15,7 @@ class Range {
     if (count == 0 || start > 0xFFFF || count > 0x10000 - start) return std::nullopt;
     return Range(start, count);
   }
-  /// For values that are known to be good.
+  /// Makes a range from values that are known to be valid.
   static constexpr Range of(std::uint32_t start, std::uint32_t count) {
     assert(make(start, count).has_value());
     return {start, count};

@@ -118,8 +118,8 @@ bool RtuFramer::holds_another_frame() const {
   return rest.size() > rtu_overhead && crc16(rest) == 0;
 }
 
-/// Not an exception: has the length that was asked for. A confirmation repeats the address, but a register
-/// may be stored otherwise than it was written (MAP 6.6).
+/// Returns whether a PDU that is no exception has the length that was asked for. A confirmation repeats the
+/// address, but a register may be stored otherwise than it was written (MAP 6.6).
 bool RtuFramer::can_answer(Bytes pdu) const {
   const auto size = answer_size(request_pdu());
   if (!size) return true;
@@ -156,7 +156,7 @@ RtuFramer::Found RtuFramer::look_at(std::size_t begin) {
   if (bytes.size() == 1) return Found::beginning;
   if ((bytes[1] & ~exception_bit) != request_[1]) return Found::none;
   const auto size = reply_size(request_pdu(), bytes.from(1));
-  // Where the length is not known, the CRC says that this may be the end.
+  // If the length is not known, the CRC says that this may be the end.
   const std::size_t whole = size ? 1 + *size + crc_size : std::max(bytes.size(), 2 + crc_size);
   if (whole > max_rtu_size) return Found::none;
   if (size == std::size_t{0} || bytes.size() < whole) return Found::beginning;

@@ -55,7 +55,7 @@ class RtuFramer {
   Bytes request() const { return Bytes(request_).first(request_size_); }
   Bytes request_pdu() const { return request().sub(1, request_size_ - rtu_overhead); }
 
-  /// Where the next received bytes go; never empty. Ends the validity of pdu().
+  /// The place for the next bytes. It is never empty. The call invalidates pdu().
   Span<std::uint8_t> room();
   void filled(std::size_t bytes);
 
@@ -67,7 +67,8 @@ class RtuFramer {
   /// All that has come is one whole frame, of another unit for instance.
   bool holds_another_frame() const;
 
-  /// Whether the line hands back what is sent, as some adapters for RS-485 do; nullopt: not known yet.
+  /// Returns whether the line hands back what is sent, as some adapters for RS-485 do; nullopt if that is not
+  /// known yet.
   std::optional<bool> has_echo() const { return has_echo_; }
   /// The echo of this request could be taken for its reply (function codes 5, 6, 8, 22): a read shows first
   /// whether the line has one.

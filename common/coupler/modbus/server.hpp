@@ -18,7 +18,7 @@
 
 namespace coupler::modbus {
 
-// What a client can ask for. Bytes are views of the request's PDU.
+// The requests of a client. Bytes are views of the request's PDU.
 
 /// FC 1 … 4.
 struct Read {
@@ -73,7 +73,8 @@ std::size_t reply_bits(Function function, Span<const std::uint16_t> bits, Span<s
 /// FC 3, 4 and 23.
 std::size_t reply_registers(Function function, Span<const std::uint16_t> registers, Span<std::uint8_t> pdu);
 
-/// What acknowledges a write: FC 5, 6 and 22 repeat the whole request, FC 15 and 16 its address and quantity.
+/// Builds the reply that acknowledges a write: FC 5, 6 and 22 repeat the whole request, FC 15 and 16 its
+/// address and quantity.
 std::size_t reply_written(Bytes request, Span<std::uint8_t> pdu);
 
 }  // namespace coupler::modbus

@@ -17,7 +17,7 @@ struct NetworkTiming {
   std::chrono::nanoseconds round_trip = std::chrono::milliseconds(1);
   /// The pause that the device needs before the next request: Limits::request_gap.
   std::chrono::nanoseconds pause{0};
-  /// For every byte of values in a reply; by default at 100 Mbit/s.
+  /// The time for every byte of values in a reply; by default at 100 Mbit/s.
   std::chrono::nanoseconds byte_time{80};
   std::size_t framing = modbus::mbap_size;  ///< bytes around a PDU
 };
@@ -29,7 +29,7 @@ NetworkTiming timing_of(const Map& map, std::chrono::nanoseconds answer);
 /// The bytes of values in the reply (MAP 6.1 to 6.4).
 std::uint32_t value_bytes(Table table, std::uint32_t count);
 
-/// What requests cost together.
+/// The cost of several requests.
 struct Cost {
   std::size_t requests = 0;
   std::size_t registers = 0;
@@ -43,12 +43,12 @@ struct Cost {
 };
 
 Cost cost_of(const ReadSpan& span, const NetworkTiming& timing);
-/// Of one cycle.
+/// Returns the cost of one cycle.
 Cost cost_of(const GroupPlan& group, const NetworkTiming& timing);
 
 /// The part of the time that requests which cost so much take at `rate` Hz; above 1 they do not fit.
 double load(const Cost& cost, double rate);
-/// Of all rates together.
+/// Returns the load of all rates together.
 double load(const std::vector<GroupPlan>& plan, const NetworkTiming& timing);
 
 /// A way to treat unmapped addresses between points, and what it would cost.

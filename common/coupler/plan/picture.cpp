@@ -105,7 +105,7 @@ class Picture {
     return fmt::format("{} request{}", count, count == 1 ? "" : "s");
   }
 
-  /// Where a point is drawn: where it is read, if it is.
+  /// Returns where a point is drawn: at the place where it is read, if it is read.
   static Range place(const Point& point) { return is_readable(point) ? read_range(point) : range(point); }
 
   std::vector<Range> shown(Table table) const {

@@ -30,7 +30,8 @@ struct Scale {
 constexpr Scale large{16, 64, 30, true};
 constexpr Scale small{64, 16, 16, false};
 
-/// Where the addresses of one table are: rows of `columns` each, those in which nothing is left out.
+/// The layout of the addresses of one table: rows of `columns` each, without those in which everything is
+/// left out.
 class TableLayout {
  public:
   static constexpr double left = 110;  ///< room for the addresses of the rows

@@ -53,7 +53,7 @@ std::optional<NotRead> why_not_read(const Map& map, const Point& point);
 /// points that can only be written, are not read even between others.
 class Planner {
  public:
-  /// What `map` views must outlive the planner.
+  /// The storage of `map` must outlive the planner.
   explicit Planner(const Map& map);
 
   /// Every point that can be read, the fastest rate first.

@@ -26,7 +26,7 @@ struct Cut {
   std::uint32_t between = 0;            ///< addresses between the request and `next`
 };
 
-/// What one read request covers.
+/// The range and the points of one read request.
 struct ReadSpan {
   Table table;
   modbus::Range range;
@@ -37,7 +37,7 @@ struct ReadSpan {
 /// The addresses inside a request that no point of it needs.
 std::vector<modbus::Range> holes(const ReadSpan& span, const Map& map);
 
-/// What to try in place of a request that the device rejects.
+/// The requests to try instead of one that the device rejects.
 struct Split {
   std::vector<ReadSpan> pieces;         ///< two, or none if the request holds one point only
   std::optional<modbus::Range> hole{};  ///< the addresses between the pieces, which neither asks for

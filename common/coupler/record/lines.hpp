@@ -25,7 +25,7 @@ struct Moment {
   Nanoseconds wall{};         ///< by the wall clock, since 1970 (UTC)
 };
 
-/// What a file needs to be played by itself.
+/// The data that a file needs so that it can be played by itself.
 struct Head {
   std::string name;                                                 ///< of the map
   std::string device;                                               ///< as a command takes it
@@ -49,7 +49,7 @@ std::string online_line(Moment at, std::optional<bool> is_node);
 std::string lost_line(Moment at, std::string_view why);
 /// Somebody has set the wall clock.
 std::string clock_line(Moment at, Nanoseconds set_by);
-/// What was between could not be written.
+/// Values in between could not be written.
 std::string missing_line(Moment at, Nanoseconds since, std::string_view why);
 std::string end_line(Moment at);
 

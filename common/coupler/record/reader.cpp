@@ -19,7 +19,7 @@ using nlohmann::json;
 constexpr double longest = 1e9;         ///< s: 30 years
 constexpr double longest_period = 1e6;  ///< s
 
-/// For a member that should be there, and is not, or is of another type.
+/// Thrown for a member that is missing or has another type.
 class Wrong : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -35,7 +35,7 @@ T get(const json& object, const char* key) {
   }
 }
 
-/// Of a whole number that is to be 0 to `most`.
+/// Reads a whole number that has to be 0 to `most`.
 template <class T>
 T whole(const json& number, const char* key, T most = std::numeric_limits<T>::max()) {
   if (!number.is_number()) throw Wrong(fmt::format("'{}' is of another type", key));

@@ -43,7 +43,7 @@ class Reader {
   static tl::expected<Reader, std::string> open(std::istream& text, std::string file);
 
   const Head& head() const { return head_; }
-  /// Of the head.
+  /// The time in the head.
   Moment begin() const { return begin_; }
   /// nullopt: the end; also a last line that is cut short, as a process leaves it that was killed. The error
   /// names the line.

@@ -61,7 +61,7 @@ Json not_true() {
       {"not", {{"anyOf", {{{"const", true}}, {{"type", "string"}, {"pattern", any_case({"yes", "on"})}}}}}}};
 }
 
-/// Of a coil: neither is 1.
+/// Returns the rule that neither value of a coil is 1.
 Json not_on() {
   return {{"not",
            {{"anyOf", {{{"enum", {true, 1}}}, {{"type", "string"}, {"pattern", any_case({"yes", "on"})}}}}}}};
@@ -93,7 +93,7 @@ std::string name_of(Type type) { return std::string(to_string(type)); }
 Json reference(const std::string& name) { return {{"$ref", "#/definitions/" + name}}; }
 Json values_of(Type type) { return reference("value_of_" + name_of(type)); }
 
-/// Of one value without scale and names.
+/// Returns the schema of a single value without scale and names.
 Json value_definition(Type type) {
   if (type == Type::BOOL) return bit_value();
   if (type == Type::STRING) return {{"type", {"string", "number", "boolean"}}};
@@ -157,7 +157,7 @@ Json order_rule(Type type) {
   return only("order", {{"enum", std::move(orders)}});
 }
 
-/// What a type does not have.
+/// Returns the rule about the keys that a type does not have.
 Json others_rule(Type type) {
   Words refused;
   const bool number = codec::is_scalable(type);

@@ -62,7 +62,7 @@ Json property(const Key& key) {
   return schema;
 }
 
-/// Which keys a point's type needs, and which it has no use for.
+/// Returns the rule about the types that need the key, and those that have no use for it.
 Json rule_for_types(const Key& key) {
   Json rule{{"if", type_is(loader::words(key.types))}, {"else", {{"properties", {{key.name, false}}}}}};
   const Json needed = Json::array({key.name});

@@ -230,7 +230,7 @@ std::string any_name(const std::vector<std::string_view>& types) {
   for (const std::string_view type : types)
     for (const std::string_view name : codec::names_of(*codec::parse_type(type))) {
       pattern += pattern.empty() ? "^(" : "|";
-      // What codec::folded_type_name() takes away.
+      // codec::folded_type_name() removes these characters.
       for (const char c : codec::folded_type_name(name)) pattern += "[-_ ]*" + in_both_cases(c);
     }
   return pattern + ")[-_ ]*$";

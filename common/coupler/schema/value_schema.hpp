@@ -16,10 +16,11 @@ using Json = nlohmann::ordered_json;
 /// Numbers of Modicon's count have up to six digits: '4' and a number up to 65536.
 constexpr int most_modicon_address = 465536;
 
-/// What a value of the key's kind looks like. Not for ValueKind::section and points.
+/// Returns the schema of a value of the key's kind, except for ValueKind::section and points.
 Json value_schema(const loader::Key& key);
 
-/// For people who point at the key: what it means, what is allowed, what holds without it, an example.
+/// Returns the text for people who point at the key: what it means, what is allowed, what holds without it,
+/// an example.
 std::string describe(const loader::Key& key);
 
 /// Key::fallback as the kind has it. The key must have one.
@@ -27,7 +28,7 @@ Json fallback_value(const loader::Key& key);
 
 // Regular expressions (ECMA 262, as JSON Schema has them).
 
-/// What loader::is_relative_ros_name accepts.
+/// The pattern of what loader::is_relative_ros_name accepts.
 constexpr std::string_view ros_name = "^[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*$";
 constexpr std::string_view ros_name_rule =
     "a name begins with a letter and has letters, digits and '_', with '/' between parts";
@@ -35,7 +36,8 @@ constexpr std::string_view ros_name_rule =
 /// A number with its unit, as "500ms", of at most so many seconds.
 std::string duration_up_to(double most);
 
-/// Of those, the ones that are shorter than so many seconds, which is more than 0. In minutes, only 0.
+/// Returns the pattern of durations that are shorter than so many seconds, which is more than 0. In minutes,
+/// only 0 is.
 std::string duration_below(double least);
 
 /// No name, port or range; what else is wrong with an address, the loader says.

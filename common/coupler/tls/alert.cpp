@@ -47,8 +47,8 @@ std::string alert_text(int number) {
   return fmt::format("the other side refuses with the TLS alert {}", number);
 }
 
-/// Of the errors that OpenSSL has noted, the first one of TLS itself; how many follow it differs between
-/// releases.
+/// Returns the first error of TLS itself among those that OpenSSL has noted. How many follow it differs
+/// between releases.
 unsigned long first_of_tls() {
   const unsigned long first = ERR_peek_error();
   for (unsigned long code = ERR_get_error(); code != 0; code = ERR_get_error())

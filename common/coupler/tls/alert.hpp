@@ -9,7 +9,7 @@
 
 namespace coupler::tls {
 
-/// What failure_text() says of a peer that speaks something else.
+/// The text of failure_text() for a peer that speaks something else.
 constexpr const char* no_tls = "the other side does not speak TLS";
 /// The same of one that left, with or without a word: no frame of Modbus can be cut short unnoticed.
 constexpr const char* has_left = "the other side has ended the connection";

@@ -10,7 +10,7 @@
 
 namespace coupler::tls {
 
-/// Of its subject; "?" if it has none.
+/// Returns the common name of its subject; "?" if it has none.
 std::string common_name(const X509* certificate);
 
 /// DNS names and IP addresses, as inet_ntop(3) writes them, under which it serves (RFC 5280 4.2.1.6).

@@ -78,7 +78,7 @@ tl::expected<void, std::string> use_own(SSL_CTX* context, const Credentials& cre
   return {};
 }
 
-/// Which of them has made a list, by its name and its signature; null: none.
+/// Returns the authority that has made a list, by its name and its signature; null if none has.
 const X509* maker_of(const X509_CRL* list, const std::vector<CertificatePtr>& authorities) {
   const auto has_made = [list](const CertificatePtr& authority) {
     return X509_NAME_cmp(X509_CRL_get_issuer(list), X509_get_subject_name(authority.get())) == 0 &&
@@ -93,7 +93,7 @@ struct RevocationList {
   const X509* maker;  ///< null: of an authority between, which clients show
 };
 
-/// Of what a list has only one: a number, say. Null: it has none.
+/// Returns an extension of which a list has only one, a number for instance; null if it has none.
 template <class T, auto free>
 std::unique_ptr<T, FreedBy<free>> extension_of(const X509_CRL* list, int which) {
   return std::unique_ptr<T, FreedBy<free>>(
@@ -136,7 +136,7 @@ bool takes_the_place_of(const RevocationList& newer, const RevocationList& older
          is_newer(newer.list.get(), older.list.get());
 }
 
-/// Of each authority the newest list counts. OpenSSL would rather take an older one that is in date.
+/// Only the newest list of each authority counts. OpenSSL would rather take an older one that is in date.
 tl::expected<void, std::string> believe_lists(X509_STORE* store, const std::string& pem,
                                               const std::vector<CertificatePtr>& authorities) {
   auto read =

@@ -38,7 +38,7 @@ struct Pem {
 constexpr std::chrono::hours authority_life{24 * 365 * 20};
 constexpr std::chrono::hours certificate_life{24 * 365 * 2};
 
-/// Of a new authority. The name has at most 64 bytes.
+/// Makes a new authority. The name has at most 64 bytes.
 tl::expected<Pem, std::string> make_authority(const std::string& name, KeyKind kind = KeyKind::p256);
 
 /// A new key and its certificate, with the authority's behind it.
@@ -51,7 +51,7 @@ tl::expected<Pem, std::string> request(const Subject& subject, KeyKind kind);
 /// writes them.
 std::optional<Subject> subject_of(const std::string& certificate);
 
-/// Whether less than a third of a certificate's life is left; nullopt: it is no certificate.
+/// Returns whether less than a third of a certificate's life is left; nullopt if it is no certificate.
 std::optional<bool> is_to_be_renewed(const std::string& certificate);
 
 }  // namespace coupler::tls

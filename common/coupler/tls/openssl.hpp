@@ -37,10 +37,12 @@ std::string openssl_error_text(unsigned long code);
 /// The reason of the oldest error that OpenSSL noted in this thread, which then has none; "unknown error".
 std::string take_openssl_error();
 
-/// Of a certificate; a time beyond those of std::chrono::system_clock (1970 to 2262) is the last one there.
+/// Returns the validity of a certificate. A time beyond those of std::chrono::system_clock (1970 to 2262)
+/// becomes the last one there.
 Validity validity_of(const X509* certificate);
 
-/// Whether its key is weaker than P-256. Of other kinds of keys the context's security level says enough.
+/// Returns whether its key is weaker than P-256. For other kinds of keys the context's security level is
+/// enough.
 bool has_weak_curve(const X509* certificate);
 
 }  // namespace coupler::tls

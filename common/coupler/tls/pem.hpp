@@ -18,7 +18,8 @@
 
 namespace coupler::tls {
 
-/// For OpenSSL's readers of PEM text, which would ask for the password of a protected key at the terminal.
+/// The password callback for OpenSSL's readers of PEM text, which would ask for the password of a protected
+/// key at the terminal.
 int no_password(char* room, int size, int writes, void* data);
 
 /// To be read by OpenSSL; it outlives that.
@@ -27,8 +28,8 @@ BioPtr reader_of(std::string_view text);
 /// How many blocks with one of these names begin in it; one whose first line is cut counts, too.
 std::size_t blocks_in(std::string_view pem, std::initializer_list<std::string_view> names);
 
-/// What `read`, one of OpenSSL's readers, takes for blocks with these names: all of them. The error says
-/// which of `file` cannot be read: more may be missing behind it.
+/// Returns all blocks with these names that `read`, one of OpenSSL's readers, takes. The error says which of
+/// `file` cannot be read: others may be missing behind it.
 template <class Pointer, auto read>
 tl::expected<std::vector<Pointer>, std::string> read_all(std::string_view pem, std::string_view file,
                                                          std::initializer_list<std::string_view> names) {

@@ -73,7 +73,7 @@ Session::Wants Session::wants() const {
   const bool reads = !peer_ended_ && !reads_when_written_;
   if (to_plain_.empty() && reads) wants.socket |= POLLIN;
   if (to_peer_.empty() && !plain_ended_) wants.plain |= POLLIN;
-  // What OpenSSL has decrypted the socket tells nothing of.
+  // poll() does not report bytes that OpenSSL has already decrypted.
   if (!to_plain_.empty() || (reads && SSL_pending(ssl_.get()) > 0)) wants.plain |= POLLOUT;
   return wants;
 }
@@ -149,7 +149,7 @@ bool Session::send() {
   return false;
 }
 
-/// Whether the call only waits for the socket.
+/// Returns whether the call only waits for the socket.
 bool Session::is_blocked(int result) {
   const int kind = SSL_get_error(ssl_.get(), result);
   if (kind == SSL_ERROR_WANT_READ)

@@ -50,7 +50,7 @@ class Session {
   const std::string& problem() const { return problem_; }
   /// "TLSv1.3"
   const char* version() const { return SSL_get_version(ssl_.get()); }
-  /// Of the peer's certificate, once the handshake is over.
+  /// The validity of the peer's certificate, once the handshake is over.
   Validity peer_validity() const { return validity_of(SSL_get0_peer_certificate(ssl_.get())); }
   /// Why a context would not believe the peer's certificate now, though its time does not count; nullopt: it
   /// would.
@@ -61,7 +61,7 @@ class Session {
   void note_message() { ++messages_; }
 
  private:
-  /// Of a size that holds several frames of Modbus.
+  /// A buffer that holds several frames of Modbus.
   struct Buffer {
     std::array<std::uint8_t, 2048> bytes{};
     std::size_t begin = 0;

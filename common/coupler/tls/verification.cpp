@@ -68,7 +68,7 @@ int judge(int ok, X509_STORE_CTX* store) {
     return 0;
   }
   switch (X509_STORE_CTX_get_error(store)) {
-    // What a list names stays revoked, however old the list is.
+    // A certificate in a list stays revoked, however old the list is.
     case X509_V_ERR_CRL_HAS_EXPIRED:
     case X509_V_ERR_CRL_NOT_YET_VALID: break;
     // Those of authorities between have a list where somebody makes one.

@@ -45,7 +45,8 @@ std::string_view foreign_hexadecimal(std::string_view text) {
   return (ends_in_h || prefix > 0) && is_hexadecimal(digits) ? digits : std::string_view{};
 }
 
-/// What the manuals of devices and PLCs write where a map has a number. Empty: nothing that is known.
+/// Returns what to write for a notation that manuals of devices and PLCs have in place of a number; empty if
+/// it is not known.
 std::string remedy_for_notation(std::string_view text) {
   if (const std::string_view digits = foreign_hexadecimal(text); !digits.empty())
     return fmt::format("write it as 0x{}", digits);

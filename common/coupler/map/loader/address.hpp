@@ -38,7 +38,7 @@ struct AddressError {
 tl::expected<std::uint16_t, AddressError> parse_address(std::string_view text, Table table,
                                                         Addressing addressing);
 
-/// As parse_address() reads it.
+/// Returns the address as parse_address() reads it.
 std::string address_text(std::uint16_t address, Table table, Addressing addressing);
 
 /// The zero-based number looks like a Modicon number of this table: 10001 … 19999 for discrete inputs. Those

@@ -21,7 +21,7 @@ struct Entry {
   std::string key;  ///< if it stands in a map
   Position key_at;
   Kind kind = Kind::null;
-  /// Of the value. The key's for a block below the key, and for nothing that is not written as '~' or 'null'.
+  /// The place of the value, or of the key if the value is a block below the key, or is '~' or 'null'.
   Position at;
   std::string text;     ///< scalar
   bool quoted = false;  ///< a scalar that can only be text

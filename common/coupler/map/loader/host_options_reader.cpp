@@ -9,7 +9,7 @@ namespace {
 using Deadman = HostOptions::Deadman;
 using WriteFunction = HostOptions::WriteFunction;
 
-/// What is wrong with a key of this point, and what to do.
+/// A key of this point that is wrong, and what to do.
 struct Complaint {
   std::string_view key;
   std::string what;

@@ -12,7 +12,7 @@
 
 namespace coupler {
 
-/// What the lock of a map is read for.
+/// The purpose for which the lock of a map is read.
 enum class LockUse {
   read,   ///< to serve the map or to generate from it: a point whose address it does not know is an error
   exact,  ///< to make sure that it is up to date: the same, and it is an error if `renew` would change it
@@ -26,7 +26,7 @@ struct LockFile {
   LockUse use = LockUse::read;
 };
 
-/// What `renew` makes of a lock.
+/// The lock that `renew` makes.
 struct NewLock {
   std::string path;
   std::string text;                    ///< empty: the lock is up to date, or nothing needs one

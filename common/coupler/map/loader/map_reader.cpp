@@ -113,7 +113,7 @@ void check_points(const DraftPoints& points, const Limits& limits, bool addressi
   if (!addressing_given) warn_of_modicon_numbers(points, context);
 }
 
-/// For the points in the map's order; their names are unique.
+/// Returns the lines of the points in the map's order. Their names are unique.
 std::vector<int> lines_of(Span<const Point> points, const DraftPoints& drafts) {
   std::unordered_map<std::string_view, int> line_of;
   for (const DraftPoint& draft : drafts) line_of.emplace(draft.point.name, draft.name_at.line);

@@ -20,16 +20,16 @@ namespace coupler::loader {
 /// The areas below `key`, in the order of the file.
 Areas read_areas(const Reader& top, std::string_view key, Addressing addressing, const Context& context);
 
-/// As the model has them, sorted by table and address.
+/// Returns the areas as the model has them, sorted by table and address.
 std::vector<Unreadable> sorted_unreadable(const Areas& areas);
 
-/// What the top of the file says about the coupler, not about its points.
-/// `usual_line`: `serial:` of the map's preset, without a device, or nullptr.
+/// Reads what the top of the file says about the coupler, and not about its points. `usual_line` is `serial:`
+/// of the map's preset, without a device, or nullptr.
 Connection read_connection(const Reader& top, const Entry* usual_line, const Context& context);
 Polling read_polling(const Reader& top);
 Limits read_limits(const Reader& top);
 
-/// What the top of the file says about a node that serves the map.
+/// Reads what the top of the file says about a node that serves the map.
 Service read_service(const Reader& top, const Context& context);
 
 /// The value of a key that names a file of certificates or keys. Nothing is a problem, since it would mean no
@@ -50,7 +50,7 @@ std::vector<SimWire> read_sim(const Reader& top, const DraftPoints& points, cons
 void read_coupler_watchdog(const Reader& top, const std::optional<Preset>& preset, const DraftPoints& points,
                            Addressing addressing, Map& head, const Context& context);
 
-/// Where a map comes from.
+/// The origin of a map.
 struct MapSource {
   std::string_view text;      ///< of the file
   std::string_view name{};    ///< of a map that gives none; empty: it has to
@@ -58,7 +58,7 @@ struct MapSource {
   std::string_view folder{};  ///< of the file
 };
 
-/// Where the finished map stands in its file.
+/// The places of the finished map in its file.
 struct MapLayout {
   std::vector<int> point_lines;  ///< LoadResult::point_lines
   Position first_addressless;    ///< the first point whose address the file leaves out

@@ -32,8 +32,8 @@ struct Placement {
   Diagnostics problems{};  ///< about the lock
 };
 
-/// Where points without an address cannot be: the node's own registers, areas that the map reserves or the
-/// device refuses, areas outside those of the preset, and the points with an address.
+/// Returns the space for points without an address: all but the node's own registers, areas that the map
+/// reserves or the device refuses, areas outside those of the preset, and the points with an address.
 lock::FreeSpace free_space_of(const DraftPoints& points, const Areas& reserved, const Areas& unreadable,
                               const std::optional<Preset>& preset);
 

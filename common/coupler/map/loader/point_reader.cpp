@@ -71,7 +71,7 @@ void check_array(const Reader& reader, const Point& point, const Context& contex
   }
 }
 
-/// What ends by itself begins as 0, and is not left at 1.
+/// An output that ends by itself begins as 0, and is not left at 1.
 void read_pulse(const Reader& reader, Point& point, const Context& context) {
   if (point.table != Table::coils || !reader.has("pulse")) return;
   const std::size_t errors = context.problems.errors();

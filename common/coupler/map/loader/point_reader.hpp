@@ -18,10 +18,11 @@ struct HostDefaults {
 };
 HostDefaults read_host_defaults(const Reader& top);
 
-/// What the top of the file says about all points.
+/// The keys at the top of the file that hold for all points.
 struct PointDefaults {
   Addressing addressing = Addressing::zero_based;
-  /// Of values of two and four registers; of one register only the order of the bytes holds.
+  /// The order in values of two and four registers. In values of one register only the order of the bytes
+  /// holds.
   codec::Order order = codec::Order::CDAB;
   HostDefaults host{};
 };
@@ -29,7 +30,7 @@ struct PointDefaults {
 // One entry of a table, `name: address` (coils and discrete inputs) or `name: {options}`, is read in two
 // steps: points without an address get theirs in between.
 
-/// What decides where the point may stand.
+/// Reads the properties that decide where the point may stand.
 DraftPoint read_place(const Entry& entry, Table table, const PointDefaults& defaults, const Context& context);
 
 /// Everything else. Values are read as they stand in their registers, so the place must be known.

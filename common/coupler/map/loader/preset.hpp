@@ -24,7 +24,7 @@ struct PresetFile {
 };
 Span<const PresetFile> preset_files();
 
-/// What a preset knows of the coupler's own watchdog (config/presets/README.md); the map says the rest.
+/// The part of a preset about the coupler's own watchdog (config/presets/README.md). The map has the rest.
 struct PresetWatchdog {
   struct Write {
     WatchdogSequences::Write write;     ///< as far as it is known
@@ -47,7 +47,7 @@ tl::expected<PresetWatchdog, Position> parse_preset_watchdog(const Entry& entry)
 std::optional<std::uint16_t> word(const Entry& entry);
 std::optional<std::uint16_t> word(const Entry& entry, std::string_view key);
 
-/// What is true of every coupler of a kind (config/presets/README.md).
+/// The properties of every coupler of a kind (config/presets/README.md).
 struct Preset {
   struct Area {
     Table table;
@@ -75,7 +75,7 @@ std::optional<Preset> read_preset(const Entry& root, const Context& context);
 /// Without `serial`.
 Entry completed(Entry root, const Preset& preset);
 
-/// Where outputs read back, and a warning for each point where the coupler has nothing.
+/// Sets where outputs read back, and warns of each point for which the coupler has no such place.
 void apply(const Preset& preset, DraftPoints& points, const Context& context);
 
 }  // namespace coupler::loader

@@ -18,7 +18,7 @@
 
 namespace coupler::loader {
 
-/// What all readers of one file share.
+/// The data that all readers of one file share.
 struct Context {
   Problems& problems;
   OwnedMap& map;  ///< keeps the texts that points refer to

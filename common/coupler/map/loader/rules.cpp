@@ -35,7 +35,7 @@ void check_size(const DraftPoint& draft, std::string_view key, std::uint16_t lim
                            fmt::format("make it shorter, or raise '{}' if the device takes more", key));
 }
 
-/// What helps a point that shares its register: it is read before it is written.
+/// The remedy for a point that shares its register, which is read before it is written.
 constexpr const char* for_itself = "give it a register of its own, or 'limits: {mask_write: true}'";
 
 /// Bits of one address, and whose they are.
@@ -69,9 +69,9 @@ void report(const DraftPoint& draft, const DraftPoint& other, const Context& con
     context.problems.error(draft.address_at, std::move(what), "give one of the two another address", notes);
 }
 
-/// Who has which bits of each address so far. Writers are listed a second time on their own: a reader may
-/// have taken their bits before them. In either list the claims on one address share no bits, so there are at
-/// most sixteen, and the whole check stays linear in the number of registers.
+/// The owners of the bits of each address so far. Writers are listed a second time on their own, because a
+/// reader may have taken their bits before them. In either list the claims on one address share no bits, so
+/// there are at most sixteen, and the whole check stays linear in the number of registers.
 class Claims {
  public:
   /// Takes the bits that are free. Returns an owner of the others: one with which sharing is an error, if

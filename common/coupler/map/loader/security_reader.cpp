@@ -44,7 +44,7 @@ class RoleReader {
  private:
   static std::uint8_t bit(Right right) { return static_cast<std::uint8_t>(right); }
 
-  /// Where no point can be read, only `all` says so.
+  /// If no point can be read, only `all` says so.
   bool reads_all(const Entry* read, const std::vector<std::uint8_t>& rights) const {
     if (read == nullptr) return false;
     if (read->kind == Entry::Kind::scalar) return read->text == "all";
@@ -146,7 +146,7 @@ std::optional<std::uint16_t> read_role(const Reader& reader, std::string_view ke
   return found;
 }
 
-/// What it takes for TLS: nothing, or all of it.
+/// Checks the keys for TLS: none of them, or all.
 void read_tls(const Reader& reader, const Entry& section, std::uint16_t plain_port, Security& security,
               const Context& context) {
   CredentialFiles& files = security.files;

@@ -52,7 +52,7 @@ class Shape {
  public:
   explicit Shape(std::string_view text) : text_(text) {}
 
-  /// Where one of the limits is passed; nullopt: nowhere.
+  /// A limit that is passed, and the place.
   struct Excess {
     std::size_t at;
     bool is_depth;

@@ -28,7 +28,7 @@ bool check_shape(std::string_view text, Problems& problems);
 /// Blanks in place of the tabs of empty lines and before comments: yaml-cpp takes them for wrong indentation.
 void indent_with_blanks(std::string& text);
 
-/// Where the byte at `offset` stands.
+/// Returns line and column of the byte at `offset`.
 Position position_of(std::string_view text, std::size_t offset);
 
 /// One past the closing quote of the string that begins at `at`; npos if it is never closed. `at` itself if

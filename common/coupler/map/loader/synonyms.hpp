@@ -19,7 +19,7 @@ struct Synonym {
 /// nullptr if the word is none in that section.
 const Synonym* find_synonym(std::string_view word, Section section);
 
-/// What to write for a word that is none of the key's choices; empty if it is not known.
+/// Returns what to write instead of a word that is none of the key's choices; empty if that is not known.
 std::string_view remedy_for_choice(std::string_view word, std::string_view key);
 
 }  // namespace coupler::loader

@@ -68,9 +68,9 @@ bool closes(std::string_view comment, char open) {
          std::count(comment.begin(), comment.end(), open);
 }
 
-/// Where a comment hides a bracket that closes one, and nothing else closes that, the rest of the file makes
-/// no sense: '#' after a blank begins a comment also inside brackets. npos: there is no such place before
-/// `offset`.
+/// Returns the place before `offset` at which a comment hides the only bracket that closes another one, so
+/// that the rest of the file makes no sense: '#' after a blank begins a comment inside brackets, too. Returns
+/// npos if there is none.
 std::size_t hiding_comment(std::string_view text, std::size_t offset) {
   std::string open;  // brackets
   std::size_t found = std::string_view::npos;

@@ -67,7 +67,7 @@ std::string remedy_for_order(std::string_view text) {
   return {};
 }
 
-/// What manuals have and IEC 61131-3 has no type for that a register could hold.
+/// Returns the remedy for types of manuals for which IEC 61131-3 has no type that a register could hold.
 std::string remedy_for_what_is_no_type(std::string_view text) {
   const std::string word = codec::folded_type_name(text);
   const auto is_one_of = [&](std::initializer_list<std::string_view> words) {

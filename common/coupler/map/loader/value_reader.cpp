@@ -18,14 +18,14 @@ bool is_text(Type type) { return type == Type::STRING; }
 bool is_byte(Type type) { return codec::width(type) == 8; }
 bool is_bit(Type type) { return type == Type::BOOL; }
 
-/// What to do when a type needs the key.
+/// Returns what to do when a type needs the key.
 std::string missing(std::string_view key) {
   if (key == "offset") return "add 'offset: high' or 'offset: low'";
   if (key == "bit") return "add 'bit: 0', or another one up to 15";
   return fmt::format("add '{}: BYTES'", key);
 }
 
-/// What was meant by a key that the type does not have.
+/// Returns what to do about a key that the type does not have.
 std::string remedy_for_other_type(const Entry& given, Type type) {
   if (given.key == "offset" && parse_number(given.text) && codec::is_scalable(type))
     return fmt::format(

@@ -45,8 +45,8 @@ class FirstFit {
   }
 
  private:
-  /// What requests of one kind have in common. An address without room for one of them has none for the next:
-  /// places are never given back.
+  /// The data that requests of one kind share. An address without room for one of them has none for the next,
+  /// because places are never given back.
   using Kind = std::tuple<Table, std::uint32_t, std::uint16_t, std::vector<std::uint16_t>>;
 
   std::optional<Place> place_at(std::uint32_t address, const Request& request) const {

@@ -16,7 +16,7 @@ struct Request {
   std::vector<std::uint16_t> masks{};  ///< the bits of a register that would do, the best first; none: whole
 };
 
-/// Where points may be put.
+/// The places where points may be put.
 struct FreeSpace {
   std::vector<Place> closed;  ///< nothing is put there
   std::vector<Place> open;    ///< if a table has any, points are put within one of them only
@@ -24,7 +24,7 @@ struct FreeSpace {
 
 enum class Unknown { refused, allocated };
 
-/// What became of a request.
+/// The result of a request.
 struct Answer {
   enum class Kind {
     recalled,   ///< the lock knows its place

@@ -20,7 +20,7 @@ constexpr std::uint16_t whole = 0xFFFF;
 constexpr std::uint16_t high_half = 0xFF00;
 constexpr std::uint16_t low_half = 0x00FF;
 
-/// Where a point stands: whole addresses of a table, or some bits of one register, as they are on the wire.
+/// The place of a point: whole addresses of a table, or some bits of one register, as they are on the wire.
 struct Place {
   Table table = Table::coils;
   modbus::Range range = modbus::Range::of(0, 1);
@@ -37,7 +37,8 @@ constexpr bool overlap(const Place& a, const Place& b) {
 /// By table, address and part: whole, high, low, bit 0 … 15.
 bool less(const Place& a, const Place& b);
 
-/// As a line of the lock has it: "holding_registers 5", "… 5-8", "… 5.high", "… 5.low", "… 5.3" (bit 3).
+/// Returns the place as a line of the lock has it: "holding_registers 5", "… 5-8", "… 5.high", "… 5.low",
+/// "… 5.3" (bit 3).
 std::string to_string(const Place& place);
 
 /// The bits of all tables that are taken.
@@ -83,7 +84,7 @@ struct Parsed {
 /// Reads a lock. Every problem is reported; `file` names it in the diagnostics.
 Parsed parse(std::string_view text, std::string_view file);
 
-/// What a lock says before its entries.
+/// The beginning of a lock, before its entries.
 constexpr std::string_view first_line = "coupler lock 1";
 
 /// The file. It depends on nothing but the lock.
