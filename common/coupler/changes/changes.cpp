@@ -147,7 +147,7 @@ Renamed find_renamed(const Map& older, const Map& newer, const PointsByName& old
   return renamed;
 }
 
-/// What else the fingerprint contains may have changed with the name.
+/// The rest of what the fingerprint contains may have changed together with the name.
 void add_renamed(const Point& older, const Point& newer, std::vector<Change>& changes) {
   changes.push_back({"point-renamed", Severity::breaking, std::string(older.name), std::string(older.name),
                      std::string(newer.name)});

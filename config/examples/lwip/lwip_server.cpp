@@ -148,7 +148,8 @@ void LwipServer::forget(Client& client) {
   client.pcb = nullptr;
 }
 
-/// What was written is still sent: unless all that came was taken, lwIP would reset the connection.
+/// Data that was written is still sent, but unless all received data was taken, lwIP would reset the
+/// connection.
 err_t LwipServer::close(Client& client) {
   tcp_pcb* pcb = client.pcb;
   if (client.received != nullptr) tcp_recved(pcb, client.received->tot_len);

@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// Whether the pump took it; says so if not.
+/// Returns whether the pump took the value, and says so if it did not.
 bool is_taken(const char* what, coupler::client::PendingWrite pending) {
   const coupler::client::SetResult result = pending.get();
   std::printf("%s: %s\n", what, result.text.c_str());

@@ -39,7 +39,7 @@ tl::expected<double, int> read_number(const std::string& path);
 /// Names in the folder that begin with `prefix`, shorter ones first: "pwmchip2" before "pwmchip10".
 std::vector<std::string> names_in(const std::string& folder, const std::string& prefix);
 
-/// What a user does about an errno; begins with "; ", or is empty.
+/// Returns what a user can do about an errno; it begins with "; ", or is empty.
 std::string remedy_for(int error, const std::string& path);
 
 }  // namespace coupler::device

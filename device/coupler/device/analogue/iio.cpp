@@ -122,7 +122,7 @@ std::string cannot_open(const Found& found, int error) {
                      remedy_for(error, found.file));
 }
 
-/// Of "[least step most]", or of a list.
+/// Reads the limits from "[least step most]", or from a list.
 std::pair<double, double> limits_of(const Found& found) {
   std::pair<double, double> limits{std::numeric_limits<std::int32_t>::min(),
                                    std::numeric_limits<std::int32_t>::max()};

@@ -33,7 +33,7 @@ struct IioOutput {
   double least = 0;  ///< raw
   double most = 0;
 
-  /// Whether the channel has a raw value for it, as far as it tells.
+  /// Returns whether the channel has a raw value for it, as far as the channel tells.
   bool accepts(double value) const;
   /// Returns 0 or an errno.
   [[nodiscard]] int drive(double value) const;

@@ -23,7 +23,7 @@ class PwmOutput {
   static tl::expected<PwmOutput, std::string> open(const std::string& sysfs, const Pwm& wanted,
                                                    TimePoint until = {});
 
-  /// For the log: "pwmchip0 (fan) channel 0".
+  /// Returns a text for the log: "pwmchip0 (fan) channel 0".
   const std::string& name() const { return name_; }
   /// The folder of its files.
   const std::string& folder() const { return folder_; }

@@ -141,7 +141,7 @@ Channels::Outcome SysfsChannels::drive(const Point& point, double value) {
   Driven& output = channel_of(outputs_, point);
   if (output.is_given_up) return Outcome::failed;
   const int error = std::visit([&](auto& channel) { return channel.drive(value); }, output.wired.channel);
-  // Not every driver publishes the limits of its DAC.
+  // Some drivers do not publish the limits of their DAC.
   const bool is_dac = std::holds_alternative<IioOutput>(output.wired.channel);
   if (is_dac && (error == EINVAL || error == ERANGE)) return Outcome::refused;
   if (output.fault.note(error)) return Outcome::done;

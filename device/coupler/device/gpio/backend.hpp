@@ -19,8 +19,8 @@ Inventory chips();
 /// How many lines are watched though no counter, latched point or debounce needs it; each costs descriptors.
 std::size_t max_watched();
 
-/// Whether the kernel takes `line` into the same request as these (of which there is at least one).
-/// Inputs and outputs are never mixed, nor are inputs that are watched and others.
+/// Returns whether the kernel takes `line` into the same request as these, of which there is at least one.
+/// Inputs and outputs are never mixed, nor are watched inputs and other inputs.
 bool fits(const std::vector<LineSpec>& group, const LineSpec& line);
 
 /// One to max_group_size lines that fit together. Outputs begin at their wanted levels, with no other

@@ -10,8 +10,8 @@
 
 namespace coupler::device {
 
-/// Whether hardware works, logged once per change. Clients can cause changes by what they write, so the log
-/// limits these lines.
+/// The state of hardware that works or fails. Each change is logged once. Clients can cause changes by their
+/// writes, so the log limits these lines.
 class Fault {
  public:
   /// `what` begins the sentence: "gpiochip0 line 5 (GPIO5)". `error` is the last outcome; processes that use

@@ -32,7 +32,7 @@ struct HeldLine {
   const Point* point = nullptr;  ///< that is wired to it; null: none of the map
 };
 
-/// What a group's request to the kernel holds.
+/// The lines that a group's request to the kernel holds.
 struct HeldRequest {
   std::vector<HeldLine> lines{};  ///< in the order of the group
   bool lost = false;              ///< the chip is unplugged
@@ -109,7 +109,7 @@ class GroupedLines : public Lines {
   void take_over(GroupedLines& before);
 
  private:
-  /// What processes share: a level for each line, and the group's last error.
+  /// The data that processes share: a level for each line, and the group's last error.
   using Shared = std::unique_ptr<SharedArray<int>>;
   struct Output {
     WiredOutputs wired;

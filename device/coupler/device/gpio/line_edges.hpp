@@ -36,7 +36,7 @@ class EdgeTally {
     latest_is_known_ = false;
   }
 
-  /// What was counted since the last call.
+  /// Takes the edges that were counted since the last call.
   Edges take() { return std::exchange(edges_, {}); }
 
  private:

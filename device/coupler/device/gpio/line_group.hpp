@@ -20,7 +20,7 @@ constexpr std::size_t max_group_size = 64;  ///< what one request to the kernel 
 class LineGroup {
  public:
   virtual ~LineGroup() = default;
-  /// For the log: "gpiochip0 lines 5 (GPIO5), 6 (GPIO6)".
+  /// Returns a text for the log: "gpiochip0 lines 5 (GPIO5), 6 (GPIO6)".
   virtual const std::string& name() const = 0;
   /// False: its chip was unplugged. Asks the kernel, not the chip.
   virtual bool is_plugged() { return true; }
@@ -34,12 +34,12 @@ class OutputGroup : public LineGroup {
   [[nodiscard]] virtual int read(Span<int> levels) = 0;
 };
 
-/// Who is told what the lines of a group did. `line`: the group's i-th.
+/// Receives the events of the lines of a group. `line` is the index of a line in the group.
 class LineSink {
  public:
-  /// Of a line whose edges counters or latched points want.
+  /// Receives the edges of a line that counters or latched points count.
   virtual void edges(std::size_t line, const Edges& edges) = 0;
-  /// As EdgeSink has them.
+  /// See EdgeSink.
   virtual void changed(std::size_t line, bool level, TimePoint at) = 0;
   virtual void lost(std::uint32_t changes) = 0;
 
@@ -52,7 +52,8 @@ class InputGroup : public LineGroup {
   /// All lines of the group at once. Returns 0 or an errno.
   [[nodiscard]] virtual int read(Span<int> levels, TimePoint now) = 0;
 
-  /// Where the kernel reports edges; -1: it reports none. The owner of the event loop watches it.
+  /// The descriptor at which the kernel reports edges; -1 if it reports none. The owner of the event loop
+  /// watches it.
   virtual int descriptor() const { return -1; }
   /// Takes the waiting edges without blocking.
   virtual void take_edges() {}

@@ -18,7 +18,7 @@ namespace coupler::device {
 HeldLine held_as(const LineSpec& wanted);
 
 bool is_same_line(const HeldLine& a, const HeldLine& b);
-/// Whether both are one line, requested in the same way.
+/// Returns whether both are one line, requested in the same way.
 bool is_same_request(const HeldLine& a, const HeldLine& b);
 
 /// GPIO lines of this machine, each held by one of several requests.

@@ -72,7 +72,7 @@ LineSpecs find_lines(const Map& map, const Inventory& inventory, bool safe, std:
   return wanted;
 }
 
-/// As few requests as the kernel needs for them.
+/// Groups them into as few requests as the kernel allows.
 std::vector<LineSpecs> grouped(const LineSpecs& wanted) {
   std::vector<LineSpecs> groups;
   for (const LineSpec& line : wanted) {
@@ -93,7 +93,7 @@ struct KeptRequest {
   std::vector<const LineSpec*> wanted;  ///< for each of its lines; null: the map does not want it
 };
 
-/// What becomes of held lines when other ones are wanted: the difference of two wirings. Views the wanted
+/// The difference of two wirings: what to do with held lines when other lines are wanted. It views the wanted
 /// lines.
 class RequestPlan {
  public:
@@ -114,7 +114,7 @@ class RequestPlan {
   std::string errors;  ///< outputs whose settings cannot change, since lines beside them stay; one a line
 
  private:
-  /// What is wanted of the request with other settings than it has.
+  /// The lines of the request that are wanted with other settings than it has.
   LineSpecs note(const HeldRequest& request, KeptRequest& kept) {
     LineSpecs changed;
     for (const LineSpec& line : wanted_)

@@ -22,9 +22,9 @@ class SimulatedChip : public Lines {
   /// Outputs and unwired inputs are at their initial levels; square waves begin now, with their `on` half.
   SimulatedChip(const Map& map, TimePoint now);
 
-  /// Of more changes of one input than this, the newest are told (or one less, so that the first one brings
-  /// another level than was told last), and the others are lost; counters and latched points have all of
-  /// them.
+  /// The limit of changes of one input. Of more changes the newest are told (or one less, so that the first
+  /// one brings another level than the last one told), and the others are lost. Counters and latched points
+  /// count all of them.
   static constexpr std::uint32_t most_changes = 64;
 
   void take_edges(TimePoint now, EdgeSink& sink) override;
@@ -39,7 +39,7 @@ class SimulatedChip : public Lines {
   /// Goes on where that of another map was: levels of outputs and unwired inputs of the same name, and time.
   void take_over(const SimulatedChip& before);
 
-  /// What a test does from outside. Names are those of points of the map.
+  /// Functions for tests, which act from outside. Names are those of points of the map.
   void pull(std::string_view input, bool level);  ///< an unwired input
   bool level(std::string_view output) const;
   /// Unplugged, nothing can be read or driven, and no edge is seen.

@@ -30,7 +30,7 @@ class WatchedInputs : public InputGroup {
   void look(std::size_t line, bool level, TimePoint now) { lines_[line].look(level, now, changes_); }
   /// The same of a line whose edges are reported.
   void check(std::size_t line, bool level, TimePoint now) { lines_[line].check(level, now, changes_); }
-  /// Whether the line is to be checked again now.
+  /// Returns whether the line has to be checked again now.
   bool is_doubtful(std::size_t line, TimePoint now) const {
     const auto due = lines_[line].doubt_due();
     return due && now >= *due;

@@ -62,7 +62,7 @@ class ChangeQueue {
   SharedArray<State> state_;
 };
 
-/// What is known of an input: from the edges that the kernel reports, and from looking at its level.
+/// The known state of an input, from the edges that the kernel reports and from looking at its level.
 class WatchedLine {
  public:
   /// `counted`: the edges that counters and latched points want. `level`: the line's when reporting began.
@@ -123,7 +123,7 @@ class WatchedLine {
     doubted_ = now;
     return std::exchange(error_, error) == 0;
   }
-  /// Of the last look; 0: it was good.
+  /// The error of the last look; 0 if there was none.
   int error() const { return error_; }
   /// When it is to be checked again; nullopt: there is no doubt.
   std::optional<TimePoint> doubt_due() const {
@@ -142,8 +142,8 @@ class WatchedLine {
   /// The line's own level, as it bounces.
   bool latest() const { return debounce_ ? debounce_->latest() : level_; }
 
-  /// Whether a change to this level, which is told now, brings another one than was told before. If not,
-  /// others between them were lost.
+  /// Returns whether a change to this level, which is told now, brings another level than the last one told.
+  /// If not, changes between them were lost.
   bool tell(bool level) { return std::exchange(told_, level) != level; }
 
   /// Edges that counters and latched points want, since the last call.

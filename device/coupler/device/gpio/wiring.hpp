@@ -27,7 +27,7 @@ class Wiring {
   virtual std::vector<InputGroup*> event_sources() const { return {}; }
   /// The outputs in groups: where hardware hangs, so does what is called for its group, and for no other.
   virtual std::size_t output_groups() const { return 1; }
-  /// For the log: "gpiochip0 lines 5 (GPIO5), 6 (GPIO6)".
+  /// Returns a text for the log: "gpiochip0 lines 5 (GPIO5), 6 (GPIO6)".
   virtual std::string name_of_outputs([[maybe_unused]] std::size_t group) const { return "the lines"; }
   /// Lines::drive_safe() for one group.
   [[nodiscard]] virtual bool drive_safe([[maybe_unused]] std::size_t group) { return lines().drive_safe(); }
@@ -45,8 +45,8 @@ class Wiring {
   virtual void settle() {}
 };
 
-/// What is to become the wiring of a map, after another one or as the first. Its lines that nobody held are
-/// requested already; no output has moved.
+/// The future wiring of a map, after another one or as the first. Its lines that nobody held are requested
+/// already, and no output has moved.
 class PreparedWiring {
  public:
   virtual ~PreparedWiring() = default;

@@ -33,7 +33,8 @@ class LogStream {
  private:
   std::size_t write_some(std::string_view text) const;
 
-  /// Of the same pipe or terminal, does not block. Closed: there can be none, or none is needed.
+  /// A descriptor of the same pipe or terminal that does not block. It is closed if there can be none, or if
+  /// none is needed.
   Descriptor own_;
   bool is_socket_ = false;
 };
@@ -53,7 +54,7 @@ class StderrLog : public Log {
   void warn_limited(std::string_view kind, std::string_view line) override;
   /// Until it is called nothing is held back: a process that serves no clients need not call it.
   std::optional<std::chrono::milliseconds> tick(TimePoint now) override;
-  /// As compilers tell them, for editors.
+  /// Prints problems as compilers do, for editors.
   void tell(const Diagnostic& diagnostic);
 
   /// From now on nothing waits for the reader of stderr: a line that cannot be written at once is dropped,

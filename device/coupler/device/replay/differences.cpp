@@ -80,7 +80,7 @@ void Differences::recorded(std::uint32_t point, const std::uint16_t* registers, 
   Output& output = outputs_[point];
   Registers now(registers, registers + range(recording_.map()->map().points[point]).count());
   if (now == output.recorded) return;
-  // What was before anybody wrote, and how the recording begins, is nobody's difference.
+  // The values before anybody wrote, and those at the beginning of the recording, are no differences.
   const bool is_before = !output.is_written || output.recorded.empty();
   output.has_changed |= !output.recorded.empty();
   output.recorded = now;

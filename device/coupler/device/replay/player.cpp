@@ -145,7 +145,7 @@ void Player::play() {
   end();
 }
 
-/// What the recording begins without is not as at its end.
+/// Begins again. Values that are missing at the beginning of the recording do not keep those of its end.
 void Player::begin_again() {
   const std::lock_guard lock(mutex_);
   is_lost_ = false;

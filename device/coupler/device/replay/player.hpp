@@ -54,7 +54,7 @@ class Player final : public PointHooks {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// What outlives a process that serves.
+  /// The data that outlives a process that serves.
   struct Shared {
     std::atomic<Clock::rep> started{0};  ///< 0: no request yet
     std::atomic<std::uint32_t> differences{0};
@@ -91,7 +91,7 @@ class Player final : public PointHooks {
   std::vector<std::uint16_t> masked_;
   std::vector<std::optional<modbus::Exception>> exceptions_;  ///< by point
   bool are_new_exceptions_ = false;                           ///< since they were shown
-  /// As the image shows the points, for the thread of the requests.
+  /// The exceptions that the image shows, for the thread of the requests.
   std::vector<std::optional<modbus::Exception>> shown_exceptions_;
   Clock::time_point told_at_{};
   std::atomic<bool> is_lost_{false};

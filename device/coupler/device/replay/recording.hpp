@@ -47,9 +47,9 @@ class Recording {
   Nanoseconds wall_at_begin() const { return wall_; }
   /// How often a point was read; 0: it was not recorded.
   Nanoseconds period(std::uint32_t point) const { return periods_[point]; }
-  /// What was recorded is no node of this project.
+  /// Returns whether the recorded device is not a node of this project.
   bool is_foreign() const { return is_foreign_; }
-  /// What of it is not played, and why; a line each.
+  /// Returns what is not played, and why, a line each.
   const std::vector<std::string>& left_out() const { return left_out_; }
 
  private:

@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// What is behind the seconds: ".5", and the end, or "Z".
+/// Reads what follows the seconds: ".5", and the end, or "Z".
 std::optional<nanoseconds> fraction_of(std::string_view rest) {
   if (rest.empty()) return nanoseconds(0);
   if (rest[0] != '.' || rest.find_first_not_of("0123456789", 1) != std::string_view::npos || rest.size() < 2)

@@ -39,7 +39,7 @@ AllowList allow_list(const std::vector<std::string>& texts) {
   return AllowList(std::move(networks));
 }
 
-/// What the supervisor says.
+/// Handles the messages of the supervisor.
 class Control : public EventHandler {
  public:
   Control(Loop& loop, TlsServer& server, ExpiryNotice& expiry)

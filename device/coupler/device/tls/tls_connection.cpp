@@ -66,8 +66,8 @@ void TlsConnection::open(TimePoint now) {
   session_.carry(plain_.get());
 }
 
-/// What the client has sent meanwhile must not make the kernel throw away what it is to read: an alert, or
-/// the last reply.
+/// Ends the connection. Data that the client has sent meanwhile must not make the kernel throw away what the
+/// client has not read yet: an alert, or the last reply.
 void TlsConnection::end(TimePoint now) {
   if (!session_.problem().empty()) observer_.failed(*this, session_.problem());
   watch(plain_events_, 0);

@@ -64,8 +64,8 @@ class TlsConnection final : public EventHandler {
   void close();
 
  private:
-  /// Of one of its descriptors; a descriptor that nothing is wanted of is not watched, since its end would be
-  /// reported again and again.
+  /// The handler of one of its descriptors. A descriptor is not watched while nothing is wanted of it, since
+  /// its end would be reported again and again.
   struct Watched {
     int fd = -1;
     std::uint32_t events = 0;

@@ -103,7 +103,8 @@ bool TlsServer::accept_one(TimePoint now) {
   return true;
 }
 
-/// Of those that are not let in, or are on their way out: who floods displaces itself first.
+/// Makes room among the connections that are not let in, or are on their way out: a client that floods the
+/// server displaces itself first.
 void TlsServer::make_room_for(const IpAddress& newcomer) {
   std::size_t all = 0;
   std::size_t own = 0;

@@ -101,7 +101,7 @@ int TlsProcess::start_process(TimePoint now) {
     send(tls_messages::commit, listener_.get());
     ++answers_to_skip_;
   }
-  // What was prepared and answered is committed later, but to this process.
+  // Settings that were prepared and answered are committed later, but to this process.
   if (prepared_.is_open()) send(tls_messages::prepare, prepared_.get());
   if (prepared_.is_open() && !waits_) ++answers_to_skip_;
   return 0;
@@ -223,7 +223,7 @@ void TlsProcess::ready(TimePoint) {
     answer_ = Answer{};
 }
 
-/// What was prepared does not come into force.
+/// Gives up: the prepared settings do not come into force.
 void TlsProcess::give_up(Answer answer) {
   waits_ = false;
   prepared_.close();

@@ -22,8 +22,8 @@ namespace coupler::device {
 /// outlives both. If it dies or hangs its clients lose their connections, and it is started again.
 class TlsProcess final : public EventHandler {
  public:
-  /// For an answer; it reads no files. So long, too, it may be silent. Time that it waits for the CPU does
-  /// not count.
+  /// The time limit for an answer; the process reads no files. It may be silent for as long. Time for which
+  /// it waits for the CPU does not count.
   static constexpr std::chrono::seconds timeout{5};
 
   /// Both outlive it. The error says why it cannot be: no program, no descriptors.
@@ -38,15 +38,15 @@ class TlsProcess final : public EventHandler {
     std::string problem;      ///< empty: the settings are good
     bool has_failed = false;  ///< the process itself; the settings may be good
   };
-  /// Whether it has: nothing yet, or what came of it.
+  /// Returns the result; nullopt if there is none yet.
   std::optional<Answer> answer(TimePoint now);
-  /// What was prepared is in force: it listens at a copy of that socket.
+  /// The prepared settings are in force: the process listens at a copy of that socket.
   void commit(int listener);
 
   /// Starts it again if it has ended, or says nothing any more. To be called every 100 ms or so.
   void look_after(TimePoint now);
 
-  /// Where the process that answers takes clients from.
+  /// The socket from which the process that answers takes clients.
   int clients() const { return clients_.one.get(); }
   /// In a process that was forked and answers clients: closes everything else.
   void leave();

@@ -13,8 +13,8 @@
 
 namespace coupler::device {
 
-/// What the process that does TLS has to know. It goes there in memory of its own, which no other process
-/// maps: that with the lines never has the key.
+/// The settings of the process that does TLS. They go there in memory of its own, which no other process
+/// maps: the process with the lines never has the key.
 struct TlsSettings {
   Credentials credentials;
   std::vector<std::string> allow;  ///< as Service::allow

@@ -51,7 +51,7 @@ plan::Split split_or_narrow(ReadSpan span, const Map& map) {
   return {{std::move(span)}, {}};
 }
 
-/// What a device's identity means for reading it.
+/// The meaning of a device's identity for reading it.
 struct IdentityFindings {
   struct LeftOut {
     std::uint32_t point;  ///< index into Map::points

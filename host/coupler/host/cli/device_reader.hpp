@@ -36,7 +36,7 @@ class DeviceReader {
   /// Returns then, or before if everything should be looked at anew; a snapshot if the connection has ended
   /// meanwhile: the next look connects again, and the caller is to wait before it.
   std::optional<Snapshot> wait_until(host::Time time);
-  /// Of the device, until the connection ends.
+  /// Returns whether the device tells changes, until the connection ends.
   bool hears_changes() const { return changes_.is_active(); }
 
  private:
@@ -51,7 +51,7 @@ class DeviceReader {
   host::Result<> read_all();
   host::Result<> ask(const ReadSpan& span, std::vector<ReadSpan>& next);
   host::Result<> take(const ReadSpan& span, host::Result<> answer, std::vector<ReadSpan>& next);
-  /// What was wrong with a request.
+  /// The error of a request.
   struct Refusal {
     std::optional<modbus::Exception> code;  ///< nullopt: there was no reply, or none that can be one
     std::string why;
@@ -81,7 +81,7 @@ class DeviceReader {
   host::SetAside aside_;
   std::vector<std::string> no_reply_;  ///< by reading: what came instead of one, when it was set aside
 
-  // For the time of a connection.
+  // Valid for the time of a connection.
   bool connected_ = false;
   bool is_node_ = false;  ///< of this project, which knows every function: exception 01 is about rights
   Snapshot known_;        ///< blank_, with what follows from the identity

@@ -162,7 +162,7 @@ class Watch {
     show_if_taken(&before_, before_);
   }
 
-  /// What nobody takes is not shown, so that the device is looked at, and Ctrl-C heard, all the same.
+  /// Lines that nobody reads are not shown, so that the device is read and Ctrl-C is heard all the same.
   void show_if_taken(const Snapshot* before, const Snapshot& now) {
     if (!is_taken()) {
       ++missing_;

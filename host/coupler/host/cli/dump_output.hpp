@@ -18,7 +18,7 @@ std::string value_text(const Map& map, const Reading& reading);
 /// colours, is bold.
 std::vector<std::string> table_lines(const Map& map, const Snapshot& now, Colour colour);
 
-/// What is news after `before` (nullptr: everything is), one line each: points, offline, online again.
+/// Returns what is new after `before` (nullptr: everything is), one line each: points, offline, online again.
 std::vector<std::string> change_lines(const Map& map, const Snapshot* before, const Snapshot& now);
 
 // A terminal that shows the same lines again and again, by ANSI sequences.

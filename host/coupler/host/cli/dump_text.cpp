@@ -39,7 +39,7 @@ std::string good_value(const Point& point, const Reading& reading) {
   return point.units.empty() ? text : fmt::format("{} {}", text, printable(point.units));
 }
 
-/// Where it is read, as the register map of `coupler generate --docs` writes it.
+/// Returns the place where it is read, as the register map of `coupler generate --docs` has it.
 Cells cells_of(const Map& map, const Reading& reading) {
   Point point = map.points[reading.point];
   point.address = read_range(point).start();

@@ -12,7 +12,7 @@ namespace coupler::cli {
 /// unless a wire or a counter gives it its value, and what the node drives can be read.
 class FieldMap {
  public:
-  /// What `node` views must outlive it.
+  /// The storage of `node` must outlive it.
   explicit FieldMap(const Map& node);
   FieldMap(const FieldMap&) = delete;
   FieldMap& operator=(const FieldMap&) = delete;

@@ -7,8 +7,8 @@
 
 namespace coupler::cli {
 
-/// As fetch_live_map(); nullptr: a foreign coupler, also one that is there and does not answer such a
-/// question.
+/// Does what fetch_live_map() does. Returns nullptr for a foreign coupler, also for one that is there and
+/// does not answer such a question.
 tl::expected<MapPtr, NoLiveMap> fetch_map_if_node(const Connection& where);
 
 }  // namespace coupler::cli

@@ -12,8 +12,8 @@ namespace coupler::cli {
 host::Result<scan::IdentificationPage> read_identification(host::MultiUnitTransport& transport,
                                                            modbus::ReadDeviceIdentification wanted);
 
-/// What to do where a device cannot be reached: `over_tcp`, or what concerns an RTU line. Empty: the error
-/// itself says it, as that of a serial port that cannot be used.
+/// Returns what to do if a device cannot be reached: `over_tcp`, or what concerns an RTU line. It is empty if
+/// the error itself says it, as that of a serial port that cannot be used.
 std::string reach_remedy(const Connection& where, const host::Error& error, std::string_view over_tcp);
 
 /// A scan's client.

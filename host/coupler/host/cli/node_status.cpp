@@ -21,7 +21,7 @@ using host::Result;
 
 bool is_answer(const Error& error) { return exception_in(error) != nullptr && !is_unit_away(error); }
 
-/// Whether the device has answered; an error ends the questions.
+/// Returns whether the device has answered. An error ends the questions.
 Result<bool> read_area(host::Transport& transport, NodeStatus& status) {
   const auto report = host::read_report(transport);
   if (!report) {
@@ -61,7 +61,7 @@ Result<> read_all(host::Transport& transport, const Identify& identify, NodeStat
 using identity::Report;
 using nlohmann::ordered_json;
 
-// What a node has in FC 43/14.
+// The objects that a node has in FC 43/14.
 constexpr std::uint8_t product_code = 1;  ///< the map's name
 constexpr std::uint8_t revision = 2;      ///< the version of OpenCoupler
 
@@ -91,7 +91,7 @@ std::string watchdog_text(const Report& report) {
   return text;
 }
 
-/// Of our own, each with what it is for.
+/// Returns the functions that only our nodes have, each with its purpose.
 std::string functions_text(const identity::Functions& functions) {
   std::string text;
   if (functions.tells_changes) text += "65 (waiting for changes)";

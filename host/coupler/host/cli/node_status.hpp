@@ -33,8 +33,8 @@ using Identify =
 /// the identity area, as some foreign couplers do, the rest is read over another connection.
 NodeStatus read_status(host::Transport& transport, const Identify& identify);
 
-/// For people, a line each. Of a foreign coupler its identification; empty if it has none. Texts of the
-/// device are made harmless for a terminal.
+/// Returns lines for people. For a foreign coupler they are its identification; empty if it has none. Texts
+/// of the device are made harmless for a terminal.
 std::string status_text(const NodeStatus& status, const Connection& where);
 
 /// One line of JSON. docs/commands.md has a table of its fields.

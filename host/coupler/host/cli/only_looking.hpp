@@ -11,7 +11,7 @@ namespace coupler::cli {
 /// A map without all that a driver does to a device by itself: watchdog, on_reconnect, on_shutdown, deadman.
 class OnlyLooking {
  public:
-  /// What `map` views must outlive it.
+  /// The storage of `map` must outlive it.
   explicit OnlyLooking(const Map& map);
   OnlyLooking(const OnlyLooking&) = delete;
   OnlyLooking& operator=(const OnlyLooking&) = delete;
@@ -23,7 +23,7 @@ class OnlyLooking {
   Map map_;
 };
 
-/// What is to be said where whoever looks keeps the coupler's own watchdog from expiring; empty: he does not.
+/// Returns the warning that reading keeps the coupler's own watchdog from expiring; empty if it does not.
 std::string_view watchdog_warning(const Map& map);
 
 }  // namespace coupler::cli

@@ -15,7 +15,7 @@
 
 namespace coupler::cli {
 
-/// As it was typed.
+/// The arguments as they were typed.
 struct ProbeArguments {
   std::string host;
   TlsTexts tls;

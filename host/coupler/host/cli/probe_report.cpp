@@ -121,7 +121,7 @@ std::string orders_text(const std::vector<scan::Match>& matches) {
       to_string(*order, false), codec::bytes_swapped(*order), !codec::words_reversed(*order));
 }
 
-/// Where else something may be, for a device that shows nothing.
+/// Returns where else something may be, for a device that shows nothing.
 std::string where_to_look(const Findings& findings, const scan::Task& task, const Connection& connection,
                           bool untried) {
   std::vector<std::string> places;

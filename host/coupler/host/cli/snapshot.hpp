@@ -39,7 +39,7 @@ struct Snapshot {
   std::size_t failed() const;
 };
 
-/// Which readings are others than the last time.
+/// Marks the readings that differ from the last time.
 void mark_changes(const Snapshot& before, Snapshot& now);
 
 /// Puts a bit that has changed since into the readings that hold it: they alone are marked. False: none does.

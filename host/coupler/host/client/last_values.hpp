@@ -53,7 +53,7 @@ class LastValues {
     std::uint32_t point;
     const std::uint16_t* registers;
   };
-  /// Whether it is another value.
+  /// Keeps a value. Returns whether it is another one.
   static bool keep(Entry& entry, const Point& point, const std::uint16_t* registers, host::Time at);
   void tell(const News& news, host::Stamp stamp);
 

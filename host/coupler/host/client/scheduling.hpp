@@ -15,7 +15,7 @@
 
 namespace coupler::client {
 
-/// What became of a value that was scheduled.
+/// The outcome of a value that was scheduled.
 struct ScheduleResult {
   using Outcome = host::ScheduledOutcome::Result;
 
@@ -32,12 +32,12 @@ struct ScheduleResult {
 /// wait for it.
 class PendingSchedule {
  public:
-  /// Whether the device, or the client's own timer, will do it. Waits for the answer: a few of the device's
-  /// timeouts at most.
+  /// Returns whether the device, or the client's own timer, will carry it out. Waits for the answer, a few of
+  /// the device's timeouts at most.
   bool accepted() { return answer().number != 0; }
-  /// Who does it, or why nobody does and what to do about it. Waits as accepted() does.
+  /// Returns who carries it out, or why nobody does and what to do about it. Waits as accepted() does.
   const std::string& text() { return answer().text; }
-  /// What became of it. nullopt: that is not known within `at_most`, or it was not accepted.
+  /// Returns the outcome; nullopt if it is not known within `at_most`, or if the value was not accepted.
   std::optional<ScheduleResult> wait(std::chrono::milliseconds at_most);
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 using host::WriteResult;
 
-/// As long as the options exist their paths say the same.
+/// Makes the paths absolute, so that they mean the same as long as the options exist.
 Options with_absolute_paths(Options options) {
   for (std::string* path : {&options.tls.certificate, &options.tls.key, &options.tls.ca})
     if (!path->empty()) *path = std::filesystem::absolute(*path).string();
@@ -56,7 +56,8 @@ std::string move_to(Map& map, const Options& options) {
 
 void print(const std::string& text) { std::fputs((text + '\n').c_str(), stderr); }
 
-/// What a callback throws ends there: the connection's thread has outputs to look after.
+/// Reports a text. An exception of the callback ends here, because the connection's thread has to look after
+/// outputs.
 void report(const Options& options, Level level, const std::string& text) {
   try {
     if (options.on_report) options.on_report(level, text);
@@ -174,7 +175,7 @@ tl::expected<Session::Sample, NoValue> Session::judge(std::uint32_t point,
   // A value is here a moment before its quality is. The other way round it is one of a connection before.
   Quality state = known.state == Quality::never_read ? Quality::good : known.state;
   if (value->earlier && state == Quality::good) state = Quality::stale;
-  // Where a node tells changes, a value is known to be true for longer than since the change.
+  // If a node tells changes, a value is known to be true for longer than since its last change.
   const bool was_true_then = (state == Quality::good || state == Quality::offline) && known.last_good;
   const host::Time at = was_true_then ? std::max(value->at, *known.last_good) : value->at;
   return Sample{std::move(value->registers), state, std::chrono::steady_clock::now() - at};

@@ -31,7 +31,7 @@ struct Options {
   /// rtu:DEVICE/UNIT?baud=…&parity=… Empty: the map's.
   std::string address;
   std::optional<std::uint16_t> port;  ///< default: the map's
-  /// What is given takes the place of that in the map's `tls`. Paths begin in the working directory.
+  /// Options that are set replace those in the map's `tls`. Paths begin in the working directory.
   TlsTexts tls{};
   std::optional<Verify> verify;  ///< what to do if the device has another map; default: the map's
   /// Gets lines for a log: why the device cannot be reached, how two maps differ. Called in the connection's
@@ -47,7 +47,7 @@ struct NoValue {
 };
 std::string to_string(const NoValue& why);
 
-/// What became of a value that was set.
+/// The result of setting a value.
 struct SetResult {
   using Outcome = host::WriteResult::Outcome;
 
@@ -92,8 +92,8 @@ class Session : private host::Sink {
   bool wait_online(std::chrono::milliseconds at_most) const;
 
  protected:
-  /// What `map` views must outlive it. The destructor of what derives from it must disconnect(): until then
-  /// the connection's thread calls virtual functions and callbacks.
+  /// The storage of `map` must outlive it. The destructor of a derived class must call disconnect(): until
+  /// then the connection's thread calls virtual functions and callbacks.
   Session(const Map& map, Options options);
 
  private:
@@ -131,10 +131,10 @@ class Session : private host::Sink {
   std::unique_ptr<Engine> engine_;          ///< null: disconnected
 };
 
-/// What the points of a client have in common.
+/// The part that the points of a client have in common.
 class PointHandle {
  public:
-  /// As the map describes it: name, units, description, place.
+  /// The point as the map describes it: name, units, description, place.
   const Point& point() const { return session_.map_.points[index_]; }
 
  protected:

@@ -10,7 +10,7 @@ namespace coupler::host {
 using Time = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::steady_clock::duration;
 
-/// Where the core gets its time from. Tests have one of their own.
+/// The source of time for the core. Tests have one of their own.
 class Clock {
  public:
   virtual ~Clock() = default;

@@ -13,7 +13,7 @@ using Nanoseconds = std::chrono::duration<double, std::nano>;
 /// A century. What is further away overflows, and no machine runs that long.
 constexpr NodeTime longest_time = std::chrono::hours(24 * 365 * 100);
 
-/// For a drift to be worth measuring.
+/// The shortest time after which a drift is worth measuring.
 constexpr NodeTime measured_over = std::chrono::seconds(10);
 
 /// By so much the times of a clock that counts milliseconds, as a microcontroller's may, contradict each

@@ -11,9 +11,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// For safe values at the end: the program is to be gone within a second.
+/// The time limit for safe values at the end: the program has to be gone within a second.
 constexpr milliseconds longest_shutdown(700);
-/// For the first answer of a device that gives none then.
+/// The time limit for the first of these requests if the device does not reply.
 constexpr milliseconds longest_attempt(100);
 
 }  // namespace
@@ -102,8 +102,8 @@ void DeviceThread::run() {
       const std::lock_guard turn(turn_);
       device_.arrived();
     }
-    // Where there is one processor only, the thread that sends what the sink has got has it first: the
-    // message leaves before the node is asked for more.
+    // If there is only one processor, the thread that sends what the sink received gets it first: the message
+    // leaves before the next request is sent.
     std::this_thread::yield();
   }
   is_ending_ = true;

@@ -13,7 +13,7 @@ using Outcome = WriteResult::Outcome;
 
 constexpr std::size_t names_at_most = 5;
 
-/// Whether a point's value is missing, and not because nobody could read it.
+/// Returns whether a point's value is missing although it could be read.
 bool is_missing(const Point& point, State state) {
   return is_readable(point) && state != State::good && state != State::never_read &&
          state != State::not_wanted;

@@ -33,8 +33,8 @@ Health writes_health(const DeviceSnapshot& before, const DeviceSnapshot& now);
 /// The coupler's own watchdog. error: it has expired, or it is not fed.
 Health watchdog_health(const DeviceSnapshot& now);
 
-/// Of a TLS connection. error: one of its certificates has expired, so the next connect fails; warning: one
-/// soon does.
+/// Returns the health of a TLS connection. error: one of its certificates has expired, so the next connect
+/// fails; warning: one soon does.
 Health certificates_health(const std::optional<Certificates>& certificates,
                            std::chrono::system_clock::time_point at);
 

@@ -24,7 +24,7 @@ class Histogram {
   std::uint64_t count() const { return count_; }
   Duration max() const { return max_; }
 
-  /// Not exceeded by `share` (0 … 1) of them. 0 if there are none.
+  /// Returns a duration that `share` (0 … 1) of them do not exceed; 0 if there are none.
   Duration quantile(double share) const {
     const double wanted = share * static_cast<double>(count_);
     std::uint64_t seen = 0;

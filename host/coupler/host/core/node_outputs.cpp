@@ -113,7 +113,8 @@ void NodeOutputs::on_new_epoch() {
 
 void NodeOutputs::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
   bits_.on_heard(newest, stamp);
-  // Where more follow it may be among them: not for long, but a node may have more without end.
+  // If more changes follow, the outcome may be among them. The wait for it is limited, because a node may
+  // have more without end.
   const Time now = clock_.now();
   const Time told = stamp ? stamp->at : now - all_told_within;
   for (const Waiting& one : take_if([told](const Waiting& which) { return which.told_by < told; }))

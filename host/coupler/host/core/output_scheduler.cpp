@@ -172,7 +172,7 @@ void OutputScheduler::cancel_at_node(const ChangeListener& listener) {
 void OutputScheduler::on_outcome(const AcceptedWrite& which, ScheduledOutcome::Result result, Stamp at,
                                  const std::string& reason) {
   const ScheduledWrite& what = which.what;
-  // What the node drove for good is what a write has written. It may be told late, after a newer one.
+  // An output that the node drove for good counts as a write. Its outcome may come late, after a newer write.
   if (result == ScheduledOutcome::Result::done && what.duration.count() == 0 && !which.is_overwritten)
     writer_.remember(what.write);
   sink_.on_scheduled({which.number, what.write.point, result, reason, what.asked, what.due, at});

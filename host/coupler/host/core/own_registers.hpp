@@ -10,8 +10,8 @@
 
 namespace coupler::host {
 
-/// What a reply holds of one of its points, as Sink gets it: each of `own` is an element of `values`, without
-/// the bits of other points.
+/// Takes the values of one of the points out of a reply, as Sink receives it: each element of `own` is an
+/// element of `values` without the bits of other points.
 template <class Element>
 void take_own(const plan::ReadSpan& span, Span<const Element> values, const Point& point,
               std::vector<std::uint16_t>& own) {

@@ -95,8 +95,7 @@ Time PollCycle::due() const {
 
 bool PollCycle::is_overdue(Time now) const {
   return std::any_of(groups_.begin(), groups_.end(), [now](const Group& group) {
-    // What is asked for out of turn, and what is to be read again after a rest, has no deadline to count
-    // from.
+    // A request out of turn, and points that are read again after a rest, have no deadline to count from.
     if ((group.soon && group.idle()) || (group.steps.empty() && group.stale)) return true;
     return !group.steps.empty() && group.schedule.due() + group.schedule.period() <= now;
   });
@@ -140,7 +139,7 @@ std::vector<std::uint32_t> PollCycle::rejected(Time now) {
   std::vector<Step> pieces;
   std::vector<std::uint32_t> given_up;
   std::optional<modbus::Range> hole;
-  // Of points that overlap, a part can be as large as the whole: then it need not be asked for.
+  // If points overlap, a part can be as large as the whole, and need not be read.
   std::vector<ReadSpan> open{rejected};
   while (!open.empty()) {
     const ReadSpan span = std::move(open.back());

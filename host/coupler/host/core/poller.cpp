@@ -128,7 +128,7 @@ void Poller::on_exception(modbus::Exception code) {
   }
 }
 
-/// Of a request; parts of it may be good.
+/// Handles the exception of a request, parts of which may be good.
 void Poller::on_rejection(modbus::Exception code, std::string_view what, std::string_view until) {
   statistics_.rejected();
   const std::string why = to_string(Error(ExceptionReply{code}));

@@ -29,7 +29,8 @@ void ScheduledWrites::find_due() {
   for (const Entry& entry : entries_) due_ = std::min(due_, due(entry));
 }
 
-/// What is to be queued now: the first that is due, and of those due at the same time the one accepted first.
+/// Returns the write to queue now: the first that is due, and among those due at the same time the one
+/// accepted first.
 ScheduledWrites::Entry* ScheduledWrites::next(Time now) {
   Entry* first = nullptr;
   for (Entry& entry : entries_)

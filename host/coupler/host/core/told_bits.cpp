@@ -14,7 +14,7 @@ std::uint32_t place(std::uint8_t function, std::uint16_t address) {
   return std::uint32_t{function} << 16 | address;
 }
 
-/// Not before the last stamp of the point; what that adds to the error is said.
+/// Returns a stamp that is not before the last stamp of the point. Its uncertainty includes the difference.
 Stamp not_before(Stamp last, Stamp stamp) {
   if (stamp.at >= last.at) return stamp;
   return {last.at, stamp.uncertainty + (last.at - stamp.at)};

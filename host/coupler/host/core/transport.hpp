@@ -18,7 +18,7 @@
 
 namespace coupler::host {
 
-/// Who goes first where units share a connection: writes before reads, in turn
+/// The order of units that share a connection: writes go before reads, in turn
 /// (coupler/host/modbus/turns.hpp).
 enum class Rank {
   read,
@@ -26,14 +26,14 @@ enum class Rank {
   safe    ///< before all others, until another rank is set
 };
 
-/// What came of a wait for changes, and when.
+/// The answer to a wait for changes, and its time.
 struct WaitAnswer {
   Result<modbus::ChangesReply> reply;  ///< an error is an exception
   Time sent{};
   Time received{};
 };
 
-/// What one side of a TLS connection shows of itself.
+/// The certificate that one side of a TLS connection shows.
 struct Certificate {
   std::string name;  ///< its common name
   std::string role;  ///< of a client; empty: none

@@ -172,7 +172,7 @@ Result<> Writer::finish(const Result<>& answer) {
 Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Result<>& link) {
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   const bool verifies = map_.points[write.point].host.verify_write;
-  // What reads back counts for more than an odd acknowledgement.
+  // The value that reads back counts for more than an odd acknowledgement.
   if (answer || (verifies && exception != nullptr && exception->other_value)) {
     suspects_.erase(write.point);
     remember(write);

@@ -15,7 +15,7 @@ constexpr auto deadman_retry = std::chrono::seconds(1);
 /// The same of one that ended two connections in a row.
 constexpr auto suspect_retry = std::chrono::seconds(10);
 
-/// What becomes of a write that waits while there is no connection.
+/// Returns what happens to a write that waits while there is no connection.
 std::string_view unconnected_text(const Point& point, const Write& write) {
   if (write.until != Time::max()) return "not connected";
   if (is_pulsed(point)) return "not connected; a pulse is not written when the device is back";

@@ -16,7 +16,7 @@
 namespace coupler::host {
 namespace {
 
-/// Where several maps can meet: a gateway, or a serial port by its real path.
+/// The place that several maps can share: a gateway, or a serial port by its real path.
 struct Gateway {
   std::size_t units = 0;
   std::size_t connections = std::numeric_limits<std::size_t>::max();  ///< that it allows
@@ -31,7 +31,7 @@ Place place_of(const Connection& connection) {
   return {std::filesystem::weakly_canonical(connection.serial.device, ignored), 0};
 }
 
-/// Not the name of the port, of which there may be several.
+/// Compares all settings but the name of the port, of which there may be several.
 bool have_same_line(const Connection& a, Connection b) {
   if (!a.serial.present() || !b.serial.present()) return a.is_rtu() == b.is_rtu();
   b.serial.device = a.serial.device;

@@ -15,7 +15,8 @@ namespace coupler::host {
 /// one serial port, or with RTU over TCP to the same place, always share one.
 std::vector<std::unique_ptr<Transport>> make_transports(const std::vector<Map>& maps);
 
-/// Which of `maps` are on one line but have different settings of it, and what to do; empty: none.
+/// Returns which of `maps` are on one line but have different settings of it, and what to do; empty if there
+/// are none.
 std::string line_conflict(const std::vector<Map>& maps);
 
 }  // namespace coupler::host

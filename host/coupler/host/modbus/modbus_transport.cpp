@@ -20,7 +20,7 @@ namespace {
 /// A babbler is not listened to for ever.
 constexpr int most_unasked_pieces = 64;
 
-/// Of units on a line behind a gateway, or of the device itself (TCP 4.4.1.2).
+/// Returns whether it is the id of a unit on a line behind a gateway, or of the device itself (TCP 4.4.1.2).
 bool is_tcp_unit(std::uint8_t unit) { return unit == 0 || is_rtu_unit(unit) || unit == 255; }
 
 }  // namespace
@@ -31,7 +31,7 @@ ModbusTransport::ModbusTransport(const Connection& connection)
       unit_(connection.unit),
       tls_(connection.tls.present() ? std::optional(TlsTexts::of(connection.tls)) : std::nullopt),
       timeout_(connection.timeout),
-      // Not the numbers that everybody begins with: bytes of others must not look like a reply.
+      // The first number is not that of other programs, so that bytes for others do not look like a reply.
       transaction_(static_cast<std::uint16_t>(std::chrono::steady_clock::now().time_since_epoch().count())) {}
 
 ModbusTransport::~ModbusTransport() { ModbusTransport::close(); }

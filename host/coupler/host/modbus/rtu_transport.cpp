@@ -37,7 +37,7 @@ bool is_readable(int fd) {
   return ::poll(&wanted, 1, 0) > 0;
 }
 
-/// What a unit repeats of a write (MAP 6.5, 6.6, 6.11, 6.12, 6.16).
+/// Returns what a unit repeats of a write (MAP 6.5, 6.6, 6.11, 6.12, 6.16).
 modbus::Bytes confirmation(modbus::Bytes pdu) {
   const auto function = static_cast<modbus::Function>(pdu[0]);
   const bool several = function == modbus::Function::write_multiple_coils ||
@@ -123,7 +123,7 @@ Result<modbus::Bytes> RtuTransport::exchange(modbus::Bytes pdu) {
   return MultiUnitTransport::exchange(pdu);
 }
 
-/// Whether the line has an echo: a read tells, also one that is refused or not answered.
+/// Finds out whether the line has an echo. A read tells, even one that is refused or not answered.
 Result<> RtuTransport::look_for_echo(std::uint16_t address, Table table) {
   const modbus::ReadRequest request(read_function(table), modbus::Range::of(address, 1));
   if (auto sent = send_frame(request.pdu()); !sent) return sent;

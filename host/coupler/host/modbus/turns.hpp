@@ -12,12 +12,12 @@
 
 namespace coupler::host {
 
-/// Which of the users that wait for a turn is next: writes before reads, each in the order in which they
-/// came. While a user claims all turns, no other gets one, also between two of its requests.
+/// Chooses which of the waiting users gets the next turn: writes before reads, each in the order in which
+/// they came. While a user claims all turns, no other gets one, also not between two of its requests.
 ///
 /// Writes cannot keep reads waiting for ever: between two reads each user writes once at most. If it has
-/// written since the last read, the read that waits longest goes first. Without a read that waits, nobody
-/// holds back.
+/// written since the last read, the read that has waited longest goes first. If no read waits, writes are not
+/// limited.
 class TurnOrder {
  public:
   using Who = const void*;
@@ -46,7 +46,7 @@ class TurnOrder {
   void give_up_claim(Who who) {
     claims_.erase(std::remove(claims_.begin(), claims_.end(), who), claims_.end());
   }
-  /// Whether `who`, who does not wait, may have the turn.
+  /// Returns whether `who`, which does not wait, may have the turn.
   bool is_free_for(Who who) const { return next() == nullptr && (claims_.empty() || claims(who)); }
   /// Null if nobody waits, or if all turns are claimed by others than those that wait.
   Who next() const {

@@ -28,7 +28,7 @@ class Deadline {
   explicit Deadline(std::chrono::milliseconds after, Clock now = time_since_boot)
       : now_(now), at_(now() + after) {}
   friend bool operator<(const Deadline& a, const Deadline& b) { return a.at_ < b.at_; }
-  /// What poll() takes: milliseconds left, rounded up, 0 when it has passed.
+  /// Returns the timeout for poll(): the milliseconds left, rounded up, and 0 when it has passed.
   int left() const {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(at_ - now_());
     return static_cast<int>(std::max<std::chrono::milliseconds::rep>(left.count(), 0));

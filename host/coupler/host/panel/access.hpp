@@ -14,7 +14,7 @@ namespace coupler::host {
 /// none.
 std::string random_key();
 
-/// Whether two texts are equal, in a time that does not say where they differ.
+/// Returns whether two texts are equal, in a time that does not show where they differ.
 bool equal_in_constant_time(std::string_view a, std::string_view b);
 
 /// The key stands behind `#` in the address that the terminal shows, so that no server, proxy or history of
@@ -29,7 +29,7 @@ class Access {
   /// A new token; empty: that is not the key. Of too many that is forgotten which was not shown for longest.
   std::string trade(std::string_view key);
 
-  /// Who shows a token.
+  /// The holder of a token.
   struct Page {
     std::string token;
     unsigned number = 0;  ///< from 1, in the order in which the tokens were given
@@ -44,9 +44,10 @@ class Access {
   unsigned given_ = 0;
 };
 
-/// Whether a request may have come from this panel's own page. `host`: the header; `origin`: empty if there
-/// is none. `local`: the address that the connection came to. A name that somebody else's DNS gives this
-/// machine is none of these, so a foreign page cannot reach the panel by it. `secure`: it is served by HTTPS.
+/// Returns whether a request may have come from this panel's own page. `host` is the header; `origin` is
+/// empty if there is none. `local` is the address that the connection came to. A name that somebody else's
+/// DNS gives this machine is none of these, so a foreign page cannot reach the panel by it. `secure`: the
+/// page is served by HTTPS.
 bool is_own_page(std::string_view host, std::string_view origin, std::string_view local, int port,
                  std::string_view name, bool secure);
 

@@ -43,7 +43,7 @@ class HttpServer final : public httplib::Server {
 
   /// While a request is answered, in its thread: whoever has sent it still waits.
   static bool is_asker_there() { return stream_ != nullptr && stream_->is_writable(); }
-  /// As above: it came without TLS.
+  /// Returns whether the request came without TLS, as above.
   static bool is_plain() { return stream_ == nullptr || stream_->is_plain(); }
 
  private:
@@ -75,7 +75,7 @@ class HttpServer final : public httplib::Server {
   /// Thousands of ranges would be copied; a browser needs none.
   static void without_ranges(httplib::Request& request) { request.ranges.clear(); }
 
-  /// Of the two, that which this version of httplib has: 0.11 to 0.14, then 0.15 to 0.18.
+  /// One of these two exists in this version of httplib: 0.11 to 0.14, then 0.15 to 0.18.
   template <class Stream>
   auto process(Stream& stream, int)
       -> decltype(this->process_request(stream, true, std::declval<bool&>(), without_ranges)) {

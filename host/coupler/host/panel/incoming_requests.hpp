@@ -20,7 +20,8 @@ namespace coupler::host {
 class IncomingRequests {
  public:
   using Handler = std::function<void(std::unique_ptr<RequestStream>)>;
-  /// Of more than these the oldest are dropped: an honest request is there within milliseconds.
+  /// The limit of incoming requests. Of more than these the oldest are dropped: an honest request is complete
+  /// within milliseconds.
   static constexpr std::size_t most = 256;
 
   /// `handle`: called in that thread with each request that is complete.

@@ -16,12 +16,12 @@
 
 namespace coupler::host {
 
-/// What a page shows of a device: the last value of each point, with its quality and its last ten minutes.
-/// The connection's thread gives values; pages wait for news, each at its own pace.
+/// The data that a page shows of a device: the last value of each point, with its quality and its last ten
+/// minutes. The connection's thread adds values. Pages wait for news, each at its own pace.
 class LiveValues : public Sink {
  public:
   using Report = std::function<void(Level, const std::string&)>;
-  /// What `map` views must outlive it.
+  /// The storage of `map` must outlive it.
   LiveValues(const Map& map, Report report);
 
   void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override;

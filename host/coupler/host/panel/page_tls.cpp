@@ -13,7 +13,7 @@
 namespace coupler::host {
 namespace {
 
-/// Who does not speak TLS is spoken to without it, to be told so.
+/// A client that does not speak TLS gets a plain-text error.
 class TlsStream final : public RequestStream {
  public:
   TlsStream(socket_t socket, const std::atomic<bool>& ending, const tls::Context& context)

@@ -10,14 +10,14 @@
 
 namespace coupler::host {
 
-/// What turns HTTP into HTTPS (read_page_tls()). Browsers need no certificate of their own.
+/// The TLS side of HTTPS (read_page_tls()). Browsers need no certificate of their own.
 class PageTls {
  public:
   virtual ~PageTls() = default;
 
-  /// Of a connection that a browser has just made. In any thread.
+  /// Begins TLS on a connection that a browser has just made. Any thread may call it.
   virtual std::unique_ptr<RequestStream> stream(socket_t socket, const std::atomic<bool>& ending) const = 0;
-  /// As PanelServer::objection(), where browsers call it by this name or address.
+  /// See PanelServer::objection(). Browsers reach the panel by this name or address.
   virtual std::optional<std::string> objection(const std::string& host) const = 0;
 };
 

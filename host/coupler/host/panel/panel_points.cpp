@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Of a word that JavaScript can take apart; 0: it is none.
+/// Returns the number of bits in a word that JavaScript can take apart; 0 if it cannot.
 unsigned bits_of(const Point& point) {
   switch (point.count == 1 ? point.format.type : codec::Type::BOOL) {
     case codec::Type::BYTE: return 8;
@@ -31,7 +31,7 @@ bool is_number(const Point& point) {
          point.format.type != codec::Type::STRING && !codec::is_bit_string(point.format.type);
 }
 
-/// What a page asks for where the point can be written.
+/// Returns the input that a page shows for a point that can be written.
 ordered_json write_json(const Point& point, const std::string& range) {
   if (point.count == 1 && point.format.type == codec::Type::BOOL) return {{"kind", "switch"}};
   if (is_number(point)) return {{"kind", "number"}, {"range", range}};

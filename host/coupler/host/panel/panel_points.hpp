@@ -8,8 +8,8 @@
 
 namespace coupler::host {
 
-/// What the page's table says of a device and each point besides its value: JSON. `writes`: the page writes,
-/// too. `warning`: is shown at the top; may be empty.
+/// Returns the JSON for the page's table: the device, and each point without its value. `writes`: the page
+/// writes, too. `warning` is shown at the top, and may be empty.
 std::string panel_points(const Map& map, bool writes, std::string_view warning);
 
 }  // namespace coupler::host

@@ -33,7 +33,7 @@ using httplib::Request;
 using httplib::Response;
 
 constexpr int most_pages = 8;
-/// For requests that are no page's stream.
+/// The number of threads for requests that are not the stream of a page.
 constexpr std::size_t more_workers = 16;
 constexpr std::chrono::seconds heartbeat{1};
 constexpr std::chrono::milliseconds shortest_pause{50};  ///< between two events of a page
@@ -56,10 +56,10 @@ class Server final : public PanelServer {
         values_(values),
         device_(device) {
     http_.set_socket_options([](socket_t socket) {
-      // Not SO_REUSEPORT, as httplib has it: two panels would share a port and its browsers.
+      // SO_REUSEPORT, which httplib sets, is not set here: two panels would share a port and its browsers.
       constexpr int on = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-      // What a slow page has not read is old by the time it does: there shall be little of it.
+      // Data that a slow page has not read is old by the time it reads it, so there should be little of it.
       ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &most_unread, sizeof most_unread);
     });
     http_.set_payload_max_length(RequestStream::largest_body);

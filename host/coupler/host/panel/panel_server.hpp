@@ -12,27 +12,27 @@
 
 namespace coupler::host {
 
-/// Where browsers find the page.
+/// The place at which browsers find the page.
 struct PanelAddress {
   std::string listen = "127.0.0.1";
   int port = 0;        ///< 0: any free one
   std::string name{};  ///< that browsers may call this machine besides its address; empty: none
 };
 
-/// What turns HTTP into HTTPS.
+/// The TLS side of HTTPS.
 class PageTls;
-/// Of the files of a certificate and its key, PEM. The error is one line: which file, what is wrong, and what
-/// to do; or that this build has no TLS.
+/// Reads the files of a certificate and its key, PEM. The error is one line: which file, what is wrong, and
+/// what to do; or that this build has no TLS.
 tl::expected<std::shared_ptr<const PageTls>, std::string> read_page_tls(const std::string& certificate,
                                                                         const std::string& key);
 
-/// What a panel does besides showing values. Calls come from threads of the server.
+/// The actions of a panel besides showing values. Threads of the server make the calls.
 class PanelDevice {
  public:
   virtual ~PanelDevice() = default;
   /// The first page looks, or the last one has left. One call at a time.
   virtual void look(bool /*anybody*/) {}
-  /// Whether pages may write.
+  /// Returns whether pages may write.
   virtual bool writes() const { return false; }
   /// `value`: as parse_value() takes it. It is written within 3 s, or not at all. Waits for the outcome.
   /// `page`: its number, from 1.
@@ -52,10 +52,10 @@ class PanelServer {
                                                                        PanelDevice& device);
   virtual ~PanelServer() = default;
 
-  /// What is to be opened in a browser, with the key.
+  /// Returns the URL to open in a browser, with the key.
   virtual std::string url() const = 0;
-  /// What browsers will say against the page's certificate, whoever issued it, and what to do; nullopt:
-  /// nothing.
+  /// Returns why browsers will object to the page's certificate, whoever issued it, and what to do; nullopt
+  /// if they will not.
   virtual std::optional<std::string> objection() const = 0;
   /// Pages that look at this moment.
   virtual int pages() const = 0;

@@ -36,10 +36,10 @@ class RequestStream : public httplib::Stream {
   short wants() const { return wants_; }
   /// It is given up then.
   Time until() const { return until_; }
-  /// What is read and written is not encrypted.
+  /// Returns whether the data is not encrypted.
   virtual bool is_plain() const { return true; }
 
-  /// Of the request.
+  /// Returns whether bytes of the request are left to read.
   bool is_readable() const final { return taken_ < request_.size(); }
   ssize_t read(char* to, std::size_t size) final;
   /// The other end is there and takes more.
@@ -54,7 +54,7 @@ class RequestStream : public httplib::Stream {
     ssize_t bytes = 0;  ///< 0: none yet, if `wants` says something; otherwise it has ended, or failed
     short wants = 0;    ///< events of poll(2) after which to try again
   };
-  /// What has come, without waiting.
+  /// Reads what has come, without waiting.
   virtual Progress receive(char* to, std::size_t size);
   /// Some of these bytes, as far as they are taken at once.
   virtual Progress give(const char* from, std::size_t size);

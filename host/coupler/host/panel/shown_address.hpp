@@ -5,8 +5,8 @@
 
 namespace coupler::host {
 
-/// What browsers on other machines write for the address at which this one listens: one of its own, if that
-/// is all of them.
+/// Returns the address that browsers on other machines need for the one at which this machine listens: one of
+/// its own, if it listens at all of them.
 std::string shown_address(const std::string& listen);
 
 }  // namespace coupler::host

@@ -32,7 +32,7 @@ std::string row(Moment at, std::string_view point, std::string_view value, std::
                      cell(value), cell(quality), uncertainty);
 }
 
-/// What is not of a point has its words in the column of the quality.
+/// Lines that do not belong to a point have their words in the column of the quality.
 class CsvFormat final : public RecordFormat {
  public:
   std::string head(const record::Head& /*head*/, Moment /*at*/) const override {

@@ -190,8 +190,8 @@ int RecordFile::write_all(std::string_view lines) {
   return error;
 }
 
-/// Of what is to be kept, or of the room that a small disk has for it: one file that fills the disk could not
-/// make room for the next.
+/// Returns a share of what is kept, or of the space that a small disk has: one file that fills the disk could
+/// not make room for the next.
 std::uint64_t RecordFile::share() const {
   std::uint64_t most = limits_.keep;
   std::error_code error;

@@ -30,7 +30,7 @@ class RecordFile {
   RecordFile& operator=(RecordFile&&) = delete;
   ~RecordFile();
 
-  /// What follows is to stand in a new file: the one that is open has its share of what is kept.
+  /// Returns whether the next lines need a new file, because the open one has its share of what is kept.
   bool is_full() const { return !is_stream_ && size_ >= begin_size_ + share_; }
   /// Begins the next file with these lines; the one that is open, if it is empty.
   tl::expected<void, std::string> begin(std::string_view lines);

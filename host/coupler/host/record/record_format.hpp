@@ -16,7 +16,7 @@ namespace coupler::host {
 class RecordFormat {
  public:
   virtual ~RecordFormat() = default;
-  /// What a file begins with.
+  /// Returns the beginning of a file.
   virtual std::string head(const record::Head& head, record::Moment at) const = 0;
   /// `registers`: as TypedValue takes them.
   virtual std::string value(record::Moment at, const Point& point, Span<const std::uint16_t> registers,

@@ -24,7 +24,7 @@ class RecordThread {
   ~RecordThread() { end(); }
   RecordThread(const RecordThread&) = delete;
   RecordThread& operator=(const RecordThread&) = delete;
-  /// What the destructor does, once. False: something is missing at the end.
+  /// Does what the destructor does, once. Returns false if something is missing at the end.
   bool end();
 
   const std::filesystem::path& path() const { return path_; }

@@ -103,7 +103,7 @@ void Recorder::on_online(bool online) {
   if (online) queue(device_line(moment(std::chrono::steady_clock::now())));
 }
 
-/// What makes the next attempts fail is no line of its own.
+/// The reasons for which the next attempts fail are not lines of their own.
 void Recorder::on_loss(const std::string& why) {
   const std::lock_guard lock(mutex_);
   if (ends_ || !std::exchange(awaits_reason_, false)) return;

@@ -22,8 +22,8 @@ class Recorder : public Sink {
  public:
   using Report = std::function<void(Level, const std::string&)>;
 
-  /// What `map` views, and `format`, must outlive it. Time begins at `start`. `report` gets what the device
-  /// reports, in its thread.
+  /// The storage of `map`, and `format`, must outlive it. Time begins at `start`. `report` receives what the
+  /// device reports, in its thread.
   Recorder(const Map& map, std::string device, const RecordFormat& format, Time start, Report report);
 
   void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override;
@@ -47,7 +47,7 @@ class Recorder : public Sink {
   Taken take(Time now);
   /// The lines with which a file begins: its head, and all_values().
   std::string beginning(Time now);
-  /// What is known at this moment, of every point.
+  /// Returns the lines about what is known now of every point.
   std::string all_values(Time now);
   /// take() and beginning() at one moment, so that no change is in both.
   struct Turn {

@@ -170,7 +170,7 @@ class MapFinder {
   Node* node_;
 };
 
-/// What is wrong with settings that name several maps, or an empty text.
+/// Returns what is wrong with settings that name several maps, or an empty text.
 std::string find_conflict(const Map* built_in, const Settings& settings, const Dialect& dialect) {
   if (built_in != nullptr)
     return "this driver has its map built in and takes no other; use coupler_driver for other maps";
@@ -184,7 +184,7 @@ std::string find_conflict(const Map* built_in, const Settings& settings, const D
   return {};
 }
 
-/// What is wrong with the devices, or an empty text.
+/// Returns what is wrong with the devices, or an empty text.
 std::string find_error(const Devices& devices) {
   std::set<std::string_view> names;
   std::vector<Map> maps;

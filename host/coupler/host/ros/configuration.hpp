@@ -31,7 +31,7 @@ tl::expected<std::vector<MapSource>, int> find_maps(const Map* built_in, const S
                                                     const std::function<void(Level, const std::string&)>& log,
                                                     Node* node);
 
-/// Whether a node must be asked for the map.
+/// Returns whether a node must be asked for the map.
 bool is_map_of_a_node(const Map* built_in, const Settings& settings);
 
 std::vector<std::string_view> names_of(const std::vector<MapSource>& sources);
@@ -50,7 +50,8 @@ tl::expected<Devices, std::string> configure(
 
 /// `<name>_driver`: two drivers must not have one name.
 std::string node_name(std::string_view map_name);
-/// Of a device that serves its map itself, as device.launch has it: "coupler_192_168_1_17_driver".
+/// Returns the name of the driver for a device that serves its map itself, as device.launch has it:
+/// "coupler_192_168_1_17_driver".
 std::string node_name_by_address(const Settings& settings);
 
 }  // namespace coupler::host

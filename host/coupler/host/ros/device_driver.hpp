@@ -26,7 +26,7 @@ namespace coupler::host {
 /// that thread as they are decoded.
 class DeviceDriver : public Sink {
  public:
-  /// What follows it, besides ROS.
+  /// The readers of its values besides ROS.
   struct Followed {
     std::optional<std::string> recording;  ///< the path of one
     std::optional<unsigned> panel;         ///< the port of one
@@ -48,7 +48,7 @@ class DeviceDriver : public Sink {
   /// its safe value and has not.
   bool stop();
 
-  /// Of that, what the device needs. In any thread, also while another is in begin().
+  /// Does the part of it that the device needs. Any thread may call it, also while another is in begin().
   bool stop_device() { return thread_.end(); }
 
   /// Publishes the status if it is due, and updates the diagnostics: true if they are to be published at

@@ -35,7 +35,7 @@ class DeviceRecording final : public Follower {
   std::uint64_t judged_ = 0;
 };
 
-/// Of one of several devices: press-NAME.jsonl in place of press.jsonl.
+/// Returns the file of one of several devices: press-NAME.jsonl in place of press.jsonl.
 std::string recording_path(const std::string& path, std::string_view device, bool is_alone);
 
 }  // namespace coupler::host

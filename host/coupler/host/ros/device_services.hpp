@@ -24,14 +24,14 @@ bool can_schedule(const Map& map);
 /// they for it.
 class DeviceServices {
  public:
-  /// What `map` views, and the counts, must outlive it.
+  /// The storage of `map`, and the counts, must outlive it.
   DeviceServices(const Map& map, SubscriberCounts& subscribers) : map_(map), subscribers_(subscribers) {}
   /// Waits for the call in progress. The write that this one waits for must have its result by then.
   ~DeviceServices();
   DeviceServices(const DeviceServices&) = delete;
   DeviceServices& operator=(const DeviceServices&) = delete;
 
-  /// What the services call. None of it waits for anything.
+  /// The functions that the services call. None of them waits for anything.
   struct Device {
     WriteHandler writes;
     std::function<std::future<Calls::Answer>()> reset;      ///< of the coupler's own watchdog
@@ -45,7 +45,7 @@ class DeviceServices {
   /// The device is not called any more.
   void stop();
 
-  /// What a call of `read` waits with. It needs to know whether the device is online, and the values.
+  /// The waiter of calls of `read`. It needs to know whether the device is online, and the values.
   ValueWaiter& value_waiter() { return value_waiter_; }
 
  private:

@@ -24,7 +24,7 @@ class MapDiagnostics {
   /// Without a node nothing is published.
   MapDiagnostics(const Connection& device, Node* node);
 
-  /// What the next message says.
+  /// Sets what the next message says.
   void say(Level level, const std::string& text);
   /// To be called now and then while nothing else publishes the diagnostics.
   void publish_if_due();
@@ -42,7 +42,8 @@ class Diagnostics {
   /// Adds its entries to the node's. What `map` views outlives it.
   Diagnostics(const Map& map, Node& node);
 
-  /// What the next message says. True: it should not wait, since the device came online or went offline.
+  /// Sets what the next message says. Returns true if it should not wait, since the device came online or
+  /// went offline.
   bool update(const DeviceSnapshot& device, const std::vector<PointQuality>& points);
 
  private:

@@ -69,7 +69,7 @@ void shape(Message& message, const Point& point) {
   message.data.resize(point.count);
 }
 
-/// What is wrong with the number of elements, or an empty text.
+/// Returns what is wrong with the number of elements, or an empty text.
 inline std::string wrong_size(std::size_t size, std::size_t expected, std::string_view meaning) {
   if (size == expected) return {};
   return fmt::format("{} elements; send {}{}", size, expected, meaning);

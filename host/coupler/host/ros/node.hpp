@@ -84,7 +84,7 @@ class SubscriberCounts {
   std::function<void(std::uint32_t)> read_;
 };
 
-/// What all subscriptions of a device call.
+/// The functions that all subscriptions of a device call.
 struct WriteHandler {
   std::function<void(const Write&)> accept;
   /// The value cannot be written: the point's index, if there is such a point, what was wrong and the remedy.
@@ -188,7 +188,7 @@ class Node {
   // The log: console and /rosout, from any thread. The text may come from a device, so it is escaped as
   // printable_lines() does.
   virtual void log(Level level, const std::string& text) = 0;
-  /// Whether log_debug() shows anything; costs nothing.
+  /// Returns whether log_debug() shows anything. The call is cheap.
   virtual bool shows_debug() const = 0;
   virtual void log_debug(const std::string& text) = 0;
 };

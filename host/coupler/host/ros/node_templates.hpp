@@ -18,13 +18,13 @@
 
 namespace coupler::host {
 
-/// For a message that has no stamp.
+/// Used for a message that has no stamp.
 struct NoStamp {
   template <class Message>
   void operator()(Message&, Stamp) const {}
 };
 
-/// What a point's publisher does whatever its message is.
+/// The part of a point's publisher that does not depend on its message.
 class CountingPublisher : public PointPublisher {
  public:
   CountingPublisher(const Point& point, std::uint32_t index, SubscriberCounts& subscribers)
@@ -124,7 +124,7 @@ void fill(Response& response, const ScheduleAnswer& answer) {
   response.message = answer.text;
 }
 
-/// What a request of coupler_driver/Schedule says.
+/// Reads a request of coupler_driver/Schedule.
 template <class Request>
 ServiceThread::ScheduleRequest schedule_request(const Request& request) {
   return {request.point, request.value, message_time(request.at), message_time(request.how_long)};
@@ -169,7 +169,7 @@ void fill(Status& status, const DiagnosticEntry& entry) {
   }
 }
 
-/// For Node::advertise_online(): the publisher is one of std_msgs/Bool.
+/// Used by Node::advertise_online(): the publisher is one of std_msgs/Bool.
 template <class Message, class Publisher>
 std::function<void(bool)> online_with(const Publisher& publisher) {
   return [publisher](bool online) {
@@ -179,7 +179,8 @@ std::function<void(bool)> online_with(const Publisher& publisher) {
   };
 }
 
-/// For Node::advertise_status(): the publisher is one of coupler_driver/Status, `now()` the time in messages.
+/// Used by Node::advertise_status(): the publisher is one of coupler_driver/Status, and `now()` is the time
+/// in messages.
 template <class Message, class Publisher, class Clock>
 Node::PublishStatus status_with(const Publisher& publisher, const Map& map, Clock now) {
   return [publisher, now, status = std::make_shared<Status<Message>>(map)](
@@ -191,7 +192,7 @@ Node::PublishStatus status_with(const Publisher& publisher, const Map& map, Cloc
   };
 }
 
-/// For Node::advertise_scheduled(): the publisher is one of coupler_driver/Scheduled.
+/// Used by Node::advertise_scheduled(): the publisher is one of coupler_driver/Scheduled.
 template <class Message, class Publisher>
 Node::PublishScheduled scheduled_with(const Publisher& publisher, const Map& map, const WallTime& wall) {
   return [publisher, &map, &wall](const ScheduledOutcome& outcome) {

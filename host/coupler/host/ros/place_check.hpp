@@ -10,7 +10,8 @@
 
 namespace coupler::host {
 
-/// Of one that is read: it is given once, and its unit answers. `connection` is what the settings make of it.
+/// Returns what is wrong with the place of a device that is read: it has to be given once, and its unit has
+/// to answer. `connection` is the result of the settings.
 std::string place_error(const Settings& settings, const Connection& connection);
 
 /// Nobody answers a broadcast, so nothing may need an answer.

@@ -23,7 +23,7 @@ namespace {
 enum class Stage { starting, exiting, driving, ending };
 std::atomic<Stage> stage{Stage::starting};
 
-// Of the last one; set before it begins.
+// These belong to the last stage, and are set before it begins.
 std::atomic<std::chrono::steady_clock::rep> patient_until{0};  // of ticks()
 std::atomic<int> end_code{0};
 

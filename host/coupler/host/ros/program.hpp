@@ -28,11 +28,11 @@ struct Shutdown {
   /// Before an output may be driven: from now on the shutdown must be orderly. Does not return if a second
   /// signal ends the program at this moment.
   static void begin_driving();
-  /// Whether that was called.
+  /// Returns whether begin_driving() was called.
   static bool is_driving();
 
-  /// What is left to do takes as long as devices, ROS and disks take. After `patience` a signal, SIGALRM too,
-  /// exits with this code: not sooner, since a launch tool may pass on a signal that the terminal has sent,
+  /// The rest takes as long as devices, ROS and disks take. After `patience` a signal, SIGALRM too, exits
+  /// with this code, but not sooner, since a launch tool may pass on a signal that the terminal has sent,
   /// too.
   static void begin_to_end(int exit_code, std::chrono::seconds patience);
 
@@ -45,7 +45,7 @@ struct Shutdown {
   static void request_on_signals();
 };
 
-/// What a driver does first. A signal exits until Shutdown::request_on_signals().
+/// Does what a driver has to do first. A signal exits until Shutdown::request_on_signals().
 void begin_program();
 
 /// From now on no thread waits for whoever reads standard output and standard error, and none ends the
@@ -56,7 +56,7 @@ void never_wait_for_readers();
 /// its thread stands still, with the locks that it holds. The main thread's ends the program at once.
 void end_safely_on_uncaught_exceptions();
 
-/// Where the arguments end the program: prints their text, and returns the exit code.
+/// Prints the text of arguments that end the program, and returns the exit code.
 int end_of(const Options& arguments);
 
 /// To standard error, for what happens before there is a node; escaped as Node::log() does.

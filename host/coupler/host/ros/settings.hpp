@@ -53,7 +53,7 @@ struct SettingKey {
   std::string_view help;
 };
 extern const std::array<SettingKey, 23> setting_keys;
-/// Of all of them, with the aliases.
+/// The names of all settings, with the aliases.
 std::vector<std::string_view> setting_names();
 bool is_setting(std::string_view name);
 /// "there is no such setting; did you mean 'poll'?"
@@ -73,14 +73,14 @@ tl::expected<Settings, std::string> settings_among(
     std::string_view prefix,
     const std::function<ParameterText(const SettingKey& key, const std::string& name)>& text_of);
 
-/// What was set, as set() takes it; nullopt: not set.
+/// Returns what was set, in the form that set() takes; nullopt if it was not set.
 std::optional<std::string> text_of(const Settings& settings, std::string_view key);
 
-/// What is set in `strong`, and the rest of `weak`. `map` and `maps` count as one setting, and so do an
-/// address and a serial port, each with what belongs to it.
+/// Returns what is set in `strong`, and the rest from `weak`. `map` and `maps` count as one setting, and so
+/// do an address and a serial port, each with what belongs to it.
 Settings overlay(Settings weak, const Settings& strong);
 
-/// As if all values of the map had been set.
+/// Makes settings as if all values of the map had been set.
 Settings with_map(Settings settings, const Map& map);
 
 /// Overrides the map's fields. The map then views the settings' texts.

@@ -23,7 +23,7 @@ class TracedTransport : public Transport {
   TracedTransport(std::string name, std::unique_ptr<Transport> transport, Node& log)
       : name_(std::move(name)), transport_(std::move(transport)), log_(log) {}
 
-  /// Of the last exchange(). In its thread only.
+  /// The time at which the last exchange() began. Only its thread may call it.
   Time read_sent_at() const { return read_sent_; }
 
   Result<> connect() override {

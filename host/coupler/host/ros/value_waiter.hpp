@@ -45,7 +45,7 @@ class ValueWaiter {
     changed_.notify_one();
   }
 
-  /// As Sink::on_online(): at first the device is offline.
+  /// See Sink::on_online(). At first the device is offline.
   void set_online(bool online) {
     {
       const std::lock_guard lock(mutex_);

@@ -40,7 +40,7 @@ XmlRpcValue call(const Texts&... texts) {
   return arguments;
 }
 
-/// What the master answers; nothing if it is not there or reports an error.
+/// Returns what the master answers, and nothing if it is not there or reports an error.
 std::optional<XmlRpcValue> ask_master(const std::string& method, const XmlRpcValue& arguments) {
   XmlRpcValue response;
   XmlRpcValue answer;
@@ -49,7 +49,7 @@ std::optional<XmlRpcValue> ask_master(const std::string& method, const XmlRpcVal
   return answer;
 }
 
-/// Of the list of [name, [node, …]] the names that have this node.
+/// Returns the names in the list of [name, [node, …]] that have this node.
 std::vector<std::string> own_of(XmlRpcValue& all) {
   std::vector<std::string> own;
   for (int i = 0; i < all.size(); ++i) {
@@ -78,7 +78,8 @@ std::vector<DuplicateDriver> duplicates_of(const std::vector<std::string>& own, 
   return duplicates;
 }
 
-/// As the master does when there is a new publisher: this node connects to those that it does not know yet.
+/// Does what the master does when there is a new publisher: this node connects to those that it does not know
+/// yet.
 void connect_to_publishers(const std::string& own_uri, const std::string& topic,
                            const XmlRpcValue& publishers) {
   std::string host;
@@ -159,7 +160,7 @@ void MasterWatch::try_check() {
   }
 }
 
-/// What the master knows changes seldom, and may be much.
+/// The master's data changes seldom, and may be large.
 void MasterWatch::update() {
   if (updates_++ % checks_per_update != 0) return;
   registrations_.update();

@@ -11,8 +11,8 @@
 
 namespace coupler::host {
 
-/// What the ROS master knows of this node: topics, services and the node's parameters. roscpp registers them
-/// once; a master that starts again knows nothing of them.
+/// Watches what the ROS master knows of this node: topics, services and the node's parameters. roscpp
+/// registers them once, and a master that starts again knows nothing of them.
 class Registrations {
  public:
   enum class Known { yes, no, by_another, no_master };

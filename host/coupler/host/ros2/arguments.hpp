@@ -21,8 +21,8 @@ struct Arguments : Options {
 /// text shows ROS 2's. `arguments[0]` is the program.
 Arguments parse_arguments(Span<char* const> arguments);
 
-/// What to do where rcl refuses arguments with this text, whose last part may be about characters ("lexeme
-/// type 19"); empty where the text says it.
+/// Returns what to do if rcl refuses arguments with this text, whose last part may be about characters
+/// ("lexeme type 19"); empty if the text says it.
 std::string_view remedy_of(std::string_view refusal);
 
 }  // namespace coupler::host

@@ -23,7 +23,7 @@ namespace srv = rcl_interfaces::srv;
 
 constexpr std::size_t events_depth = 1000;  ///< as of every node
 
-/// Whether list_parameters() wants a name: `depth` counts the dots behind the prefix; 0: any number.
+/// Returns whether list_parameters() wants a name. `depth` counts the dots behind the prefix; 0: any number.
 bool is_listed(const std::string& name, const std::vector<std::string>& prefixes, std::uint64_t depth) {
   const auto dots = [](const std::string& text) {
     return static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '.'));

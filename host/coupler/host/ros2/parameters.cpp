@@ -74,7 +74,7 @@ bool is_meant_for_a_driver(const GivenParameters::Section& section) {
   });
 }
 
-/// What is wrong where YAML has read a text as something else, or an empty text.
+/// Returns what is wrong if YAML has read a text as something else, or an empty text.
 std::string wrong_kind(const SettingKey& key, const GivenParameter& one) {
   const bool is_text = key.kind == SettingKey::Kind::text && key.key != "verify" && key.key != "rs485";
   if (!is_text || (one.kind != Kind::boolean && one.kind != Kind::real)) return {};

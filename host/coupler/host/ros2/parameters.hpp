@@ -27,7 +27,7 @@ struct GivenParameter {
 /// The parameters that the call gives: -p NAME:=VALUE, and the sections of --params-file.
 class GivenParameters {
  public:
-  /// Of one node, or of all that match a pattern, as "/**".
+  /// The parameters of one node, or of all that match a pattern, as "/**".
   struct Section {
     std::string node;
     std::vector<GivenParameter> parameters;
@@ -37,8 +37,8 @@ class GivenParameters {
   /// Throws rcl::Error.
   static GivenParameters of(const rcl_arguments_t& arguments);
 
-  /// What holds for a node, "/cell/press_driver", in the order in which it was given: the last one counts.
-  /// An empty name: a node whose name is not known yet.
+  /// Returns the parameters for a node, "/cell/press_driver", in the order in which they were given: the last
+  /// one counts. An empty name is that of a node whose name is not known yet.
   std::vector<GivenParameter> for_node(std::string_view full_name) const;
 
   /// A node, not a pattern, whose parameters are those of a driver; empty: there is none.

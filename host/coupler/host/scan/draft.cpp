@@ -137,7 +137,7 @@ class Writer {
     line(table, named.at.range, named.name, options, value_text(named.at));
   }
 
-  /// Whether the device's order gives it already.
+  /// Returns whether the device's order gives it already.
   bool is_given(const Candidate& candidate) const {
     const std::vector<Candidate> alone{candidate};
     return choose(alone, order_) != nullptr;

@@ -10,7 +10,7 @@
 
 namespace coupler::scan {
 
-/// What to write behind its name in a map: "{address: 100, type: REAL, order: CDAB}".
+/// Returns what to write behind its name in a map: "{address: 100, type: REAL, order: CDAB}".
 std::string point_text(const Candidate& candidate, bool with_order);
 
 /// The value as it was read, in as few digits as its type needs: "230.4".

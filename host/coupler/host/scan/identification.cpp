@@ -10,7 +10,7 @@ namespace {
 
 using Access = modbus::ReadDeviceIdentification::Access;
 
-/// Whether the device has this category.
+/// Reads the objects of a category. Returns whether the device has it.
 bool read_stream(const AskIdentification& ask, Access access, std::map<std::uint8_t, std::string>& objects) {
   for (std::optional<std::uint8_t> from = std::uint8_t{0}; from;) {
     auto page = ask({access, *from});

@@ -49,7 +49,7 @@ class ScanProgress {
   virtual void begins(std::string_view step) = 0;
   /// Roughly `done` of `total` are done, with `requests` since the start.
   virtual void moved(std::uint32_t done, std::uint32_t total, std::uint64_t requests) = 0;
-  /// Whether the scan is to end: no further request is made.
+  /// Returns whether the scan has to end. Then no further request is sent.
   virtual bool wants_end() const = 0;
 };
 

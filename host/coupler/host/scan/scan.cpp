@@ -6,7 +6,7 @@
 namespace coupler::scan {
 namespace {
 
-/// Whether the unit is there; nullopt: the scan has to end.
+/// Returns whether the unit is there; nullopt if the scan has to end.
 std::optional<bool> ask_unit(Prober& prober, bool is_only_one) {
   for (const Table table :
        {Table::holding_registers, Table::input_registers, Table::coils, Table::discrete_inputs}) {

@@ -13,7 +13,7 @@
 
 namespace coupler::scan {
 
-/// What to look for.
+/// The task of a scan.
 struct Task {
   std::vector<std::uint8_t> units{1, 255, 0};          ///< in this order; the first that answers is scanned
   modbus::Range window = modbus::Range::of(0, 10000);  ///< of each table

@@ -98,7 +98,7 @@ void TableScan::look_at(modbus::Range block) {
   if (try_some(block)) walk(block);
 }
 
-/// Whether addresses were tried, and all of them can be read.
+/// Tries some addresses of a block. Returns whether there were any, and all of them can be read.
 bool TableScan::try_some(modbus::Range block) {
   std::uint32_t tried = 0;
   std::uint32_t given = 0;

@@ -14,7 +14,7 @@
 
 namespace coupler::scan {
 
-/// What was found in one table.
+/// The result for one table.
 class TableFindings {
  public:
   TableFindings(Table table, modbus::Range window);
@@ -25,7 +25,7 @@ class TableFindings {
 
   enum class Seen : std::uint8_t { not_asked, readable, refused };
   Seen seen(std::uint32_t address) const { return seen_[address - window_.start()]; }
-  /// Of a readable address; a bit is 0 or 1.
+  /// Returns the value of a readable address; a bit is 0 or 1.
   std::uint16_t value(std::uint32_t address) const { return values_[address - window_.start()]; }
 
   void add_values(modbus::Range range, const std::uint16_t* values);
@@ -34,7 +34,7 @@ class TableFindings {
   void add_seam(std::uint32_t address) { seams_.insert(address); }
 
   std::uint32_t count(Seen seen) const;
-  /// What can be read: addresses that follow each other, cut at the seams.
+  /// Returns the ranges that can be read: addresses that follow each other, cut at the seams.
   std::vector<modbus::Range> readable() const;
   /// Addresses between readable ones that were all refused.
   std::vector<modbus::Range> holes() const;
@@ -51,7 +51,7 @@ class TableFindings {
   std::set<std::uint32_t> seams_;
 };
 
-/// What one read may ask for, of bits or of registers.
+/// The limit of one read, in bits or registers.
 struct Largest {
   std::uint32_t count;      ///< no more is asked for
   bool is_limited = false;  ///< the device refuses more; the protocol would allow it
@@ -63,7 +63,7 @@ struct LargestReads {
   Largest& of(Table table) { return holds_bits(table) ? bits : registers; }
 };
 
-/// Where whole blocks are refused, this many addresses from the first one on are all tried.
+/// If whole blocks are refused, so many addresses from the first one on are all tried.
 constexpr std::uint32_t first_addresses = 100;
 /// This far around a readable address all are tried.
 constexpr std::uint32_t neighbourhood = 16;

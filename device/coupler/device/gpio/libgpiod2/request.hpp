@@ -55,7 +55,7 @@ tl::expected<Request, std::string> request(const std::vector<LineSpec>& lines);
 /// for as many different sets of flags as this, and the levels of outputs.
 constexpr std::size_t max_kinds = 5;
 
-/// Whether two lines differ in what takes an attribute.
+/// Returns whether two lines differ in a setting that needs an attribute.
 bool same_kind(const LineSpec& a, const LineSpec& b);
 
 }  // namespace coupler::device::libgpiod2

@@ -23,7 +23,7 @@ inline std::string take_error_text() {
   return text;
 }
 
-/// What could not be made at the start, and why.
+/// Thrown if something could not be made at the start. The text says what, and why.
 class Error : public std::runtime_error {
  public:
   Error(const std::string& text, rcl_ret_t result) : std::runtime_error(text), result_(result) {}
@@ -38,7 +38,7 @@ inline void check(rcl_ret_t result, const std::string& what) {
   if (result != RCL_RET_OK) throw Error(what + ": " + take_error_text(), result);
 }
 
-/// For destructors: nothing can be done about a failure there.
+/// Used by destructors, which can do nothing about a failure.
 inline void ignore(rcl_ret_t result) {
   if (result != RCL_RET_OK) rcl_reset_error();
 }

@@ -15,12 +15,12 @@
 
 namespace coupler::rcl {
 
-/// What the middleware has for this program: messages, requests, events. The middleware's threads only note
-/// that there is something; the inbox has one thread that takes it. (A wait set would have to be filled with
-/// each of some thousand entities at each wake-up.)
+/// The inbox of what the middleware has for this program: messages, requests, events. The middleware's
+/// threads only note that there is something, and the inbox has one thread that takes it. (A wait set would
+/// have to be filled with each of some thousand entities at each wake-up.)
 class Inbox {
  public:
-  /// What the inbox takes from, as long as it exists.
+  /// A source from which the inbox takes as long as it exists.
   class Source {
    public:
     /// `set_callback`: rcl's function for it. `take` takes one thing, in the inbox's thread; false: there is

@@ -44,9 +44,9 @@ class Node {
 
   /// To the terminal and to /rosout. Any thread may call. `severity`: rcutils' RCUTILS_LOG_SEVERITY.
   void log(int severity, const std::string& text) const;
-  /// Of the last call in this thread that failed; at most one line a second.
+  /// Logs the error of the last call in this thread that failed, at most one line a second.
   void log_failure(const std::string& what);
-  /// Of a call of rcl that takes something: `nothing` is its result where there was nothing, any other
+  /// Checks a call of rcl that takes something. `nothing` is its result if there was nothing; any other
   /// failure is logged.
   bool has_taken(rcl_ret_t result, rcl_ret_t nothing, const char* failure, const char* name);
 

@@ -32,7 +32,7 @@ inline rmw_qos_profile_t latched() {
   return qos;
 }
 
-/// As of /clock.
+/// Returns the QoS of /clock.
 inline rmw_qos_profile_t best_effort(std::size_t depth) {
   rmw_qos_profile_t qos = reliable(depth);
   qos.reliability = RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT;
@@ -43,7 +43,7 @@ inline rmw_qos_profile_t best_effort(std::size_t depth) {
 /// as "durability".
 using OnIncompatible = std::function<void(const std::string& topic, const std::string& policy)>;
 
-/// Of a publisher. Called in the inbox's thread; must not wait for anything.
+/// The events of a publisher. The inbox's thread makes the calls, and they must not wait for anything.
 struct PublisherEvents {
   std::function<void(bool came)> matched{};  ///< a subscription has come, or gone
   OnIncompatible incompatible{};
