@@ -154,8 +154,8 @@ def a_damaged_request_is_told(path):
 def a_unit_is_found_by_its_port():
     """A line without hardware has one rate; what counts is that units are asked until one answers."""
     with unit_on_a_line(RtuServer, [UNIT]) as (line, _):
-        found = run_hasty("probe", line.port, "--units", "15-18", "--baud", "9600,115200", "--parity", "none", "--to", "20",
-                          "--rate", "1000")
+        found = run("probe", line.port, "--units", f"{UNIT - 1}-{UNIT + 1}", "--baud", "9600,115200", "--parity", "none",
+                    "--to", "20", "--rate", "1000", "--timeout", "4")
         checks.equal("probe by the device's path: the unit", f"units that answer at 9600 8N1: {UNIT}\n" in found.stdout, True)
 
 
