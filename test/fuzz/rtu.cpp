@@ -22,14 +22,7 @@ using Frame = std::array<std::uint8_t, max_rtu_size>;
 constexpr std::uint8_t unit = 17;
 
 Outcome feed(RtuFramer& framer, Bytes bytes) {
-  for (std::size_t at = 0; at < bytes.size();) {
-    const auto room = framer.room();
-    require(!room.empty(), "there is always room");
-    const Bytes part = bytes.sub(at, std::min(room.size(), bytes.size() - at));
-    std::copy(part.begin(), part.end(), room.begin());
-    framer.filled(part.size());
-    at += part.size();
-  }
+  fill(framer, bytes, [] { return true; });
   return framer.next();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a device sends over Modbus/TCP, in pieces of any size: what is taken for a reply has come as a whole,
-// with the right transaction and unit, and a reply to the next request is found whatever came before.
+// A device sends anything over Modbus/TCP, in pieces of any size. What the framer takes for a reply has come
+// as a whole, with the right transaction and unit, and the reply to the next request is found whatever came
+// before.
 //   size of the request's PDU, itself, then pieces: size and bytes
 #include <algorithm>
 #include <array>
@@ -26,15 +27,8 @@ constexpr std::uint8_t unit = 17;
 
 Outcome feed(TcpFramer& framer, const TcpRequest& request, Bytes bytes) {
   auto outcome = framer.next(request);
-  for (std::size_t at = 0; at < bytes.size() && outcome == Outcome::nothing;) {
-    const auto room = framer.room();
-    require(!room.empty(), "there is always room");
-    const Bytes part = bytes.sub(at, std::min(room.size(), bytes.size() - at));
-    std::copy(part.begin(), part.end(), room.begin());
-    framer.filled(part.size());
-    at += part.size();
-    outcome = framer.next(request);
-  }
+  if (outcome != Outcome::nothing) return outcome;
+  fill(framer, bytes, [&] { return (outcome = framer.next(request)) == Outcome::nothing; });
   return outcome;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "coupler/base/span.hpp"
 #include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/pdu.hpp"
+#include "coupler/modbus/receive_buffer.hpp"
 
 namespace coupler::modbus {
 
@@ -17,6 +17,15 @@ struct Frame {
   std::uint8_t unit = 0;
   Bytes pdu;
 };
+
+// Where the fields of the MBAP header stand, and what follows it.
+constexpr std::size_t at_protocol = 2;
+constexpr std::size_t at_length = 4;
+constexpr std::size_t at_unit = 6;
+
+/// Returns the size of an ADU, of which at least the first `at_unit` bytes are there; 0 if its header is none
+/// of Modbus/TCP: a protocol that is not 0, or a length outside 2 … 254.
+std::size_t adu_size(Bytes adu);
 
 /// Writes the MBAP header of a PDU of `pdu_size` bytes: the first mbap_size bytes of an ADU.
 void put_header(const Frame& to, std::size_t pdu_size, std::uint8_t* adu);
@@ -34,25 +43,23 @@ class Framer {
 
   /// The place for the next bytes. It is never empty after next() found nothing, because the buffer holds the
   /// longest ADU. The call invalidates frame().
-  Span<std::uint8_t> room();
-  void filled(std::size_t bytes);
+  Span<std::uint8_t> room() { return buffer_.room(); }
+  void filled(std::size_t bytes) { buffer_.filled(bytes); }
 
   Outcome next();
   /// The frame that next() found; its PDU is valid until next() or room() is called.
   const Frame& frame() const { return frame_; }
 
   /// Part of a frame is there and waits for the rest.
-  bool is_partial() const { return begin_ != end_; }
+  bool is_partial() const { return !rest().empty(); }
 
   /// The bytes that were filled in and are not part of a frame that next() has found.
-  Bytes rest() const { return Bytes(buffer_.data() + begin_, end_ - begin_); }
+  Bytes rest() const { return buffer_.bytes(); }
 
-  void reset() { begin_ = end_ = 0; }
+  void reset() { buffer_.clear(); }
 
  private:
-  std::array<std::uint8_t, max_adu_size> buffer_{};
-  std::size_t begin_ = 0;
-  std::size_t end_ = 0;
+  ReceiveBuffer<max_adu_size> buffer_;
   Frame frame_;
 };
 

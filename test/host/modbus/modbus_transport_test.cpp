@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <future>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "test/host/modbus/modbus_server.hpp"
 
@@ -24,6 +27,24 @@ Connection connection_to(std::uint16_t port, milliseconds timeout = milliseconds
   connection.timeout = timeout;
   return connection;
 }
+
+using Adu = std::vector<std::uint8_t>;
+
+/// Answers each request of twelve bytes with what `answer` makes of it.
+class Answering {
+ public:
+  explicit Answering(std::function<Adu(const Adu& query)> answer)
+      : server_([answer = std::move(answer)](int fd) {
+          Adu query(12);
+          if (::recv(fd, query.data(), query.size(), MSG_WAITALL) != 12) return false;
+          const Adu reply = answer(query);
+          return ::send(fd, reply.data(), reply.size(), MSG_NOSIGNAL) > 0;
+        }) {}
+  std::uint16_t port() const { return server_.port(); }
+
+ private:
+  test::LoopbackServer server_;
+};
 
 template <class E>
 bool is(const Result<>& result) {
@@ -115,11 +136,9 @@ TEST_F(ModbusTransportTest, The_beginning_of_time_has_passed_and_its_end_is_far)
 }
 
 TEST(ModbusTransport, A_late_answer_to_an_earlier_write_is_a_bad_frame) {
-  test::LoopbackServer confused([](int fd) {
-    std::uint8_t query[12];
-    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+  const Answering confused([](Adu query) {
     query[1] = static_cast<std::uint8_t>(query[1] - 1);  // the transaction before
-    return ::send(fd, query, sizeof query, MSG_NOSIGNAL) > 0;
+    return query;
   });
   ModbusTransport transport(connection_to(confused.port()));
   ASSERT_TRUE(transport.connect());
@@ -129,12 +148,8 @@ TEST(ModbusTransport, A_late_answer_to_an_earlier_write_is_a_bad_frame) {
 }
 
 TEST(ModbusTransport, An_exception_code_that_no_specification_has_is_told) {
-  test::LoopbackServer odd([](int fd) {
-    std::uint8_t query[12];
-    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
-    const std::uint8_t reply[] = {query[0], query[1], 0, 0, 0, 3, query[6], std::uint8_t(query[7] | 0x80),
-                                  0x60};
-    return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
+  const Answering odd([](const Adu& query) {
+    return Adu{query[0], query[1], 0, 0, 0, 3, query[6], std::uint8_t(query[7] | 0x80), 0x60};
   });
   ModbusTransport transport(connection_to(odd.port()));
   ASSERT_TRUE(transport.connect());
@@ -144,12 +159,8 @@ TEST(ModbusTransport, An_exception_code_that_no_specification_has_is_told) {
 }
 
 TEST(ModbusTransport, A_code_that_libmodbus_keeps_to_itself_is_told) {
-  test::LoopbackServer odd([](int fd) {
-    std::uint8_t query[12];
-    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
-    const std::uint8_t reply[] = {query[0], query[1], 0, 0, 0, 3, query[6], std::uint8_t(query[7] | 0x80),
-                                  0x60};
-    return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
+  const Answering odd([](const Adu& query) {
+    return Adu{query[0], query[1], 0, 0, 0, 3, query[6], std::uint8_t(query[7] | 0x80), 0x60};
   });
   ModbusTransport transport(connection_to(odd.port()));
   ASSERT_TRUE(transport.connect());
@@ -208,12 +219,7 @@ TEST(ModbusTransport, A_device_that_speaks_TLS_at_this_port_is_named) {
 }
 
 TEST(ModbusTransport, A_reply_to_another_request_is_a_bad_frame) {
-  test::LoopbackServer confused([](int fd) {
-    std::uint8_t query[12];
-    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
-    const std::uint8_t reply[] = {0xEE, 0xEE, 0, 0, 0, 5, 1, 3, 2, 0, 7};
-    return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
-  });
+  const Answering confused([](const Adu&) { return Adu{0xEE, 0xEE, 0, 0, 0, 5, 1, 3, 2, 0, 7}; });
   ModbusTransport transport(connection_to(confused.port()));
   ASSERT_TRUE(transport.connect());
   std::uint16_t word = 0;
@@ -228,12 +234,10 @@ TEST(ModbusTransport, A_reply_whose_header_does_not_fit_is_a_bad_frame) {
   };
   for (const Case& wrong : {Case{"protocol", 3, 1}, Case{"length", 5, 6}, Case{"unit", 6, 9}}) {
     SCOPED_TRACE(wrong.what);
-    test::LoopbackServer sloppy([&wrong](int fd) {
-      std::uint8_t query[12];
-      if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
-      std::uint8_t reply[] = {query[0], query[1], 0, 0, 0, 5, query[6], 3, 2, 0, 7};
+    const Answering sloppy([&wrong](const Adu& query) {
+      Adu reply{query[0], query[1], 0, 0, 0, 5, query[6], 3, 2, 0, 7};
       reply[wrong.at] = wrong.value;
-      return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
+      return reply;
     });
     ModbusTransport transport(connection_to(sloppy.port()));
     ASSERT_TRUE(transport.connect());
@@ -245,11 +249,9 @@ TEST(ModbusTransport, A_reply_whose_header_does_not_fit_is_a_bad_frame) {
 }
 
 TEST(ModbusTransport, A_confirmation_of_another_value_is_told_with_that_value) {
-  test::LoopbackServer stubborn([](int fd) {
-    std::uint8_t query[12];
-    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
+  const Answering stubborn([](Adu query) {
     query[11] = 9;
-    return ::send(fd, query, sizeof query, MSG_NOSIGNAL) > 0;
+    return query;
   });
   ModbusTransport transport(connection_to(stubborn.port()));
   ASSERT_TRUE(transport.connect());
@@ -260,11 +262,8 @@ TEST(ModbusTransport, A_confirmation_of_another_value_is_told_with_that_value) {
 }
 
 TEST(ModbusTransport, Bytes_that_nobody_asked_for_are_discarded_and_counted) {
-  test::LoopbackServer babbler([](int fd) {
-    std::uint8_t query[12];
-    if (::recv(fd, query, sizeof query, MSG_WAITALL) != sizeof query) return false;
-    const std::uint8_t reply[] = {query[0], query[1], 0, 0, 0, 5, query[6], 3, 2, 0, 7, 'a', 'b', 'c'};
-    return ::send(fd, reply, sizeof reply, MSG_NOSIGNAL) > 0;
+  const Answering babbler([](const Adu& query) {
+    return Adu{query[0], query[1], 0, 0, 0, 5, query[6], 3, 2, 0, 7, 'a', 'b', 'c'};
   });
   ModbusTransport transport(connection_to(babbler.port()));
   ASSERT_TRUE(transport.connect());

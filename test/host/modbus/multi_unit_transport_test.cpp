@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is right for a reply, over Modbus/TCP and RTU.
+// The checks that a reply has to pass, over Modbus/TCP and RTU.
 #include "coupler/host/modbus/multi_unit_transport.hpp"
 
 #include <gtest/gtest.h>
@@ -73,6 +73,14 @@ TEST_F(MultiUnitTransportTest, What_does_not_answer_the_request_is_a_bad_frame) 
     EXPECT_TRUE(is<BadFrame>(read()));
   }
   EXPECT_EQ(word, 0);
+}
+
+TEST_F(MultiUnitTransportTest, What_was_asked_and_what_came_is_shown_of_a_file_too) {
+  transport.reply = {0x14, 1, 2};
+  const auto read = transport.read_file_record(1, 0, {&word, 1});
+  ASSERT_TRUE(is<BadFrame>(read));
+  EXPECT_EQ(to_string(read.error()),
+            "malformed reply: not the reply to this request; asked 14 07 06 00 01 00 00 00 01, got 14 01 02");
 }
 
 TEST_F(MultiUnitTransportTest, An_exception_is_an_error_with_its_code) {

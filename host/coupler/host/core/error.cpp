@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/core/error.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace coupler::host {
@@ -52,5 +54,23 @@ bool has_remedy(const Error& error) {
 }
 
 std::string to_string(const Error& error) { return std::visit(Text{}, error); }
+
+std::string shown_bytes(modbus::Bytes bytes) {
+  constexpr std::size_t most = 16;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(bytes.size(), most); ++i)
+    text += fmt::format("{}{:02x}", i > 0 ? " " : "", bytes[i]);
+  return bytes.size() > most ? fmt::format("{} … ({} bytes)", text, bytes.size()) : text;
+}
+
+BadFrame bad_reply(std::string_view what, modbus::Bytes asked, modbus::Bytes came) {
+  return {fmt::format("{}; asked {}, got {}", what, shown_bytes(asked), shown_bytes(came))};
+}
+
+Error error_of(const modbus::ReplyError& why, modbus::Bytes asked, modbus::Bytes came) {
+  if (why.exception) return ExceptionReply{*why.exception};
+  if (why.other_value) return ExceptionReply{static_cast<modbus::Exception>(0), why.other_value};
+  return bad_reply("not the reply to this request", asked, came);
+}
 
 }  // namespace coupler::host

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 
 #include <tl/expected.hpp>
@@ -74,5 +75,14 @@ bool has_remedy(const Error& error);
 
 /// Returns a text as "exception 02 (illegal data address)" or "no reply within 3000 ms".
 std::string to_string(const Error& error);
+
+/// Shows at most sixteen bytes, as in "03 04 00 14".
+std::string shown_bytes(modbus::Bytes bytes);
+
+/// Makes an error that shows the request and the reply: `asked` and `came` are two PDUs, or two ADUs.
+BadFrame bad_reply(std::string_view what, modbus::Bytes asked, modbus::Bytes came);
+
+/// Makes the error for the PDU `came`, which does not answer the PDU `asked` as it should.
+Error error_of(const modbus::ReplyError& why, modbus::Bytes asked, modbus::Bytes came);
 
 }  // namespace coupler::host

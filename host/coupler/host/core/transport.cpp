@@ -11,16 +11,10 @@
 namespace coupler::host {
 namespace {
 
-/// exchange() checks only the function code of other replies than those to FC 1 to 6, 15, 16 and 22.
-Error error_in(const modbus::ReplyError& error) {
-  if (error.exception) return ExceptionReply{*error.exception};
-  return BadFrame{"not the reply to this request"};
-}
-
 template <class Taken>
-Result<> result(const Taken& taken) {
+Result<> result(const Taken& taken, modbus::Bytes asked, modbus::Bytes came) {
   if (taken) return {};
-  return tl::make_unexpected(error_in(taken.error()));
+  return tl::make_unexpected(error_of(taken.error(), asked, came));
 }
 
 }  // namespace
@@ -29,14 +23,14 @@ Result<> Transport::read_bits(Table table, modbus::Range range, std::uint8_t* bi
   const modbus::ReadRequest request(read_function(table), range);
   const auto reply = exchange(request.pdu());
   if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::take_bits(request, *reply, bits));
+  return result(modbus::take_bits(request, *reply, bits), request.pdu(), *reply);
 }
 
 Result<> Transport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
   const modbus::ReadRequest request(read_function(table), range);
   const auto reply = exchange(request.pdu());
   if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::take_registers(request, *reply, registers));
+  return result(modbus::take_registers(request, *reply, registers), request.pdu(), *reply);
 }
 
 Result<> Transport::read(Table table, modbus::Range range, std::uint16_t* values) {
@@ -53,7 +47,7 @@ Result<> Transport::read_file_record(std::uint16_t file, std::uint16_t record,
   modbus::build_file_request({file, record, static_cast<std::uint16_t>(registers.size())}, pdu);
   const auto reply = exchange(pdu);
   if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::parse_file_reply(*reply, registers));
+  return result(modbus::parse_file_reply(*reply, registers), pdu, *reply);
 }
 
 Result<> Transport::receive() {
@@ -66,7 +60,7 @@ Result<modbus::ScheduleReply> Transport::schedule(const modbus::ScheduleRequest&
   const auto reply = exchange(request.pdu());
   if (!reply) return tl::make_unexpected(reply.error());
   const auto parsed = modbus::parse_schedule_reply(*reply);
-  if (!parsed) return tl::make_unexpected(error_in(parsed.error()));
+  if (!parsed) return tl::make_unexpected(error_of(parsed.error(), request.pdu(), *reply));
   return *parsed;
 }
 

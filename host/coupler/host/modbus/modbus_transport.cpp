@@ -110,7 +110,6 @@ Result<> ModbusTransport::make_ready() {
 Result<> ModbusTransport::discard_unasked() {
   for (int piece = 0; piece < most_unasked_pieces; ++piece) {
     framer_.drop();
-    discarded_ = framer_.skipped();
     const auto room = framer_.room();
     const auto got = ::recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
     if (got == 0) return failed(TransportFailure{"the device closed the connection"});
@@ -138,7 +137,6 @@ Result<modbus::Bytes> ModbusTransport::await_reply(const TcpRequest& request, De
                                                    bool has_come) {
   for (bool waits = !has_come;;) {
     const auto outcome = framer_.next(request);
-    discarded_ = framer_.skipped();
     if (outcome == TcpFramer::Outcome::reply) return framer_.pdu();
     if (outcome == TcpFramer::Outcome::bad) return tl::make_unexpected(framer_.problem());
     if (waits && std::exchange(has_come, false)) deadline = std::min(deadline, Deadline(timeout_));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -31,7 +30,7 @@ class ModbusTransport : public MultiUnitTransport {
   std::optional<Certificates> certificates() const override;
   std::optional<WaitAnswer> take_wait_answer() override { return std::exchange(wait_answer_, std::nullopt); }
   Result<> discard_unasked() override;
-  std::uint64_t discarded() const override { return discarded_; }
+  std::uint64_t discarded() const override { return framer_.skipped(); }
   Woken wait_until(Time time) override;
   void wake() override { wakeup_.call(); }
 
@@ -84,7 +83,6 @@ class ModbusTransport : public MultiUnitTransport {
   TcpRequest sent_;            ///< its answer is awaited
   Deadline answer_by_{std::chrono::milliseconds(0)};
   TcpFramer framer_;
-  std::atomic<std::uint64_t> discarded_{0};
   std::optional<Wait> wait_;
   std::optional<WaitAnswer> wait_answer_;  ///< until it is taken
   /// Between the owner and other threads, of what follows; never held during a request.

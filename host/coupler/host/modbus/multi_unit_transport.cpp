@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/modbus/multi_unit_transport.hpp"
 
-#include "coupler/host/modbus/bad_reply.hpp"
 #include "coupler/host/modbus/modbus_transport.hpp"
 #include "coupler/host/modbus/rtu_transport.hpp"
 #include "coupler/modbus/client.hpp"
@@ -26,11 +25,8 @@ Result<modbus::Bytes> MultiUnitTransport::receive_pdu() {
   auto reply = receive_reply();
   if (!reply) return reply;
   const auto answers = modbus::check_reply(sent(), *reply);
-  if (answers) return reply;
-  if (answers.error().exception) return fail(ExceptionReply{*answers.error().exception});
-  if (answers.error().other_value)
-    return fail(ExceptionReply{static_cast<modbus::Exception>(0), answers.error().other_value});
-  return fail(bad_reply("not the reply to this request", sent(), *reply));
+  if (!answers) return tl::make_unexpected(error_of(answers.error(), sent(), *reply));
+  return reply;
 }
 
 std::unique_ptr<MultiUnitTransport> make_transport(const Connection& connection) {

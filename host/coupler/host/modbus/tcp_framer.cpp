@@ -2,40 +2,41 @@
 #include "coupler/host/modbus/tcp_framer.hpp"
 
 #include <algorithm>
-#include <cassert>
-#include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "coupler/host/modbus/bad_reply.hpp"
 #include "coupler/modbus/frame.hpp"
 
 namespace coupler::host {
 namespace {
 
-constexpr std::size_t at_protocol = 2;
-constexpr std::size_t at_length = 4;
-constexpr std::size_t at_unit = 6;
+using modbus::at_length;
+using modbus::at_protocol;
+using modbus::at_unit;
 constexpr std::size_t at_function = 7;
 constexpr std::size_t at_count = 8;          ///< of a reply to a read; of an exception: its code
 constexpr std::size_t exception_length = 3;  ///< the unit, the function code and that of the exception
-constexpr std::size_t exception_size = at_length + 2 + exception_length;
+constexpr std::size_t exception_size = at_unit + exception_length;
 
 /// The limit for a device that sends noise without end.
 constexpr std::uint64_t most_skipped = 16384;
 
 bool is_read(std::uint8_t function) { return function >= 1 && function <= 4; }
 
-/// RFC 8446 5.1: what a device with TLS answers to plain Modbus. A Modbus header has a protocol of 0 there.
-bool is_tls_alert(modbus::Bytes adu) { return adu[0] == 0x15 && adu[1] == 3 && adu[at_protocol] == 3; }
+/// A device with TLS answers plain Modbus with an alert (RFC 8446 5.1) and its version, 3. A Modbus header
+/// has a protocol of 0 there.
+constexpr std::uint16_t tls_alert = 0x1503;
+bool is_tls_alert(modbus::Bytes adu) {
+  return modbus::get_u16(adu.data()) == tls_alert && adu[at_protocol] == 3;
+}
 
 /// Bytes with the right transaction are the reply, even if the rest is wrong, so that the error can say what
 /// is wrong. The same is true of a TLS alert.
 bool begins_reply(modbus::Bytes bytes, const TcpRequest& request) {
   if (bytes.size() < 2) return false;
   const std::uint16_t begin = modbus::get_u16(bytes.data());
-  return begin == request.transaction() || begin == 0x1503;
+  return begin == request.transaction() || begin == tls_alert;
 }
 
 /// Returns whether `bytes` may be the beginning of a reply to this request, or to another request with the
@@ -75,19 +76,10 @@ void TcpRequest::set(std::uint16_t transaction, std::uint8_t unit, modbus::Bytes
 }
 
 void TcpFramer::reset() {
-  begin_ = end_ = 0;
+  buffer_.clear();
   is_first_ = is_trusted_ = true;
   has_noise_ = false;
   skipped_before_ = skipped_;
-}
-
-Span<std::uint8_t> TcpFramer::room() {
-  if (begin_ != 0) {
-    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-    end_ -= begin_;
-    begin_ = 0;
-  }
-  return Span<std::uint8_t>(buffer_).from(end_);
 }
 
 TcpFramer::Outcome TcpFramer::next(const TcpRequest& request) {
@@ -102,16 +94,14 @@ TcpFramer::Outcome TcpFramer::next(const TcpRequest& request) {
   if (is_tls_alert(adu))
     return refuse(
         NotConnected{"the device speaks TLS at this port; reach it by tls:// (docs/security.md)", true});
-  const std::size_t length = modbus::get_u16(&adu[at_length]);
-  if (modbus::get_u16(&adu[at_protocol]) != 0 || length < 2 || length > 1 + modbus::max_pdu_size)
-    return refuse(BadFrame{"not Modbus/TCP: " + shown_bytes(adu)});
+  const std::size_t size = modbus::adu_size(adu);
+  if (size == 0) return refuse(BadFrame{"not Modbus/TCP: " + shown_bytes(adu)});
   if (auto wrong = mismatch(adu, request)) return refuse(*std::move(wrong));
 
-  const std::size_t size = at_unit + length;
   if (adu.size() <= at_function) return Outcome::nothing;
   if (adu[at_function] == (request.function() | modbus::exception_bit)) {
     if (adu.size() < std::min(size, exception_size)) return Outcome::nothing;
-    is_trusted_ = length == exception_length;
+    is_trusted_ = size == exception_size;
     return take(std::min(size, exception_size));
   }
   // If header and byte count contradict each other, the missing bytes may never come: this is an error now,
@@ -129,7 +119,7 @@ TcpFramer::Outcome TcpFramer::next(const TcpRequest& request) {
 
 TcpFramer::Outcome TcpFramer::take(std::size_t bytes) {
   pdu_ = rest().first(bytes).from(modbus::mbap_size);
-  begin_ += bytes;
+  buffer_.take(bytes);
   is_first_ = false;
   return Outcome::reply;
 }
@@ -144,7 +134,7 @@ void TcpFramer::skip(std::size_t bytes) {
     const std::uint64_t since_drop = skipped_++ - skipped_before_;
     if (since_drop < first_skipped_.size()) first_skipped_[since_drop] = byte;
   }
-  begin_ += bytes;
+  buffer_.take(bytes);
   has_noise_ = has_noise_ || bytes > 0;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "coupler/host/core/error.hpp"
 #include "coupler/modbus/limits.hpp"
 #include "coupler/modbus/pdu.hpp"
+#include "coupler/modbus/receive_buffer.hpp"
 
 namespace coupler::host {
 
@@ -50,8 +52,8 @@ class TcpFramer {
   void reset();
 
   /// The place for the next bytes. It is never empty after Outcome::nothing. The call invalidates pdu().
-  Span<std::uint8_t> room();
-  void filled(std::size_t bytes) { end_ += bytes; }
+  Span<std::uint8_t> room() { return buffer_.room(); }
+  void filled(std::size_t bytes) { buffer_.filled(bytes); }
 
   Outcome next(const TcpRequest& request);
   /// The PDU of the reply. That of an exception has two bytes at most.
@@ -65,28 +67,25 @@ class TcpFramer {
 
   /// Skips all bytes that have come, because no request is outstanding, and starts a new noise().
   void drop();
-  /// The number of bytes that next() and drop() have skipped over all connections.
+  /// The number of bytes that next() and drop() have skipped over all connections. Any thread may call it.
   std::uint64_t skipped() const { return skipped_; }
   /// Returns an error if bytes were skipped since the last drop(), and those behind them do not begin the
   /// reply.
   std::optional<BadFrame> noise(const TcpRequest& request) const;
 
  private:
-  modbus::Bytes rest() const { return {buffer_.data() + begin_, end_ - begin_}; }
+  modbus::Bytes rest() const { return buffer_.bytes(); }
   void skip(std::size_t bytes);
   Outcome take(std::size_t bytes);
   Outcome refuse(Error problem);
 
-  std::array<std::uint8_t, 2 * modbus::max_adu_size>
-      buffer_{};  ///< a wait for changes and a read may end at once
-  std::size_t begin_ = 0;
-  std::size_t end_ = 0;
+  modbus::ReceiveBuffer<2 * modbus::max_adu_size> buffer_;  ///< a wait and a read may be answered at once
   modbus::Bytes pdu_;
   Error problem_;
   bool is_first_ = true;    ///< no reply has come over this connection
   bool has_noise_ = false;  ///< bytes were skipped over this connection
   bool is_trusted_ = true;
-  std::uint64_t skipped_ = 0;
+  std::atomic<std::uint64_t> skipped_{0};
   std::uint64_t skipped_before_ = 0;             ///< of these, before the last drop()
   std::array<std::uint8_t, 9> first_skipped_{};  ///< since then, to be shown
 };
