@@ -15,6 +15,7 @@
 #include "coupler/host/core/node_outputs.hpp"
 #include "test/fuzz/require.hpp"
 #include "test/host/core/fake_clock.hpp"
+#include "test/host/core/share.hpp"
 
 namespace coupler::fuzz {
 namespace {
@@ -25,7 +26,7 @@ using host::Time;
 using modbus::Bytes;
 
 /// Answers waits with what it is given.
-class Impostor : public host::Transport {
+class Impostor : public host::Channel {
  public:
   explicit Impostor(host::Clock& clock) : clock_(clock) {}
   void will_answer(Bytes pdu) { pdu_ = pdu; }
@@ -51,14 +52,13 @@ class Impostor : public host::Transport {
   }
   std::optional<host::WaitAnswer> take_wait_answer() override { return std::exchange(answer_, std::nullopt); }
 
-  Result<> connect() override { return {}; }
+  Result<> open(const host::Event&) override { return {}; }
   void close() override { sent_.reset(); }
-  void interrupt() override {}
-  Result<Bytes> exchange(Bytes) override { return unexpected(); }
-  Result<> send_pdu(Bytes) override { return {}; }
-  Result<Bytes> receive_pdu() override { return unexpected(); }
-  Woken wait_until(Time) override { return Woken::by_time; }
-  void wake() override {}
+  void hang_up() override {}
+  Result<> select(std::uint8_t, std::chrono::milliseconds) override { return {}; }
+  Result<> send(Bytes) override { return {}; }
+  Result<Bytes> receive() override { return unexpected(); }
+  host::Woken wait_until(Time, host::Wakeup&, const host::Event&) override { return host::Woken::by_time; }
 
  private:
   static Result<Bytes> unexpected() {
@@ -125,6 +125,7 @@ class Connection {
   /// ms.
   void turn(std::uint8_t passes, std::uint8_t schedules, Bytes reply) {
     if (!listener_.is_active()) {
+      require(link_.connect().has_value(), "a node is there");
       witness_.begin();
       listener_.start(std::chrono::milliseconds(schedules));
     }
@@ -139,7 +140,7 @@ class Connection {
     if (lives && listener_.is_active()) return;
     outputs_.lose("gone");
     listener_.stop();
-    impostor_.close();
+    link_.close();
   }
   void end() {
     outputs_.lose("over");
@@ -162,10 +163,10 @@ class Connection {
   Impostor impostor_{clock_};
   Witness witness_{clock_};
   host::DeviceStatistics statistics_;
-  host::PacedTransport transport_{impostor_, clock_, Limits{}, statistics_};
+  host::Link link_{host::test::share(impostor_), {}, {}, &clock_};
   host::NodeOutputs outputs_{witness_, clock_, witness_};
   host::ChangeListener listener_{
-      std::chrono::milliseconds(100), transport_, clock_, statistics_, outputs_, witness_};
+      std::chrono::milliseconds(100), link_, clock_, statistics_, outputs_, witness_};
   std::uint32_t number_ = 0;
 };
 

@@ -11,6 +11,7 @@
 #include "coupler/map/identity.hpp"
 #include "coupler/modbus/server.hpp"
 #include "test/fuzz/require.hpp"
+#include "test/host/core/share.hpp"
 
 namespace coupler::fuzz {
 namespace {
@@ -19,11 +20,21 @@ using host::Result;
 using modbus::Bytes;
 
 /// A device that answers with the input, and is gone when that ends.
-class Impostor : public host::Transport {
+class Impostor : public host::Channel {
  public:
   explicit Impostor(Bytes answers) : answers_(answers) {}
 
-  Result<Bytes> exchange(Bytes request) override {
+  Result<> open(const host::Event&) override { return {}; }
+  void close() override {}
+  void hang_up() override {}
+  Result<> select(std::uint8_t, std::chrono::milliseconds) override { return {}; }
+  Result<> send(Bytes request) override {
+    std::copy(request.begin(), request.end(), request_.begin());
+    size_ = request.size();
+    return {};
+  }
+  Result<Bytes> receive() override {
+    const Bytes request = Bytes(request_).first(size_);
     const auto parsed = modbus::parse_request(request);
     require(parsed.has_value(), "the driver asks for what there can be");
     if (const auto* read = std::get_if<modbus::Read>(&*parsed)) return area(*read);
@@ -39,17 +50,9 @@ class Impostor : public host::Transport {
             "a right reply is taken");
     return answer(reply);
   }
-  Result<> send_pdu(Bytes) override { return {}; }
-  Result<Bytes> receive_pdu() override {
-    require(false, "the driver only reads the area and the file");
-    return Bytes();
+  host::Woken wait_until(host::Time, host::Wakeup&, const host::Event&) override {
+    return host::Woken::by_time;
   }
-
-  Result<> connect() override { return {}; }
-  void close() override {}
-  void interrupt() override {}
-  Woken wait_until(host::Time) override { return Woken::by_time; }
-  void wake() override {}
 
  private:
   /// At most so many of the bytes that are left.
@@ -79,6 +82,8 @@ class Impostor : public host::Transport {
   }
 
   Bytes answers_;
+  std::array<std::uint8_t, modbus::max_pdu_size> request_{};
+  std::size_t size_ = 0;
   std::array<std::uint8_t, modbus::max_pdu_size> pdu_{};
 };
 
@@ -97,12 +102,14 @@ void check_head(const identity::Head& head) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace coupler;
   fuzz::Impostor device(modbus::Bytes(data, size));
-  const auto head = host::read_identity(device);
+  host::Link link(host::test::share(device), {}, {});
+  fuzz::require(link.connect().has_value(), "a device is there");
+  const auto head = host::read_identity(link);
   if (!head || !*head) return 0;
   fuzz::check_head(**head);
-  const auto text = host::fetch_map_text(device, (*head)->map_size);
+  const auto text = host::fetch_map_text(link, (*head)->map_size);
   fuzz::require(!text || text->size() == (*head)->map_size, "the text is as long as the device said");
-  const auto further = host::read_further(device);
+  const auto further = host::read_further(link);
   for (const char c : further ? host::to_string(further->machine) : std::string())
     fuzz::require(c >= ' ' && c <= '~', "what is told of a machine is printable ASCII");
   return 0;

@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "coupler/plan/cost.hpp"
 
@@ -22,13 +22,15 @@ using Nanoseconds = std::chrono::nanoseconds;
 
 class Reader {
  public:
-  explicit Reader(const Connection& connection) : transport_(connection) { check(transport_.connect()); }
+  explicit Reader(const Connection& connection) : link_(host::make_link(connection)) {
+    check(link_.connect());
+  }
 
   /// How long the reply takes.
   Nanoseconds read(Table table, modbus::Range range) {
     const auto begin = std::chrono::steady_clock::now();
-    check(holds_bits(table) ? transport_.read_bits(table, range, bits_.data())
-                            : transport_.read_registers(table, range, registers_.data()));
+    check(holds_bits(table) ? link_.read_bits(table, range, bits_.data())
+                            : link_.read_registers(table, range, registers_.data()));
     return std::chrono::steady_clock::now() - begin;
   }
 
@@ -38,7 +40,7 @@ class Reader {
     fmt::print(stderr, "coupler_bench_cycle: {}\n", to_string(result.error()));
     std::exit(3);
   }
-  host::ModbusTransport transport_;
+  host::Link link_;
   std::array<std::uint8_t, modbus::max_read_bits> bits_{};
   std::array<std::uint16_t, modbus::max_read_registers> registers_{};
 };

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 
 int main(int argc, char** argv) {
   using namespace coupler;
@@ -20,12 +20,12 @@ int main(int argc, char** argv) {
   connection.port = static_cast<std::uint16_t>(std::atoi(argv[1]));
   connection.timeout = std::chrono::seconds(10);
   if (argc == 6) connection.tls = {argv[3], argv[4], argv[5], {}, {}, {}};
-  host::ModbusTransport transport(connection);
+  host::Link link = host::make_link(connection);
   const auto give_up = [](const host::Error& error) {
     std::fprintf(stderr, "%s\n", host::to_string(error).c_str());
     return 3;
   };
-  if (const auto connected = transport.connect(); !connected) return give_up(connected.error());
+  if (const auto connected = link.connect(); !connected) return give_up(connected.error());
   std::array<std::uint16_t, 10> registers{};
   std::vector<double> times;  // µs
   const auto began = Clock::now();
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
       began + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::atof(argv[2])));
   for (auto now = began; now < until;) {
     const auto read =
-        transport.read_registers(Table::holding_registers, modbus::Range::of(0, 10), registers.data());
+        link.read_registers(Table::holding_registers, modbus::Range::of(0, 10), registers.data());
     if (!read) return give_up(read.error());
     const auto after = Clock::now();
     times.push_back(std::chrono::duration<double, std::micro>(after - now).count());

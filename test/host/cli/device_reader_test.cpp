@@ -175,7 +175,8 @@ TEST(DeviceReader, An_output_is_read_where_it_reads_back) {
   FakeDevice device;
   FakeClock clock;
   device.values[{Table::holding_registers, 512}] = 44;
-  DeviceReader reader(owned->map(), {true}, device, clock, [](auto, auto) { return LoadResult{}; });
+  host::Link link(host::test::share(device), {}, {}, &clock);
+  DeviceReader reader(owned->map(), {true}, link, [](auto, auto) { return LoadResult{}; });
   EXPECT_THAT(reader.look().readings.at(0).registers, ElementsAre(44));
 }
 

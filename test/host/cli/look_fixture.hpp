@@ -23,7 +23,7 @@ struct Looking {
   explicit Looking(const MapBuilder& builder, std::vector<bool> chosen = {})
       : owned(builder.build()),
         reader(owned->map(), chosen.empty() ? std::vector<bool>(owned->map().points.size(), true) : chosen,
-               device, clock, [this](std::string_view, std::string_view) { return loads; }) {
+               link, [this](std::string_view, std::string_view) { return loads; }) {
     device.missing.insert({Table::input_registers, identity::reserved.start()});  // foreign
   }
 
@@ -45,6 +45,7 @@ struct Looking {
   LoadResult loads;  ///< what the text of the device's map is
   FakeDevice device;
   FakeClock clock;
+  host::Link link{host::test::share(device), owned->map().connection, owned->map().limits, &clock};
   DeviceReader reader;
 };
 

@@ -22,7 +22,7 @@ constexpr auto silence = Timeout{std::chrono::milliseconds(9)};
 
 struct NodeStatusTest : testing::Test {
   NodeStatus look() {
-    return read_status(device, [this](modbus::ReadDeviceIdentification) { return identification; });
+    return read_status(link, [this](modbus::ReadDeviceIdentification) { return identification; });
   }
   void put(std::uint32_t at, std::uint16_t value) {
     device.values[{Table::input_registers, identity::reserved.start() + at}] = value;
@@ -38,6 +38,7 @@ struct NodeStatusTest : testing::Test {
   void refuse_identity() { device.missing.insert({Table::input_registers, identity::reserved.start()}); }
 
   FakeDevice device;
+  host::Link link{host::test::share(device), {}, {}};
   host::Result<IdentificationPage> identification = IdentificationPage{{{1, "cell"}}, {}};
 };
 

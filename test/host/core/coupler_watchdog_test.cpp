@@ -45,7 +45,7 @@ struct CouplerWatchdogTest : test::DeviceTest {
     builder.head().coupler_watchdog = known;
     owned = builder.build();
     sink.emplace(owned->map());
-    engine.emplace(owned->map(), Verify::off, nullptr, device, clock, *sink);
+    make_engine(Verify::off, nullptr);
   }
 
   /// The watchdog fires: outputs go off, and every request is refused until register 1007 is written.

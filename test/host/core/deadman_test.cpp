@@ -29,7 +29,7 @@ struct DeadmanTest : test::DeviceTest {
     });
     owned = builder.build();
     sink.emplace(owned->map());
-    engine.emplace(owned->map(), Verify::off, nullptr, device, clock, *sink);
+    make_engine(Verify::off, nullptr);
     run_for(milliseconds(10));
   }
   std::uint16_t speed() { return device.values[{Table::holding_registers, 5}]; }
@@ -117,18 +117,15 @@ TEST_F(DeadmanTest, A_deadman_value_that_a_safe_value_supersedes_is_written_if_t
     push("speed", 500);
     run_for(milliseconds(100));
     std::future<Calls::Answer> asked;
-    bool is_first = true;
-    device.await_write = [&] {
-      if (!std::exchange(is_first, false)) return;
-      asked = engine->make_safe();
-      device.next_errors.push_back(error);
-    };
-    run_for(milliseconds(200));
+    during_wait_for_turn([this] { run_for(milliseconds(200)); },
+                         [&] {
+                           asked = engine->make_safe();
+                           device.next_errors.push_back(error);
+                         });
     ASSERT_TRUE(asked.valid());
     EXPECT_FALSE(asked.get().success);
     run_for(milliseconds(2000));
     EXPECT_EQ(speed(), 1);
-    device.await_write = nullptr;
   }
 }
 

@@ -2,6 +2,9 @@
 #include "test/host/core/device_fixture.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <thread>
+#include <utility>
 
 #include "coupler/map/functions.hpp"
 #include "coupler/map/identity.hpp"
@@ -11,21 +14,17 @@ namespace coupler::host::test {
 
 TimedDevice::~TimedDevice() = default;
 
-Result<modbus::Bytes> TimedDevice::exchange(modbus::Bytes pdu) {
-  const auto request = modbus::parse_request(pdu);
-  const auto* read = request ? std::get_if<modbus::Read>(&*request) : nullptr;
-  if (read == nullptr || holds_bits(table_of(read->function))) return FakeDevice::exchange(pdu);
-  clock_.advance(reply_time);
-  if (is_mute && read->range.start() < identity::reserved.start()) {
+Result<modbus::Bytes> TimedDevice::receive() {
+  const auto parsed = modbus::parse_request(request());
+  const auto* read = parsed ? std::get_if<modbus::Read>(&*parsed) : nullptr;
+  const bool is_short = read != nullptr ? holds_bits(table_of(read->function))
+                                        : parsed && std::holds_alternative<modbus::FileGroups>(*parsed);
+  if (!is_short) clock_.advance(reply_time);
+  if (is_mute && read != nullptr && !is_short && read->range.start() < identity::reserved.start()) {
     requests.emplace_back("unanswered");
     return fail(Timeout{std::chrono::milliseconds(3000)});
   }
-  return FakeDevice::exchange(pdu);
-}
-
-Result<modbus::Bytes> TimedDevice::receive_pdu() {
-  clock_.advance(reply_time);
-  return FakeDevice::receive_pdu();
+  return FakeDevice::receive();
 }
 
 DeviceTest::DeviceTest() = default;
@@ -34,10 +33,36 @@ DeviceTest::~DeviceTest() = default;
 void DeviceTest::start(const MapBuilder& builder, Verify verify) {
   owned = builder.build();
   device.now = [this] { return clock.now(); };
+  sink.emplace(owned->map());
+  make_engine(verify, [this](std::string_view, std::string_view) { return LoadResult{served, {}}; });
+}
+
+void DeviceTest::make_engine(Verify verify, MapLoader load) {
   const Map& map = owned->map();
-  sink.emplace(map);
-  const auto load = [this](std::string_view, std::string_view) { return LoadResult{served, {}}; };
-  engine.emplace(map, verify, load, device, clock, *sink);
+  engine.reset();
+  link.emplace(shared, map.connection, map.limits, &clock);
+  engine.emplace(map, verify, std::move(load), *link, *sink);
+}
+
+bool DeviceTest::is_turn_free() {
+  const bool is_free = shared->turns.try_take(this);
+  if (is_free) shared->turns.release();
+  return is_free;
+}
+
+void DeviceTest::during_wait_for_turn(const std::function<void()>& step,
+                                      const std::function<void()>& meanwhile) {
+  ASSERT_TRUE(shared->turns.try_take(this));
+  std::atomic<bool> is_over{false};
+  std::thread other([&] {
+    while (!is_over && !shared->turns.is_awaited())
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    if (!is_over) meanwhile();
+    shared->turns.release();
+  });
+  step();
+  is_over = true;
+  other.join();
 }
 
 void DeviceTest::serve(const MapBuilder& builder) {

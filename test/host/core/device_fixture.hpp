@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string_view>
 
@@ -22,8 +24,7 @@ class TimedDevice : public FakeDevice {
   Duration reply_time{0};
   bool is_mute = false;  ///< answers the question for its identity only
 
-  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
-  Result<modbus::Bytes> receive_pdu() override;
+  Result<modbus::Bytes> receive() override;
 
  private:
   FakeClock& clock_;
@@ -41,9 +42,17 @@ struct DeviceTest : testing::Test {
   /// What the thread does: steps, and in between waits for what is due.
   void run_for(Duration duration);
   void push(std::string_view point, std::uint16_t value, WriteListener* listener = nullptr);
+  /// Makes the engine of `owned`, and its link.
+  void make_engine(Verify verify, MapLoader load);
+  bool is_turn_free();
+  /// Calls `step` while another unit has the turn. Once a turn is awaited, calls `meanwhile` in another
+  /// thread and gives the turn back.
+  void during_wait_for_turn(const std::function<void()>& step, const std::function<void()>& meanwhile);
 
   FakeClock clock;
   TimedDevice device{clock};
+  std::shared_ptr<SharedChannel> shared = share(device);
+  std::optional<Link> link;
   MapPtr owned;
   MapPtr served;
   std::optional<RecordingSink> sink;

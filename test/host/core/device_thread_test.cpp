@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <chrono>
 #include <future>
 #include <thread>
@@ -43,8 +42,9 @@ TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
   builder.head().polling.rate = 100;
   const auto owned = builder.build();
   FakeDevice device;
+  Link link(test::share(device), {}, {});
   WaitingSink sink;
-  DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
   thread.start();
   ASSERT_EQ(sink.first.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
   Write on;
@@ -56,8 +56,9 @@ TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
 TEST(DeviceThread, What_is_scheduled_is_written_though_nothing_else_is_due) {
   const auto owned = MapBuilder().command("a", 1).build();
   FakeDevice device;
+  Link link(test::share(device), {}, {});
   WaitingSink sink;
-  DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
   thread.start();
   ScheduledWrite what;
   what.write.registers[0] = 1;
@@ -73,9 +74,10 @@ TEST(DeviceThread, What_is_scheduled_is_written_though_nothing_else_is_due) {
 TEST(DeviceThread, With_subscribed_nothing_is_read_before_somebody_wants_it) {
   const auto owned = MapBuilder().coil("a", 1).coil("b", 9).build();
   FakeDevice device;
+  Link link(test::share(device), {}, {});
   WaitingSink sink;
   {
-    DeviceThread thread(owned->map(), Verify::off, no_map, device, sink, Poll::subscribed);
+    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink, Poll::subscribed);
     thread.start();
     thread.want(0, true);
     ASSERT_EQ(sink.first.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
@@ -86,12 +88,13 @@ TEST(DeviceThread, With_subscribed_nothing_is_read_before_somebody_wants_it) {
 TEST(DeviceThread, A_write_to_an_idle_device_is_sent_by_the_one_who_makes_it) {
   const auto owned = MapBuilder().command("a", 1).build();
   FakeDevice device;
+  Link link(test::share(device), {}, {});
   WaitingSink sink;
   WriteTicket ticket;
   Write write;
   write.listener = &ticket;
   {
-    DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
     thread.start();
     for (;;) {  // until it is connected
       WriteTicket first;
@@ -110,13 +113,14 @@ TEST(DeviceThread, A_write_to_an_idle_device_is_sent_by_the_one_who_makes_it) {
 TEST(DeviceThread, Every_write_has_a_result_when_it_ends) {
   const auto owned = MapBuilder().coil("a", 1).build();
   FakeDevice device;
+  Link link(test::share(device), {}, {});
   device.refuse_connect = NotConnected{"refused"};
   WaitingSink sink;
   WriteTicket ticket;
   Write write;
   write.listener = &ticket;
   {
-    DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
     thread.start();
     thread.write(write);
   }
@@ -126,10 +130,11 @@ TEST(DeviceThread, Every_write_has_a_result_when_it_ends) {
 TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {
   const auto owned = MapBuilder().coil("a", 1).build();
   FakeDevice device;
+  Link link(test::share(device), {}, {});
   device.refuse_connect = NotConnected{"refused"};
   WaitingSink sink;
   {
-    DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
     thread.start();
     device.await_idle();
   }
@@ -141,31 +146,25 @@ TEST(DeviceThread, Before_it_starts_and_after_it_has_ended_nothing_is_asked) {
   builder.head().on_shutdown = OnShutdown::safe;
   const auto owned = builder.build();
   FakeDevice device;
+  Link link(test::share(device), {}, {});
   WaitingSink sink;
-  DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
   EXPECT_TRUE(thread.end());
   thread.start();
   EXPECT_TRUE(thread.end());
   EXPECT_TRUE(device.requests.empty());
 }
 
-/// Connects a moment after somebody wants the thread to do something else.
+/// Connects a moment after the thread is to end.
 struct SlowToConnect : FakeDevice {
   std::promise<void> connects;
-  std::promise<void> called;
-  std::atomic<bool> is_called{false};
-  std::atomic<bool> is_interrupted{false};
-  Result<> connect() override {
+  std::promise<void> ends;
+  Result<> open(const Event& interrupt) override {
     connects.set_value();
-    called.get_future().wait();
+    ends.get_future().wait();
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    return is_interrupted ? fail(NotConnected{"interrupted"}) : FakeDevice::connect();
+    return interrupt.is_set() ? fail(NotConnected{"interrupted"}) : FakeDevice::open(interrupt);
   }
-  void wake() override {
-    FakeDevice::wake();
-    if (!is_called.exchange(true)) called.set_value();
-  }
-  void interrupt() override { is_interrupted = true; }
 };
 
 TEST(DeviceThread, Who_connects_just_when_it_ends_gets_its_safe_values) {
@@ -174,10 +173,12 @@ TEST(DeviceThread, Who_connects_just_when_it_ends_gets_its_safe_values) {
   const auto owned = builder.build();
   const auto is_made_safe = [&owned] {
     SlowToConnect device;
+    Link link(test::share(device), {}, {});
     WaitingSink sink;
-    DeviceThread thread(owned->map(), Verify::off, no_map, device, sink);
+    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
     thread.start();
     device.connects.get_future().wait();
+    device.ends.set_value();
     return thread.end() && device.requests.back() == "write coil 1";
   };
   bool made_safe = false;

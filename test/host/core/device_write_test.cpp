@@ -79,12 +79,12 @@ TEST_F(DeviceWriteTest, A_point_that_is_written_without_end_is_shown_after_each_
 TEST_F(DeviceWriteTest, A_write_that_comes_while_a_read_waits_for_its_turn_goes_first) {
   start_online(MapBuilder().holding("a", 5));
   clock.advance(milliseconds(200));
-  bool waits = true;
-  device.await_read = [&] {
-    if (waits) push("a", 7);
-    return !std::exchange(waits, false);
-  };
-  for (int i = 0; i < 3; ++i) engine->step();
+  during_wait_for_turn([this] { engine->step(); },
+                       [this] {
+                         push("a", 7);
+                         link->wake();
+                       });
+  for (int i = 0; i < 2; ++i) engine->step();
   EXPECT_THAT(device.requests, ElementsAre("write register 5", "read holding_registers 5+1"));
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "test/host/core/fake_device.hpp"
 
+#include <poll.h>
+
 #include <algorithm>
 #include <array>
 
@@ -36,6 +38,13 @@ std::string describe(modbus::Bytes pdu) {
   if (const auto* mask = std::get_if<modbus::MaskWrite>(&*request))
     return fmt::format("write mask {}", mask->range.start());
   return "schedule";
+}
+
+bool is_write(modbus::Bytes pdu) {
+  const auto request = modbus::parse_request(pdu);
+  return request && (std::holds_alternative<modbus::WriteBits>(*request) ||
+                     std::holds_alternative<modbus::WriteRegisters>(*request) ||
+                     std::holds_alternative<modbus::MaskWrite>(*request));
 }
 
 }  // namespace
@@ -130,71 +139,53 @@ std::size_t FakeDevice::count(const std::string& request) const {
   return static_cast<std::size_t>(std::count(requests.begin(), requests.end(), request));
 }
 
-Result<> FakeDevice::connect() {
+Result<> FakeDevice::open(const Event&) {
   requests.emplace_back("connect");
   if (refuse_connect) return tl::make_unexpected(*refuse_connect);
   connected = true;
   return {};
 }
 
-Result<modbus::Bytes> FakeDevice::exchange(modbus::Bytes pdu) {
-  answer_wait();
-  requests.push_back(describe(pdu));
-  const bool is_read = pdu[0] <= static_cast<std::uint8_t>(modbus::Function::read_input_registers);
-  if (is_read && during_read) during_read();
-  if (const auto error = planned()) return tl::make_unexpected(*error);
-  const auto size = carry_out(pdu);
-  if (!size) return tl::make_unexpected(size.error());
-  return modbus::Bytes(reply_).first(*size);
-}
-
-Result<> FakeDevice::send_pdu(modbus::Bytes pdu) {
+Result<> FakeDevice::send(modbus::Bytes pdu) {
   if (!connected) return fail(NotConnected{"not connected"});
-  if (fail_send) return tl::make_unexpected(*fail_send);
   sent_.assign(pdu.begin(), pdu.end());
+  if (!is_write(pdu)) return {};
+  if (fail_send) return tl::make_unexpected(*fail_send);
   const std::lock_guard lock(mutex_);
   senders.push_back(std::this_thread::get_id());
-  answered_ = true;
-  woken_.notify_all();
+  answered_.call();
   return {};
 }
 
-Result<modbus::Bytes> FakeDevice::receive_pdu() {
-  {
-    const std::lock_guard lock(mutex_);
-    answered_ = false;
-  }
+Result<modbus::Bytes> FakeDevice::receive() {
+  answered_.clear();
   answer_wait();
-  const modbus::Bytes pdu(sent_.data(), sent_.size());
-  requests.push_back(describe(pdu));
+  requests.push_back(describe(request()));
+  const bool is_read = sent_[0] <= static_cast<std::uint8_t>(modbus::Function::read_input_registers);
+  if (is_read && during_read) during_read();
   if (const auto error = planned()) return tl::make_unexpected(*error);
-  const auto size = carry_out(pdu);
+  const auto size = carry_out(request());
   if (!size) return tl::make_unexpected(size.error());
   return modbus::Bytes(reply_).first(*size);
 }
 
-Transport::Woken FakeDevice::wait_until(Time time) {
-  std::unique_lock lock(mutex_);
-  const auto until = std::min(time, std::chrono::steady_clock::now() + std::chrono::hours(1));
-  idle_ = true;
-  woken_.notify_all();
-  woken_.wait_until(lock, until, [this] { return called_ || answered_; });
+Woken FakeDevice::wait_until(Time time, Wakeup& wakeup, const Event& interrupted) {
+  {
+    const std::lock_guard lock(mutex_);
+    pollfd called{wakeup.fd(), POLLIN, 0};
+    idle_ = ::poll(&called, 1, 0) == 0;
+    waits_.notify_all();
+  }
+  const Woken woken = wait_for(wakeup, &interrupted, answered_.fd(), time);
+  const std::lock_guard lock(mutex_);
   idle_ = false;
-  const bool called = std::exchange(called_, false);
-  woken_by_call = called && !answered_;
-  if (answered_) return Woken::by_bytes;
-  return called ? Woken::by_call : Woken::by_time;
+  woken_by_call = woken == Woken::by_call;
+  return woken;
 }
 
 void FakeDevice::await_idle() {
   std::unique_lock lock(mutex_);
-  woken_.wait(lock, [this] { return idle_ && !called_ && !answered_; });
-}
-
-void FakeDevice::wake() {
-  const std::lock_guard lock(mutex_);
-  called_ = true;
-  woken_.notify_all();
+  waits_.wait(lock, [this] { return idle_; });
 }
 
 std::optional<Error> FakeDevice::planned() {

@@ -14,14 +14,14 @@
 #include <utility>
 #include <vector>
 
-#include "coupler/host/core/transport.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/modbus/server.hpp"
+#include "test/host/core/share.hpp"
 
 namespace coupler::host::test {
 
 /// A Modbus device without a network: four tables, a list of what was asked, and the failures a test plans.
-class FakeDevice : public Transport {
+class FakeDevice : public Channel {
  public:
   std::map<std::pair<Table, std::uint32_t>, std::uint16_t> values;  ///< what is not in it reads as 0
   std::set<std::pair<Table, std::uint32_t>> missing;                ///< asked for: exception 02
@@ -32,12 +32,8 @@ class FakeDevice : public Transport {
   std::string file;                                                                     ///< what FC 20 gives
   bool connected = false;
   std::vector<std::thread::id> senders;  ///< of writes
-  std::function<bool()> await_read;      ///< what happens while a read waits for its turn; whether it gets it
-  std::function<void()> await_write;     ///< what happens while a write waits for its turn
   std::function<void()> during_read;     ///< what happens while a read waits for its answer
-  bool refuse_send = false;              ///< it is somebody else's turn
-  std::size_t given_back = 0;            ///< turns
-  std::optional<Error> fail_send;        ///< of each request
+  std::optional<Error> fail_send;        ///< of each write
   bool woken_by_call = false;            ///< how the last wait_until() ended
   bool missing_for_reads_only = false;   ///< writes to what is missing are acknowledged
   bool can_wait_for_changes = true;      ///< it does not share its connection
@@ -73,30 +69,27 @@ class FakeDevice : public Transport {
   Time answers_wait_at() const;
   std::size_t count(const std::string& request) const;
 
-  Result<> connect() override;
+  Result<> open(const Event& interrupt) override;
   void close() override {
     connected = false;
     wait_.reset();
   }
-  void interrupt() override {}
-  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
-  Result<> send_pdu(modbus::Bytes pdu) override;
+  void hang_up() override {}
+  Result<> select(std::uint8_t, std::chrono::milliseconds) override { return {}; }
+  Result<> send(modbus::Bytes pdu) override;
   /// Requests take effect when their answer is fetched.
-  Result<modbus::Bytes> receive_pdu() override;
-  Turn await_turn(Time, bool) override { return !await_read || await_read() ? Turn::read : Turn::none; }
-  void await_turn_to_write(const std::function<bool()>&) override {
-    if (await_write) await_write();
-  }
-  bool reserve() override { return !refuse_send; }
-  void give_back() override { ++given_back; }
+  Result<modbus::Bytes> receive() override;
   bool can_wait() const override { return can_wait_for_changes; }
   Result<> send_wait(const modbus::ChangesRequest& request) override;
   Result<> receive_wait() override;
   std::optional<WaitAnswer> take_wait_answer() override { return std::exchange(wait_answer_, std::nullopt); }
-  Woken wait_until(Time time) override;
+  Woken wait_until(Time time, Wakeup& wakeup, const Event& interrupted) override;
   /// Until somebody waits in wait_until(), with nothing to wake him.
   void await_idle();
-  void wake() override;
+
+ protected:
+  /// The request in progress.
+  modbus::Bytes request() const { return {sent_.data(), sent_.size()}; }
 
  private:
   void answer_functions(std::uint32_t watchdog_timeout, bool schedules);
@@ -113,15 +106,14 @@ class FakeDevice : public Transport {
     return at < file.size() ? static_cast<std::uint8_t>(file[at]) : 0;
   }
 
-  std::vector<std::uint8_t> sent_;  ///< the write in progress
+  std::vector<std::uint8_t> sent_;
   std::array<std::uint8_t, modbus::max_pdu_size> reply_{};
   std::optional<modbus::ChangesRequest> wait_;
   Time wait_sent_{};
   std::optional<WaitAnswer> wait_answer_;
+  Wakeup answered_;  ///< a write has a reply
   std::mutex mutex_;
-  std::condition_variable woken_;
-  bool called_ = false;
-  bool answered_ = false;
+  std::condition_variable waits_;
   bool idle_ = false;  ///< somebody is in wait_until()
 };
 

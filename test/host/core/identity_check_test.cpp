@@ -16,14 +16,17 @@ using testing::HasSubstr;
 using Verdict = Identity::Verdict;
 
 struct IdentityCheck : testing::Test {
-  IdentityCheck() { device.connected = true; }
+  IdentityCheck() {
+    EXPECT_TRUE(link.connect());
+    device.requests.clear();
+  }
 
   /// Checks `known` against a node that serves `served`.
   Identity check(const MapBuilder& known, const MapBuilder& served) {
     const auto here = known.build();
     const auto there = served.build();
     device.serve(there->map());
-    return *check_identity(device, here->map(), [&](std::string_view text, std::string_view) {
+    return *check_identity(link, here->map(), [&](std::string_view text, std::string_view) {
       EXPECT_EQ(text, there->map().text);
       return LoadResult{there, {}};
     });
@@ -32,17 +35,18 @@ struct IdentityCheck : testing::Test {
     return {nullptr, {{Diagnostic::Severity::error, "map", 1, 2, "no name", "add one"}}};
   }
   FakeDevice device;
+  Link link{test::share(device), {}, {}};
 };
 
 TEST_F(IdentityCheck, A_device_that_rejects_the_area_is_foreign) {
   device.missing.insert({Table::input_registers, 0xFF00});
-  const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+  const auto identity = check_identity(link, MapBuilder().build()->map(), no_map);
   EXPECT_EQ(identity->verdict, Verdict::foreign);
 }
 
 TEST_F(IdentityCheck, A_device_with_other_values_there_is_foreign) {
   device.values[{Table::input_registers, 0xFF00}] = 0x4F43;
-  const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+  const auto identity = check_identity(link, MapBuilder().build()->map(), no_map);
   EXPECT_EQ(identity->verdict, Verdict::foreign);
 }
 
@@ -83,14 +87,14 @@ TEST_F(IdentityCheck, A_long_map_is_fetched_piece_by_piece_across_files) {
 TEST_F(IdentityCheck, A_map_with_a_wrong_checksum_is_not_believed) {
   device.serve(MapBuilder().text("a: 1").coil("a", 1).build()->map());
   device.file[0] = '?';
-  const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+  const auto identity = check_identity(link, MapBuilder().build()->map(), no_map);
   EXPECT_EQ(identity->verdict, Verdict::different);
   EXPECT_THAT(identity->differences, ElementsAre(HasSubstr("checksum")));
 }
 
 TEST_F(IdentityCheck, A_map_that_does_not_load_is_a_difference_with_its_diagnostics) {
   device.serve(MapBuilder().text("a: 1").coil("a", 1).build()->map());
-  const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+  const auto identity = check_identity(link, MapBuilder().build()->map(), no_map);
   EXPECT_EQ(identity->verdict, Verdict::different);
   EXPECT_THAT(identity->differences, ElementsAre(HasSubstr("map:1:2: error: no name; add one")));
 }
@@ -98,7 +102,7 @@ TEST_F(IdentityCheck, A_map_that_does_not_load_is_a_difference_with_its_diagnost
 TEST_F(IdentityCheck, A_node_that_does_not_serve_its_map_cannot_be_compared) {
   device.serve(MapBuilder().text("a: 1").coil("a", 1).build()->map());
   device.file.clear();
-  const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+  const auto identity = check_identity(link, MapBuilder().build()->map(), no_map);
   EXPECT_EQ(identity->verdict, Verdict::different);
   EXPECT_THAT(identity->differences, ElementsAre(HasSubstr("clients that may read every point")));
 }
@@ -114,14 +118,14 @@ TEST_F(IdentityCheck, A_node_that_is_busy_or_away_when_its_map_is_asked_for_is_a
        {Exception::acknowledge, Exception::server_device_busy, Exception::gateway_path_unavailable,
         Exception::gateway_target_failed_to_respond}) {
     code = passing;
-    const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+    const auto identity = check_identity(link, MapBuilder().build()->map(), no_map);
     ASSERT_FALSE(identity) << modbus::to_string(passing);
     EXPECT_EQ(exception_in(identity.error())->code, passing);
   }
   for (const Exception lasting : {Exception::illegal_function, Exception::illegal_data_address,
                                   Exception::illegal_data_value, Exception::server_device_failure}) {
     code = lasting;
-    const auto identity = check_identity(device, MapBuilder().build()->map(), no_map);
+    const auto identity = check_identity(link, MapBuilder().build()->map(), no_map);
     ASSERT_TRUE(identity) << modbus::to_string(lasting);
     EXPECT_EQ(identity->verdict, Verdict::different);
     EXPECT_THAT(identity->differences, ElementsAre(HasSubstr("cannot be compared")));
@@ -140,7 +144,7 @@ void put_machine(FakeDevice& device, const identity::Machine& machine) {
 
 TEST_F(IdentityCheck, A_node_says_which_machine_it_runs_on) {
   put_machine(device, identity::machine_of("cell-7", 0xAB));
-  const auto further = read_further(device);
+  const auto further = read_further(link);
   ASSERT_TRUE(further);
   EXPECT_EQ(to_string(further->machine), "cell-7, serial 00000000000000ab");
   EXPECT_THAT(device.requests, ElementsAre("read input_registers 65325+1", "read input_registers 65326+39"));
@@ -148,27 +152,27 @@ TEST_F(IdentityCheck, A_node_says_which_machine_it_runs_on) {
 
 TEST_F(IdentityCheck, A_node_that_is_older_than_these_fields_says_nothing) {
   device.missing.insert({Table::input_registers, identity_start + identity::at_further});
-  EXPECT_EQ(to_string(read_further(device).value().machine), "");
+  EXPECT_EQ(to_string(read_further(link).value().machine), "");
 }
 
 TEST_F(IdentityCheck, Of_a_node_with_fewer_or_more_fields_those_are_read_that_both_know) {
   put_machine(device, identity::machine_of("cell-7", 0xAB));
   auto& count = device.values[{Table::input_registers, identity_start + identity::at_further}];
   count = 4;
-  EXPECT_EQ(to_string(read_further(device).value().machine), "serial 00000000000000ab");
+  EXPECT_EQ(to_string(read_further(link).value().machine), "serial 00000000000000ab");
   EXPECT_EQ(device.requests.back(), "read input_registers 65326+4");
   count = 0xFFFF;
-  EXPECT_EQ(to_string(read_further(device).value().machine), "cell-7, serial 00000000000000ab");
+  EXPECT_EQ(to_string(read_further(link).value().machine), "cell-7, serial 00000000000000ab");
 }
 
 TEST_F(IdentityCheck, A_hostname_cannot_command_a_terminal) {
   put_machine(device, identity::machine_of("a\x1b[2J\xff", 0));
-  EXPECT_EQ(to_string(read_further(device).value().machine), "a?[2J?");
+  EXPECT_EQ(to_string(read_further(link).value().machine), "a?[2J?");
 }
 
 TEST_F(IdentityCheck, A_timeout_is_no_verdict) {
   device.next_errors.assign(1, Timeout{std::chrono::seconds(3)});
-  EXPECT_FALSE(check_identity(device, MapBuilder().build()->map(), no_map));
+  EXPECT_FALSE(check_identity(link, MapBuilder().build()->map(), no_map));
 }
 
 }  // namespace

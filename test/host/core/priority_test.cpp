@@ -44,9 +44,10 @@ TEST_F(PriorityTest, Its_writes_go_before_all_others_that_wait) {
 
 TEST_F(PriorityTest, They_go_before_one_that_was_to_be_sent_next) {
   start_online();
-  device.refuse_send = true;  // a transport whose turn it is not
+  ASSERT_TRUE(shared->turns.try_take(this));
   push("lamp", 1);
   EXPECT_FALSE(engine->send_now());
+  shared->turns.release();
   push("stop", 1);
   step(2);
   EXPECT_THAT(device.requests, ElementsAre("write coil 50", "write coil 5"));
@@ -56,11 +57,7 @@ TEST_F(PriorityTest, They_go_before_one_that_was_to_be_sent_next) {
 TEST_F(PriorityTest, They_go_before_one_that_waits_for_its_units_turn) {
   start_online();
   push("lamp", 1);
-  bool waits = true;
-  device.await_write = [&] {
-    if (std::exchange(waits, false)) push("stop", 1);
-  };
-  step(2);
+  during_wait_for_turn([this] { step(2); }, [this] { push("stop", 1); });
   EXPECT_THAT(device.requests, ElementsAre("write coil 50", "write coil 5"));
 }
 
@@ -75,8 +72,7 @@ TEST_F(PriorityTest, A_deadman_that_expires_meanwhile_goes_with_them) {
   step(1);
   device.requests.clear();
   push("lamp", 1);
-  device.await_write = [&] { clock.advance(milliseconds(100)); };
-  step(1);
+  during_wait_for_turn([this] { step(1); }, [this] { clock.advance(milliseconds(100)); });
   EXPECT_THAT(device.requests, ElementsAre("write coil 200"));
 }
 

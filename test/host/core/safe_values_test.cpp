@@ -59,9 +59,9 @@ TEST_F(SafeValuesTest, They_go_before_what_was_to_be_sent_next) {
   start_online();
   clock.advance(milliseconds(100));
   push("lamp", 1);
-  device.refuse_send = true;  // a transport whose turn it is not
+  ASSERT_TRUE(shared->turns.try_take(this));
   EXPECT_FALSE(engine->send_now());
-  device.refuse_send = false;
+  shared->turns.release();
   auto asked = engine->make_safe();
   engine->step();
   EXPECT_TRUE(is_ready(asked));
@@ -73,10 +73,7 @@ TEST_F(SafeValuesTest, They_go_before_what_waits_for_its_units_turn) {
   start_online();
   push("lamp", 1);
   std::future<Calls::Answer> asked;
-  device.await_write = [&] {
-    if (!asked.valid()) asked = engine->make_safe();
-  };
-  engine->step();
+  during_wait_for_turn([this] { engine->step(); }, [&] { asked = engine->make_safe(); });
   ASSERT_TRUE(asked.valid() && is_ready(asked));
   EXPECT_TRUE(asked.get().success);
   EXPECT_THAT(device.requests, ElementsAre("write coils 0+2", "write register 0"));
@@ -90,7 +87,7 @@ TEST_F(SafeValuesTest, Without_any_no_turn_is_kept) {
   run_for(milliseconds(50));
   engine->make_safe();
   engine->step();
-  EXPECT_EQ(device.given_back, 1U);
+  EXPECT_TRUE(is_turn_free());
 }
 
 TEST_F(SafeValuesTest, The_next_message_drives_again) {

@@ -107,11 +107,10 @@ TEST_F(ScheduledWritesTest, Writes_of_other_points_hold_it_not_back) {
 
 TEST_F(ScheduledWritesTest, Writes_without_end_do_not_hold_it_back) {
   begin_foreign(press());
-  device.await_write = [this] { push("lamp", 0); };
   push("lamp", 0);
   push("lamp", 1);
   auto accepted = engine->schedule(wanted("lamp", 1, seconds(300)));
-  for (int i = 0; i < 20; ++i) engine->step();
+  for (int i = 0; i < 20; ++i) during_wait_for_turn([this] { engine->step(); }, [this] { push("lamp", 0); });
   EXPECT_EQ(accepted.wait_for(seconds(0)), std::future_status::ready);
 }
 

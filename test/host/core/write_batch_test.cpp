@@ -113,14 +113,16 @@ struct WriteExchangeTest : testing::Test {
     const auto owned = builder.build();
     Write write;
     std::copy(registers.begin(), registers.end(), write.registers.begin());
-    device.connected = true;
+    EXPECT_TRUE(link.connect());
+    device.requests.clear();
     WriteBatch batch(owned->map());
     batch.add(write);
-    const auto sent = send(batch, owned->map(), device);
-    return sent ? device.receive() : sent;
+    const auto sent = send(batch, owned->map(), link);
+    return sent ? link.receive() : sent;
   }
   std::uint16_t holding(std::uint32_t address) { return device.values[{Table::holding_registers, address}]; }
   FakeDevice device;
+  Link link{test::share(device), {}, {}};
 };
 
 TEST_F(WriteExchangeTest, A_coil_is_written_by_one_request) {
@@ -177,9 +179,10 @@ TEST_F(WriteExchangeTest, A_unit_that_is_away_is_not_asked_for_the_other_values)
   const std::uint16_t on = 1;
   std::vector<Write> writes;
   for (std::uint32_t i = 0; i < 3; ++i) writes.push_back(make_write(owned->map(), i, {&on, 1}));
-  device.connected = true;
+  ASSERT_TRUE(link.connect());
+  device.requests.clear();
   device.next_errors = {ExceptionReply{modbus::Exception::gateway_target_failed_to_respond}};
-  const auto rejected = write_values(writes, owned->map(), device);
+  const auto rejected = write_values(writes, owned->map(), link);
   ASSERT_FALSE(rejected);
   EXPECT_TRUE(is_unit_away(rejected.error()));
   EXPECT_THAT(device.requests, ElementsAre("write coils 0+2"));

@@ -36,7 +36,7 @@ struct WriteResultsTest : test::DeviceTest {
     if (adjust != nullptr) adjust(builder.head());
     owned = builder.build();
     sink.emplace(owned->map());
-    engine.emplace(owned->map(), Verify::off, nullptr, device, clock, *sink);
+    make_engine(Verify::off, nullptr);
     run_for(milliseconds(50));
     device.requests.clear();
   }
@@ -75,9 +75,10 @@ TEST_F(WriteResultsTest, A_value_that_a_newer_one_overtakes_is_superseded) {
 
 TEST_F(WriteResultsTest, Of_a_number_that_waits_for_its_units_turn_the_newest_is_sent) {
   start_online();
-  device.refuse_send = true;  // a transport whose turn it is not
+  ASSERT_TRUE(shared->turns.try_take(this));
   push("r0", 1, &results);
   EXPECT_FALSE(engine->send_now());
+  shared->turns.release();
   push("r0", 2);
   EXPECT_THAT(results.outcomes, ElementsAre(Outcome::superseded));
   engine->step();
@@ -114,7 +115,7 @@ TEST_F(WriteResultsTest, What_takes_a_read_before_waits_for_the_owner) {
   start_online();
   push("bit", 1);
   EXPECT_FALSE(engine->send_now());
-  EXPECT_EQ(device.given_back, 1U);
+  EXPECT_TRUE(is_turn_free());
   EXPECT_TRUE(device.requests.empty());
   engine->step();
   EXPECT_THAT(device.requests, ElementsAre("read holding_registers 9+1", "write register 9"));

@@ -15,7 +15,7 @@
 
 #include <arpa/inet.h>
 
-#include "coupler/host/modbus/wait.hpp"
+#include "coupler/host/core/wakeup.hpp"
 
 namespace coupler::host::test {
 

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "coupler/host/modbus/wait.hpp"
+#include "coupler/host/core/wakeup.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/modbus/rtu_frame.hpp"
 

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "coupler/host/core/device_thread.hpp"
-#include "coupler/host/modbus/make_transports.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/modbus/listeners.hpp"
 #include "test/host/modbus/serial_line.hpp"
@@ -28,7 +28,7 @@ class SerialUnits : public ::testing::Test {
   void make(const std::vector<std::uint8_t>& units) {
     std::vector<Map> maps;
     for (const std::uint8_t unit : units) maps.push_back(map_of(unit));
-    transports = make_transports(maps);
+    links = make_links(maps);
   }
   Map map_of(std::uint8_t unit, milliseconds timeout = milliseconds(20000)) const {
     Map map;
@@ -36,9 +36,9 @@ class SerialUnits : public ::testing::Test {
     map.connection = line.connection(unit, timeout);
     return map;
   }
-  Result<std::uint16_t> read(Transport& transport) const {
+  Result<std::uint16_t> read(Link& link) const {
     std::uint16_t word = 0;
-    auto done = transport.read_registers(Table::holding_registers, modbus::Range::of(0, 1), &word);
+    auto done = link.read_registers(Table::holding_registers, modbus::Range::of(0, 1), &word);
     return done ? Result<std::uint16_t>(word) : tl::make_unexpected(done.error());
   }
 
@@ -53,31 +53,31 @@ class SerialUnits : public ::testing::Test {
     if (request[1] != 3) return test::Octets(request.begin(), request.begin() + 8);
     return test::rtu(request[0], {3, 2, 0, request[0]});
   }};
-  std::vector<std::unique_ptr<Transport>> transports;
+  std::vector<std::unique_ptr<Link>> links;
 };
 
 TEST_F(SerialUnits, Share_the_one_port_in_turn) {
   make({1, 2, 3});
   for (int round = 0; round < 2; ++round)
-    for (std::size_t i = 0; i < transports.size(); ++i) {
-      ASSERT_TRUE(transports[i]->connect());
-      EXPECT_EQ(read(*transports[i]), i + 1);
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      ASSERT_TRUE(links[i]->connect());
+      EXPECT_EQ(read(*links[i]), i + 1);
     }
 }
 
 TEST_F(SerialUnits, Go_on_without_a_new_connection_when_one_is_silent) {
-  transports = make_transports({map_of(1), map_of(2, milliseconds(100))});
-  for (auto& transport : transports) ASSERT_TRUE(transport->connect());
+  links = make_links({map_of(1), map_of(2, milliseconds(100))});
+  for (auto& link : links) ASSERT_TRUE(link->connect());
   silent = 2;
-  const auto answer = read(*transports[1]);
+  const auto answer = read(*links[1]);
   ASSERT_FALSE(answer);
   EXPECT_TRUE(std::holds_alternative<Timeout>(answer.error()));
-  EXPECT_EQ(read(*transports[0]), 1);
+  EXPECT_EQ(read(*links[0]), 1);
   silent = 0;
   Result<std::uint16_t> again = fail(Timeout{milliseconds(100)});
   while (!again && std::holds_alternative<Timeout>(again.error())) {  // a busy machine may be late
-    ASSERT_TRUE(transports[1]->connect());
-    again = read(*transports[1]);
+    ASSERT_TRUE(links[1]->connect());
+    again = read(*links[1]);
   }
   EXPECT_EQ(again, 2);
 }
@@ -92,15 +92,15 @@ TEST_F(SerialUnits, At_the_end_one_that_is_silent_keeps_no_other_from_its_safe_v
     owned.push_back(builder.build());
   }
   const auto is_made_safe = [&] {
-    transports = make_transports({owned[0]->map(), owned[1]->map()});
+    links = make_links({owned[0]->map(), owned[1]->map()});
     OnlineSink sink;
     DeafSink deaf;
-    DeviceThread healthy(owned[0]->map(), Verify::off, MapLoader(), *transports[0], sink);
+    DeviceThread healthy(owned[0]->map(), Verify::off, MapLoader(), *links[0], sink);
     healthy.start();
     while (!sink.is_online) std::this_thread::sleep_for(milliseconds(1));
     silent = 2;
     const int before = unanswered;
-    DeviceThread dead(owned[1]->map(), Verify::require, MapLoader(), *transports[1], deaf);
+    DeviceThread dead(owned[1]->map(), Verify::require, MapLoader(), *links[1], deaf);
     dead.start();
     while (unanswered == before) std::this_thread::sleep_for(milliseconds(1));
     auto dead_ends = std::async(std::launch::async, [&] { return dead.end(); });
@@ -115,13 +115,13 @@ TEST_F(SerialUnits, At_the_end_one_that_is_silent_keeps_no_other_from_its_safe_v
 
 TEST_F(SerialUnits, Are_all_lost_when_the_port_goes) {
   make({1, 2});
-  for (auto& transport : transports) {
-    ASSERT_TRUE(transport->connect());
-    ASSERT_TRUE(read(*transport));
+  for (auto& link : links) {
+    ASSERT_TRUE(link->connect());
+    ASSERT_TRUE(read(*link));
   }
   line.unplug();
-  for (auto& transport : transports) {
-    const auto answer = read(*transport);
+  for (auto& link : links) {
+    const auto answer = read(*link);
     ASSERT_FALSE(answer);
     EXPECT_TRUE(std::holds_alternative<TransportFailure>(answer.error()));
   }
@@ -132,10 +132,10 @@ TEST_F(SerialUnits, Of_one_port_by_two_names_share_it) {
   ASSERT_EQ(::symlink(line.device().c_str(), other_name.c_str()), 0);
   std::vector<Map> maps{map_of(1), map_of(2)};
   maps[1].connection.serial.device = other_name;
-  transports = make_transports(maps);
-  ASSERT_TRUE(transports[0]->connect());
-  EXPECT_TRUE(transports[1]->connect());
-  EXPECT_EQ(read(*transports[1]), 2);
+  links = make_links(maps);
+  ASSERT_TRUE(links[0]->connect());
+  EXPECT_TRUE(links[1]->connect());
+  EXPECT_EQ(read(*links[1]), 2);
   EXPECT_THAT(line_conflict(maps), IsEmpty());
   maps[1].connection.serial.baud = 9600;
   EXPECT_THAT(line_conflict(maps), HasSubstr("left and right are on one line"));

@@ -19,14 +19,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST_F(UnitTransportTest, A_write_waits_for_the_request_in_flight_and_for_no_other_read) {
+TEST_F(SharedChannelTest, A_write_waits_for_the_request_in_flight_and_for_no_other_read) {
   constexpr int writes = 20;
   make();
   DeafSink sink;
   std::vector<std::unique_ptr<DeviceThread>> devices;
   for (std::size_t i = 0; i < units; ++i)
     devices.push_back(
-        std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *transports[i], sink));
+        std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *links[i], sink));
   for (const auto& device : devices) device->start();
   while (gateway.reads < 10 * units) std::this_thread::sleep_for(milliseconds(10));
   // A write of unit 1 while a read of unit 2 is in flight, which takes so long: its thread has to come
@@ -49,7 +49,7 @@ TEST_F(UnitTransportTest, A_write_waits_for_the_request_in_flight_and_for_no_oth
                  is_overtaken(milliseconds(2000)));
 }
 
-TEST_F(UnitTransportTest, At_the_end_a_unit_that_is_silent_keeps_no_other_from_its_safe_values) {
+TEST_F(SharedChannelTest, At_the_end_a_unit_that_is_silent_keeps_no_other_from_its_safe_values) {
   on_shutdown = OnShutdown::safe;
   const auto is_made_safe = [this] {
     make();
@@ -74,7 +74,7 @@ TEST_F(UnitTransportTest, At_the_end_a_unit_that_is_silent_keeps_no_other_from_i
   EXPECT_TRUE(made_safe);
 }
 
-TEST_F(UnitTransportTest, Every_write_has_one_result_while_all_units_write_and_the_gateway_hangs_up) {
+TEST_F(SharedChannelTest, Every_write_has_one_result_while_all_units_write_and_the_gateway_hangs_up) {
   constexpr int writes = 1000;
   gateway.ends_each = 301;
   make();
@@ -85,7 +85,7 @@ TEST_F(UnitTransportTest, Every_write_has_one_result_while_all_units_write_and_t
     std::vector<std::unique_ptr<DeviceThread>> devices;
     for (std::size_t i = 0; i < units; ++i)
       devices.push_back(
-          std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *transports[i], sink));
+          std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *links[i], sink));
     for (const auto& device : devices) device->start();
     std::vector<std::thread> writers;
     writers.reserve(units);

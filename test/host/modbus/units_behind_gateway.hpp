@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "coupler/host/modbus/make_transports.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/modbus/modbus_server.hpp"
 
@@ -76,7 +76,7 @@ class Gateway {
   test::LoopbackServer server_{[this](int fd) { return answer(fd); }};  // last: its thread uses the others
 };
 
-struct UnitTransportTest : testing::Test {
+struct SharedChannelTest : testing::Test {
   static constexpr std::uint8_t units = 3;
 
   MapPtr make_map(std::uint8_t unit, std::uint16_t connections = 1) const {
@@ -98,24 +98,24 @@ struct UnitTransportTest : testing::Test {
     std::vector<Map> maps;
     for (std::uint8_t unit = 1; unit <= units; ++unit)
       maps.push_back(owned.emplace_back(make_map(unit, connections))->map());
-    transports = make_transports(maps);
+    links = make_links(maps);
   }
   void connect_all() {
     make();
-    for (const auto& transport : transports) ASSERT_TRUE(transport->connect());
+    for (const auto& link : links) ASSERT_TRUE(link->connect());
   }
-  Transport& unit(int number) { return *transports[static_cast<std::size_t>(number - 1)]; }
+  Link& unit(int number) { return *links[static_cast<std::size_t>(number - 1)]; }
   Result<> read(int number) {
     return unit(number).read_registers(Table::holding_registers, modbus::Range::of(1, 1), &word);
   }
 
   Gateway gateway;
   std::uint16_t port = gateway.port();
-  std::map<std::uint8_t, std::chrono::milliseconds> patience;  ///< of a unit's transport, where it is to end
+  std::map<std::uint8_t, std::chrono::milliseconds> patience;  ///< of a unit's link, where it is to end
   OnShutdown on_shutdown = OnShutdown::hold;
   std::uint16_t word = 0;
   std::vector<MapPtr> owned;
-  std::vector<std::unique_ptr<Transport>> transports;
+  std::vector<std::unique_ptr<Link>> links;
 };
 
 }  // namespace coupler::host

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/tcp_channel.hpp"
 #include "test/host/modbus/modbus_server.hpp"
 
 namespace coupler::host {
@@ -98,29 +98,38 @@ class ScriptedNode {
   test::LoopbackServer server_{[this](int fd) { return serve(fd); }};  // last: its thread uses the others
 };
 
-struct WaitForChangesTest : testing::Test {
+struct WaitForChangesTest : testing::Test, WaitListener {
   WaitForChangesTest() {
     connection.address = "127.0.0.1";
     connection.port = node.port();
     connection.timeout = milliseconds(20000);
-    transport.emplace(connection);
-    EXPECT_TRUE(transport->connect());
+    connect();
   }
-  Result<> wait(std::uint16_t ms = 20000) { return transport->send_wait({ms, 9, 3}); }
+  void connect() {
+    channel = std::make_shared<TcpChannel>(connection);
+    link.emplace(std::make_shared<SharedChannel>(channel), connection, Limits{});
+    link->listen(*this);
+    ASSERT_TRUE(link->connect());
+  }
+  void on_wait_answer(const WaitAnswer& answer) override { heard = answer; }
+  std::optional<WaitAnswer> take() { return std::exchange(heard, std::nullopt); }
+  Result<> wait(std::uint16_t ms = 20000) { return link->send_wait({ms, 9, 3}); }
   void expect_change() {
-    const auto answer = transport->take_wait_answer();
+    const auto answer = take();
     ASSERT_TRUE(answer);
     ASSERT_TRUE(answer->reply);
     EXPECT_EQ(answer->reply->epoch, 9U);
     ASSERT_EQ(answer->reply->count, 1);
     EXPECT_EQ(answer->reply->changes[0].address, 7);
     EXPECT_LE(answer->sent, answer->received);
-    EXPECT_FALSE(transport->take_wait_answer()) << "once";
+    EXPECT_FALSE(take()) << "once";
   }
 
   ScriptedNode node;
   Connection connection;
-  std::optional<ModbusTransport> transport;
+  std::shared_ptr<TcpChannel> channel;
+  std::optional<Link> link;
+  std::optional<WaitAnswer> heard;
   std::uint8_t bit = 0;
 };
 
@@ -128,26 +137,25 @@ TEST_F(WaitForChangesTest, The_answer_is_received_when_its_bytes_have_come) {
   node.answer_waits = true;
   ASSERT_TRUE(wait());
   const Time far = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-  ASSERT_EQ(transport->wait_until(far), Transport::Woken::by_bytes);
-  ASSERT_TRUE(transport->receive_wait());
+  ASSERT_EQ(link->wait_until(far), Woken::by_bytes);
+  ASSERT_TRUE(link->receive_wait());
   expect_change();
 }
 
 TEST_F(WaitForChangesTest, A_read_behind_it_has_its_answer_second) {
   ASSERT_TRUE(wait());
-  ASSERT_TRUE(transport->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit));
+  ASSERT_TRUE(link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit));
   EXPECT_EQ(bit, 1);
   expect_change();
-  ASSERT_TRUE(transport->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit))
-      << "and one without a wait";
-  EXPECT_FALSE(transport->take_wait_answer());
+  ASSERT_TRUE(link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit)) << "and one without a wait";
+  EXPECT_FALSE(take());
 }
 
 TEST_F(WaitForChangesTest, A_write_behind_it_has_its_answer_second) {
   ASSERT_TRUE(wait());
   const auto request = WriteRequest::coil(3, true);
-  ASSERT_TRUE(transport->send(request));
-  ASSERT_TRUE(transport->receive());
+  ASSERT_TRUE(link->send(request));
+  ASSERT_TRUE(link->receive());
   expect_change();
 }
 
@@ -155,12 +163,12 @@ TEST_F(WaitForChangesTest, A_scheduled_output_behind_it_has_its_answer_second) {
   const std::uint16_t on = 1;
   const auto request = modbus::ScheduleRequest::coils({9, modbus::NodeTime(1000)}, {&on, 1});
   ASSERT_TRUE(wait());
-  const auto accepted = transport->schedule(request);
+  const auto accepted = link->schedule(request);
   ASSERT_TRUE(accepted);
   EXPECT_EQ(accepted->number, 77);
   expect_change();
   node.is_full = true;
-  const auto refused = transport->schedule(request);
+  const auto refused = link->schedule(request);
   ASSERT_FALSE(refused);
   ASSERT_NE(exception_in(refused.error()), nullptr);
   EXPECT_EQ(exception_in(refused.error())->code, modbus::Exception::server_device_busy);
@@ -169,7 +177,7 @@ TEST_F(WaitForChangesTest, A_scheduled_output_behind_it_has_its_answer_second) {
 TEST_F(WaitForChangesTest, A_reply_that_comes_before_it_is_an_error) {
   node.swaps_replies = true;
   ASSERT_TRUE(wait());
-  const auto read = transport->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit);
+  const auto read = link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit);
   ASSERT_FALSE(read);
   EXPECT_TRUE(std::holds_alternative<BadFrame>(read.error()));
 }
@@ -177,8 +185,8 @@ TEST_F(WaitForChangesTest, A_reply_that_comes_before_it_is_an_error) {
 TEST_F(WaitForChangesTest, An_exception_to_it_does_not_concern_the_request_behind) {
   node.refuses_waits = true;
   ASSERT_TRUE(wait());
-  ASSERT_TRUE(transport->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit));
-  const auto answer = transport->take_wait_answer();
+  ASSERT_TRUE(link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit));
+  const auto answer = take();
   ASSERT_TRUE(answer);
   ASSERT_FALSE(answer->reply);
   EXPECT_NE(exception_in(answer->reply.error()), nullptr);
@@ -186,9 +194,9 @@ TEST_F(WaitForChangesTest, An_exception_to_it_does_not_concern_the_request_behin
 
 TEST_F(WaitForChangesTest, A_new_connection_awaits_nothing) {
   ASSERT_TRUE(wait());
-  ASSERT_TRUE(transport->connect());
-  ASSERT_TRUE(transport->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit));
-  EXPECT_FALSE(transport->take_wait_answer());
+  ASSERT_TRUE(link->connect());
+  ASSERT_TRUE(link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit));
+  EXPECT_FALSE(take());
 }
 
 TEST_F(WaitForChangesTest, An_answer_that_does_not_end_is_a_timeout_long_before_the_wait_is_over) {
@@ -196,11 +204,11 @@ TEST_F(WaitForChangesTest, An_answer_that_does_not_end_is_a_timeout_long_before_
   node.ends_no_answer = true;
   const Time over = std::chrono::steady_clock::now() + milliseconds(modbus::longest_wait);
   ASSERT_TRUE(wait(modbus::longest_wait));
-  ASSERT_EQ(transport->wait_until(over), Transport::Woken::by_bytes);
-  ASSERT_TRUE(transport->select(connection.unit, milliseconds(1)));
-  const auto heard = transport->receive_wait();
-  ASSERT_FALSE(heard);
-  EXPECT_TRUE(std::holds_alternative<Timeout>(heard.error()));
+  ASSERT_EQ(link->wait_until(over), Woken::by_bytes);
+  ASSERT_TRUE(channel->select(connection.unit, milliseconds(1)));
+  const auto received = link->receive_wait();
+  ASSERT_FALSE(received);
+  EXPECT_TRUE(std::holds_alternative<Timeout>(received.error()));
   EXPECT_LT(std::chrono::steady_clock::now(), over);
 }
 
@@ -210,11 +218,10 @@ TEST_F(WaitForChangesTest, The_answers_to_the_wait_and_to_the_read_have_one_time
   // With two timeouts it is never over in time; with one, if nothing keeps this program waiting.
   bool in_time = false;
   for (int attempt = 0; attempt < 20 && !in_time; ++attempt) {
-    transport.emplace(connection);
-    ASSERT_TRUE(transport->connect());
+    connect();
     ASSERT_TRUE(wait());
     const Time over = std::chrono::steady_clock::now() + late + connection.timeout;
-    const auto read = transport->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit);
+    const auto read = link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit);
     in_time = std::chrono::steady_clock::now() < over;
     ASSERT_FALSE(read);
     EXPECT_TRUE(std::holds_alternative<Timeout>(read.error()));
@@ -223,11 +230,11 @@ TEST_F(WaitForChangesTest, The_answers_to_the_wait_and_to_the_read_have_one_time
 }
 
 TEST_F(WaitForChangesTest, Silence_is_a_timeout) {
-  ASSERT_TRUE(transport->select(connection.unit, milliseconds(1)));
+  link->select(connection.unit, milliseconds(1));
   ASSERT_TRUE(wait(1));
-  const auto heard = transport->receive_wait();
-  ASSERT_FALSE(heard);
-  EXPECT_TRUE(std::holds_alternative<Timeout>(heard.error()));
+  const auto received = link->receive_wait();
+  ASSERT_FALSE(received);
+  EXPECT_TRUE(std::holds_alternative<Timeout>(received.error()));
 }
 
 }  // namespace

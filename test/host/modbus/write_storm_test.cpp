@@ -6,7 +6,7 @@
 
 #include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/core/write.hpp"
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/modbus/listeners.hpp"
 #include "test/host/modbus/modbus_server.hpp"
@@ -14,7 +14,7 @@
 namespace coupler::host {
 namespace {
 
-using Outcome = WriteResult::Outcome;
+using WriteOutcome = WriteResult::Outcome;
 
 struct WriteStorm : testing::Test {
   MapPtr make_map() const {
@@ -33,7 +33,7 @@ struct WriteStorm : testing::Test {
       Write write;
       write.listener = &ticket;
       device.write(write);
-      if (ticket.wait().outcome == Outcome::ok) return;
+      if (ticket.wait().outcome == WriteOutcome::ok) return;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
@@ -46,7 +46,7 @@ struct WriteStorm : testing::Test {
   }
   test::ModbusServer server;
   MapPtr owned = make_map();
-  ModbusTransport transport{owned->map().connection};
+  Link link = make_link(owned->map().connection);
   DeafSink sink;
 };
 
@@ -57,7 +57,7 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
   Tally tally;
   std::atomic<int> written{0};
   {
-    DeviceThread device(owned->map(), Verify::off, {}, transport, sink);
+    DeviceThread device(owned->map(), Verify::off, {}, link, sink);
     device.start();
     wait_until_connected(device);
     std::vector<std::thread> writers;
@@ -86,7 +86,7 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
 
 TEST_F(WriteStorm, What_was_written_last_stands_in_the_device) {
   {
-    DeviceThread device(owned->map(), Verify::off, {}, transport, sink);
+    DeviceThread device(owned->map(), Verify::off, {}, link, sink);
     device.start();
     wait_until_connected(device);
     for (std::uint16_t value = 1; value < 100; ++value)
@@ -94,9 +94,9 @@ TEST_F(WriteStorm, What_was_written_last_stands_in_the_device) {
     for (std::uint32_t point = 32; point < 40; ++point) {
       WriteTicket ticket;
       write(device, point, 100, &ticket);
-      EXPECT_EQ(ticket.wait().outcome, Outcome::ok);
+      EXPECT_EQ(ticket.wait().outcome, WriteOutcome::ok);
     }
-    EXPECT_GT(device.statistics().written(Outcome::ok), 0U);
+    EXPECT_GT(device.statistics().written(WriteOutcome::ok), 0U);
   }
   for (int address = 0; address < 8; ++address) EXPECT_EQ(server.tables().tab_registers[address], 100);
 }

@@ -15,19 +15,19 @@ constexpr int most_unheard = 2;
 
 }  // namespace
 
-ChangeWatch::ChangeWatch(const Map& map, host::PacedTransport& transport, host::Clock& clock,
+ChangeWatch::ChangeWatch(const Map& map, host::Link& link, host::Clock& clock,
                          host::DeviceStatistics& statistics, Use use, Note note)
     : wanted_(map.changes && use),
-      transport_(transport),
+      link_(link),
       clock_(clock),
       use_(std::move(use)),
       note_(std::move(note)),
-      listener_(map.connection.timeout, transport, clock, statistics, *this, *this) {}
+      listener_(map.connection.timeout, link, clock, statistics, *this, *this) {}
 
 Result<> ChangeWatch::start(bool is_node) {
   listener_.stop();
-  if (!wanted_ || !is_node || !transport_.can_wait()) return {};
-  const Result<identity::Further> node = host::read_further(transport_);
+  if (!wanted_ || !is_node || !link_.can_wait()) return {};
+  const Result<identity::Further> node = host::read_further(link_);
   if (!node) return tl::make_unexpected(node.error());
   if (!node->functions.tells_changes) return {};
   if (unheard_ >= most_unheard) {
@@ -47,15 +47,15 @@ void ChangeWatch::lost() {
 Result<> ChangeWatch::wait_until(host::Time time) {
   while (is_active() && !std::exchange(missed_, false) && clock_.now() < time) {
     if (listener_.asks_for_watchdog()) {
-      const Result<identity::Further> further = host::read_further(transport_);
+      const Result<identity::Further> further = host::read_further(link_);
       if (!further) return tl::make_unexpected(further.error());
       listener_.set_watchdog(std::chrono::milliseconds(further->watchdog_timeout));
     }
     if (auto asked = listener_.step(); !asked) return asked;
-    switch (transport_.wait_until(std::min(time, listener_.due()))) {
-      case host::Transport::Woken::by_time: break;
-      case host::Transport::Woken::by_call: return {};
-      case host::Transport::Woken::by_bytes:
+    switch (link_.wait_until(std::min(time, listener_.due()))) {
+      case host::Woken::by_time: break;
+      case host::Woken::by_call: return {};
+      case host::Woken::by_bytes:
         if (!listener_.is_waiting())
           return host::fail(
               host::TransportFailure{"the device closed the connection, or sent an unexpected reply"});

@@ -18,8 +18,8 @@ class ChangeWatch : private host::ChangeSink, private host::Sink {
 
   /// `use` may be empty: then nothing is asked for. It may be called whenever something is read. Everything
   /// given by reference must outlive it.
-  ChangeWatch(const Map& map, host::PacedTransport& transport, host::Clock& clock,
-              host::DeviceStatistics& statistics, Use use, Note note);
+  ChangeWatch(const Map& map, host::Link& link, host::Clock& clock, host::DeviceStatistics& statistics,
+              Use use, Note note);
 
   /// A new connection. Asks for changes before anything else is read, so that none is missed. An error means
   /// that the connection can no longer be used.
@@ -28,7 +28,7 @@ class ChangeWatch : private host::ChangeSink, private host::Sink {
   void lost();
   /// The device announces its changes.
   bool is_active() const { return listener_.is_active(); }
-  /// Waits until then; returns early if everything should be read once more, or after the transport's wake().
+  /// Waits until then; returns early if everything should be read once more, or after the link's wake().
   host::Result<> wait_until(host::Time time);
 
  private:
@@ -44,7 +44,7 @@ class ChangeWatch : private host::ChangeSink, private host::Sink {
   void on_report(host::Level, const std::string& text) override { note_(text); }
 
   bool wanted_;
-  host::PacedTransport& transport_;
+  host::Link& link_;
   host::Clock& clock_;
   Use use_;
   Note note_;

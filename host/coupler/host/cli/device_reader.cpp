@@ -87,14 +87,14 @@ IdentityFindings findings(const Map& map, const Identity& identity) {
 
 }  // namespace
 
-DeviceReader::DeviceReader(const Map& map, const std::vector<bool>& chosen, host::Transport& transport,
-                           host::Clock& clock, host::MapLoader load, ChangeWatch::Use use)
+DeviceReader::DeviceReader(const Map& map, const std::vector<bool>& chosen, host::Link& link,
+                           host::MapLoader load, ChangeWatch::Use use)
     : map_(map),
       load_(std::move(load)),
       planner_(map),
-      transport_(transport, clock, map.limits, statistics_),
-      clock_(clock),
-      changes_(map_, transport_, clock, statistics_, std::move(use),
+      link_(link),
+      clock_(link.clock()),
+      changes_(map_, link_, clock_, statistics_, std::move(use),
                [this](std::string text) { note(std::move(text)); }),
       chosen_(chosen),
       place_(map.points.size()) {
@@ -138,13 +138,13 @@ void DeviceReader::lost(const host::Error& error) {
   for (Reading& reading : now_.readings)
     if (reading.state == State::failed && reading.why.empty()) reading.why = to_string(error);
   changes_.lost();
-  transport_.close();
+  link_.close();
   connected_ = false;
 }
 
 Result<> DeviceReader::connect() {
   known_ = blank_;
-  if (auto opened = transport_.connect(); !opened) return opened;
+  if (auto opened = link_.connect(); !opened) return opened;
   if (map_.verify != Verify::off && !map_.connection.is_broadcast())
     if (auto identified = identify(); !identified) return identified;
   is_node_ = known_.identity.value_or(Identity::Verdict::foreign) != Identity::Verdict::foreign;
@@ -155,19 +155,19 @@ Result<> DeviceReader::connect() {
 }
 
 Result<> DeviceReader::identify() {
-  const std::uint64_t replies = transport_.replies();
-  const auto identity = check_identity(transport_, map_, load_);
+  const std::uint64_t replies = link_.replies();
+  const auto identity = check_identity(link_, map_, load_);
   if (identity) {
     judge(*identity);
     return {};
   }
-  if (transport_.replies() != replies) return tl::make_unexpected(identity.error());
+  if (link_.replies() != replies) return tl::make_unexpected(identity.error());
   // Some couplers ignore addresses that they do not have. A late answer must not be taken for another.
   known_.notes.push_back(fmt::format(
       "the device does not answer the request for its identity ({}): it is read as a foreign coupler",
       to_string(identity.error())));
-  transport_.close();
-  return transport_.connect();
+  link_.close();
+  return link_.connect();
 }
 
 void DeviceReader::judge(const Identity& identity) {
@@ -223,7 +223,7 @@ Result<> DeviceReader::ask(const ReadSpan& span, std::vector<ReadSpan>& next) {
     next.push_back(span);
     return {};
   }
-  return take(span, transport_.read(span.table, span.range, registers_.data()), next);
+  return take(span, link_.read(span.table, span.range, registers_.data()), next);
 }
 
 Result<> DeviceReader::take(const ReadSpan& span, Result<> answer, std::vector<ReadSpan>& next) {
@@ -244,8 +244,8 @@ Result<> DeviceReader::take(const ReadSpan& span, Result<> answer, std::vector<R
 }
 
 Result<> DeviceReader::connect_again() {
-  transport_.close();
-  return transport_.connect();
+  link_.close();
+  return link_.connect();
 }
 
 /// A late answer must not be taken for another: the connection is made anew. If another request is answered
@@ -255,11 +255,11 @@ Result<> DeviceReader::without(const ReadSpan& span, const host::Error& error, s
   if (auto again = connect_again(); !again) return again;
   if (is_closed(error)) {  // by a device that does so after some requests, or for another client, it is
                            // answered now
-    Result<> alone = transport_.read(span.table, span.range, registers_.data());
+    Result<> alone = link_.read(span.table, span.range, registers_.data());
     if (alone || !is_no_reply(alone.error())) return take(span, std::move(alone), next);
     if (auto again = connect_again(); !again) return again;
   }
-  if (auto other = transport_.ask(*answered_); !other) return other;
+  if (auto other = link_.ask(*answered_); !other) return other;
   return in_parts(span, {{}, to_string(error) + ", though others have one; asked again now and then"}, next);
 }
 

@@ -9,7 +9,7 @@
 
 #include "coupler/host/cli/change_watch.hpp"
 #include "coupler/host/cli/snapshot.hpp"
-#include "coupler/host/core/paced_transport.hpp"
+#include "coupler/host/core/link.hpp"
 #include "coupler/host/core/set_aside.hpp"
 #include "coupler/plan/planner.hpp"
 
@@ -26,8 +26,8 @@ class DeviceReader {
   /// `chosen` by point. Changes that the device announces go to `use`, if it is not empty: those that come
   /// during a look() are older than its snapshot. What `map` views, and everything given by reference, must
   /// outlive it.
-  DeviceReader(const Map& map, const std::vector<bool>& chosen, host::Transport& transport,
-               host::Clock& clock, host::MapLoader load, ChangeWatch::Use use = {});
+  DeviceReader(const Map& map, const std::vector<bool>& chosen, host::Link& link, host::MapLoader load,
+               ChangeWatch::Use use = {});
 
   /// Reads every chosen point once, after connecting if there is no connection. If the device falls silent,
   /// the snapshot says so and has the readings until then.
@@ -69,7 +69,7 @@ class DeviceReader {
   host::MapLoader load_;
   plan::Planner planner_;
   host::DeviceStatistics statistics_;
-  host::PacedTransport transport_;
+  host::Link& link_;
   host::Clock& clock_;
   ChangeWatch changes_;
   std::vector<bool> chosen_;

@@ -24,7 +24,7 @@
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/schedule.hpp"
 #include "coupler/host/core/wall_time.hpp"
-#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "coupler/map/diagnostic.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
@@ -79,9 +79,8 @@ void show_changes(const Map& map, const Snapshot* before, const Snapshot& now) {
 }
 
 Exit once(const Map& map, const DumpOptions& options) {
-  const auto transport = host::make_transport(map.connection);
-  host::SteadyClock clock;
-  DeviceReader reader(map, options.chosen, *transport, clock, load_served_map);
+  host::Link link = host::make_link(map.connection, map.limits);
+  DeviceReader reader(map, options.chosen, link, load_served_map);
   const Snapshot now = reader.look();
   const bool nothing = std::none_of(now.readings.begin(), now.readings.end(), [](const Reading& reading) {
     return reading.state == Reading::State::good;
@@ -107,14 +106,13 @@ class Watch {
       : map_(map),
         every_(*options.every),
         show_(show),
-        transport_(host::make_transport(map.connection)),
+        link_(host::make_link(map.connection, map.limits)),
         interruption_([this] {
           stopped_ = true;
-          transport_->interrupt();
-          transport_->wake();
-          clock_.stop();
+          link_.interrupt();
+          link_.wake();
         }),
-        reader_(map, options.chosen, *transport_, clock_, load_served_map,
+        reader_(map, options.chosen, link_, load_served_map,
                 [this](const modbus::Change& bit, host::Stamp stamp) { take(bit, stamp); }) {}
 
   /// Until it is interrupted.
@@ -177,8 +175,8 @@ class Watch {
   const Map& map_;
   const host::Duration every_;
   const Show show_;
-  const std::unique_ptr<host::Transport> transport_;
-  host::SteadyClock clock_;
+  host::Link link_;
+  host::Clock& clock_ = link_.clock();
   std::atomic<bool> stopped_{false};
   const Interruption interruption_;
   host::Backoff backoff_;

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/core/node_map.hpp"
-#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "coupler/map/field_side.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/node_address.hpp"
@@ -40,12 +40,12 @@ FieldMap::FieldMap(const Map& node)
 }
 
 std::string FieldMap::why_missing() const {
-  const auto transport = host::make_transport(node_);
-  const auto connected = transport->connect();
+  host::Link link = host::make_link(node_);
+  const auto connected = link.connect();
   if (!connected) return host::to_string(connected.error()) + "; check that a node serves there";
-  const auto head = host::read_identity(*transport);
+  const auto head = host::read_identity(link);
   if (!head) return "the device does not say what it is: " + host::to_string(head.error());
-  const auto further = *head ? host::read_further(*transport) : identity::Further{};
+  const auto further = *head ? host::read_further(link) : identity::Further{};
   if (!further) return "the node does not say what it can do: " + host::to_string(further.error());
   if (further->functions.has_field_side) return {};
   return fmt::format(

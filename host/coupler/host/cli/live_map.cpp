@@ -22,7 +22,10 @@ tl::unexpected<NoLiveMap> none(Exit exit, std::string what, std::string remedy) 
 
 using Fetched = host::Result<std::optional<host::ServedMap>>;
 
-Fetched fetch(const Connection& where) { return host::fetch_served_map(*host::make_transport(where)); }
+Fetched fetch(const Connection& where) {
+  host::Link link = host::make_link(where);
+  return host::fetch_served_map(link);
+}
 
 /// The device can be reached, and perhaps it does not like the question, or has another unit id.
 bool is_silent(const host::Error& error) {

@@ -13,10 +13,10 @@ std::string reach_remedy(const Connection& where, const host::Error& error, std:
   return where.serial.present() || has_remedy(error) ? std::string() : std::string(over_tcp);
 }
 
-host::Result<scan::IdentificationPage> read_identification(host::MultiUnitTransport& transport,
+host::Result<scan::IdentificationPage> read_identification(host::Link& link,
                                                            modbus::ReadDeviceIdentification wanted) {
   const auto pdu = modbus::build_device_identification(wanted);
-  const auto reply = transport.exchange(pdu);
+  const auto reply = link.exchange(pdu);
   if (!reply) return tl::make_unexpected(reply.error());
   std::array<modbus::IdentificationObject, modbus::max_identification_objects> objects{};
   const auto taken = modbus::take_device_identification(*reply, objects);

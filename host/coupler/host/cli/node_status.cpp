@@ -22,27 +22,27 @@ using host::Result;
 bool is_answer(const Error& error) { return exception_in(error) != nullptr && !is_unit_away(error); }
 
 /// Returns whether the device has answered. An error ends the questions.
-Result<bool> read_area(host::Transport& transport, NodeStatus& status) {
-  const auto report = host::read_report(transport);
+Result<bool> read_area(host::Link& link, NodeStatus& status) {
+  const auto report = host::read_report(link);
   if (!report) {
     if (is_unit_away(report.error())) return tl::make_unexpected(report.error());
     status.error = report.error();
-    transport.close();  // a late answer must not be taken for another
-    if (auto connected = transport.connect(); !connected) return tl::make_unexpected(connected.error());
+    link.close();  // a late answer must not be taken for another
+    if (auto connected = link.connect(); !connected) return tl::make_unexpected(connected.error());
     return false;
   }
   status.report = *report;
   if (!status.report) return true;
-  const auto further = host::read_further(transport);
+  const auto further = host::read_further(link);
   if (!further) return tl::make_unexpected(further.error());
   status.further = *further;
   return true;
 }
 
-Result<> read_all(host::Transport& transport, const Identify& identify, NodeStatus& status) {
-  if (auto connected = transport.connect(); !connected) return connected;
-  status.certificates = transport.certificates();
-  const auto answered = read_area(transport, status);
+Result<> read_all(host::Link& link, const Identify& identify, NodeStatus& status) {
+  if (auto connected = link.connect(); !connected) return connected;
+  status.certificates = link.certificates();
+  const auto answered = read_area(link, status);
   if (!answered) return tl::make_unexpected(answered.error());
   std::optional<Error> failure;
   const auto ask = [&](modbus::ReadDeviceIdentification wanted) -> std::optional<scan::IdentificationPage> {
@@ -157,10 +157,10 @@ ordered_json identification_json(const NodeStatus& status) {
 
 }  // namespace
 
-NodeStatus read_status(host::Transport& transport, const Identify& identify) {
+NodeStatus read_status(host::Link& link, const Identify& identify) {
   NodeStatus status;
-  if (const auto done = read_all(transport, identify, status); !done) status.error = done.error();
-  transport.close();
+  if (const auto done = read_all(link, identify, status); !done) status.error = done.error();
+  link.close();
   status.at = std::chrono::system_clock::now();
   return status;
 }

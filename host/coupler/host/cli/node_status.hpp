@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "coupler/host/core/transport.hpp"
+#include "coupler/host/core/link.hpp"
 #include "coupler/host/scan/ports.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/map/map.hpp"
@@ -31,7 +31,7 @@ using Identify =
 
 /// Reads all of it, over a connection of its own, which is then closed. If the device ignores the request for
 /// the identity area, as some foreign couplers do, the rest is read over another connection.
-NodeStatus read_status(host::Transport& transport, const Identify& identify);
+NodeStatus read_status(host::Link& link, const Identify& identify);
 
 /// Returns lines for people. For a foreign coupler they are its identification; empty if it has none. Texts
 /// of the device are made harmless for a terminal.

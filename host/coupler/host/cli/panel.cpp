@@ -24,7 +24,7 @@
 #include "coupler/host/cli/report_line.hpp"
 #include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/core/named_write.hpp"
-#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "coupler/host/panel/panel_points.hpp"
 #include "coupler/host/panel/panel_server.hpp"
 #include "coupler/map/loader/load.hpp"
@@ -85,8 +85,8 @@ class LookedAtDevice final : public host::PanelDevice {
   class Connection {
    public:
     Connection(const Map& map, host::Sink& sink)
-        : transport_(host::make_transport(map.connection)),
-          thread_(map, map.verify, load_served_map, *transport_, sink) {
+        : link_(host::make_link(map.connection, map.limits)),
+          thread_(map, map.verify, load_served_map, link_, sink) {
       thread_.start();
     }
 
@@ -107,7 +107,7 @@ class LookedAtDevice final : public host::PanelDevice {
     host::DeviceSnapshot statistics() const { return thread_.statistics(); }
 
    private:
-    std::unique_ptr<host::MultiUnitTransport> transport_;
+    host::Link link_;
     host::DeviceThread thread_;
     std::mutex mutex_;
     bool has_ended_ = false;

@@ -19,7 +19,7 @@
 #include "coupler/host/cli/report_line.hpp"
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/device.hpp"
-#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "coupler/host/record/record_thread.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "coupler/map/node_address.hpp"
@@ -50,16 +50,16 @@ std::string progress_text(const host::Recorder::Counts& counts, std::size_t poin
 }
 
 /// In the connection's thread.
-void read_on(host::Device& device, host::Transport& transport, host::Recorder& recorder,
-             const host::Clock& clock, const std::atomic<bool>& stopped) {
+void read_on(host::Device& device, host::Link& link, host::Recorder& recorder,
+             const std::atomic<bool>& stopped) {
   std::uint64_t judged = 0;
   while (!stopped) {
     const host::Time next = device.step();
     if (const std::uint64_t revision = device.revision(); revision != judged) {
-      recorder.judge(device.qualities(), clock.now());
+      recorder.judge(device.qualities(), link.clock().now());
       judged = revision;
     }
-    if (transport.wait_until(next) == host::Transport::Woken::by_bytes) device.arrived();
+    if (link.wait_until(next) == host::Woken::by_bytes) device.arrived();
   }
 }
 
@@ -75,10 +75,10 @@ Exit record(const Map& original, const RecordOptions& options) {
   const Map& map = looking.map();
   auto file = open_file(options);
   if (!file) return complain("record", bad_call, file.error(), {});
-  const auto transport = host::make_transport(map.connection);
+  host::Link link = host::make_link(map.connection, map.limits);
   never_wait_for_reader_of(STDERR_FILENO);
   if (options.file != "-") std::signal(SIGPIPE, SIG_IGN);  // a recording outlives the reader of its messages
-  host::SteadyClock clock;
+  const host::Clock& clock = link.clock();
   host::SteadyClock pause;
   std::atomic<bool> stopped{false};
   const auto format = options.csv ? host::csv_format() : host::json_format();
@@ -90,16 +90,15 @@ Exit record(const Map& original, const RecordOptions& options) {
   const Interruption interruption([&] {
     stopped = true;
     recorder.end_comes();
-    transport->interrupt();
-    transport->wake();
-    clock.stop();
+    link.interrupt();
+    link.wake();
     pause.stop();
   });
   if (const std::string_view warning = watchdog_warning(original); !warning.empty())
     say(host::Level::warning, std::string(warning));
   host::RecordThread writing(recorder, *std::move(file), say);
-  host::Device device(map, map.verify, load_served_map, *transport, clock, recorder);
-  std::thread reading([&] { read_on(device, *transport, recorder, clock, stopped); });
+  host::Device device(map, map.verify, load_served_map, link, recorder);
+  std::thread reading([&] { read_on(device, link, recorder, stopped); });
 
   const auto progress = [&](const host::Recorder::Counts& counts) {
     return progress_text(counts, map.points.size(), writing, clock.now() - start);

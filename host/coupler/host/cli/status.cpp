@@ -29,10 +29,9 @@ Exit run(const Arguments& arguments) {
   if (const auto problem = use_tls_options(*where, arguments.tls, connection.tls))
     return complain("status", bad_call, problem->what, problem->remedy);
   connection.timeout = std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000));
-  const auto transport = host::make_transport(connection);
-  const NodeStatus status = read_status(*transport, [&](modbus::ReadDeviceIdentification wanted) {
-    return read_identification(*transport, wanted);
-  });
+  host::Link link = host::make_link(connection);
+  const NodeStatus status = read_status(
+      link, [&](modbus::ReadDeviceIdentification wanted) { return read_identification(link, wanted); });
   std::fputs(
       (arguments.json ? status_json(status, connection) + "\n" : status_text(status, connection)).c_str(),
       stdout);

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/modbus/make_transports.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "coupler/map/node_address.hpp"
 
@@ -75,10 +75,6 @@ Map moved(Map map, const Options& options) {
   return map;
 }
 
-std::unique_ptr<host::Transport> make_transport(const Map& map) {
-  return std::move(host::make_transports({map}).front());
-}
-
 SetResult copy(const WriteResult& result) { return {result.outcome, result.exception, to_string(result)}; }
 
 /// Deletes itself once it has its result: nobody else knows when that is.
@@ -112,11 +108,11 @@ std::future<host::ScheduleAnswer> known(host::ScheduleAnswer answer) {
 
 struct Session::Engine {
   Engine(const Map& map, Verify verify, host::Sink& sink)
-      : transport(make_transport(map)), thread(map, verify, load_served_map, *transport, sink) {
+      : link(host::make_link(map.connection, map.limits)), thread(map, verify, load_served_map, link, sink) {
     thread.start();
   }
 
-  std::unique_ptr<host::Transport> transport;
+  host::Link link;
   host::DeviceThread thread;
 };
 

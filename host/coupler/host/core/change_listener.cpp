@@ -22,15 +22,10 @@ constexpr std::chrono::seconds forgiven(10);
 
 }  // namespace
 
-ChangeListener::ChangeListener(milliseconds timeout, PacedTransport& transport, Clock& clock,
-                               DeviceStatistics& statistics, ChangeSink& changes, Sink& sink)
-    : timeout_(timeout),
-      transport_(transport),
-      clock_(clock),
-      statistics_(statistics),
-      changes_(changes),
-      sink_(sink) {
-  transport_.listen(*this);
+ChangeListener::ChangeListener(milliseconds timeout, Link& link, Clock& clock, DeviceStatistics& statistics,
+                               ChangeSink& changes, Sink& sink)
+    : timeout_(timeout), link_(link), clock_(clock), statistics_(statistics), changes_(changes), sink_(sink) {
+  link_.listen(*this);
 }
 
 void ChangeListener::set_watchdog(milliseconds watchdog) {
@@ -62,7 +57,7 @@ Result<> ChangeListener::step() {
   if (now < resume_at_) return {};
   // The first one is answered at once.
   const modbus::ChangesRequest request{epoch_ ? wait() : std::uint16_t{0}, epoch_.value_or(0), seen_};
-  if (auto sent = transport_.send_wait(request); !sent) return sent;
+  if (auto sent = link_.send_wait(request); !sent) return sent;
   waiting_ = true;
   look_at_ = clock_.now() + timeout_;
   silent_from_ = look_at_ + milliseconds(request.wait);
@@ -71,7 +66,7 @@ Result<> ChangeListener::step() {
 
 Result<> ChangeListener::receive() {
   alone_ = true;
-  Result<> received = transport_.receive_wait();
+  Result<> received = link_.receive_wait();
   alone_ = false;
   return received;
 }

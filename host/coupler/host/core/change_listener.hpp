@@ -7,7 +7,7 @@
 #include "coupler/base/line_limit.hpp"
 #include "coupler/host/core/clock_mapping.hpp"
 #include "coupler/host/core/device_statistics.hpp"
-#include "coupler/host/core/paced_transport.hpp"
+#include "coupler/host/core/link.hpp"
 #include "coupler/host/core/sink.hpp"
 
 namespace coupler::host {
@@ -38,8 +38,8 @@ class ChangeSink {
 class ChangeListener : private WaitListener {
  public:
   /// All references must outlive the listener. `timeout`: see Connection::timeout.
-  ChangeListener(std::chrono::milliseconds timeout, PacedTransport& transport, Clock& clock,
-                 DeviceStatistics& statistics, ChangeSink& changes, Sink& sink);
+  ChangeListener(std::chrono::milliseconds timeout, Link& link, Clock& clock, DeviceStatistics& statistics,
+                 ChangeSink& changes, Sink& sink);
 
   /// Starts with a new connection to a node that tells changes. The node's watchdog expires after `watchdog`
   /// without a request; 0: it has none.
@@ -86,7 +86,7 @@ class ChangeListener : private WaitListener {
   void say(LineLimit& lines, Level level, const std::string& text);
 
   std::chrono::milliseconds timeout_;
-  PacedTransport& transport_;
+  Link& link_;
   Clock& clock_;
   DeviceStatistics& statistics_;
   ChangeSink& changes_;

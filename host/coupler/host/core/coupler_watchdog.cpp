@@ -22,12 +22,12 @@ std::string_view remedy(modbus::Exception code) {
 }
 
 /// Makes one write (FC 5 or 6).
-Result<std::optional<RejectedStep>> write_step(const Step& step, Transport& transport) {
+Result<std::optional<RejectedStep>> write_step(const Step& step, Link& link) {
   const auto request = step.table == Table::coils
                            ? modbus::WriteRequest::coil(step.address, step.value != 0)
                            : modbus::WriteRequest::register_value(step.address, step.value);
-  Result<> done = transport.send(request);
-  if (done) done = transport.receive();
+  Result<> done = link.send(request);
+  if (done) done = link.receive();
   if (done) return std::nullopt;
   const ExceptionReply* exception = exception_in(done.error());
   if (exception == nullptr || is_unit_away(done.error())) return tl::make_unexpected(done.error());
@@ -45,31 +45,31 @@ std::string to_string(const RejectedStep& rejected) {
                      remedy(rejected.code));
 }
 
-Result<std::optional<RejectedStep>> write_steps(Span<const Step> steps, Transport& transport) {
+Result<std::optional<RejectedStep>> write_steps(Span<const Step> steps, Link& link) {
   for (const Step& step : steps) {
-    const Result<bool> is_so = step.if_different ? has_value(step, transport) : Result<bool>(false);
+    const Result<bool> is_so = step.if_different ? has_value(step, link) : Result<bool>(false);
     if (!is_so) return tl::make_unexpected(is_so.error());
     if (*is_so) continue;
-    if (auto done = write_step(step, transport); !done || done->has_value()) return done;
+    if (auto done = write_step(step, link); !done || done->has_value()) return done;
   }
   return std::nullopt;
 }
 
-Result<bool> has_value(const Step& place, Transport& transport) {
+Result<bool> has_value(const Step& place, Link& link) {
   const auto range = modbus::Range::of(place.address, 1);
   std::uint16_t value = 0;
-  const Result<> read = transport.read(place.table, range, &value);
+  const Result<> read = link.read(place.table, range, &value);
   if (read) return value == place.value;
   if (exception_in(read.error()) == nullptr || is_unit_away(read.error()))
     return tl::make_unexpected(read.error());
   return false;
 }
 
-CouplerWatchdog::CouplerWatchdog(const Map& map, PacedTransport& transport, Clock& clock,
-                                 DeviceStatistics& statistics, Sink& sink)
+CouplerWatchdog::CouplerWatchdog(const Map& map, Link& link, Clock& clock, DeviceStatistics& statistics,
+                                 Sink& sink)
     : map_(map),
       known_(map.coupler_watchdog),
-      transport_(transport),
+      link_(link),
       clock_(clock),
       statistics_(statistics),
       sink_(sink) {}
@@ -95,8 +95,8 @@ Time CouplerWatchdog::due() const {
   if (!connected_) return Time::max();
   if (resets_.any()) return Time::min();
   if (status_.state != State::fed) return next_;
-  if (known_.refusal && transport_.has_seen(*known_.refusal)) return Time::min();
-  if (known_.feed.empty() && !known_.alarm) return transport_.last_answer() + known_.feed_every;
+  if (known_.refusal && link_.has_seen(*known_.refusal)) return Time::min();
+  if (known_.feed.empty() && !known_.alarm) return link_.last_answer() + known_.feed_every;
   return next_;
 }
 
@@ -113,7 +113,7 @@ Result<bool> CouplerWatchdog::step() {
 
 Result<bool> CouplerWatchdog::serve(bool may_reset) {
   const bool suspicious =
-      status_.state != State::fed || known_.alarm || (known_.refusal && transport_.has_seen(*known_.refusal));
+      status_.state != State::fed || known_.alarm || (known_.refusal && link_.has_seen(*known_.refusal));
   if (suspicious) return bring_up(may_reset);
   const auto done = feed();
   return done ? Result<bool>(false) : tl::make_unexpected(done.error());
@@ -147,9 +147,9 @@ Result<bool> CouplerWatchdog::bring_up(bool may_reset) {
 }
 
 Result<> CouplerWatchdog::feed() {
-  if (known_.feed.empty()) return transport_.keep_alive(map_);
+  if (known_.feed.empty()) return link_.keep_alive(map_);
   next_ = clock_.now() + known_.feed_every;
-  const auto rejected = write_step(known_.feed[turn_++ % known_.feed.size()], transport_);
+  const auto rejected = write_step(known_.feed[turn_++ % known_.feed.size()], link_);
   if (!rejected) return tl::make_unexpected(rejected.error());
   if (rejected->has_value() && (*rejected)->code != known_.refusal)
     report_failure(State::not_fed, "the coupler's watchdog cannot be fed: " + to_string(**rejected));
@@ -157,20 +157,20 @@ Result<> CouplerWatchdog::feed() {
 }
 
 Result<bool> CouplerWatchdog::is_expired() {
-  transport_.forget_exceptions();
-  if (known_.alarm) return has_value(*known_.alarm, transport_);
+  link_.forget_exceptions();
+  if (known_.alarm) return has_value(*known_.alarm, link_);
   if (!known_.refusal) return false;
-  if (const auto asked = transport_.keep_alive(map_); !asked) return tl::make_unexpected(asked.error());
-  const bool rejected = transport_.has_seen(*known_.refusal);
-  transport_.forget_exceptions();
+  if (const auto asked = link_.keep_alive(map_); !asked) return tl::make_unexpected(asked.error());
+  const bool rejected = link_.has_seen(*known_.refusal);
+  link_.forget_exceptions();
   return rejected;
 }
 
 Result<bool> CouplerWatchdog::carry_out(Span<const WatchdogSequences::Write> steps) {
-  const auto rejected = write_steps(steps, transport_);
+  const auto rejected = write_steps(steps, link_);
   if (!rejected) return tl::make_unexpected(rejected.error());
   if (!rejected->has_value()) return true;
-  transport_.forget_exceptions();
+  link_.forget_exceptions();
   report_failure(status_.state == State::expired ? State::expired : State::not_fed,
                  "the coupler's watchdog cannot be armed: " + to_string(**rejected));
   return false;

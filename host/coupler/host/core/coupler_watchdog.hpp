@@ -6,7 +6,7 @@
 
 #include "coupler/host/core/calls.hpp"
 #include "coupler/host/core/device_statistics.hpp"
-#include "coupler/host/core/paced_transport.hpp"
+#include "coupler/host/core/link.hpp"
 #include "coupler/host/core/sink.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/map/watchdog.hpp"
@@ -27,21 +27,19 @@ struct RejectedStep {
 std::string to_string(const RejectedStep& rejected);
 
 /// Sends the writes (FC 5 or 6) in order, up to the first one that is rejected.
-Result<std::optional<RejectedStep>> write_steps(Span<const WatchdogSequences::Write> steps,
-                                                Transport& transport);
+Result<std::optional<RejectedStep>> write_steps(Span<const WatchdogSequences::Write> steps, Link& link);
 
 /// Returns whether the place holds the value, and false if it cannot be read.
-Result<bool> has_value(const WatchdogSequences::Write& place, Transport& transport);
+Result<bool> has_value(const WatchdogSequences::Write& place, Link& link);
 
 /// Uses the coupler's own watchdog as Map::coupler_watchdog says: arms it at each connect, feeds it, notices
 /// that it has expired, resets it and arms it again. Each write is a request of its own.
 ///
-/// Any thread may call ask_reset(). Only the thread that uses the transport may call the other functions.
+/// Any thread may call ask_reset(). Only the thread that uses the link may call the other functions.
 class CouplerWatchdog {
  public:
   /// All references must outlive the object.
-  CouplerWatchdog(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
-                  Sink& sink);
+  CouplerWatchdog(const Map& map, Link& link, Clock& clock, DeviceStatistics& statistics, Sink& sink);
 
   /// Resets the watchdog, even if the map wants no automatic reset.
   std::future<Calls::Answer> ask_reset() { return resets_.ask(); }
@@ -72,7 +70,7 @@ class CouplerWatchdog {
 
   const Map& map_;
   WatchdogSequences known_;
-  PacedTransport& transport_;
+  Link& link_;
   Clock& clock_;
   DeviceStatistics& statistics_;
   Sink& sink_;

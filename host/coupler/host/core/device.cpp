@@ -25,19 +25,19 @@ std::string loss_text(const Map& map, const Error& error, bool was_online) {
 
 }  // namespace
 
-Device::Device(const Map& map, Verify verify, MapLoader load, Transport& transport, Clock& clock, Sink& sink)
+Device::Device(const Map& map, Verify verify, MapLoader load, Link& link, Sink& sink)
     : map_(map),
       verify_(map.connection.is_broadcast() ? Verify::off : verify),
       load_(std::move(load)),
-      clock_(clock),
+      link_(link),
+      clock_(link.clock()),
       sink_(sink),
       qualities_(map),
-      transport_(transport, clock, map.limits, statistics_),
-      watchdog_(map_, transport_, clock, statistics_, sink),
-      writer_(map_, transport_, clock, statistics_, qualities_, sink),
-      poller_(map_, transport_, writer_, statistics_, qualities_, sink),
-      scheduler_(map_, transport_, clock, writer_, poller_.changes(), sink),
-      listener_(map.connection.timeout, transport_, clock, statistics_, scheduler_.changes(), sink) {}
+      watchdog_(map_, link_, clock_, statistics_, sink),
+      writer_(map_, link_, clock_, statistics_, qualities_, sink),
+      poller_(map_, link_, writer_, statistics_, qualities_, sink),
+      scheduler_(map_, link_, clock_, writer_, poller_.changes(), sink),
+      listener_(map.connection.timeout, link_, clock_, statistics_, scheduler_.changes(), sink) {}
 
 /// On a serial line there is nothing to be kept, and what is only written may not even refuse to be read.
 bool Device::needs_keep_alive() const {
@@ -63,7 +63,7 @@ Result<> Device::do_what_is_due(Time now) {
   scheduler_.queue_due(now);
   const bool schedules = scheduler_.has_request(listener_);
   const Time write_due = std::min({writer_.due(), watchdog_.due(), scheduler_.due(listener_)});
-  transport_.rank(schedules || write_due <= now ? Rank::write : Rank::read);
+  link_.rank(schedules || write_due <= now ? Rank::write : Rank::read);
   if (writer_.awaits_answer() || writer_.is_safe_asked())
     answer = write();
   else if (listener_.asks_for_watchdog())
@@ -77,14 +77,14 @@ Result<> Device::do_what_is_due(Time now) {
         is_read_first(now) && listener_.lets_read() && poller_.has_request(now) ? read_or_write() : write();
   else if (listener_.lets_read() && poller_.due() <= now)
     answer = read(write_due);
-  else if (keep_alive_due() <= now && transport_.await_turn(write_due) == Transport::Turn::read)
-    answer = poller_.last_answered() ? transport_.ask(*poller_.last_answered()) : transport_.keep_alive(map_);
+  else if (keep_alive_due() <= now && link_.await_turn(write_due) == Link::Turn::read)
+    answer = poller_.last_answered() ? link_.ask(*poller_.last_answered()) : link_.keep_alive(map_);
   if (answer) answered();
   return answer;
 }
 
 void Device::answered() {
-  if (transport_.replies() == replies_at_connect_) return;
+  if (link_.replies() == replies_at_connect_) return;
   identity_suffices_ = true;
   came_online();
 }
@@ -97,20 +97,20 @@ Result<> Device::write() {
 /// Reads, unless units share the connection: then a read and a write wait for a turn, and the one that gets
 /// it first is made, so that no more than one read of the others comes before.
 Result<> Device::read_or_write() {
-  transport_.rank(Rank::read);
-  switch (transport_.await_turn(Time::max(), true)) {
-    case Transport::Turn::none: return {};
-    case Transport::Turn::read: return read(Time::max());
-    case Transport::Turn::write: break;
+  link_.rank(Rank::read);
+  switch (link_.await_turn(Time::max(), true)) {
+    case Link::Turn::none: return {};
+    case Link::Turn::read: return read(Time::max());
+    case Link::Turn::write: break;
   }
-  transport_.rank(Rank::write);
+  link_.rank(Rank::write);
   return write();
 }
 
 Result<> Device::read(Time until) {
-  const std::uint64_t replies = transport_.replies();
+  const std::uint64_t replies = link_.replies();
   auto answer = poller_.step(until);
-  if (transport_.replies() != replies) wrote_last_ = false;
+  if (link_.replies() != replies) wrote_last_ = false;
   return answer ? answer : go_on_without(answer.error());
 }
 
@@ -120,7 +120,7 @@ Result<> Device::read(Time until) {
 /// device was away, no write is dropped, and nothing is restored.
 Result<> Device::go_on_without(const Error& error) {
   if (!is_no_reply(error) || is_node_ || ending_) return tl::make_unexpected(error);
-  if (transport_.replies() == replies_at_connect_ || !poller_.is_suspected()) {
+  if (link_.replies() == replies_at_connect_ || !poller_.is_suspected()) {
     poller_.ended_connection();
     return tl::make_unexpected(error);
   }
@@ -137,19 +137,19 @@ Result<> Device::go_on_without(const Error& error) {
 /// Some devices end each connection after a number of requests, or for another client's. They answer this
 /// request if it is the first one.
 Result<> Device::ask_alone() {
-  transport_.close();
-  const Result<> connected = transport_.connect();
-  return connected ? transport_.ask(poller_.current()) : connected;
+  link_.close();
+  const Result<> connected = link_.connect();
+  return connected ? link_.ask(poller_.current()) : connected;
 }
 
 Result<> Device::connect_again() {
-  transport_.close();
-  Result<> result = transport_.connect();
+  link_.close();
+  Result<> result = link_.connect();
   if (result && verify_ != Verify::off) result = prove_equal();
   if (result && is_node_) result = fail(NotConnected{"the device has become another one"});
   if (result) result = watchdog_.connected();
-  replies_at_connect_ = transport_.replies();
-  if (result && poller_.last_answered()) result = transport_.ask(*poller_.last_answered());
+  replies_at_connect_ = link_.replies();
+  if (result && poller_.last_answered()) result = link_.ask(*poller_.last_answered());
   return result;
 }
 
@@ -168,7 +168,7 @@ Time Device::due() const {
 void Device::arrived() {
   if (writer_.awaits_answer()) return;
   if (!is_verified()) {  // the unit was away, and now the gateway is, too
-    transport_.close();
+    link_.close();
     state_ = State::none;
     return;
   }
@@ -179,7 +179,7 @@ void Device::arrived() {
       answered();
     return;
   }
-  if (const auto discarded = transport_.discard_unasked(); !discarded) lost(discarded.error());
+  if (const auto discarded = link_.discard_unasked(); !discarded) lost(discarded.error());
 }
 
 bool Device::stop() {
@@ -189,23 +189,23 @@ bool Device::stop() {
   writer_.disconnected(NotConnected{"the driver ends"});
   scheduler_.disconnected("the driver ends");
   watchdog_.disconnected("the driver ends");
-  transport_.close();
+  link_.close();
   if (std::exchange(state_, State::none) == State::online) sink_.on_online(false);
   return is_safe;
 }
 
 Time Device::connect() {
-  transport_.rank(Rank::read);
+  link_.rank(Rank::read);
   wrote_last_ = false;
   node_ = {};
   is_node_ = false;
-  Result<> result = state_ == State::open ? Result<>{} : transport_.connect();
+  Result<> result = state_ == State::open ? Result<>{} : link_.connect();
   state_ = result ? State::open : State::none;
   if (result && verify_ != Verify::off) result = prove_equal();
   writer_.talks_to_node(is_node_ || map_.connection.tls.present());
   if (result) result = watchdog_.connected();
   if (result && writer_.has_suspects() && poller_.last_answered())
-    result = transport_.ask(*poller_.last_answered());
+    result = link_.ask(*poller_.last_answered());
   if (result) result = writer_.reconnected();
   if (!result) {
     lost(result.error());
@@ -215,13 +215,13 @@ Time Device::connect() {
   listen();
   scheduler_.connected(listener_.is_active() && node_.functions.schedules_outputs);
   poller_.start(is_node_ || map_.connection.tls.present(), listener_.is_active());
-  replies_at_connect_ = transport_.replies();
+  replies_at_connect_ = link_.replies();
   if (map_.connection.is_broadcast() || (verify_ != Verify::off && identity_suffices_)) came_online();
   return due();
 }
 
 void Device::listen() {
-  const bool tells = map_.changes && node_.functions.tells_changes && transport_.can_wait();
+  const bool tells = map_.changes && node_.functions.tells_changes && link_.can_wait();
   const bool lets_waits_through = unheard_waits_ < most_unheard_waits;
   if (tells && lets_waits_through)
     listener_.start(std::chrono::milliseconds(node_.watchdog_timeout));
@@ -236,14 +236,14 @@ void Device::listen() {
 }
 
 Result<> Device::ask_for_watchdog() {
-  const Result<identity::Further> further = read_further(transport_);
+  const Result<identity::Further> further = read_further(link_);
   if (!further) return tl::make_unexpected(further.error());
   listener_.set_watchdog(std::chrono::milliseconds(further->watchdog_timeout));
   return {};
 }
 
 Result<> Device::prove_equal() {
-  const Result<Identity> identity = check_identity(transport_, map_, load_);
+  const Result<Identity> identity = check_identity(link_, map_, load_);
   if (!identity) {
     explain_silence(identity.error());
     return tl::make_unexpected(identity.error());
@@ -251,7 +251,7 @@ Result<> Device::prove_equal() {
   explains_silence_ = false;
   Result<identity::Further> further;
   is_node_ = identity->verdict != Identity::Verdict::foreign;
-  if (is_node_) further = read_further(transport_);
+  if (is_node_) further = read_further(link_);
   if (!further) return tl::make_unexpected(further.error());
   node_ = *further;
   peer_ = to_string(node_.machine);
@@ -294,7 +294,7 @@ void Device::came_online() {
   if (std::exchange(state_, State::online) == State::online) return;
   backoff_.reset();
   last_error_text_.clear();
-  const auto certificates = transport_.certificates();
+  const auto certificates = link_.certificates();
   statistics_.online(certificates);
   qualities_.online(true);
   sink_.on_online(true);
@@ -317,7 +317,7 @@ void Device::lost(const Error& error) {
   else if (is_verified())
     unheard_waits_ = std::min(unheard_waits_, most_unheard_waits - 1);  // to be tried again, once
   state_ = state_ != State::none && is_unit_away(error) ? State::open : State::none;
-  if (state_ == State::none) transport_.close();
+  if (state_ == State::none) link_.close();
   retry_at_ = clock_.now() + backoff_.next();
   listener_.stop();
   writer_.disconnected(error);
@@ -327,7 +327,7 @@ void Device::lost(const Error& error) {
   statistics_.offline(why);
   qualities_.online(false);
   if (was_online) {
-    identity_suffices_ = transport_.replies() > replies_at_connect_;
+    identity_suffices_ = link_.replies() > replies_at_connect_;
     sink_.on_online(false);
   }
   if (!ending_ && (was_online || why != last_error_text_)) {

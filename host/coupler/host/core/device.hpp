@@ -36,7 +36,7 @@ namespace coupler::host {
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
-  Device(const Map& map, Verify verify, MapLoader load, Transport& transport, Clock& clock, Sink& sink);
+  Device(const Map& map, Verify verify, MapLoader load, Link& link, Sink& sink);
 
   /// Queues a write. Its listener gets the result.
   void push(const Write& write) { writer_.push(write); }
@@ -59,7 +59,7 @@ class Device {
   bool has_to_end() const { return scheduler_.is_busy(); }
   /// Returns whether the device answered the last request, so that its outputs may have been written and can
   /// be written now.
-  bool answers() const { return transport_.unit_answers(); }
+  bool answers() const { return link_.unit_answers(); }
 
   /// Sends what is queued, if that is possible without waiting. If it returns false, step() must be called.
   bool send_now() { return is_verified() && !is_read_first(clock_.now()) && writer_.send_now(); }
@@ -86,7 +86,8 @@ class Device {
 
   DeviceSnapshot statistics() const {
     DeviceSnapshot snapshot = statistics_.snapshot();
-    snapshot.discarded = transport_.discarded();
+    static_cast<RequestCounts&>(snapshot) = link_.counts();
+    snapshot.discarded = link_.discarded();
     return snapshot;
   }
   std::vector<PointQuality> qualities() const { return qualities_.snapshot(clock_.now()); }
@@ -123,7 +124,7 @@ class Device {
   Time due() const;
   Time keep_alive_due() const {
     return listener_.is_active() || !keeps_alive_ ? Time::max()
-                                                  : transport_.last_answer() + map_.connection.timeout;
+                                                  : link_.last_answer() + map_.connection.timeout;
   }
   bool needs_keep_alive() const;
   void answered();
@@ -137,11 +138,11 @@ class Device {
   Verify verify_;
   bool keeps_alive_ = needs_keep_alive();
   MapLoader load_;
+  Link& link_;
   Clock& clock_;
   Sink& sink_;
   DeviceStatistics statistics_;
   PointQualities qualities_;
-  PacedTransport transport_;
   CouplerWatchdog watchdog_;
   Writer writer_;
   Poller poller_;
@@ -155,7 +156,7 @@ class Device {
   std::atomic<bool> ending_{false};
   State state_ = State::none;
   bool wrote_last_ = false;  ///< the last request was a write: an overdue read goes before the next one
-  std::uint64_t replies_at_connect_ = 0;  ///< PacedTransport::replies() when the maps were verified
+  std::uint64_t replies_at_connect_ = 0;  ///< Link::replies() when the maps were verified
   /// A verified device is online at once, unless it answered nothing else the last time: `online` would
   /// flicker.
   bool identity_suffices_ = true;

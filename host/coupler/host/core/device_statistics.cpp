@@ -3,18 +3,6 @@
 
 namespace coupler::host {
 
-void DeviceStatistics::answered(Duration after, const Error* error) {
-  const std::lock_guard lock(mutex_);
-  ++now_.requests;
-  const ExceptionReply* exception = error != nullptr ? exception_in(*error) : nullptr;
-  if (exception != nullptr && !exception->other_value)
-    ++now_.exceptions[static_cast<std::size_t>(exception->code)];
-  if (error == nullptr || exception != nullptr)
-    now_.latency.add(after);
-  else
-    ++(std::holds_alternative<Timeout>(*error) ? now_.timeouts : now_.failures);
-}
-
 void DeviceStatistics::wrote(WriteResult::Outcome outcome) {
   const std::lock_guard lock(mutex_);
   ++now_.writes[static_cast<std::size_t>(outcome)];

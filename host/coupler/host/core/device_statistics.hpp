@@ -8,10 +8,10 @@
 #include <optional>
 #include <string>
 
+#include "coupler/host/core/channel.hpp"
 #include "coupler/host/core/error.hpp"
-#include "coupler/host/core/histogram.hpp"
 #include "coupler/host/core/identity_check.hpp"
-#include "coupler/host/core/transport.hpp"
+#include "coupler/host/core/request_counts.hpp"
 #include "coupler/host/core/write.hpp"
 
 namespace coupler::host {
@@ -29,17 +29,13 @@ struct WatchdogStatus {
 };
 
 /// The state of a device at one moment. Counts are since the program began.
-struct DeviceSnapshot {
+struct DeviceSnapshot : RequestCounts {
   bool online = false;
   std::string trouble;                        ///< the reason why it is not online
   std::optional<Identity::Verdict> identity;  ///< at the last connect; nullopt: not asked
   identity::Machine machine{};                ///< that of a node at the last connect, as far as it is known
   std::uint64_t connections = 0;              ///< proven ones; all but the first are reconnects
-  std::uint64_t requests = 0;
-  std::uint64_t timeouts = 0;
-  std::uint64_t failures = 0;                   ///< requests that ended the connection in another way
-  std::array<std::uint64_t, 256> exceptions{};  ///< by code
-  std::uint64_t discarded = 0;                  ///< Transport::discarded()
+  std::uint64_t discarded = 0;                ///< Link::discarded()
   std::uint64_t rejected_ranges = 0;
   std::uint64_t overruns = 0;
   std::uint64_t changes = 0;       ///< the number of changes that a node has told
@@ -47,7 +43,6 @@ struct DeviceSnapshot {
   std::array<std::uint64_t, WriteResult::outcomes> writes{};  ///< by outcome
   WatchdogStatus watchdog;                                    ///< the coupler's own
   std::optional<Certificates> certificates;                   ///< those of the last connection, if it has TLS
-  Histogram latency;                                          ///< from request to reply
   Histogram cycles;  ///< from the deadline of a polling cycle to its last reply
 
   std::uint64_t written(WriteResult::Outcome outcome) const {
@@ -55,11 +50,10 @@ struct DeviceSnapshot {
   }
 };
 
-/// Counts what a device does. Any thread may read the counts. Only error texts allocate memory.
+/// Counts what a device does, but not its requests, which Link counts. Any thread may read the counts. Only
+/// error texts allocate memory.
 class DeviceStatistics {
  public:
-  /// Counts a request. `error` is null if its reply was no exception.
-  void answered(Duration after, const Error* error);
   void wrote(WriteResult::Outcome outcome);
   void cycle_ended(Duration after, std::uint64_t overruns);
   void rejected();

@@ -18,10 +18,9 @@ constexpr milliseconds longest_attempt(100);
 
 }  // namespace
 
-DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink,
-                           Poll poll)
-    : transport_(transport),
-      device_(map, verify, std::move(load), transport, clock_, sink),
+DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Link& link, Sink& sink, Poll poll)
+    : link_(link),
+      device_(map, verify, std::move(load), link, sink),
       ends_safely_(map.on_shutdown == OnShutdown::safe) {
   if (poll == Poll::subscribed)
     for (std::uint32_t i = 0; i < map.points.size(); ++i) device_.want(i, false);
@@ -36,11 +35,10 @@ bool DeviceThread::end() {
   const std::lock_guard life(life_);
   stopping_ = true;
   if (!thread_.joinable()) return ended_safely_;
-  transport_.wake();
+  link_.wake();
   if (ends_safely_ || device_.has_to_end()) await_stop();
-  clock_.stop();
   device_.end_comes();
-  transport_.interrupt();
+  link_.interrupt();
   thread_.join();
   return ended_safely_;
 }
@@ -57,29 +55,29 @@ void DeviceThread::write(const Write& write) {
   device_.push(write);
   if (owner_ == std::this_thread::get_id()) return;  // the step that is being made sees it at its end
   const std::unique_lock turn(turn_, std::try_to_lock);
-  if (!turn || !device_.send_now()) transport_.wake();
+  if (!turn || !device_.send_now()) link_.wake();
 }
 
 void DeviceThread::want(std::uint32_t point, bool wanted) {
   demand_.set(point, wanted);
-  transport_.wake();
+  link_.wake();
 }
 
 std::future<Calls::Answer> DeviceThread::make_safe() {
   auto answer = device_.make_safe();
-  transport_.wake();
+  link_.wake();
   return answer;
 }
 
 std::future<Calls::Answer> DeviceThread::reset_watchdog() {
   auto answer = device_.reset_watchdog();
-  transport_.wake();
+  link_.wake();
   return answer;
 }
 
 std::future<ScheduleAnswer> DeviceThread::schedule(const ScheduledWrite& what) {
   auto answer = device_.schedule(what);
-  transport_.wake();
+  link_.wake();
   return answer;
 }
 
@@ -97,7 +95,7 @@ Time DeviceThread::step() {
 void DeviceThread::run() {
   owner_ = std::this_thread::get_id();
   while (!stopping_) {
-    if (transport_.wait_until(step()) != Transport::Woken::by_bytes) continue;
+    if (link_.wait_until(step()) != Woken::by_bytes) continue;
     {
       const std::lock_guard turn(turn_);
       device_.arrived();

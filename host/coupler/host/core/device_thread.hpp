@@ -49,8 +49,7 @@ class ReadDemand {
 class DeviceThread {
  public:
   /// With Poll::subscribed no point is wanted at first. No request is sent before start().
-  DeviceThread(const Map& map, Verify verify, MapLoader load, Transport& transport, Sink& sink,
-               Poll poll = Poll::all);
+  DeviceThread(const Map& map, Verify verify, MapLoader load, Link& link, Sink& sink, Poll poll = Poll::all);
   /// Ends the request in progress and waits for the thread. That takes milliseconds. If outputs have to get
   /// their safe values, it takes most of a second at the worst, or a tenth of a second for a device that is
   /// offline.
@@ -93,8 +92,7 @@ class DeviceThread {
   Time step();
   void await_stop();
 
-  Transport& transport_;
-  SteadyClock clock_;
+  Link& link_;
   Device device_;
   ReadDemand demand_;
   bool ends_safely_;  ///< the device writes safe values at the end

@@ -80,14 +80,14 @@ std::string silence_text(const Map& known, const Error& error) {
       is_unit_away(error) ? "the gateway answers" : "connected", known.connection.unit, to_string(error));
 }
 
-Result<Identity> check_identity(Transport& transport, const Map& known, const MapLoader& load) {
-  const auto read = read_identity(transport);
+Result<Identity> check_identity(Link& link, const Map& known, const MapLoader& load) {
+  const auto read = read_identity(link);
   if (!read) return tl::make_unexpected(read.error());
   if (!read->has_value()) return Identity{};
   const identity::Head& head = **read;
   if (head.fingerprint == known.fingerprint) return Identity{Verdict::equal, head.fingerprint, {}, {}};
 
-  const auto text = fetch_map_text(transport, head.map_size);
+  const auto text = fetch_map_text(link, head.map_size);
   if (!text) {
     if (!is_refusal(text.error())) return tl::make_unexpected(text.error());
     return unreadable(

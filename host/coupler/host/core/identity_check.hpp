@@ -38,6 +38,6 @@ std::string line_remedy(const Connection& line);
 std::string silence_text(const Map& known, const Error& error);
 
 /// Asks the device. An error is a broken connection, or a node that is busy or away, but never a difference.
-Result<Identity> check_identity(Transport& transport, const Map& known, const MapLoader& load);
+Result<Identity> check_identity(Link& link, const Map& known, const MapLoader& load);
 
 }  // namespace coupler::host

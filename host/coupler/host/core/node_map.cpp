@@ -13,10 +13,10 @@ namespace coupler::host {
 namespace {
 
 /// False: the device refuses them, as a foreign coupler does and a node that is older than the fields.
-Result<bool> read_if_mapped(Transport& transport, std::uint32_t first, Span<std::uint16_t> registers) {
+Result<bool> read_if_mapped(Link& link, std::uint32_t first, Span<std::uint16_t> registers) {
   const auto range =
       modbus::Range::of(identity::reserved.start() + first, static_cast<std::uint32_t>(registers.size()));
-  const auto read = transport.read_registers(Table::input_registers, range, registers.data());
+  const auto read = link.read_registers(Table::input_registers, range, registers.data());
   if (read) return true;
   if (exception_in(read.error()) != nullptr && !is_unit_away(read.error())) return false;
   return tl::make_unexpected(read.error());
@@ -24,44 +24,44 @@ Result<bool> read_if_mapped(Transport& transport, std::uint32_t first, Span<std:
 
 /// The first registers of the area, as `parse` understands them.
 template <class Area, class Parse>
-auto read_area(Transport& transport, Parse parse) -> Result<decltype(parse(Area{}))> {
+auto read_area(Link& link, Parse parse) -> Result<decltype(parse(Area{}))> {
   Area area{};
-  const auto given = read_if_mapped(transport, 0, area);
+  const auto given = read_if_mapped(link, 0, area);
   if (!given) return tl::make_unexpected(given.error());
   if (!*given) return std::nullopt;
   return parse(area);
 }
 
-Result<std::optional<ServedMap>> fetch_both(Transport& transport) {
-  if (auto connected = transport.connect(); !connected) return tl::make_unexpected(connected.error());
-  const auto head = read_identity(transport);
+Result<std::optional<ServedMap>> fetch_both(Link& link) {
+  if (auto connected = link.connect(); !connected) return tl::make_unexpected(connected.error());
+  const auto head = read_identity(link);
   if (!head) return tl::make_unexpected(head.error());
   if (!head->has_value()) return std::nullopt;
-  auto text = fetch_map_text(transport, (*head)->map_size);
+  auto text = fetch_map_text(link, (*head)->map_size);
   if (!text) return tl::make_unexpected(text.error());
   return ServedMap{**head, std::move(*text)};
 }
 
 }  // namespace
 
-Result<std::optional<identity::Head>> read_identity(Transport& transport) {
-  return read_area<std::array<std::uint16_t, identity::head_size>>(transport, identity::read_head);
+Result<std::optional<identity::Head>> read_identity(Link& link) {
+  return read_area<std::array<std::uint16_t, identity::head_size>>(link, identity::read_head);
 }
 
-Result<std::optional<identity::Report>> read_report(Transport& transport) {
-  auto report = read_area<std::array<std::uint16_t, identity::report_size>>(transport, identity::read_report);
+Result<std::optional<identity::Report>> read_report(Link& link) {
+  auto report = read_area<std::array<std::uint16_t, identity::report_size>>(link, identity::read_report);
   if (!report || *report) return report;
-  return read_area<std::array<std::uint16_t, identity::head_size>>(transport, identity::read_report_head);
+  return read_area<std::array<std::uint16_t, identity::head_size>>(link, identity::read_report_head);
 }
 
-Result<identity::Further> read_further(Transport& transport) {
+Result<identity::Further> read_further(Link& link) {
   std::uint16_t count = 0;
-  const auto counted = read_if_mapped(transport, identity::at_further, Span<std::uint16_t>(&count, 1));
+  const auto counted = read_if_mapped(link, identity::at_further, Span<std::uint16_t>(&count, 1));
   if (!counted) return tl::make_unexpected(counted.error());
   std::array<std::uint16_t, identity::further_size> area{};
   const Span<std::uint16_t> known(area.data(), std::min<std::size_t>(count, area.size()));
   if (!*counted || known.empty()) return identity::Further{};
-  const auto given = read_if_mapped(transport, identity::at_serial, known);
+  const auto given = read_if_mapped(link, identity::at_serial, known);
   if (!given) return tl::make_unexpected(given.error());
   if (!*given) return identity::Further{};
   identity::Further further = identity::read_further(known);
@@ -76,7 +76,7 @@ std::string to_string(const identity::Machine& machine) {
   return fmt::format("{}{}serial {:016x}", text, text.empty() ? "" : ", ", machine.serial);
 }
 
-Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size) {
+Result<std::string> fetch_map_text(Link& link, std::uint32_t size) {
   if (size > max_file_size)
     return fail(BadFrame{fmt::format("a map of {} bytes; at most {} are possible", size, max_file_size)});
   std::string text;
@@ -85,7 +85,7 @@ Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size) {
   while (text.size() < size) {
     const auto at = identity::record_at(static_cast<std::uint32_t>(text.size() / 2), size);
     const Span<std::uint16_t> piece(registers.data(), at.registers);
-    if (auto read = transport.read_file_record(at.file, at.record, piece); !read)
+    if (auto read = link.read_file_record(at.file, at.record, piece); !read)
       return tl::make_unexpected(read.error());
     for (const std::uint16_t word : piece) {
       std::array<std::uint8_t, 2> bytes{};
@@ -97,9 +97,9 @@ Result<std::string> fetch_map_text(Transport& transport, std::uint32_t size) {
   return text;
 }
 
-Result<std::optional<ServedMap>> fetch_served_map(Transport& transport) {
-  auto served = fetch_both(transport);
-  transport.close();
+Result<std::optional<ServedMap>> fetch_served_map(Link& link) {
+  auto served = fetch_both(link);
+  link.close();
   return served;
 }
 

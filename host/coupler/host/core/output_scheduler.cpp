@@ -39,14 +39,14 @@ std::string refusal(modbus::Exception code) {
 
 }  // namespace
 
-OutputScheduler::OutputScheduler(const Map& map, PacedTransport& transport, Clock& clock, Writer& writer,
-                                 ChangeSink& bits, Sink& sink)
+OutputScheduler::OutputScheduler(const Map& map, Link& link, Clock& clock, Writer& writer, ChangeSink& bits,
+                                 Sink& sink)
     : map_(map),
-      transport_(transport),
+      link_(link),
       clock_(clock),
       writer_(writer),
       sink_(sink),
-      by_driver_(transport, clock, writer, *this),
+      by_driver_(link, clock, writer, *this),
       by_node_(bits, clock, *this) {
   writer.listen(*this);
 }
@@ -119,7 +119,7 @@ modbus::ScheduleRequest OutputScheduler::request(const ScheduledWrite& what, mod
 Result<std::optional<ScheduleAnswer>> OutputScheduler::give_to_node(const ScheduledWrite& what,
                                                                     const ChangeListener& listener) {
   const modbus::NodeTime due = by_node_.node_due(what.due, listener.mapping()).value_or(modbus::NodeTime{});
-  const auto reply = transport_.schedule(request(what, due, listener));
+  const auto reply = link_.schedule(request(what, due, listener));
   if (reply) {
     by_node_.add(reply->number, due, {++last_number_, what});
     // The answer to the wait has come before that to this request, and was the last one.
@@ -163,7 +163,7 @@ void OutputScheduler::shut_down(bool connected, const ChangeListener& listener) 
 void OutputScheduler::cancel_at_node(const ChangeListener& listener) {
   for (const std::uint16_t number : by_node_.numbers()) {
     const auto reply =
-        transport_.schedule(modbus::ScheduleRequest::cancel({listener.epoch().value_or(0), number}));
+        link_.schedule(modbus::ScheduleRequest::cancel({listener.epoch().value_or(0), number}));
     if (reply) by_node_.settle(number, ScheduledOutcome::Result::cancelled, the_driver_ends);
     if (!reply && exception_in(reply.error()) == nullptr) return;
   }

@@ -28,13 +28,12 @@ using ScheduleCalls = CallQueue<AskedSchedule, ScheduleAnswer>;
 /// Scheduled writes. A node with a timer carries them out and tells their outcome; otherwise the driver
 /// writes them.
 ///
-/// Any thread may call ask() and is_busy(). Only the thread that uses the transport may call the other
+/// Any thread may call ask() and is_busy(). Only the thread that uses the link may call the other
 /// functions.
 class OutputScheduler : private ScheduledListener, private WrittenListener {
  public:
   /// `bits` receives the changes of bits. All references must outlive the object.
-  OutputScheduler(const Map& map, PacedTransport& transport, Clock& clock, Writer& writer, ChangeSink& bits,
-                  Sink& sink);
+  OutputScheduler(const Map& map, Link& link, Clock& clock, Writer& writer, ChangeSink& bits, Sink& sink);
 
   /// Schedules a write to a writable point. It is refused while there is no connection, and cancelled if the
   /// connection ends before its time.
@@ -99,7 +98,7 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   void note() { busy_ = by_node_.size() + by_driver_.size() > 0; }
 
   const Map& map_;
-  PacedTransport& transport_;
+  Link& link_;
   Clock& clock_;
   Writer& writer_;
   Sink& sink_;

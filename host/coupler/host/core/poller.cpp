@@ -9,11 +9,11 @@
 
 namespace coupler::host {
 
-Poller::Poller(const Map& map, PacedTransport& transport, Writer& writer, DeviceStatistics& statistics,
+Poller::Poller(const Map& map, Link& link, Writer& writer, DeviceStatistics& statistics,
                PointQualities& qualities, Sink& sink)
     : map_(map),
-      transport_(transport),
-      clock_(transport.clock()),
+      link_(link),
+      clock_(link.clock()),
       writer_(writer),
       statistics_(statistics),
       qualities_(qualities),
@@ -29,12 +29,12 @@ void Poller::start(bool is_node, bool told) {
 }
 
 Result<> Poller::request(const ReadSpan& span) {
-  return holds_bits(span.table) ? transport_.read_bits(span.table, span.range, bits_.data())
-                                : transport_.read_registers(span.table, span.range, registers_.data());
+  return holds_bits(span.table) ? link_.read_bits(span.table, span.range, bits_.data())
+                                : link_.read_registers(span.table, span.range, registers_.data());
 }
 
 Result<> Poller::step(Time until) {
-  if (!has_request(clock_.now()) || transport_.await_turn(until) != Transport::Turn::read) return {};
+  if (!has_request(clock_.now()) || link_.await_turn(until) != Link::Turn::read) return {};
   const ReadSpan& span = cycle_.current();
   if (Result<> answer = request(span); !answer) {
     const ExceptionReply* exception = exception_in(answer.error());
@@ -75,14 +75,14 @@ void Poller::set_aside(const Error& error) {
 }
 
 void Poller::publish(const ReadSpan& span) {
-  const Stamp stamp = transport_.last_stamp();
+  const Stamp stamp = link_.last_stamp();
   const ReadSpan& fresh = writer_.hides_any() || told_.leaves_out_any() ? without_hidden(span) : span;
   if (holds_bits(span.table))
     publish_bits(fresh, stamp);
   else
     sink_.on_registers(fresh, {registers_.data(), span.range.count()}, stamp);
   writer_.shown(fresh.points);
-  qualities_.good(span.points, transport_.last_answer());  // last: nobody waits for it
+  qualities_.good(span.points, link_.last_answer());  // last: nobody waits for it
 }
 
 void Poller::publish_bits(const ReadSpan& span, Stamp stamp) {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "coupler/host/core/device_statistics.hpp"
-#include "coupler/host/core/paced_transport.hpp"
+#include "coupler/host/core/link.hpp"
 #include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/poll_cycle.hpp"
 #include "coupler/host/core/sink.hpp"
@@ -23,8 +23,8 @@ namespace coupler::host {
 class Poller {
  public:
   /// All references must outlive the poller.
-  Poller(const Map& map, PacedTransport& transport, Writer& writer, DeviceStatistics& statistics,
-         PointQualities& qualities, Sink& sink);
+  Poller(const Map& map, Link& link, Writer& writer, DeviceStatistics& statistics, PointQualities& qualities,
+         Sink& sink);
 
   /// Starts with a new connection. `is_node`: it leads to a node of this project. `told`: the node tells
   /// changes of its bits.
@@ -63,7 +63,7 @@ class Poller {
   std::string describe(const ReadSpan& span) const;
 
   const Map& map_;
-  PacedTransport& transport_;
+  Link& link_;
   Clock& clock_;
   Writer& writer_;
   DeviceStatistics& statistics_;

@@ -11,9 +11,8 @@ using Kind = ScheduledOutcome::Result;
 
 }  // namespace
 
-ScheduledWrites::ScheduledWrites(PacedTransport& transport, Clock& clock, Writer& writer,
-                                 ScheduledListener& outcomes)
-    : transport_(transport), clock_(clock), writer_(writer), outcomes_(outcomes) {}
+ScheduledWrites::ScheduledWrites(Link& link, Clock& clock, Writer& writer, ScheduledListener& outcomes)
+    : link_(link), clock_(clock), writer_(writer), outcomes_(outcomes) {}
 
 void ScheduledWrites::add(const AcceptedWrite& what) {
   entries_.emplace_back(*this, what);
@@ -55,7 +54,7 @@ void ScheduledWrites::queue(Entry& entry) {
 }
 
 void ScheduledWrites::on_result(const Entry& entry, const WriteResult& result) {
-  const Stamp written = transport_.last_write();
+  const Stamp written = link_.last_write();
   const Stamp now{clock_.now(), {}};
   const std::string why = to_string(result);
   switch (result.outcome) {
@@ -96,7 +95,7 @@ void ScheduledWrites::cancel_if(Which which, Stamp at, const std::string& reason
 
 void ScheduledWrites::on_written(const Write& write) {
   if (write.of_schedule) return;
-  cancel_if([&write](const Entry& entry) { return point(entry) == write.point; }, transport_.last_write(),
+  cancel_if([&write](const Entry& entry) { return point(entry) == write.point; }, link_.last_write(),
             to_string(modbus::Reason::overwritten));
 }
 

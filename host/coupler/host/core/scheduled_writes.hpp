@@ -22,7 +22,7 @@ namespace coupler::host {
 class ScheduledWrites {
  public:
   /// All references must outlive the object.
-  ScheduledWrites(PacedTransport& transport, Clock& clock, Writer& writer, ScheduledListener& outcomes);
+  ScheduledWrites(Link& link, Clock& clock, Writer& writer, ScheduledListener& outcomes);
 
   void add(const AcceptedWrite& what);
   /// The number of those that wait or are being written.
@@ -63,7 +63,7 @@ class ScheduledWrites {
   void finish(const Entry& entry, ScheduledOutcome::Result result, Stamp at, const std::string& reason);
   void remove(const Entry& entry);
 
-  PacedTransport& transport_;
+  Link& link_;
   Clock& clock_;
   Writer& writer_;
   ScheduledListener& outcomes_;

@@ -15,10 +15,10 @@ using Function = HostOptions::WriteFunction;
 
 bool is_neighbour(Range a, Range b) { return a.end() == b.start() || b.end() == a.start(); }
 
-Result<> write_batch(const WriteBatch& batch, const Map& map, Transport& transport,
+Result<> write_batch(const WriteBatch& batch, const Map& map, Link& link,
                      std::vector<RejectedValue>& rejected) {
-  Result<> answer = send(batch, map, transport);
-  if (answer) answer = transport.receive();
+  Result<> answer = send(batch, map, link);
+  if (answer) answer = link.receive();
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   if (exception == nullptr || is_unit_away(answer.error())) return answer;
   if (batch.writes().size() == 1) {
@@ -28,7 +28,7 @@ Result<> write_batch(const WriteBatch& batch, const Map& map, Transport& transpo
   for (const Write& write : batch.writes()) {  // one of them may be to blame, or their being together
     WriteBatch alone(map);
     alone.add(write);
-    if (auto one = write_batch(alone, map, transport, rejected); !one) return one;
+    if (auto one = write_batch(alone, map, link, rejected); !one) return one;
   }
   return {};
 }
@@ -92,22 +92,22 @@ WriteRequest WriteBatch::request(std::uint16_t before) const {
   return coils ? WriteRequest::coils(range_.start(), used) : WriteRequest::registers(range_.start(), used);
 }
 
-Result<> send(const WriteBatch& batch, const Map& map, Transport& transport) {
+Result<> send(const WriteBatch& batch, const Map& map, Link& link) {
   std::uint16_t before = 0;
   const Point& point = map.points[batch.writes().front().point];
   if (needs_read(map, point))
-    if (auto read = transport.read_registers(point.table, read_range(point), &before); !read)
+    if (auto read = link.read_registers(point.table, read_range(point), &before); !read)
       return tl::make_unexpected(read.error());
   const modbus::WriteRequest request = batch.request(before);
-  return transport.send(request);
+  return link.send(request);
 }
 
-Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map,
-                                                Transport& transport, std::vector<Write>* broken) {
+Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map, Link& link,
+                                                std::vector<Write>* broken) {
   std::vector<RejectedValue> rejected;
   WriteBatch batch(map);
   const auto write_all = [&]() -> Result<> {
-    Result<> written = batch.empty() ? Result<>{} : write_batch(batch, map, transport, rejected);
+    Result<> written = batch.empty() ? Result<>{} : write_batch(batch, map, link, rejected);
     if (!written && broken != nullptr) *broken = batch.writes();
     batch.clear();
     return written;
@@ -121,11 +121,11 @@ Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes
   return rejected;
 }
 
-Result<> ReadBack::read(const Write& write, const Map& map, Transport& transport) {
+Result<> ReadBack::read(const Write& write, const Map& map, Link& link) {
   const Point& point = map.points[write.point];
   const modbus::Range where = read_range(point);
   count_ = where.count();
-  if (auto read = transport.read(point.table, where, found_.data()); !read) return read;
+  if (auto read = link.read(point.table, where, found_.data()); !read) return read;
   const auto mask = own_bits(point);
   for (std::size_t i = 0; i < count_; ++i) {
     written_[i] = point.table == Table::coils ? write.bit(i) : write.registers[i] & mask;

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "coupler/host/core/transport.hpp"
+#include "coupler/host/core/link.hpp"
 #include "coupler/host/core/write.hpp"
 #include "coupler/modbus/client.hpp"
 #include "coupler/modbus/limits.hpp"
@@ -47,9 +47,9 @@ class WriteBatch {
   modbus::Range range_ = modbus::Range::of(0, 1);  ///< the range of all of them
 };
 
-/// Sends the request of a batch, after the read that a part of a register may need. Transport::receive() must
+/// Sends the request of a batch, after the read that a part of a register may need. Link::receive() must
 /// follow, but not after an error: nothing was sent then.
-Result<> send(const WriteBatch& batch, const Map& map, Transport& transport);
+Result<> send(const WriteBatch& batch, const Map& map, Link& link);
 
 /// A value that the device did not take.
 struct RejectedValue {
@@ -59,14 +59,14 @@ struct RejectedValue {
 
 /// Writes values that no caller waits for, neighbours in one request. Returns those that were rejected. An
 /// error means that the connection broke during the request of `broken`.
-Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map,
-                                                Transport& transport, std::vector<Write>* broken = nullptr);
+Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes, const Map& map, Link& link,
+                                                std::vector<Write>* broken = nullptr);
 
 /// Compares what a point holds after a write with what was written.
 class ReadBack {
  public:
   /// Reads the point from the place where it reads back.
-  Result<> read(const Write& write, const Map& map, Transport& transport);
+  Result<> read(const Write& write, const Map& map, Link& link);
 
   /// Compares only the point's own bits.
   bool is_equal() const;

@@ -26,10 +26,10 @@ std::string deadman_value(const Point& point) {
 
 }  // namespace
 
-Writer::Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
+Writer::Writer(const Map& map, Link& link, Clock& clock, DeviceStatistics& statistics,
                PointQualities& qualities, Sink& sink)
     : map_(map),
-      transport_(transport),
+      link_(link),
       clock_(clock),
       statistics_(statistics),
       qualities_(qualities),
@@ -74,16 +74,16 @@ std::future<Calls::Answer> Writer::ask_safe() {
 }
 
 bool Writer::send_now() {
-  if (!batch_.empty() || !transport_.is_ready()) return false;
+  if (!batch_.empty() || !link_.is_ready()) return false;
   drop_late();
-  if (queue_.empty()) return true;          // the owner was faster
-  if (!transport_.reserve()) return false;  // first: in the queue a newer value may replace it until its turn
+  if (queue_.empty()) return true;     // the owner was faster
+  if (!link_.reserve()) return false;  // first: in the queue a newer value may replace it until its turn
   queue_.take(batch_, merges_, false);
   if (batch_.empty()) {
-    transport_.give_back();
+    link_.give_back();
     return false;
   }
-  const auto sent = transport_.send(batch_.request());
+  const auto sent = link_.send(batch_.request());
   is_sent_ = sent.has_value();
   if (is_sent_) return true;
   send_error_ = sent.error();
@@ -111,25 +111,25 @@ void Writer::fire_deadmen() {
 
 Result<> Writer::step() {
   if (send_error_) return tl::make_unexpected(*std::exchange(send_error_, std::nullopt));
-  if (is_sent_) return finish(transport_.receive());
+  if (is_sent_) return finish(link_.receive());
   if (is_safe_asked()) return make_safe();
   fire_deadmen();
   if (queue_.empty()) {
-    transport_.give_back();
+    link_.give_back();
     return {};
   }
   // First, since what goes before all others, or replaces them, may come meanwhile.
-  transport_.await_turn_to_write([this] { return is_safe_asked(); });
+  link_.await_turn_to_write([this] { return is_safe_asked(); });
   if (is_safe_asked()) return make_safe();
   fire_deadmen();
   drop_late();
   queue_.take(batch_, merges_);
   if (batch_.empty()) {  // they were too late
-    transport_.give_back();
+    link_.give_back();
     return {};
   }
-  const auto sent = send(batch_, map_, transport_);
-  return sent ? finish(transport_.receive()) : not_sent(sent.error());
+  const auto sent = send(batch_, map_, link_);
+  return sent ? finish(link_.receive()) : not_sent(sent.error());
 }
 
 void Writer::wait_again() {
@@ -153,7 +153,7 @@ Result<> Writer::finish(const Result<>& answer) {
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   if (!answer && exception == nullptr) return answer;  // disconnected() tells them
   std::swap(batch_, done_);
-  Result<> link;
+  Result<> connection;
   if (exception != nullptr && done_.writes().size() > 1 && is_wrong(exception->code)) {
     merges_ = false;
     queue_.put_back(done_.writes());
@@ -163,13 +163,13 @@ Result<> Writer::finish(const Result<>& answer) {
                                 name(done_.writes().front().point), to_string(answer.error())));
   } else {
     for (const Write& write : done_.writes())
-      if (const auto finished = finish_one(write, answer, link); !finished) link = finished;
+      if (const auto finished = finish_one(write, answer, connection); !finished) connection = finished;
   }
   done_.clear();
-  return link;
+  return connection;
 }
 
-Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Result<>& link) {
+Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Result<>& connection) {
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   const bool verifies = map_.points[write.point].host.verify_write;
   // The value that reads back counts for more than an odd acknowledgement.
@@ -178,7 +178,7 @@ Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Re
     remember(write);
     acknowledged_[write.point] = true;
     if (written_ != nullptr) written_->on_written(write);
-    if (verifies) return verify(write, link);
+    if (verifies) return verify(write, connection);
     settle(write, {Outcome::ok});
     return {};
   }
@@ -203,9 +203,9 @@ Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Re
   return is_away ? answer : Result<>{};
 }
 
-Result<> Writer::verify(const Write& write, const Result<>& link) {
+Result<> Writer::verify(const Write& write, const Result<>& connection) {
   ReadBack back;
-  const Result<> read = link ? back.read(write, map_, transport_) : link;
+  const Result<> read = connection ? back.read(write, map_, link_) : connection;
   const ExceptionReply* exception = read ? nullptr : exception_in(read.error());
   if (!read && exception == nullptr) return finish_one(write, read);
   WriteResult result;
@@ -250,11 +250,11 @@ Result<> Writer::make_safe() {
 /// `on_reconnect: restore` brings these back, and not what was written before them.
 Result<std::vector<RejectedValue>> Writer::write_safe_values() {
   for (const Write& write : safe_values_) remember(write);
-  transport_.rank(Rank::safe);
-  auto rejected = write_values(safe_values_, map_, transport_);
+  link_.rank(Rank::safe);
+  auto rejected = write_values(safe_values_, map_, link_);
   for (const Write& write : safe_values_) remember(write);  // an older value may have been told meanwhile
-  transport_.rank(Rank::write);
-  transport_.give_back();  // where there are none
+  link_.rank(Rank::write);
+  link_.give_back();  // where there are none
   return rejected;
 }
 
@@ -287,7 +287,7 @@ bool Writer::shut_down(bool connected) {
     sink_.on_report(Level::error, "no output could be set to its safe value: not connected");
     return false;
   }
-  if (is_sent_) finish(transport_.receive());
+  if (is_sent_) finish(link_.receive());
   auto rejected = write_safe_values();
   // It may be there, behind a line that garbled one frame. There is no later chance.
   if (!rejected && is_unit_away(rejected.error())) rejected = write_safe_values();

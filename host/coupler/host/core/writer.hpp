@@ -13,7 +13,7 @@
 #include "coupler/host/core/calls.hpp"
 #include "coupler/host/core/deadmen.hpp"
 #include "coupler/host/core/device_statistics.hpp"
-#include "coupler/host/core/paced_transport.hpp"
+#include "coupler/host/core/link.hpp"
 #include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/sink.hpp"
 #include "coupler/host/core/write_queue.hpp"
@@ -36,12 +36,12 @@ class WrittenListener {
 /// deadmen, those after a reconnect and those at the end.
 ///
 /// Any thread may call push(), refuse(), ask_safe() and report_held_back(). Only the thread that uses the
-/// transport may call the other functions.
+/// link may call the other functions.
 class Writer {
  public:
   /// All references must outlive the writer.
-  Writer(const Map& map, PacedTransport& transport, Clock& clock, DeviceStatistics& statistics,
-         PointQualities& qualities, Sink& sink);
+  Writer(const Map& map, Link& link, Clock& clock, DeviceStatistics& statistics, PointQualities& qualities,
+         Sink& sink);
 
   /// Before anything is written.
   void listen(WrittenListener& listener) { written_ = &listener; }
@@ -115,9 +115,9 @@ class Writer {
   void wait_again();
   Result<> not_sent(const Error& why);
   Result<> finish(const Result<>& answer);
-  /// `link`: the state of the connection after the reply.
-  Result<> finish_one(const Write& write, const Result<>& answer, const Result<>& link = {});
-  Result<> verify(const Write& write, const Result<>& link);
+  /// `connection`: the state of the connection after the reply.
+  Result<> finish_one(const Write& write, const Result<>& answer, const Result<>& connection = {});
+  Result<> verify(const Write& write, const Result<>& connection);
   Result<> restore();
   Time deadman_due(std::uint32_t point, bool is_away) const;
   void suspect(const std::vector<Write>& writes, const Error& why);
@@ -134,7 +134,7 @@ class Writer {
   std::string_view name(std::uint32_t point) const { return map_.points[point].name; }
 
   const Map& map_;
-  PacedTransport& transport_;
+  Link& link_;
   Clock& clock_;
   DeviceStatistics& statistics_;
   PointQualities& qualities_;

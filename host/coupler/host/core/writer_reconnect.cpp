@@ -45,7 +45,7 @@ Result<> Writer::restore() {
   std::size_t restored = 0;
   for (const std::vector<Write>& values : requests) {
     std::vector<Write> broken;
-    const auto rejected = write_values(values, map_, transport_, &broken);
+    const auto rejected = write_values(values, map_, link_, &broken);
     if (!rejected) {
       suspect(broken, rejected.error());
       return tl::make_unexpected(rejected.error());

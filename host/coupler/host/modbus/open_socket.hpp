@@ -6,7 +6,7 @@
 #include <string>
 
 #include "coupler/host/core/error.hpp"
-#include "coupler/host/modbus/wait.hpp"
+#include "coupler/host/core/wakeup.hpp"
 
 struct addrinfo;
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "coupler/host/core/error.hpp"
-#include "coupler/host/modbus/wait.hpp"
+#include "coupler/host/core/wakeup.hpp"
 #include "coupler/map/serial.hpp"
 
 struct _modbus;  // NOLINT(bugprone-reserved-identifier): libmodbus's name for its context

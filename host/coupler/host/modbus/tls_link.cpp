@@ -22,16 +22,17 @@
 namespace coupler::host {
 namespace {
 
-class Link final : public TlsLink {
+class TlsConnection final : public TlsLink {
  public:
-  Link(Descriptor socket, const tls::Context& context, Certificate own, tls::Verification verification)
+  TlsConnection(Descriptor socket, const tls::Context& context, Certificate own,
+                tls::Verification verification)
       : certificates_{std::move(own), {}, false},
         socket_(std::move(socket)),
         verification_(std::move(verification)),
         session_(context.connection(socket_.get(), verification_), verification_) {}
-  Link(const Link&) = delete;
-  Link& operator=(const Link&) = delete;
-  ~Link() override {
+  TlsConnection(const TlsConnection&) = delete;
+  TlsConnection& operator=(const TlsConnection&) = delete;
+  ~TlsConnection() override {
     stop_.call();
     if (thread_.joinable()) thread_.join();
   }
@@ -126,9 +127,9 @@ Result<std::unique_ptr<TlsLink>> open_tls(Descriptor socket, const std::string& 
   verification.server = tls.name.empty() ? host : tls.name;
   verification.pin = tls::parse_pin(tls.pin);
   const auto subject = tls::subject_of(credentials->certificate).value_or(tls::Subject{});
-  auto link = std::make_unique<Link>(std::move(socket), *context,
-                                     Certificate{subject.name, subject.role, context->validity()},
-                                     std::move(verification));
+  auto link = std::make_unique<TlsConnection>(std::move(socket), *context,
+                                              Certificate{subject.name, subject.role, context->validity()},
+                                              std::move(verification));
   if (auto problem = link->shake_hands(deadline, interrupt); !problem.empty())
     return failed(std::move(problem));
   if (auto problem = link->carry(); !problem.empty()) return failed(std::move(problem));

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "coupler/host/core/error.hpp"
-#include "coupler/host/core/transport.hpp"
-#include "coupler/host/modbus/wait.hpp"
+#include "coupler/host/core/link.hpp"
+#include "coupler/host/core/wakeup.hpp"
 #include "coupler/map/tls_texts.hpp"
 
 namespace coupler::host {

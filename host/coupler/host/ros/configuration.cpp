@@ -14,8 +14,7 @@
 
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/host/core/schedule.hpp"
-#include "coupler/host/modbus/make_transports.hpp"
-#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "coupler/host/ros/diagnostics.hpp"
 #include "coupler/host/ros/place_check.hpp"
 #include "coupler/host/ros/program.hpp"
@@ -91,15 +90,15 @@ class MapFinder {
   }
 
   /// The map that the node serves, if any; an error after a shutdown.
-  tl::expected<std::optional<ServedMap>, int> wait_for_map(Transport& transport, const std::string& where,
+  tl::expected<std::optional<ServedMap>, int> wait_for_map(Link& link, const std::string& where,
                                                            MapDiagnostics& diagnostics) {
     Backoff backoff;
     std::string logged;
     while (!Shutdown::requested) {
       // A device that hangs must not hold up the shutdown for its timeout.
-      auto attempt = std::async(std::launch::async, [&transport] { return fetch_served_map(transport); });
+      auto attempt = std::async(std::launch::async, [&link] { return fetch_served_map(link); });
       while (attempt.wait_for(shutdown_check_interval) != std::future_status::ready) {
-        if (Shutdown::requested) transport.interrupt();
+        if (Shutdown::requested) link.interrupt();
         diagnostics.publish_if_due();
       }
       auto served = attempt.get();
@@ -139,10 +138,10 @@ class MapFinder {
     if (const auto useless = useless_setting(settings, found_at({}, node)); !useless.empty())
       return fail(wrong_call, useless);
     const std::string where = place_text(asked.connection);
-    const auto transport = make_transport(asked.connection);
+    Link link = make_link(asked.connection);
     MapDiagnostics diagnostics(asked.connection, node_);
     diagnostics.say(Level::warning, "waiting for the map of " + where);
-    const auto served = wait_for_map(*transport, where, diagnostics);
+    const auto served = wait_for_map(link, where, diagnostics);
     if (!served) return tl::make_unexpected(served.error());
     if (!*served)
       return fail(wrong_input, where + " serves no map: it is a foreign coupler; give its map by --map MAP");

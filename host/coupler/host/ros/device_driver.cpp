@@ -49,9 +49,18 @@ std::function<void(bool)> advertise_online(Node& node, const Map& map) {
   return online;
 }
 
+/// Each request is a line at ROS's debug level.
+std::unique_ptr<Link> traced(std::unique_ptr<Link> link, std::string device, Node& node) {
+  link->trace({[&node] { return node.shows_debug(); },
+               [&node, device = std::move(device)](const std::string& line) {
+                 node.log_debug(fmt::format("{}: {}", device, line));
+               }});
+  return link;
+}
+
 }  // namespace
 
-DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Transport> transport)
+DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> link)
     : node_(node),
       map_(map),
       subscribers_(map.points.size()),
@@ -62,8 +71,8 @@ DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Transport
       publish_scheduled_(advertise_scheduled(node, map_, wall_)),
       diagnostics_(map, node),
       services_(map, subscribers_),
-      transport_(std::make_unique<TracedTransport>(std::string(map.name), std::move(transport), node)),
-      thread_(map, map.verify, load_served_map, *transport_, *this, map.poll),
+      link_(traced(std::move(link), std::string(map.name), node)),
+      thread_(map, map.verify, load_served_map, *link_, *this, map.poll),
       writes_{[this](const Write& write) { driven().write(write); },
               [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {}
 
@@ -152,7 +161,7 @@ void DeviceDriver::publish(const ReadSpan& span, Span<const std::uint16_t> regis
       stamped_[index]->publish(value, stamp);
     }
     if (services_.value_waiter().waits_for(index))
-      services_.value_waiter().deliver(value, place.count(), std::min(transport_->read_sent_at(), stamp.at));
+      services_.value_waiter().deliver(value, place.count(), std::min(link_->read_sent_at(), stamp.at));
   }
 }
 

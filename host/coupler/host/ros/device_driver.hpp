@@ -16,7 +16,6 @@
 #include "coupler/host/ros/device_services.hpp"
 #include "coupler/host/ros/diagnostics.hpp"
 #include "coupler/host/ros/node.hpp"
-#include "coupler/host/ros/traced_transport.hpp"
 
 namespace coupler::host {
 
@@ -34,7 +33,7 @@ class DeviceDriver : public Sink {
 
   /// Offers its topics; starts nothing before begin(). The map's views must outlive it. Callbacks of the node
   /// refer to it: the node must be shut down before it is destroyed, and publish no more diagnostics.
-  DeviceDriver(Node& node, const Map& map, std::unique_ptr<Transport> transport);
+  DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> link);
   ~DeviceDriver() override { services_.stop(); }
 
   /// Connects to the device, listens to what is to be written, and offers services, which takes as long as
@@ -86,7 +85,7 @@ class DeviceDriver : public Sink {
   Diagnostics diagnostics_;
   DeviceServices services_;
   std::vector<std::unique_ptr<Follower>> followers_;  ///< as they are when the thread starts
-  std::unique_ptr<TracedTransport> transport_;
+  std::unique_ptr<Link> link_;
   DeviceThread thread_;
   std::uint64_t reported_ = 0;  ///< the thread's revision
   Time stale_from_{};           ///< the first of the good points becomes stale

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "coupler/base/what_failed.hpp"
-#include "coupler/host/modbus/make_transports.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "coupler/host/ros/device_driver.hpp"
 #include "coupler/host/ros/program.hpp"
 
@@ -91,8 +91,8 @@ void start_all(const Devices& devices, Node& node, Drivers& drivers) {
   StartWatch watch(drivers);
   std::vector<Map> maps;
   for (const auto& [settings, source] : devices) maps.push_back(source.map);
-  auto transports = make_transports(maps);
-  auto transport = transports.begin();
+  auto links = make_links(maps);
+  auto link = links.begin();
   std::set<unsigned> panels;  // their ports: of devices with the same setting each has the next one
   for (const auto& [settings, source] : devices) {
     if (Shutdown::requested) break;
@@ -100,7 +100,7 @@ void start_all(const Devices& devices, Node& node, Drivers& drivers) {
     if (followed.recording)
       followed.recording = recording_path(*followed.recording, source.map.name, devices.size() == 1);
     while (followed.panel && !panels.insert(*followed.panel).second) ++*followed.panel;
-    watch.add(std::make_unique<DeviceDriver>(node, source.map, std::move(*transport++))).begin(followed);
+    watch.add(std::make_unique<DeviceDriver>(node, source.map, std::move(*link++))).begin(followed);
   }
 }
 

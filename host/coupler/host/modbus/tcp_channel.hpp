@@ -7,23 +7,29 @@
 #include <string>
 #include <utility>
 
-#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/core/channel.hpp"
 #include "coupler/host/modbus/tcp_framer.hpp"
 #include "coupler/host/modbus/tls_link.hpp"
 
 namespace coupler::host {
 
-/// A Modbus/TCP device, or a gateway. docs/decisions/0001 says why libmodbus does not do this.
-class ModbusTransport : public MultiUnitTransport {
+/// A connection by Modbus/TCP, with or without TLS, to a device or a gateway. docs/decisions/0001 says why
+/// libmodbus does not do this.
+class TcpChannel : public Channel {
  public:
-  explicit ModbusTransport(const Connection& connection);
-  ~ModbusTransport() override;
-  ModbusTransport(const ModbusTransport&) = delete;
-  ModbusTransport& operator=(const ModbusTransport&) = delete;
+  explicit TcpChannel(const Connection& connection);
+  ~TcpChannel() override;
+  TcpChannel(const TcpChannel&) = delete;
+  TcpChannel& operator=(const TcpChannel&) = delete;
 
-  Result<> connect() override;
+  Result<> open(const Event& interrupt) override;
   void close() override;
-  void interrupt() override;
+  void hang_up() override;
+  Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout) override;
+  Result<> send(modbus::Bytes pdu) override;
+  Result<modbus::Bytes> receive() override;
+  bool is_late() const override { return answer_by_.has_passed(); }
+  bool is_trusted() const override { return wait_ || framer_.is_trusted(); }
   bool can_wait() const override { return true; }
   Result<> send_wait(const modbus::ChangesRequest& request) override;
   Result<> receive_wait() override;
@@ -31,22 +37,12 @@ class ModbusTransport : public MultiUnitTransport {
   std::optional<WaitAnswer> take_wait_answer() override { return std::exchange(wait_answer_, std::nullopt); }
   Result<> discard_unasked() override;
   std::uint64_t discarded() const override { return framer_.skipped(); }
-  Woken wait_until(Time time) override;
-  void wake() override { wakeup_.call(); }
-
-  Result<> send_pdu(modbus::Bytes pdu) override;
-  Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout) override;
-  Result<> open(const Event& interrupt) override;
-  void hang_up() override;
-
- protected:
-  modbus::Bytes sent() const override { return sent_.pdu(); }
-  Result<modbus::Bytes> receive_reply() override;
-  bool is_late() const override { return answer_by_.has_passed(); }
-  std::chrono::milliseconds timeout() const override { return timeout_; }
+  Woken wait_until(Time time, Wakeup& wakeup, const Event& interrupted) override {
+    return wait_for(wakeup, &interrupted, socket_.get(), time);
+  }
 
  private:
-  /// Prepares the connection for a request.
+  /// Looks whether the connection can take a request.
   Result<> make_ready();
   /// Builds a request to the selected unit with the next transaction number.
   void build(TcpRequest& request, modbus::Bytes pdu);
@@ -77,8 +73,6 @@ class ModbusTransport : public MultiUnitTransport {
   std::optional<TlsTexts> tls_;    ///< nullopt: plain Modbus/TCP
   std::unique_ptr<TlsLink> link_;  ///< of a connection with TLS
   std::chrono::milliseconds timeout_{0};
-  Event interrupted_;
-  Wakeup wakeup_;
   std::uint16_t transaction_;  ///< of the last request
   TcpRequest sent_;            ///< its answer is awaited
   Deadline answer_by_{std::chrono::milliseconds(0)};

@@ -10,7 +10,7 @@
 #include <ctime>
 #include <utility>
 
-#include "coupler/host/core/transport.hpp"
+#include "coupler/host/core/clock.hpp"
 
 namespace coupler::host {
 
@@ -89,7 +89,11 @@ class Wakeup {
   Descriptor fd_;
 };
 
-/// Transport::wait_until() on real descriptors. `socket` may be -1: none.
-Transport::Woken wait_for(Wakeup& wakeup, const Event& interrupted, int socket, Time time);
+/// How a wait ended.
+enum class Woken { by_time, by_call, by_bytes };
+
+/// Waits with poll() for a call, for an event if it is not null, for bytes from `socket` if it is not -1, or
+/// for `time`.
+Woken wait_for(Wakeup& wakeup, const Event* interrupted, int socket, Time time);
 
 }  // namespace coupler::host

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "coupler/host/modbus/multi_unit_transport.hpp"
+#include "coupler/host/core/channel.hpp"
 #include "coupler/host/modbus/serial_port.hpp"
 #include "coupler/modbus/rtu_frame.hpp"
 
@@ -22,32 +22,25 @@ namespace coupler::host {
 /// Unit 0 are all at once (MSL 2.1): they are written, nobody answers, and the line rests a while after it.
 ///
 /// The timeout begins when the last character of the request is out, and does not count those of the reply.
-class RtuTransport : public MultiUnitTransport {
+class RtuChannel : public Channel {
  public:
-  explicit RtuTransport(const Connection& connection);
-  RtuTransport(const RtuTransport&) = delete;
-  RtuTransport& operator=(const RtuTransport&) = delete;
+  explicit RtuChannel(const Connection& connection);
+  RtuChannel(const RtuChannel&) = delete;
+  RtuChannel& operator=(const RtuChannel&) = delete;
 
-  Result<> connect() override { return open(interrupted_); }
-  void close() override;
-  void interrupt() override { interrupted_.set(); }
-  Woken wait_until(Time time) override { return wait_for(wakeup_, interrupted_, fd_, time); }
-  void wake() override { wakeup_.call(); }
-
-  Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout) override;
   Result<> open(const Event& interrupt) override;
+  void close() override;
   void hang_up() override;
+  Result<> select(std::uint8_t unit, std::chrono::milliseconds timeout) override;
+  Result<> send(modbus::Bytes pdu) override;
+  Result<modbus::Bytes> receive() override;
+  bool is_late() const override { return is_late_; }
   bool is_bus() const override { return true; }
   bool can_send() const override;
-  Result<modbus::Bytes> exchange(modbus::Bytes pdu) override;
-  Result<> send_pdu(modbus::Bytes pdu) override;
+  Woken wait_until(Time time, Wakeup& wakeup, const Event& interrupted) override {
+    return wait_for(wakeup, &interrupted, fd_, time);
+  }
   std::uint64_t discarded() const override { return discarded_; }
-
- protected:
-  modbus::Bytes sent() const override { return framer_.request_pdu(); }
-  Result<modbus::Bytes> receive_reply() override;
-  bool is_late() const override { return is_late_; }
-  std::chrono::milliseconds timeout() const override { return timeout_; }
 
  private:
   Woken wait(int fd, Time until);
@@ -69,12 +62,10 @@ class RtuTransport : public MultiUnitTransport {
   std::chrono::milliseconds timeout_;
   std::optional<SerialPort> serial_;
   Descriptor socket_;
-  int fd_ = -1;              ///< of one of them
-  bool has_failed_ = false;  ///< since it was opened
-  Event interrupted_;
+  int fd_ = -1;                          ///< of one of them
+  bool has_failed_ = false;              ///< since it was opened
   std::atomic<bool> is_hung_up_{false};  ///< the request in progress is
   Wakeup hung_up_;
-  Wakeup wakeup_;
   modbus::RtuFramer framer_;
   bool is_late_ = false;   ///< the last reply came, or was looked at, after its time
   bool damaged_ = false;   ///< something has come since the request, and is no reply

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/core/transport.hpp"
+#include "coupler/host/core/link.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,21 +19,21 @@ Result<> result(const Taken& taken, modbus::Bytes asked, modbus::Bytes came) {
 
 }  // namespace
 
-Result<> Transport::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
+Result<> Link::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
   const modbus::ReadRequest request(read_function(table), range);
   const auto reply = exchange(request.pdu());
   if (!reply) return tl::make_unexpected(reply.error());
   return result(modbus::take_bits(request, *reply, bits), request.pdu(), *reply);
 }
 
-Result<> Transport::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
+Result<> Link::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
   const modbus::ReadRequest request(read_function(table), range);
   const auto reply = exchange(request.pdu());
   if (!reply) return tl::make_unexpected(reply.error());
   return result(modbus::take_registers(request, *reply, registers), request.pdu(), *reply);
 }
 
-Result<> Transport::read(Table table, modbus::Range range, std::uint16_t* values) {
+Result<> Link::read(Table table, modbus::Range range, std::uint16_t* values) {
   if (!holds_bits(table)) return read_registers(table, range, values);
   std::array<std::uint8_t, modbus::max_read_bits> bits{};
   Result<> answer = read_bits(table, range, bits.data());
@@ -41,8 +41,7 @@ Result<> Transport::read(Table table, modbus::Range range, std::uint16_t* values
   return answer;
 }
 
-Result<> Transport::read_file_record(std::uint16_t file, std::uint16_t record,
-                                     Span<std::uint16_t> registers) {
+Result<> Link::read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) {
   std::array<std::uint8_t, modbus::file_request_size> pdu{};
   modbus::build_file_request({file, record, static_cast<std::uint16_t>(registers.size())}, pdu);
   const auto reply = exchange(pdu);
@@ -50,18 +49,26 @@ Result<> Transport::read_file_record(std::uint16_t file, std::uint16_t record,
   return result(modbus::parse_file_reply(*reply, registers), pdu, *reply);
 }
 
-Result<> Transport::receive() {
-  const auto reply = receive_pdu();
-  if (!reply) return tl::make_unexpected(reply.error());
-  return {};
-}
-
-Result<modbus::ScheduleReply> Transport::schedule(const modbus::ScheduleRequest& request) {
+Result<modbus::ScheduleReply> Link::schedule(const modbus::ScheduleRequest& request) {
   const auto reply = exchange(request.pdu());
   if (!reply) return tl::make_unexpected(reply.error());
   const auto parsed = modbus::parse_schedule_reply(*reply);
   if (!parsed) return tl::make_unexpected(error_of(parsed.error(), request.pdu(), *reply));
   return *parsed;
+}
+
+Result<> Link::ask(const Unreadable& place) {
+  std::array<std::uint16_t, modbus::max_read_bits> ignored;
+  Result<> answer = read(place.table, place.range, ignored.data());
+  if (answer || (exception_in(answer.error()) != nullptr && !is_unit_away(answer.error()))) return {};
+  return answer;
+}
+
+Result<> Link::keep_alive(const Map& map) {
+  const auto found = std::find_if(map.points.begin(), map.points.end(), is_readable);
+  const Point* const point = found == map.points.end() ? map.points.begin() : found;
+  return map.points.empty() ? ask({Table::coils, modbus::Range::of(0, 1)})
+                            : ask({point->table, read_range(*point)});
 }
 
 }  // namespace coupler::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/modbus/rtu_transport.hpp"
+#include "coupler/host/modbus/rtu_channel.hpp"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -37,13 +37,21 @@ bool is_readable(int fd) {
   return ::poll(&wanted, 1, 0) > 0;
 }
 
-/// Returns what a unit repeats of a write (MAP 6.5, 6.6, 6.11, 6.12, 6.16).
-modbus::Bytes confirmation(modbus::Bytes pdu) {
+bool writes_several(modbus::Bytes pdu) {
   const auto function = static_cast<modbus::Function>(pdu[0]);
-  const bool several = function == modbus::Function::write_multiple_coils ||
-                       function == modbus::Function::write_multiple_registers;
-  return several ? pdu.first(5) : pdu;
+  return function == modbus::Function::write_multiple_coils ||
+         function == modbus::Function::write_multiple_registers;
 }
+
+bool is_write(modbus::Bytes pdu) {
+  const auto function = static_cast<modbus::Function>(pdu[0]);
+  return writes_several(pdu) || function == modbus::Function::write_single_coil ||
+         function == modbus::Function::write_single_register ||
+         function == modbus::Function::mask_write_register;
+}
+
+/// Returns what a unit repeats of a write (MAP 6.5, 6.6, 6.11, 6.12, 6.16).
+modbus::Bytes confirmation(modbus::Bytes pdu) { return writes_several(pdu) ? pdu.first(5) : pdu; }
 
 /// A gateway that has gone without a word is noticed although nobody closes the connection for a timeout.
 void notice_loss(int socket, std::chrono::milliseconds timeout) {
@@ -53,7 +61,7 @@ void notice_loss(int socket, std::chrono::milliseconds timeout) {
 
 }  // namespace
 
-RtuTransport::RtuTransport(const Connection& connection)
+RtuChannel::RtuChannel(const Connection& connection)
     : host_(connection.address),
       port_(connection.port),
       device_(connection.serial.device),
@@ -63,11 +71,11 @@ RtuTransport::RtuTransport(const Connection& connection)
   line_.device = device_;
 }
 
-Duration RtuTransport::time_of(std::size_t characters) const {
+Duration RtuChannel::time_of(std::size_t characters) const {
   return line_.present() ? time_of_characters(line_, characters) : Duration::zero();
 }
 
-Result<> RtuTransport::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
+Result<> RtuChannel::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
   hung_up_.clear();  // a call that was meant for the unit before
   is_hung_up_ = false;
   if (unit != rtu_broadcast && !is_rtu_unit(unit))
@@ -77,7 +85,7 @@ Result<> RtuTransport::select(std::uint8_t unit, std::chrono::milliseconds timeo
   return {};
 }
 
-Result<> RtuTransport::open(const Event& interrupt) {
+Result<> RtuChannel::open(const Event& interrupt) {
   close();
   if (auto selected = select(unit_, timeout_); !selected) return selected;
   if (fd_ >= 0) return {};
@@ -100,41 +108,37 @@ Result<> RtuTransport::open(const Event& interrupt) {
   return {};
 }
 
-bool RtuTransport::can_send() const {
+bool RtuChannel::can_send() const {
   const Time free = late_unit_ == unit_ ? std::max(busy_until_, late_until_) : busy_until_;
   return framer_.has_echo() && now() >= free;
 }
 
-void RtuTransport::hang_up() {
+void RtuChannel::hang_up() {
   is_hung_up_ = true;
   hung_up_.call();
 }
 
-void RtuTransport::close() {
+void RtuChannel::close() {
   if (serial_ && !has_failed_) return;
   serial_.reset();
   socket_ = Descriptor();
   fd_ = -1;
 }
 
-Result<modbus::Bytes> RtuTransport::exchange(modbus::Bytes pdu) {
-  if (unit_ == rtu_broadcast)
-    return fail(NotConnected{"unit 0 is a broadcast, which nobody answers; read from units 1 to 247"});
-  return MultiUnitTransport::exchange(pdu);
-}
-
 /// Finds out whether the line has an echo. A read tells, even one that is refused or not answered.
-Result<> RtuTransport::look_for_echo(std::uint16_t address, Table table) {
+Result<> RtuChannel::look_for_echo(std::uint16_t address, Table table) {
   const modbus::ReadRequest request(read_function(table), modbus::Range::of(address, 1));
   if (auto sent = send_frame(request.pdu()); !sent) return sent;
-  const auto reply = receive_reply();
+  const auto reply = receive();
   if (reply || std::holds_alternative<Timeout>(reply.error()) ||
       std::holds_alternative<BadFrame>(reply.error()))
     return {};
   return tl::make_unexpected(reply.error());
 }
 
-Result<> RtuTransport::send_pdu(modbus::Bytes pdu) {
+Result<> RtuChannel::send(modbus::Bytes pdu) {
+  if (unit_ == rtu_broadcast && !is_write(pdu))
+    return fail(NotConnected{"unit 0 is a broadcast, which nobody answers; read from units 1 to 247"});
   if (unit_ != rtu_broadcast && framer_.needs_a_read_before(pdu)) {
     const bool is_coil = pdu[0] == static_cast<std::uint8_t>(modbus::Function::write_single_coil);
     const Table table = is_coil ? Table::coils : Table::holding_registers;
@@ -143,7 +147,7 @@ Result<> RtuTransport::send_pdu(modbus::Bytes pdu) {
   return send_frame(pdu);
 }
 
-Result<> RtuTransport::send_frame(modbus::Bytes pdu) {
+Result<> RtuChannel::send_frame(modbus::Bytes pdu) {
   if (fd_ < 0) return fail(NotConnected{"not connected"});
   if (auto free = await_line(); !free) return free;
   framer_.expect(unit_, pdu);
@@ -155,8 +159,8 @@ Result<> RtuTransport::send_frame(modbus::Bytes pdu) {
   return put(frame);
 }
 
-Result<modbus::Bytes> RtuTransport::receive_reply() {
-  if (unit_ == rtu_broadcast) return confirmation(sent());
+Result<modbus::Bytes> RtuChannel::receive() {
+  if (unit_ == rtu_broadcast) return confirmation(framer_.request_pdu());
   for (;;) {
     switch (wait(fd_, answer_by_)) {
       case Woken::by_call:
@@ -192,21 +196,21 @@ Result<modbus::Bytes> RtuTransport::receive_reply() {
 }
 
 /// A call that comes together with bytes counts, too. A signal ends no wait.
-Transport::Woken RtuTransport::wait(int fd, Time until) {
+Woken RtuChannel::wait(int fd, Time until) {
   for (;;) {
-    const Woken woken = wait_for(hung_up_, interrupted_, fd, until);
-    if (is_hung_up_ || interrupted_.is_set()) return Woken::by_call;
+    const Woken woken = wait_for(hung_up_, nullptr, fd, until);
+    if (is_hung_up_) return Woken::by_call;
     if (woken == Woken::by_bytes || now() >= until) return woken;
   }
 }
 
-Result<> RtuTransport::pause(Time until) {
+Result<> RtuChannel::pause(Time until) {
   if (wait(-1, until) == Woken::by_call) return fail(NotConnected{"interrupted"});
   return {};
 }
 
 /// Until nobody's reply is expected on it, and it has been silent between two frames (MSL 2.5.1.1).
-Result<> RtuTransport::await_line() {
+Result<> RtuChannel::await_line() {
   if (auto paused = pause(busy_until_); !paused) return paused;
   if (late_unit_ == unit_) {
     if (auto paused = pause(late_until_); !paused) return paused;
@@ -221,7 +225,7 @@ Result<> RtuTransport::await_line() {
   return {};
 }
 
-Result<> RtuTransport::discard() {
+Result<> RtuChannel::discard() {
   std::array<std::uint8_t, modbus::max_rtu_size> late{};
   for (int piece = 0; piece < most_discarded_pieces && is_readable(fd_); ++piece) {
     const auto got = get(late);
@@ -231,11 +235,11 @@ Result<> RtuTransport::discard() {
   return {};
 }
 
-tl::unexpected<Error> RtuTransport::port_has_gone() const {
+tl::unexpected<Error> RtuChannel::port_has_gone() const {
   return fail(TransportFailure{fmt::format("the port {} has gone; is its adapter plugged in?", device_)});
 }
 
-Result<> RtuTransport::put(modbus::Bytes frame) {
+Result<> RtuChannel::put(modbus::Bytes frame) {
   const auto sent = line_.present() ? ::write(fd_, frame.data(), frame.size())
                                     : ::send(fd_, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(frame.size())) return {};
@@ -246,7 +250,7 @@ Result<> RtuTransport::put(modbus::Bytes frame) {
 }
 
 /// There is something to read, or the end.
-Result<Span<const std::uint8_t>> RtuTransport::get(Span<std::uint8_t> room) {
+Result<Span<const std::uint8_t>> RtuChannel::get(Span<std::uint8_t> room) {
   const auto got = ::read(fd_, room.data(), room.size());
   if (got > 0) {
     last_character_ = now();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/modbus/turns.hpp"
+#include "coupler/host/core/turns.hpp"
 
 #include <gtest/gtest.h>
 

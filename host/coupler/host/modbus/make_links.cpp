@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/modbus/make_transports.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -10,7 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/modbus/unit_transport.hpp"
+#include "coupler/host/modbus/rtu_channel.hpp"
+#include "coupler/host/modbus/tcp_channel.hpp"
 #include "coupler/map/fields.hpp"
 
 namespace coupler::host {
@@ -20,8 +21,13 @@ namespace {
 struct Gateway {
   std::size_t units = 0;
   std::size_t connections = std::numeric_limits<std::size_t>::max();  ///< that it allows
-  std::shared_ptr<SharedConnection> shared;
+  std::shared_ptr<SharedChannel> shared;
 };
+
+std::shared_ptr<SharedChannel> make_channel(const Connection& connection) {
+  if (connection.is_rtu()) return std::make_shared<SharedChannel>(std::make_shared<RtuChannel>(connection));
+  return std::make_shared<SharedChannel>(std::make_shared<TcpChannel>(connection));
+}
 
 using Place = std::pair<std::string, std::uint16_t>;
 
@@ -61,24 +67,28 @@ std::string line_conflict(const std::vector<Map>& maps) {
   return {};
 }
 
-std::vector<std::unique_ptr<Transport>> make_transports(const std::vector<Map>& maps) {
+Link make_link(const Connection& connection, const Limits& limits) {
+  return Link(make_channel(connection), connection, limits);
+}
+
+std::vector<std::unique_ptr<Link>> make_links(const std::vector<Map>& maps) {
   std::map<Place, Gateway> gateways;
   for (const Map& map : maps) {
     Gateway& gateway = gateways[place_of(map.connection)];
     ++gateway.units;
     gateway.connections = std::min<std::size_t>(gateway.connections, map.limits.connections);
   }
-  std::vector<std::unique_ptr<Transport>> transports;
+  std::vector<std::unique_ptr<Link>> links;
   for (const Map& map : maps) {
     Gateway& gateway = gateways[place_of(map.connection)];
-    if (!map.connection.is_rtu() && gateway.units <= std::max<std::size_t>(gateway.connections, 1)) {
-      transports.push_back(make_transport(map.connection));
-      continue;
-    }
-    if (!gateway.shared) gateway.shared = std::make_shared<SharedConnection>(map.connection);
-    transports.push_back(std::make_unique<UnitTransport>(gateway.shared, map.connection, map.limits));
+    const bool shares =
+        map.connection.is_rtu() || gateway.units > std::max<std::size_t>(gateway.connections, 1);
+    auto shared = gateway.shared ? gateway.shared : make_channel(map.connection);
+    if (shares) gateway.shared = shared;
+    shared->has_several_links = gateway.units > 1 && shares;
+    links.push_back(std::make_unique<Link>(std::move(shared), map.connection, map.limits));
   }
-  return transports;
+  return links;
 }
 
 }  // namespace coupler::host

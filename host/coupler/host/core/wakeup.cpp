@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/modbus/wait.hpp"
+#include "coupler/host/core/wakeup.hpp"
 
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -29,15 +29,15 @@ void Wakeup::clear() {
   ::eventfd_read(fd_.get(), &calls);
 }
 
-Transport::Woken wait_for(Wakeup& wakeup, const Event& interrupted, int socket, Time time) {
-  using Woken = Transport::Woken;
+Woken wait_for(Wakeup& wakeup, const Event* interrupted, int socket, Time time) {
   const Time now = std::chrono::steady_clock::now();
   if (time <= now) return Woken::by_time;
   const Duration left = time - now;
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
   const timespec wait{seconds.count(), (left - seconds).count()};
-  std::array<pollfd, 3> wanted{
-      {{wakeup.fd(), POLLIN, 0}, {interrupted.fd(), POLLIN, 0}, {socket, POLLIN, 0}}};
+  std::array<pollfd, 3> wanted{{{wakeup.fd(), POLLIN, 0},
+                                {interrupted == nullptr ? -1 : interrupted->fd(), POLLIN, 0},
+                                {socket, POLLIN, 0}}};
   ::ppoll(wanted.data(), wanted.size(), &wait, nullptr);
   if (wanted[0].revents != 0) wakeup.clear();
   if (wanted[2].revents != 0) return Woken::by_bytes;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "coupler/host/modbus/wait.hpp"
+#include "coupler/host/core/wakeup.hpp"
 
 namespace coupler::host {
 namespace {

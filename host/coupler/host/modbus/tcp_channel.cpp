@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/tcp_channel.hpp"
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -25,7 +25,7 @@ bool is_tcp_unit(std::uint8_t unit) { return unit == 0 || is_rtu_unit(unit) || u
 
 }  // namespace
 
-ModbusTransport::ModbusTransport(const Connection& connection)
+TcpChannel::TcpChannel(const Connection& connection)
     : host_(connection.address),
       port_(connection.port),
       unit_(connection.unit),
@@ -34,9 +34,9 @@ ModbusTransport::ModbusTransport(const Connection& connection)
       // The first number is not that of other programs, so that bytes for others do not look like a reply.
       transaction_(static_cast<std::uint16_t>(std::chrono::steady_clock::now().time_since_epoch().count())) {}
 
-ModbusTransport::~ModbusTransport() { ModbusTransport::close(); }
+TcpChannel::~TcpChannel() { TcpChannel::close(); }
 
-Result<> ModbusTransport::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
+Result<> TcpChannel::select(std::uint8_t unit, std::chrono::milliseconds timeout) {
   unit_ = unit;
   if (!is_tcp_unit(unit_))
     return fail(NotConnected{fmt::format("unit {} is reserved; Modbus has units 0 to 247 and 255", unit_)});
@@ -44,9 +44,7 @@ Result<> ModbusTransport::select(std::uint8_t unit, std::chrono::milliseconds ti
   return {};
 }
 
-Result<> ModbusTransport::connect() { return open(interrupted_); }
-
-Result<> ModbusTransport::open(const Event& interrupt) {
+Result<> TcpChannel::open(const Event& interrupt) {
   close();
   if (auto selected = select(unit_, timeout_); !selected) return selected;
   const Deadline deadline(timeout_);
@@ -67,7 +65,7 @@ Result<> ModbusTransport::open(const Event& interrupt) {
   return {};
 }
 
-void ModbusTransport::close() {
+void TcpChannel::close() {
   framer_.reset();
   wait_.reset();
   wait_answer_.reset();
@@ -78,36 +76,30 @@ void ModbusTransport::close() {
   link_ = nullptr;
 }
 
-tl::unexpected<Error> ModbusTransport::failed(Error error) const {
+tl::unexpected<Error> TcpChannel::failed(Error error) const {
   if (link_ && std::holds_alternative<TransportFailure>(error))
     if (std::string problem = link_->problem(); !problem.empty())
       return fail(TransportFailure{std::move(problem), true});
   return tl::unexpected<Error>(std::move(error));
 }
 
-std::optional<Certificates> ModbusTransport::certificates() const {
+std::optional<Certificates> TcpChannel::certificates() const {
   const std::lock_guard lock(socket_mutex_);
   return certificates_;
 }
 
-void ModbusTransport::interrupt() {
-  interrupted_.set();
-  hang_up();
-}
-
-void ModbusTransport::hang_up() {
+void TcpChannel::hang_up() {
   const std::lock_guard lock(socket_mutex_);
   if (socket_.get() >= 0) ::shutdown(socket_.get(), SHUT_RDWR);
 }
 
-Result<> ModbusTransport::make_ready() {
+Result<> TcpChannel::make_ready() {
   if (socket_.get() < 0) return fail(NotConnected{"not connected"});
   if (wait_) return {};  // its answer may be there
-  if (!framer_.is_trusted()) return open(interrupted_);
   return discard_unasked();
 }
 
-Result<> ModbusTransport::discard_unasked() {
+Result<> TcpChannel::discard_unasked() {
   for (int piece = 0; piece < most_unasked_pieces; ++piece) {
     framer_.drop();
     const auto room = framer_.room();
@@ -120,12 +112,10 @@ Result<> ModbusTransport::discard_unasked() {
   return fail(BadFrame{"bytes come without end, and nothing was asked"});
 }
 
-void ModbusTransport::build(TcpRequest& request, modbus::Bytes pdu) {
-  request.set(++transaction_, unit_, pdu);
-}
+void TcpChannel::build(TcpRequest& request, modbus::Bytes pdu) { request.set(++transaction_, unit_, pdu); }
 
 /// It never waits: what does not go out at once is an error.
-Result<> ModbusTransport::put(const TcpRequest& request) {
+Result<> TcpChannel::put(const TcpRequest& request) {
   const modbus::Bytes adu = request.adu();
   const auto sent = ::send(socket_.get(), adu.data(), adu.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(adu.size())) return {};
@@ -133,8 +123,7 @@ Result<> ModbusTransport::put(const TcpRequest& request) {
       TransportFailure{sent < 0 ? std::strerror(errno) : "only a part of the request could be sent"});
 }
 
-Result<modbus::Bytes> ModbusTransport::await_reply(const TcpRequest& request, Deadline deadline,
-                                                   bool has_come) {
+Result<modbus::Bytes> TcpChannel::await_reply(const TcpRequest& request, Deadline deadline, bool has_come) {
   for (bool waits = !has_come;;) {
     const auto outcome = framer_.next(request);
     if (outcome == TcpFramer::Outcome::reply) return framer_.pdu();
@@ -154,24 +143,24 @@ Result<modbus::Bytes> ModbusTransport::await_reply(const TcpRequest& request, De
   }
 }
 
-tl::unexpected<Error> ModbusTransport::no_reply(const TcpRequest& request, Error error) const {
+tl::unexpected<Error> TcpChannel::no_reply(const TcpRequest& request, Error error) const {
   if (auto noise = framer_.noise(request)) return fail(*std::move(noise));
   return failed(std::move(error));
 }
 
-Result<> ModbusTransport::send_pdu(modbus::Bytes pdu) {
+Result<> TcpChannel::send(modbus::Bytes pdu) {
   if (auto ready = make_ready(); !ready) return ready;
   answer_by_ = Deadline(timeout_);
   build(sent_, pdu);
   return put(sent_);
 }
 
-Result<modbus::Bytes> ModbusTransport::receive_reply() {
+Result<modbus::Bytes> TcpChannel::receive() {
   if (auto before = receive_wait_before(answer_by_); !before) return tl::make_unexpected(before.error());
   return await_reply(sent_, answer_by_);
 }
 
-Result<> ModbusTransport::send_wait(const modbus::ChangesRequest& request) {
+Result<> TcpChannel::send_wait(const modbus::ChangesRequest& request) {
   if (auto ready = make_ready(); !ready) return ready;
   std::array<std::uint8_t, modbus::changes_request_size> pdu{};
   modbus::build_changes_request(request, pdu);
@@ -181,17 +170,17 @@ Result<> ModbusTransport::send_wait(const modbus::ChangesRequest& request) {
   return put(wait_->request);
 }
 
-Result<> ModbusTransport::receive_wait() {
+Result<> TcpChannel::receive_wait() {
   if (!wait_) return fail(NotConnected{"nothing was asked for"});
   return take_wait_reply(await_reply(wait_->request, wait_->answer_by, true));
 }
 
-Result<> ModbusTransport::receive_wait_before(const Deadline& deadline) {
+Result<> TcpChannel::receive_wait_before(const Deadline& deadline) {
   if (!wait_) return {};
   return take_wait_reply(await_reply(wait_->request, deadline));
 }
 
-Result<> ModbusTransport::take_wait_reply(const Result<modbus::Bytes>& pdu) {
+Result<> TcpChannel::take_wait_reply(const Result<modbus::Bytes>& pdu) {
   if (!pdu) return tl::make_unexpected(pdu.error());
   const auto reply = modbus::parse_changes_reply(*pdu);
   if (!reply && !reply.error().exception) return fail(BadFrame{"not the reply to a wait for changes"});
@@ -200,10 +189,6 @@ Result<> ModbusTransport::take_wait_reply(const Result<modbus::Bytes>& pdu) {
                   wait_->sent, std::chrono::steady_clock::now()};
   wait_.reset();
   return {};
-}
-
-Transport::Woken ModbusTransport::wait_until(Time time) {
-  return wait_for(wakeup_, interrupted_, socket_.get(), time);
 }
 
 }  // namespace coupler::host

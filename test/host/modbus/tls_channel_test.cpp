@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device with TLS, which the transport talks to as to any.
+// A device with TLS, which the link talks to as to any.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -11,7 +11,7 @@
 #include <future>
 #include <string>
 
-#include "coupler/host/modbus/modbus_transport.hpp"
+#include "coupler/host/modbus/make_links.hpp"
 #include "test/host/modbus/tls_front.hpp"
 
 namespace coupler::host {
@@ -57,67 +57,66 @@ class TlsTransportTest : public testing::Test {
 };
 
 TEST_F(TlsTransportTest, Reads_and_writes_as_without_it) {
-  ModbusTransport transport(connection());
-  ASSERT_EQ(text(transport.connect()), "");
+  Link link = make_link(connection());
+  ASSERT_EQ(text(link.connect()), "");
   server_.tables().tab_registers[6] = 600;
   std::uint16_t registers[2]{};
-  ASSERT_EQ(text(transport.read_registers(Table::holding_registers, Range::of(6, 2), registers)), "");
+  ASSERT_EQ(text(link.read_registers(Table::holding_registers, Range::of(6, 2), registers)), "");
   EXPECT_EQ(registers[0], 600);
   const std::uint16_t values[] = {7, 8};
   const auto write = modbus::WriteRequest::registers(20, values);
-  ASSERT_EQ(text(transport.send(write)), "");
-  ASSERT_EQ(text(transport.receive()), "");
+  ASSERT_EQ(text(link.send(write)), "");
+  ASSERT_EQ(text(link.receive()), "");
   EXPECT_EQ(server_.tables().tab_registers[21], 8);
 }
 
 TEST_F(TlsTransportTest, Connects_again_with_the_files_that_are_there_then) {
   const tls::Pem other = tls::make_authority("other").value();
   write(tls::credentials_of(tls::test_client(), other));
-  ModbusTransport transport(connection());
+  Link link = make_link(connection());
   std::uint16_t value = 0;
   // With TLS 1.3 the server refuses after this side's handshake.
-  std::string problem = text(transport.connect());
-  if (problem.empty())
-    problem = text(transport.read_registers(Table::holding_registers, Range::of(0, 1), &value));
+  std::string problem = text(link.connect());
+  if (problem.empty()) problem = text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value));
   EXPECT_THAT(problem, AllOf(HasSubstr("unknown_ca"), HasSubstr("authority")));
   write(tls::credentials_of(tls::test_client()));
-  ASSERT_EQ(text(transport.connect()), "");
-  EXPECT_EQ(text(transport.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
+  ASSERT_EQ(text(link.connect()), "");
+  EXPECT_EQ(text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
 }
 
 TEST_F(TlsTransportTest, A_device_that_is_not_believed_is_asked_for_nothing) {
   Connection to = connection();
   to.tls.name = "lathe";
-  EXPECT_THAT(text(ModbusTransport(to).connect()), HasSubstr("another name or address"));
+  EXPECT_THAT(text(make_link(to).connect()), HasSubstr("another name or address"));
   to = connection();
   fs::remove(folder_ / "own.key");
-  EXPECT_THAT(text(ModbusTransport(to).connect()), HasSubstr("No such file"));
+  EXPECT_THAT(text(make_link(to).connect()), HasSubstr("No such file"));
 }
 
 TEST_F(TlsTransportTest, One_without_TLS_says_so) {
   Connection to = connection();
   to.port = server_.port();
   to.timeout = milliseconds(300);
-  EXPECT_NE(text(ModbusTransport(to).connect()), "");
+  EXPECT_NE(text(make_link(to).connect()), "");
 }
 
 TEST_F(TlsTransportTest, A_device_that_hangs_up_ends_the_request_in_progress) {
-  ModbusTransport transport(connection());
-  ASSERT_EQ(text(transport.connect()), "");
-  auto waiting = std::async(std::launch::async, [&] { return transport.wait_until(Time::max()); });
+  Link link = make_link(connection());
+  ASSERT_EQ(text(link.connect()), "");
+  auto waiting = std::async(std::launch::async, [&] { return link.wait_until(Time::max()); });
   front_.hang_up();
-  EXPECT_EQ(waiting.get(), Transport::Woken::by_bytes);
+  EXPECT_EQ(waiting.get(), Woken::by_bytes);
   std::uint16_t value = 0;
-  EXPECT_NE(text(transport.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
+  EXPECT_NE(text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
 }
 
 TEST_F(TlsTransportTest, An_interrupt_ends_whatever_is_in_progress) {
-  ModbusTransport transport(connection());
-  ASSERT_EQ(text(transport.connect()), "");
-  auto waiting = std::async(std::launch::async, [&] { return transport.wait_until(Time::max()); });
-  transport.interrupt();
+  Link link = make_link(connection());
+  ASSERT_EQ(text(link.connect()), "");
+  auto waiting = std::async(std::launch::async, [&] { return link.wait_until(Time::max()); });
+  link.interrupt();
   waiting.get();
-  EXPECT_NE(text(transport.connect()), "");
+  EXPECT_NE(text(link.connect()), "");
 }
 
 }  // namespace

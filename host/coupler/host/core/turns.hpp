@@ -8,9 +8,16 @@
 #include <optional>
 #include <vector>
 
-#include "coupler/host/core/transport.hpp"
+#include "coupler/host/core/clock.hpp"
 
 namespace coupler::host {
+
+/// The order of units that share a connection: writes go before reads, in turn.
+enum class Rank {
+  read,
+  write,  ///< also the read before a write, and the one that verifies it
+  safe    ///< before all others, until another rank is set
+};
 
 /// Chooses which of the waiting users gets the next turn: writes before reads, each in the order in which
 /// they came. While a user claims all turns, no other gets one, also not between two of its requests.
@@ -146,6 +153,11 @@ class Turns {
     const std::lock_guard lock(mutex_);
     changed_.notify_all();
   }
+  /// Returns whether somebody waits for a turn.
+  bool is_awaited() const {
+    const std::lock_guard lock(mutex_);
+    return order_.next() != nullptr;
+  }
   /// look_again(), and calls `end` if `who` has the turn.
   template <class End>
   void interrupt(Who who, End end) {
@@ -155,7 +167,7 @@ class Turns {
   }
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   Who holder_ = nullptr;
   TurnOrder order_;

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which link may use the channel, and what ends its waiting.
+#include <algorithm>
+#include <utility>
+
+#include "coupler/host/core/link.hpp"
+
+namespace coupler::host {
+
+Result<> Link::take_turn(Rank rank) {
+  if (std::exchange(has_turn_, false)) return {};
+  if (shared_->turns.take(this, {rank}, Time::max(), [this] { return gives_up(); })) return {};
+  return given_up();
+}
+
+tl::unexpected<Error> Link::given_up() const {
+  if (interrupted_.is_set()) return fail(NotConnected{"interrupted"});
+  return fail(TransportFailure{
+      "the gateway has closed the connection, or cannot be reached; or the serial port has gone"});
+}
+
+void Link::release() {
+  if (shared_->users == 0) {
+    channel().close();
+    shared_->is_open = false;
+  }
+  shared_->turns.release();
+}
+
+void Link::rank(Rank rank) {
+  const Rank before = std::exchange(rank_, rank);
+  if ((before == Rank::safe) != (rank == Rank::safe)) shared_->turns.claim(this, rank == Rank::safe);
+}
+
+Link::Turn Link::await_turn(Time until, bool write_waits) {
+  pause_until(ready_);  // before the turn, which others wait for
+  if (has_turn_) return Turn::read;
+  const auto give_up = [this] { return is_woken_.exchange(false) || gives_up(); };
+  const auto turn = write_waits ? shared_->turns.take(this, {Rank::read, Rank::write}, until, give_up)
+                                : shared_->turns.take(this, {Rank::read}, until, give_up);
+  has_turn_ = turn.has_value();
+  if (turn) return *turn == Rank::read ? Turn::read : Turn::write;
+  return gives_up() ? Turn::read : Turn::none;  // the read fails, with the reason
+}
+
+void Link::await_turn_to_write(const std::function<bool()>& ends) {
+  pause_until(ready_);
+  if (has_turn_) return;
+  const auto give_up = [&] { return ends() || gives_up(); };
+  has_turn_ = shared_->turns.take(this, {Rank::write}, Time::max(), give_up).has_value();
+}
+
+bool Link::reserve() {
+  if (!shared_->turns.try_take(this)) return false;
+  const Time ready = std::max(shared_->opened + delay_, shared_->answered + gap_);
+  has_turn_ = is_connected_ && !is_lost() && shared_->is_open && clock_.now() >= ready &&
+              channel().select(unit_, timeout_) && channel().can_send();
+  if (!has_turn_) release();
+  is_reserved_ = has_turn_;
+  return has_turn_;
+}
+
+void Link::give_back() {
+  is_reserved_ = false;
+  if (std::exchange(has_turn_, false)) release();
+}
+
+Woken Link::wait_until(Time time) {
+  const Woken woken = is_polled() ? channel().wait_until(time, wakeup_, interrupted_)
+                                  : wait_for(wakeup_, &interrupted_, -1, time);
+  is_woken_ = false;  // the caller looks at what there is to do now
+  return woken;
+}
+
+void Link::wake() {
+  is_woken_ = true;
+  wakeup_.call();
+  shared_->turns.look_again();
+}
+
+}  // namespace coupler::host
