@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checks that a reply has to pass, over Modbus/TCP and RTU, and what a link counts and traces.
+// The checks that a reply has to pass, over Modbus/TCP and RTU, and what a link does with its channel, counts
+// and traces.
 #include "coupler/host/core/link.hpp"
 
 #include <gmock/gmock.h>
 
+#include <functional>
+#include <memory>
+#include <new>
+#include <string>
 #include <vector>
 
+#include "test/host/core/fake_clock.hpp"
 #include "test/host/core/share.hpp"
 
 namespace coupler::host {
@@ -20,20 +26,29 @@ class Replying : public Channel {
   std::vector<std::uint8_t> reply;
   bool comes_late = false;
   bool trusted = true;
+  bool is_bus_line = false;
+  bool fails_to_send = false;
+  std::function<void()> meanwhile;  ///< while a reply is awaited
   int opened = 0;
+  int closed = 0;
 
   Result<> open(const Event&) override {
     ++opened;
     return {};
   }
-  void close() override {}
+  void close() override { ++closed; }
   void hang_up() override {}
   Result<> select(std::uint8_t, std::chrono::milliseconds) override { return {}; }
-  Result<> send(modbus::Bytes) override { return {}; }
-  Result<modbus::Bytes> receive() override { return modbus::Bytes(reply.data(), reply.size()); }
+  Result<> send(modbus::Bytes) override {
+    return fails_to_send ? fail(TransportFailure{"gone"}) : Result<>{};
+  }
+  Result<modbus::Bytes> receive() override {
+    if (meanwhile) meanwhile();
+    return modbus::Bytes(reply.data(), reply.size());
+  }
+  bool is_bus() const override { return is_bus_line; }
   bool is_late() const override { return comes_late; }
   bool is_trusted() const override { return trusted; }
-  Woken wait_until(Time, Wakeup&, const Event&) override { return Woken::by_time; }
 };
 
 struct LinkTest : testing::Test {
@@ -44,7 +59,9 @@ struct LinkTest : testing::Test {
     return !result && std::holds_alternative<E>(result.error());
   }
   Replying channel;
-  Link link{test::share(channel), {}, {}};
+  test::FakeClock clock;
+  std::shared_ptr<SharedChannel> shared = test::share(channel);
+  Link link{shared, {}, {}, &clock};
   std::uint16_t word = 0;
 };
 
@@ -119,6 +136,48 @@ TEST_F(LinkTest, A_trace_says_what_was_asked_and_how_it_ended) {
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_THAT(lines[0], testing::MatchesRegex("read holding_registers 1 to 1: ok after [0-9.]+ ms"));
   EXPECT_THAT(lines[1], testing::MatchesRegex("write by FC 6 at 1: 00 07: exception 02 .* after [0-9.]+ ms"));
+}
+
+TEST_F(LinkTest, A_request_that_throws_keeps_no_turn) {
+  channel.reply = {3, 2, 0, 7};
+  channel.meanwhile = [] { throw std::bad_alloc(); };
+  EXPECT_THROW(read(), std::bad_alloc);
+  channel.meanwhile = nullptr;
+  link.close();
+  ASSERT_TRUE(link.connect());
+  EXPECT_TRUE(read());
+}
+
+TEST_F(LinkTest, A_failed_write_of_another_thread_leaves_the_channel_to_its_owner) {
+  channel.fails_to_send = true;
+  const auto request = WriteRequest::coil(1, true);
+  ASSERT_TRUE(link.reserve());
+  const int before = channel.closed;
+  EXPECT_FALSE(link.send(request));  // the owner may poll it at this moment
+  EXPECT_EQ(channel.closed, before);
+  EXPECT_FALSE(link.send(request));
+  EXPECT_EQ(channel.closed, before + 1);
+}
+
+TEST_F(LinkTest, A_free_turn_is_taken_though_the_owner_was_woken) {
+  link.wake();
+  EXPECT_EQ(link.await_turn(Time::max()), Link::Turn::read);
+}
+
+TEST_F(LinkTest, On_a_bus_only_the_unit_that_was_silent_is_left_alone_for_a_timeout) {
+  channel.is_bus_line = true;
+  link.select(1, std::chrono::milliseconds(500));
+  channel.comes_late = true;
+  channel.reply = {3, 2, 0, 7};
+  ASSERT_TRUE(is<Timeout>(read()));
+  const Time before = clock.now();
+  link.close();
+  link.select(2, std::chrono::milliseconds(500));
+  ASSERT_TRUE(link.connect());
+  EXPECT_EQ(clock.now(), before);
+  ASSERT_TRUE(is<Timeout>(read()));
+  ASSERT_TRUE(link.connect());
+  EXPECT_EQ(clock.now(), before + std::chrono::milliseconds(500));
 }
 
 TEST_F(LinkTest, A_channel_that_is_not_to_be_trusted_is_opened_anew) {

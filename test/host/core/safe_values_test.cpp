@@ -59,7 +59,7 @@ TEST_F(SafeValuesTest, They_go_before_what_was_to_be_sent_next) {
   start_online();
   clock.advance(milliseconds(100));
   push("lamp", 1);
-  ASSERT_TRUE(shared->turns.try_take(this));
+  ASSERT_TRUE(shared->turns.try_take(this, Rank::write));
   EXPECT_FALSE(engine->send_now());
   shared->turns.release();
   auto asked = engine->make_safe();

@@ -14,6 +14,7 @@ struct TurnOrderTest : testing::Test {
 
   TurnOrder::Who who(char unit) const { return &units[units.find(unit)]; }
   void read(char unit) { order.come(who(unit), Rank::read); }
+  void write_at_once(char unit) { order.count_write(who(unit)); }
   void write(char unit) { order.come(who(unit), Rank::write); }
   /// Who gets the turn one after the other, if each waits for one only.
   std::string rest() {
@@ -47,6 +48,13 @@ TEST_F(TurnOrderTest, Who_has_written_since_the_last_read_lets_one_read_go_first
   read('C');
   write('B');
   EXPECT_EQ(rest(), "ABC");
+}
+
+TEST_F(TurnOrderTest, So_does_who_has_written_without_waiting) {
+  write_at_once('B');
+  read('A');
+  write('B');
+  EXPECT_EQ(rest(), "AB");
 }
 
 TEST_F(TurnOrderTest, Two_that_never_stop_writing_do_not_keep_a_read_waiting_for_ever) {

@@ -35,9 +35,10 @@ struct Certificates {
 };
 
 /// Carries PDUs to any unit of a device, of a gateway or of a serial line, one request after the other, by
-/// Modbus/TCP or RTU. It knows neither turns nor pauses: those are Link's, which is its only user. Its
-/// functions are for the link that has the turn; any thread may call hang_up(), discarded() and
-/// certificates().
+/// Modbus/TCP or RTU. The turns of its users and the pauses of a map are Link's, which uses it.
+///
+/// The thread that has the turn calls its functions. Another one may be in wait_until() meanwhile, but not
+/// while the channel is opened or closed. Any thread may call hang_up(), discarded() and certificates().
 class Channel {
  public:
   virtual ~Channel() = default;
@@ -88,8 +89,10 @@ class Channel {
     return fail(TransportFailure{"the device closed the connection, or sent an unexpected reply"});
   }
   /// Returns when bytes have come, when the connection has ended, after a call of `wakeup` or `interrupted`,
-  /// or at `time`.
-  virtual Woken wait_until(Time time, Wakeup& wakeup, const Event& interrupted) = 0;
+  /// or at `time`. On a bus no bytes end it.
+  virtual Woken wait_until(Time time, Wakeup& wakeup, const Event& interrupted) {
+    return wait_for(wakeup, &interrupted, -1, time);
+  }
 
   /// The number of received bytes that were late or did not belong to a reply.
   virtual std::uint64_t discarded() const { return 0; }

@@ -61,15 +61,16 @@ Result<> Link::open() {
 }
 
 void Link::close() {
-  if (std::exchange(is_in_flight_, false)) {
+  if (has_turn_) {
+    give_back();
+  } else if (shared_->turns.is_held_by(this)) {  // a request is in progress, or has thrown an exception
     unanswered();
     release();
   }
-  give_back();
   if (!std::exchange(is_connected_, false) || --shared_->users > 0) return;
   // It does not wait for its turn: a lost unit is to be reported at once. If another unit has the turn, that
   // one goes on with the channel, or closes it.
-  if (shared_->turns.try_take(this)) release();
+  if (shared_->turns.try_take(this, Rank::read)) release();
 }
 
 void Link::interrupt() {
@@ -112,12 +113,15 @@ Result<> Link::prepare() {
   return {};
 }
 
-Result<> Link::put(Rank rank, modbus::Bytes pdu) {
+Result<> Link::put(Rank rank, modbus::Bytes pdu, bool owner_waits) {
   std::copy(pdu.begin(), pdu.end(), request_.begin());
   request_size_ = pdu.size();
   if (auto begun = begin(rank); !begun) return begun;
   Result<> sent = channel().send(pdu);
-  if (!sent) end_turn(clock_.now(), &sent.error());
+  if (!sent && owner_waits && is_polled())
+    release();  // the owner, which polls the channel, has to close it
+  else if (!sent)
+    end_turn(clock_.now(), &sent.error());
   return sent;
 }
 
@@ -126,19 +130,18 @@ Result<modbus::Bytes> Link::exchange(modbus::Bytes pdu) {
   read_sent_ = sent_at_;
   if (sent) return finish(!changes_outputs(pdu));
   count(clock_.now(), &sent.error());
+  trace_request(&sent.error());
   return tl::make_unexpected(sent.error());
 }
 
 Result<> Link::send(const modbus::WriteRequest& request) {
   const bool was_reserved = std::exchange(is_reserved_, false);
-  if (auto sent = put(Rank::write, request.pdu()); !sent) return sent;
-  is_in_flight_ = true;
+  if (auto sent = put(Rank::write, request.pdu(), was_reserved); !sent) return sent;
   if (was_reserved && !is_polled()) wake();  // no thread polls the channel: the owner must call receive()
   return {};
 }
 
 Result<> Link::receive() {
-  is_in_flight_ = false;
   const auto reply = finish(false);
   written_ = stamp_between(sent_at_, answered_);
   if (!reply) return tl::make_unexpected(reply.error());
@@ -166,6 +169,7 @@ Result<modbus::Bytes> Link::finish(bool is_read) {
   const Time now = clock_.now();
   end_turn(now, error);
   count(now, error);
+  trace_request(error);
   hand_over(before);
   return reply;
 }
@@ -188,6 +192,7 @@ void Link::unanswered() {
     late_until_ = clock_.now() + timeout_;
     return;
   }
+  if (!shared_->has_several_links && channel().is_trusted()) return;  // it is told from the next reply
   channel().close();
   shared_->is_open = false;
 }
@@ -203,6 +208,9 @@ void Link::count(Time now, const Error* error) {
   const bool is_reply = error == nullptr || exception != nullptr;
   if (is_reply) ++replies_;
   unit_answers_ = is_reply && (exception == nullptr || !is_unit_away(*error));
+}
+
+void Link::trace_request(const Error* error) const {
   write_trace(error, sent_at_, [this] { return request_text(modbus::Bytes(request_).first(request_size_)); });
 }
 
@@ -229,6 +237,7 @@ Result<> Link::receive_wait() {
   const auto answer = channel().take_wait_answer();
   const Time now = clock_.now();
   shared_->answered = now;
+  if (received && !channel().is_trusted()) unanswered();
   release();
   if (received)
     pause_after(now, gap_);

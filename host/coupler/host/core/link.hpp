@@ -75,6 +75,7 @@ class Link {
   Clock& clock() const { return clock_; }
   /// Sets the unit of the requests that follow, and the time within which it must reply.
   void select(std::uint8_t unit, std::chrono::milliseconds timeout) {
+    if (unit != unit_) late_until_ = {};
     unit_ = unit;
     timeout_ = timeout;
   }
@@ -141,7 +142,8 @@ class Link {
   /// See Channel.
   Result<> discard_unasked() { return channel().discard_unasked(); }
 
-  /// Returns when bytes have come, when the connection has ended, after wake(), or at `time`.
+  /// Returns when bytes have come or the connection has ended, where the link has a channel by Modbus/TCP for
+  /// itself; after wake() or interrupt(); or at `time`.
   Woken wait_until(Time time);
   /// Ends the wait_until() in progress, or else the next one.
   void wake();
@@ -194,16 +196,17 @@ class Link {
   /// Waits for the pause and the turn, and makes the channel ready for a request.
   Result<> begin(Rank rank);
   Result<> prepare();
-  /// begin(), and sends a request.
-  Result<> put(Rank rank, modbus::Bytes pdu);
+  /// begin(), and sends a request. `owner_waits`: the owner is in wait_until() meanwhile.
+  Result<> put(Rank rank, modbus::Bytes pdu, bool owner_waits = false);
   /// Receives the reply, checks it, and gives the turn back.
   Result<modbus::Bytes> finish(bool is_read);
   Result<modbus::Bytes> receive_checked(bool is_read);
   void end_turn(Time now, const Error* error);
   /// The reply may still come, and would be taken for that to another request.
   void unanswered();
-  /// Counts a request that has ended, and traces it.
+  /// Counts a request that has ended.
   void count(Time now, const Error* error);
+  void trace_request(const Error* error) const;
   template <class Describe>
   void write_trace(const Error* error, Time begun, Describe describe) const;
   void hand_over(const std::optional<WaitAnswer>& answer);
@@ -225,8 +228,7 @@ class Link {
   bool is_connected_ = false;
   std::uint64_t losses_at_connect_ = 0;  ///< SharedChannel::losses then
   bool has_turn_ = false;                ///< for the request that follows
-  bool is_reserved_ = false;
-  bool is_in_flight_ = false;  ///< it has the turn until receive()
+  bool is_reserved_ = false;             ///< by reserve()
 
   std::array<std::uint8_t, modbus::max_pdu_size> request_{};  ///< the last one
   std::size_t request_size_ = 0;

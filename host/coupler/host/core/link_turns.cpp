@@ -15,6 +15,7 @@ Result<> Link::take_turn(Rank rank) {
 
 tl::unexpected<Error> Link::given_up() const {
   if (interrupted_.is_set()) return fail(NotConnected{"interrupted"});
+  if (is_polled()) return fail(TransportFailure{"the connection has ended"});
   return fail(TransportFailure{
       "the gateway has closed the connection, or cannot be reached; or the serial port has gone"});
 }
@@ -51,7 +52,7 @@ void Link::await_turn_to_write(const std::function<bool()>& ends) {
 }
 
 bool Link::reserve() {
-  if (!shared_->turns.try_take(this)) return false;
+  if (!shared_->turns.try_take(this, Rank::write)) return false;
   const Time ready = std::max(shared_->opened + delay_, shared_->answered + gap_);
   has_turn_ = is_connected_ && !is_lost() && shared_->is_open && clock_.now() >= ready &&
               channel().select(unit_, timeout_) && channel().can_send();

@@ -60,14 +60,18 @@ class TurnOrder {
     const auto place = next_place();
     return place == places_.end() ? nullptr : place->who;
   }
+  /// `who` writes without having waited.
+  void count_write(Who who) {
+    if (!has_written(who)) wrote_.push_back(who);
+  }
   /// Gives the turn to the next one, for the rank that is returned; it no longer waits.
   Rank serve() {
     const auto place = next_place();
     const auto [who, rank, waits] = *place;
     if (rank == Rank::read)
       wrote_.clear();
-    else if (!has_written(who))
-      wrote_.push_back(who);
+    else
+      count_write(who);
     places_.erase(place);
     leave(who);
     return rank;
@@ -108,17 +112,19 @@ class Turns {
   using Who = TurnOrder::Who;
 
   /// Waits for a turn of one of these ranks, and returns which it is. nullopt if none has come until `until`,
-  /// or if `give_up()` is true, which is called at first and after each look_again().
+  /// or if it has to wait and `give_up()` is true, which is called at first and after each look_again().
   template <class GiveUp>
   std::optional<Rank> take(Who who, std::initializer_list<Rank> ranks, Time until, GiveUp give_up) {
     std::unique_lock lock(mutex_);
     for (const Rank rank : ranks) order_.come(who, rank);
-    bool is_mine = false;
-    changed_.wait_until(lock, until, [&] {
-      const bool ends = give_up();
-      is_mine = !ends && holder_ == nullptr && order_.next() == who;
-      return ends || is_mine;
-    });
+    const auto is_next = [&] { return holder_ == nullptr && order_.next() == who; };
+    bool is_mine = is_next();
+    if (!is_mine)
+      changed_.wait_until(lock, until, [&] {
+        const bool ends = give_up();
+        is_mine = !ends && is_next();
+        return ends || is_mine;
+      });
     if (is_mine) {
       holder_ = who;
       return order_.serve();
@@ -136,11 +142,12 @@ class Turns {
       order_.give_up_claim(who);
     changed_.notify_all();
   }
-  /// Takes the turn if nobody has it or waits for it.
-  bool try_take(Who who) {
+  /// Takes the turn if nobody has it or waits for it. Rank::read is for a turn in which nothing is written.
+  bool try_take(Who who, Rank rank) {
     const std::lock_guard lock(mutex_);
     if (holder_ != nullptr || !order_.is_free_for(who)) return false;
     holder_ = who;
+    if (rank != Rank::read) order_.count_write(who);
     return true;
   }
   void release() {
@@ -152,6 +159,10 @@ class Turns {
   void look_again() {
     const std::lock_guard lock(mutex_);
     changed_.notify_all();
+  }
+  bool is_held_by(Who who) const {
+    const std::lock_guard lock(mutex_);
+    return holder_ == who;
   }
   /// Returns whether somebody waits for a turn.
   bool is_awaited() const {

@@ -37,9 +37,6 @@ class RtuChannel : public Channel {
   bool is_late() const override { return is_late_; }
   bool is_bus() const override { return true; }
   bool can_send() const override;
-  Woken wait_until(Time time, Wakeup& wakeup, const Event& interrupted) override {
-    return wait_for(wakeup, &interrupted, fd_, time);
-  }
   std::uint64_t discarded() const override { return discarded_; }
 
  private:
