@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openssl/ssl.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 
-#include "coupler/tls/context.hpp"
-#include "coupler/tls/openssl.hpp"
-#include "coupler/tls/verification.hpp"
+#include "coupler/tls/stream.hpp"
 
 namespace coupler::tls {
 
@@ -27,8 +23,8 @@ class Session {
     short plain = 0;
   };
 
-  /// `ssl` is over a non-blocking socket; the verification is its own. Both outlive it.
-  Session(SslPtr ssl, const Verification& verification);
+  /// See Stream.
+  Session(const Context& context, int socket, Verification verification);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -47,18 +43,14 @@ class Session {
   /// How many bytes the peer was sent so far.
   std::uint64_t sent() const { return sent_; }
   /// Once it has ended: why, and what to do; empty: either side ended it in order.
-  const std::string& problem() const { return problem_; }
+  const std::string& problem() const { return stream_.problem(); }
   /// "TLSv1.3"
-  const char* version() const { return SSL_get_version(ssl_.get()); }
-  /// The validity of the peer's certificate, once the handshake is over.
-  Validity peer_validity() const { return validity_of(SSL_get0_peer_certificate(ssl_.get())); }
+  const char* version() const { return SSL_get_version(ssl()); }
+  const Verification& verification() const { return stream_.verification(); }
   /// Why a context would not believe the peer's certificate now, though its time does not count; nullopt: it
   /// would.
   std::optional<std::string> why_refused_by(const Context& context) const;
-  SSL* ssl() const { return ssl_.get(); }
-
-  /// Counts a message of the handshake protocol, which a peer may send at any time: OpenSSL calls it.
-  void note_message() { ++messages_; }
+  SSL* ssl() const { return stream_.ssl(); }
 
  private:
   /// A buffer that holds several frames of Modbus.
@@ -69,19 +61,15 @@ class Session {
     bool empty() const { return begin == end; }
     std::size_t size() const { return end - begin; }
   };
-  /// In a row after the handshake, without data between them: a peer needs one key update in 2^24 frames.
-  static constexpr int most_messages = 32;
 
   bool receive();
   bool hand_over();
   bool take();
   bool send();
-  void fail(int result);
-  void end(std::string problem = {});
-  bool is_blocked(int result);
+  /// Notes what to wait for. Returns false if there is nothing: it ends then.
+  bool is_blocked(const Stream::Progress& progress);
 
-  SslPtr ssl_;
-  const Verification& verification_;
+  Stream stream_;
   int plain_ = -1;
   State state_ = State::handshake;
   short socket_wants_;
@@ -92,9 +80,7 @@ class Session {
   bool told_plain_ = false;   ///< that the peer sends no more
   bool reads_when_written_ =
       false;  ///< what OpenSSL has to say first does not go out: nothing is read before
-  int messages_ = 0;
   std::uint64_t sent_ = 0;
-  std::string problem_;
 };
 
 }  // namespace coupler::tls

@@ -73,10 +73,40 @@ TEST_F(StreamTest, What_was_not_read_comes_next) {
   EXPECT_EQ(next(*server_, *client_), "bc");
 }
 
+TEST_F(StreamTest, What_is_decrypted_and_not_read_is_told) {
+  shake_hands();
+  write(*client_, "abc");
+  char byte = 0;
+  ASSERT_EQ(server_->read(&byte, 1).bytes, 1);
+  EXPECT_TRUE(server_->has_pending());
+  EXPECT_EQ(next(*server_, *client_), "bc");
+  EXPECT_FALSE(server_->has_pending());
+}
+
+TEST_F(StreamTest, A_key_update_is_answered_and_carries_on) {
+  shake_hands();
+  ASSERT_EQ(SSL_key_update(client_->ssl(), SSL_KEY_UPDATE_REQUESTED), 1);
+  write(*client_, "with the new key");
+  EXPECT_EQ(next(*server_, *client_), "with the new key");
+  write(*server_, "its answer");
+  EXPECT_EQ(next(*client_, *server_), "its answer");
+}
+
+TEST_F(StreamTest, Key_updates_without_end_end_it) {
+  shake_hands();
+  char byte = 0;
+  for (int i = 0; i < 100 && !server_->has_failed(); ++i) {
+    SSL_key_update(client_->ssl(), SSL_KEY_UPDATE_NOT_REQUESTED);
+    SSL_do_handshake(client_->ssl());
+    server_->read(&byte, 1);
+  }
+  EXPECT_NE(server_->problem(), "");
+}
+
 TEST_F(StreamTest, Its_end_is_told_and_seen) {
   shake_hands();
   EXPECT_TRUE(server_->is_there());
-  client_ = nullptr;
+  client_->close();
   EXPECT_FALSE(server_->is_there());
   char byte = 0;
   const Stream::Progress end = server_->read(&byte, 1);

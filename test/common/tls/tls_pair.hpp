@@ -65,12 +65,8 @@ inline void put(int socket, const std::string& text) {
 struct TlsPair {
   TlsPair(const Credentials& servers, const Credentials& clients, Verification of_server = for_clients(),
           Verification of_client = for_server("press"))
-      : server_verification(std::move(of_server)),
-        client_verification(std::move(of_client)),
-        server(Context::make(Side::server, servers).value().connection(wire[0], server_verification),
-               server_verification),
-        client(Context::make(Side::client, clients).value().connection(wire[1], client_verification),
-               client_verification) {}
+      : server(Context::make(Side::server, servers).value(), wire[0], std::move(of_server)),
+        client(Context::make(Side::client, clients).value(), wire[1], std::move(of_client)) {}
 
   static Verification for_clients() {
     Verification verification;
@@ -103,8 +99,6 @@ struct TlsPair {
   SocketPair wire;
   SocketPair server_side;
   SocketPair client_side;
-  Verification server_verification;
-  Verification client_verification;
   Session server;
   Session client;
 };

@@ -28,16 +28,16 @@ TEST(Verification, Both_sides_know_each_other) {
   TlsPair pair(credentials_of(test_node()), credentials_of(test_client("operator")));
   pair.shake_hands();
   ASSERT_TRUE(pair.are_open());
-  EXPECT_EQ(pair.server_verification.peer.name, "cell1");
-  EXPECT_EQ(pair.server_verification.peer.role, "operator");
-  EXPECT_EQ(pair.client_verification.peer.name, "press");
+  EXPECT_EQ(pair.server.verification().peer.name, "cell1");
+  EXPECT_EQ(pair.server.verification().peer.role, "operator");
+  EXPECT_EQ(pair.client.verification().peer.name, "press");
 }
 
 TEST(Verification, A_client_without_a_role_is_let_in) {
   TlsPair pair(credentials_of(test_node()), credentials_of(test_client("")));
   pair.shake_hands();
   ASSERT_TRUE(pair.are_open());
-  EXPECT_EQ(pair.server_verification.peer.role, std::nullopt);
+  EXPECT_EQ(pair.server.verification().peer.role, std::nullopt);
 }
 
 TEST(Verification, A_certificate_with_two_roles_has_none_that_counts) {
@@ -141,15 +141,14 @@ TEST(Verification, Who_only_looks_sees_any_certificate) {
   SocketPair wire;
   Verification looks;
   looks.only_looks = true;
-  Verification clients = TlsPair::for_clients();
   const Credentials node = credentials_of(test_node());
-  Session server(Context::make(Side::server, node).value().connection(wire[0], clients), clients);
-  Session client(Context::of_stranger().connection(wire[1], looks), looks);
+  Session server(Context::make(Side::server, node).value(), wire[0], TlsPair::for_clients());
+  Session client(Context::of_stranger(), wire[1], looks);
   for (int i = 0; i < 10; ++i) {
     if (client.state() == Session::State::handshake) client.shake_hands();
     if (server.state() == Session::State::handshake) server.shake_hands();
   }
-  EXPECT_EQ(looks.seen, pins_in(node.certificate)->at(0).pin);
+  EXPECT_EQ(client.verification().seen, pins_in(node.certificate)->at(0).pin);
   EXPECT_THAT(server.problem(), HasSubstr("shows no certificate"));
 }
 

@@ -44,7 +44,7 @@ struct TlsClient {
   TlsClient(const std::string& server, const Credentials& credentials, std::uint8_t host = 1)
       : socket(connect_to(server, host)),
         context(tls::Context::make(tls::Side::client, credentials).value()),
-        session(context.connection(socket.get(), verification), verification) {}
+        session(context, socket.get(), tls::TlsPair::for_server("press")) {}
 
   void step() {
     if (session.state() == tls::Session::State::handshake &&
@@ -55,7 +55,6 @@ struct TlsClient {
   bool is_open() const { return session.state() == tls::Session::State::open; }
 
   Descriptor socket;
-  tls::Verification verification = tls::TlsPair::for_server("press");
   tls::Context context;
   tls::SocketPair side;
   tls::Session session;

@@ -49,8 +49,7 @@ class TlsFront {
 
   void serve(const Descriptor& socket) {
     const Descriptor plain = connect_behind();
-    tls::Verification verification = tls::TlsPair::for_clients();
-    tls::Session session(context_.connection(socket.get(), verification), verification);
+    tls::Session session(context_, socket.get(), tls::TlsPair::for_clients());
     bool carries = false;
     while (session.state() != tls::Session::State::ended && !hangs_up_.is_set()) {
       if (session.state() == tls::Session::State::handshake) session.shake_hands();

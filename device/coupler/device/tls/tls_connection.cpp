@@ -36,8 +36,7 @@ TlsConnection::TlsConnection(Loop& loop, Observer& observer, const tls::Context&
       address_(address),
       origin_(origin_of(address)),
       deadline_(now + handshake_timeout),
-      verification_(of_a_client()),
-      session_(context.connection(socket_.get(), verification_), verification_) {
+      session_(context, socket_.get(), of_a_client()) {
   socket_events_.fd = socket_.get();
   watch_all(now);
 }

@@ -48,7 +48,7 @@ class TlsConnection final : public EventHandler {
   State state() const { return state_; }
   const IpAddress& origin() const { return origin_; }
   const sockaddr_storage& address() const { return address_; }
-  const tls::Peer& peer() const { return verification_.peer; }
+  const tls::Peer& peer() const { return session_.verification().peer; }
   const char* version() const { return session_.version(); }
   /// Why its certificate, which was believed, is not any more; nullopt: it is.
   std::optional<std::string> why_refused(const tls::Context& context) const {
@@ -87,7 +87,6 @@ class TlsConnection final : public EventHandler {
   TimePoint deadline_;
   bool waits_for_client_ = false;  ///< to read
   std::uint64_t sent_ = 0;         ///< when that was looked at
-  tls::Verification verification_;
   tls::Session session_;
   Watched socket_events_;
   Watched plain_events_;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,7 +15,7 @@
 #include "coupler/host/modbus/open_socket.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/tls/context.hpp"
-#include "coupler/tls/session.hpp"
+#include "coupler/tls/stream.hpp"
 
 namespace coupler::cli {
 namespace {
@@ -25,13 +26,12 @@ struct Arguments {
 };
 
 /// Shakes hands until the device has shown its certificate. It will refuse a client without one after that.
-void look(int socket, tls::Verification& verification, const host::Deadline& deadline, std::string& problem) {
-  tls::Session session(tls::Context::of_stranger().connection(socket, verification), verification);
-  while (session.shake_hands() == tls::Session::State::handshake && !verification.seen) {
-    pollfd wanted{socket, session.wants().socket, 0};
-    if (::poll(&wanted, 1, deadline.left()) == 0) break;
+void look(tls::Stream& stream, int socket, const host::Deadline& deadline) {
+  for (;;) {
+    const tls::Stream::Progress shaken = stream.shake_hands();
+    pollfd wanted{socket, shaken.wants, 0};
+    if (shaken.wants == 0 || stream.verification().seen || ::poll(&wanted, 1, deadline.left()) == 0) return;
   }
-  problem = session.problem();
 }
 
 Exit pin_of_file(const std::string& path) {
@@ -70,19 +70,20 @@ Exit run(const Arguments& arguments) {
   if (!socket) return complain("pin", failed, to_string(socket.error()), "check that a device serves there");
   tls::Verification verification;
   verification.only_looks = true;
-  std::string problem;
-  look(socket->get(), verification, deadline, problem);
-  if (!verification.seen)
+  tls::Stream stream(tls::Context::of_stranger(), socket->get(), std::move(verification));
+  look(stream, socket->get(), deadline);
+  const tls::Verification& shown = stream.verification();
+  if (!shown.seen)
     return complain("pin", failed,
                     fmt::format("{} port {} shows no certificate{}{}", where->host, where->port,
-                                problem.empty() ? "" : ": ", problem),
+                                stream.problem().empty() ? "" : ": ", stream.problem()),
                     "check that it speaks TLS at this port");
-  fmt::print("{}\n", tls::pin_text(*verification.seen));
+  fmt::print("{}\n", tls::pin_text(*shown.seen));
   fmt::print(stderr,
              "The certificate of '{}', as whoever answers at {} shows it: believe it only if `coupler pin` "
              "prints the "
              "same for the file on the device's own machine.\n",
-             printable(verification.peer.name), where->host);
+             printable(shown.peer.name), where->host);
   return ok;
 }
 

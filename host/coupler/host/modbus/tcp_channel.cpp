@@ -51,17 +51,16 @@ Result<> TcpChannel::open(const Event& interrupt) {
   auto opened = open_socket(host_, port_, timeout_, interrupt);
   if (!opened) return tl::make_unexpected(opened.error());
   if (tls_) {
-    auto link = open_tls(*std::move(opened), host_, *tls_, deadline, interrupt);
-    if (!link)
-      return fail(NotConnected{fmt::format("{} port {}: {}", host_, port_, to_string(link.error())),
-                               has_remedy(link.error())});
-    link_ = *std::move(link);
-    opened = link_->take_socket();
+    auto secured = open_tls(opened->get(), host_, *tls_, deadline, interrupt);
+    if (!secured)
+      return fail(NotConnected{fmt::format("{} port {}: {}", host_, port_, to_string(secured.error())),
+                               has_remedy(secured.error())});
+    tls_socket_ = *std::move(secured);
   }
   const std::lock_guard lock(socket_mutex_);
-  if (link_) certificates_ = link_->certificates();
-  if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
+  if (tls_socket_) certificates_ = tls_socket_->certificates();
   socket_ = *std::move(opened);
+  if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
   return {};
 }
 
@@ -69,16 +68,14 @@ void TcpChannel::close() {
   framer_.reset();
   wait_.reset();
   wait_answer_.reset();
-  {
-    const std::lock_guard lock(socket_mutex_);
-    socket_ = Descriptor();
-  }
-  link_ = nullptr;
+  tls_socket_ = nullptr;
+  const std::lock_guard lock(socket_mutex_);
+  socket_ = Descriptor();
 }
 
 tl::unexpected<Error> TcpChannel::failed(Error error) const {
-  if (link_ && std::holds_alternative<TransportFailure>(error))
-    if (std::string problem = link_->problem(); !problem.empty())
+  if (tls_socket_ && std::holds_alternative<TransportFailure>(error))
+    if (std::string problem = tls_socket_->problem(); !problem.empty())
       return fail(TransportFailure{std::move(problem), true});
   return tl::unexpected<Error>(std::move(error));
 }
@@ -102,8 +99,7 @@ Result<> TcpChannel::make_ready() {
 Result<> TcpChannel::discard_unasked() {
   for (int piece = 0; piece < most_unasked_pieces; ++piece) {
     framer_.drop();
-    const auto room = framer_.room();
-    const auto got = ::recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
+    const auto got = take(framer_.room());
     if (got == 0) return failed(TransportFailure{"the device closed the connection"});
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) return {};
     if (got < 0) return failed(TransportFailure{std::strerror(errno)});
@@ -112,27 +108,36 @@ Result<> TcpChannel::discard_unasked() {
   return fail(BadFrame{"bytes come without end, and nothing was asked"});
 }
 
+ssize_t TcpChannel::take(Span<std::uint8_t> room) {
+  return tls_socket_ ? tls_socket_->receive(room)
+                     : ::recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
+}
+
+Woken TcpChannel::wait_until(Time time, Wakeup& wakeup, const Event& interrupted) {
+  return has_pending() ? Woken::by_bytes : wait_for(wakeup, &interrupted, socket_.get(), time);
+}
+
 void TcpChannel::build(TcpRequest& request, modbus::Bytes pdu) { request.set(++transaction_, unit_, pdu); }
 
 /// It never waits: what does not go out at once is an error.
 Result<> TcpChannel::put(const TcpRequest& request) {
   const modbus::Bytes adu = request.adu();
-  const auto sent = ::send(socket_.get(), adu.data(), adu.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  const auto sent = tls_socket_ ? tls_socket_->send(adu)
+                                : ::send(socket_.get(), adu.data(), adu.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(adu.size())) return {};
   return failed(
       TransportFailure{sent < 0 ? std::strerror(errno) : "only a part of the request could be sent"});
 }
 
 Result<modbus::Bytes> TcpChannel::await_reply(const TcpRequest& request, Deadline deadline, bool has_come) {
-  for (bool waits = !has_come;;) {
+  for (bool waits = !has_come && !has_pending();;) {
     const auto outcome = framer_.next(request);
     if (outcome == TcpFramer::Outcome::reply) return framer_.pdu();
     if (outcome == TcpFramer::Outcome::bad) return tl::make_unexpected(framer_.problem());
     if (waits && std::exchange(has_come, false)) deadline = std::min(deadline, Deadline(timeout_));
     pollfd wanted{socket_.get(), POLLIN, 0};
     if (waits && ::poll(&wanted, 1, deadline.left()) == 0) return no_reply(request, Timeout{timeout_});
-    const auto room = framer_.room();
-    const auto got = ::recv(socket_.get(), room.data(), room.size(), 0);
+    const auto got = take(framer_.room());
     waits = got <= 0;
     if (got == 0 || (got < 0 && errno == ECONNRESET))
       return no_reply(request, TransportFailure{"the device closed the connection", false, true});

@@ -9,7 +9,7 @@
 
 #include "coupler/host/core/channel.hpp"
 #include "coupler/host/modbus/tcp_framer.hpp"
-#include "coupler/host/modbus/tls_link.hpp"
+#include "coupler/host/modbus/tls_socket.hpp"
 
 namespace coupler::host {
 
@@ -37,9 +37,7 @@ class TcpChannel : public Channel {
   std::optional<WaitAnswer> take_wait_answer() override { return std::exchange(wait_answer_, std::nullopt); }
   Result<> discard_unasked() override;
   std::uint64_t discarded() const override { return framer_.skipped(); }
-  Woken wait_until(Time time, Wakeup& wakeup, const Event& interrupted) override {
-    return wait_for(wakeup, &interrupted, socket_.get(), time);
-  }
+  Woken wait_until(Time time, Wakeup& wakeup, const Event& interrupted) override;
 
  private:
   /// Looks whether the connection can take a request.
@@ -47,6 +45,9 @@ class TcpChannel : public Channel {
   /// Builds a request to the selected unit with the next transaction number.
   void build(TcpRequest& request, modbus::Bytes pdu);
   Result<> put(const TcpRequest& request);
+  /// As recv(2).
+  ssize_t take(Span<std::uint8_t> room);
+  bool has_pending() const { return tls_socket_ && tls_socket_->has_pending(); }
   /// Waits for the reply. Its PDU is valid until the next call. If `has_come`, a part of it has come, and the
   /// rest must follow within a timeout from now.
   Result<modbus::Bytes> await_reply(const TcpRequest& request, Deadline deadline, bool has_come = false);
@@ -70,8 +71,7 @@ class TcpChannel : public Channel {
   std::string host_;
   std::uint16_t port_;
   std::uint8_t unit_;
-  std::optional<TlsTexts> tls_;    ///< nullopt: plain Modbus/TCP
-  std::unique_ptr<TlsLink> link_;  ///< of a connection with TLS
+  std::optional<TlsTexts> tls_;  ///< nullopt: plain Modbus/TCP
   std::chrono::milliseconds timeout_{0};
   std::uint16_t transaction_;  ///< of the last request
   TcpRequest sent_;            ///< its answer is awaited
@@ -83,6 +83,7 @@ class TcpChannel : public Channel {
   mutable std::mutex socket_mutex_;
   Descriptor socket_;
   std::optional<Certificates> certificates_;
+  std::unique_ptr<TlsSocket> tls_socket_;  ///< over socket_, which it must not outlive; null without TLS
 };
 
 }  // namespace coupler::host

@@ -18,6 +18,11 @@ class TlsStream final : public RequestStream {
  public:
   TlsStream(socket_t socket, const std::atomic<bool>& ending, const tls::Context& context)
       : RequestStream(socket, ending), stream_(context, socket) {}
+  TlsStream(const TlsStream&) = delete;
+  TlsStream& operator=(const TlsStream&) = delete;
+  ~TlsStream() override {
+    if (!is_plain()) stream_.close();
+  }
 
   bool is_plain() const override { return is_plain_.value_or(false); }
 
