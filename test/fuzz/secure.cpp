@@ -26,7 +26,7 @@ void check_role(Span<const std::uint8_t> extension) {
 }
 
 void check_client(Span<const std::uint8_t> message) {
-  const auto client = device::parse_client(message, device::Descriptor(::dup(STDERR_FILENO)));
+  const auto client = device::parse_client(message, Descriptor(::dup(STDERR_FILENO)));
   if (!client) return;
   require(client->unread.size() <= device::longest_unread, "what is unread fits into a connection");
   require(client->unsent.size() <= device::longest_unsent, "and so does what is unsent");

@@ -74,8 +74,8 @@ Oracle::Oracle(const Layout& layout)
     mapping_->tab_input_registers[i] = Layout::input_register(layout.input_registers + i);
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()) != 0) give_up("socketpair");
-  servers_end_ = device::Descriptor(ends[0]);
-  our_end_ = device::Descriptor(ends[1]);
+  servers_end_ = Descriptor(ends[0]);
+  our_end_ = Descriptor(ends[1]);
   modbus_set_socket(context_.get(), servers_end_.get());
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "coupler/device/net/descriptor.hpp"
+#include "coupler/base/descriptor.hpp"
 
 namespace coupler::oracle {
 
@@ -38,8 +38,8 @@ class Oracle {
  private:
   std::unique_ptr<modbus_t, decltype(&modbus_free)> context_;
   std::unique_ptr<modbus_mapping_t, decltype(&modbus_mapping_free)> mapping_;
-  device::Descriptor servers_end_;
-  device::Descriptor our_end_;
+  Descriptor servers_end_;
+  Descriptor our_end_;
 };
 
 /// The node, over TCP.
@@ -50,7 +50,7 @@ class Peer {
   Bytes ask(const Bytes& request);
 
  private:
-  device::Descriptor socket_;
+  Descriptor socket_;
   bool connected_;
 };
 

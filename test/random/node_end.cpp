@@ -47,7 +47,7 @@ class NodeEnd::Bell : public device::EventHandler {
 
  private:
   device::Loop& loop_;
-  device::Descriptor event_;
+  Descriptor event_;
   std::mutex mutex_;
   std::optional<std::packaged_task<void()>> work_;
 };

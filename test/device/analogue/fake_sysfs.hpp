@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "coupler/device/net/descriptor.hpp"
+#include "coupler/base/descriptor.hpp"
 
 namespace coupler::device {
 

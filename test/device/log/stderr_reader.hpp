@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-#include "coupler/device/net/descriptor.hpp"
+#include "coupler/base/descriptor.hpp"
 
 namespace coupler::device {
 

@@ -8,7 +8,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "coupler/device/net/descriptor.hpp"
+#include "coupler/base/descriptor.hpp"
 
 namespace coupler::device {
 

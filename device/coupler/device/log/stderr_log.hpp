@@ -10,9 +10,9 @@
 #include <string>
 #include <string_view>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/base/line_limit.hpp"
 #include "coupler/device/core/log.hpp"
-#include "coupler/device/net/descriptor.hpp"
 #include "coupler/device/supervisor/shared_memory.hpp"
 #include "coupler/map/diagnostic.hpp"
 

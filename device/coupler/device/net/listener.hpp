@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "coupler/device/net/descriptor.hpp"
+#include "coupler/base/descriptor.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/map/network.hpp"
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/device/core/time.hpp"
-#include "coupler/device/net/descriptor.hpp"
 
 namespace coupler::device {
 

@@ -8,8 +8,8 @@
 #include <initializer_list>
 #include <optional>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/base/span.hpp"
-#include "coupler/device/net/descriptor.hpp"
 
 namespace coupler::device {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "coupler/device/net/descriptor.hpp"
+#include "coupler/base/descriptor.hpp"
 #include "coupler/device/net/message.hpp"
 #include "coupler/modbus/limits.hpp"
 

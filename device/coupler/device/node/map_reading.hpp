@@ -6,7 +6,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "coupler/device/net/descriptor.hpp"
+#include "coupler/base/descriptor.hpp"
 #include "coupler/device/net/loop.hpp"
 #include "coupler/device/node/serve_error.hpp"
 #include "coupler/device/supervisor/child.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/device/core/hooks.hpp"
-#include "coupler/device/net/descriptor.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::device {

@@ -18,7 +18,7 @@
 #include <optional>
 #include <utility>
 
-#include "coupler/device/net/descriptor.hpp"
+#include "coupler/base/descriptor.hpp"
 #include "coupler/device/node/map_reading.hpp"
 
 namespace coupler::device {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/device/core/time.hpp"
-#include "coupler/device/net/descriptor.hpp"
 
 namespace coupler::device {
 

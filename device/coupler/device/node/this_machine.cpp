@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "coupler/device/net/descriptor.hpp"
+#include "coupler/base/descriptor.hpp"
 #include "coupler/map/fingerprint.hpp"
 
 namespace coupler::device {

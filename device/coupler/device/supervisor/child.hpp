@@ -10,7 +10,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "coupler/device/net/descriptor.hpp"
+#include "coupler/base/descriptor.hpp"
 
 namespace coupler::device {
 

@@ -7,8 +7,8 @@
 
 #include <chrono>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/device/core/time.hpp"
-#include "coupler/device/net/descriptor.hpp"
 
 namespace coupler::device {
 

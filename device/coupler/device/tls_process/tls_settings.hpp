@@ -7,8 +7,8 @@
 
 #include <tl/expected.hpp>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/credentials/credentials.hpp"
-#include "coupler/device/net/descriptor.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::device {

@@ -2,14 +2,12 @@
 // What poll() waits for: a deadline, an event, another thread's call.
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <ctime>
-#include <utility>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/host/core/clock.hpp"
 
 namespace coupler::host {
@@ -39,25 +37,6 @@ class Deadline {
  private:
   Clock now_;
   std::chrono::nanoseconds at_;
-};
-
-/// Owns a file descriptor; -1 is none.
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  Descriptor(Descriptor&& other) noexcept : fd_(other.release()) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-  int release() { return std::exchange(fd_, -1); }
-
- private:
-  int fd_;
 };
 
 /// Something that happens once. Any thread may set it.

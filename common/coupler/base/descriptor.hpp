@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace coupler::device {
+namespace coupler {
 
 /// Owns a file descriptor; -1: none.
 class Descriptor {
@@ -30,4 +30,4 @@ class Descriptor {
   int fd_ = -1;
 };
 
-}  // namespace coupler::device
+}  // namespace coupler
