@@ -4,16 +4,15 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include <cerrno>
 #include <utility>
+
+#include "coupler/base/descriptor.hpp"
 
 namespace coupler::tls {
 namespace {
 
 /// So many times in one call; others have a turn after that.
 constexpr int most_rounds = 8;
-
-bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
 }  // namespace
 

@@ -3,16 +3,15 @@
 
 #include <sys/socket.h>
 
-#include <cerrno>
 #include <cstdint>
 #include <new>
+
+#include "coupler/base/descriptor.hpp"
 
 namespace coupler::tls {
 namespace {
 
 using MethodPtr = std::unique_ptr<BIO_METHOD, FreedBy<BIO_meth_free>>;
-
-bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
 int socket_of(BIO* bio) { return static_cast<int>(reinterpret_cast<std::intptr_t>(BIO_get_data(bio))); }
 

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cerrno>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/codec/text.hpp"
 #include "coupler/device/net/client_socket.hpp"
 
@@ -18,8 +18,6 @@ namespace coupler::device {
 namespace {
 
 using Outcome = modbus::Framer::Outcome;
-
-bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
 }  // namespace
 

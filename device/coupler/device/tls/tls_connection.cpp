@@ -4,9 +4,9 @@
 #include <poll.h>
 
 #include <array>
-#include <cerrno>
 #include <utility>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/tls/alert.hpp"
 
 namespace coupler::device {
@@ -83,7 +83,7 @@ void TlsConnection::end(TimePoint now) {
 void TlsConnection::drain() {
   std::array<char, 1024> nothing{};
   const ssize_t size = ::recv(socket_.get(), nothing.data(), nothing.size(), MSG_DONTWAIT);
-  if (size == 0 || (size < 0 && errno != EAGAIN && errno != EINTR)) close();
+  if (size == 0 || (size < 0 && !would_block())) close();
 }
 
 void TlsConnection::tick(TimePoint now) {

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/host/modbus/open_socket.hpp"
 #include "coupler/map/functions.hpp"
 
@@ -256,7 +257,7 @@ Result<Span<const std::uint8_t>> RtuChannel::get(Span<std::uint8_t> room) {
     last_character_ = now();
     return Span<const std::uint8_t>(room.data(), static_cast<std::size_t>(got));
   }
-  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return Span<const std::uint8_t>();
+  if (got < 0 && would_block()) return Span<const std::uint8_t>();
   has_failed_ = true;
   if (!line_.present())
     return fail(TransportFailure{got == 0 ? "the device closed the connection" : std::strerror(errno)});

@@ -7,6 +7,8 @@
 
 #include "coupler/host/core/channel.hpp"
 #include "coupler/host/modbus/serial_port.hpp"
+#include "coupler/map/map.hpp"
+#include "coupler/modbus/client.hpp"
 #include "coupler/modbus/rtu_frame.hpp"
 
 namespace coupler::host {

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/descriptor.hpp"
 #include "coupler/host/modbus/open_socket.hpp"
 #include "coupler/map/serial.hpp"
 
@@ -101,7 +102,7 @@ Result<> TcpChannel::discard_unasked() {
     framer_.drop();
     const auto got = take(framer_.room());
     if (got == 0) return failed(TransportFailure{"the device closed the connection"});
-    if (got < 0 && (errno == EAGAIN || errno == EINTR)) return {};
+    if (got < 0 && would_block()) return {};
     if (got < 0) return failed(TransportFailure{std::strerror(errno)});
     framer_.filled(static_cast<std::size_t>(got));
   }
@@ -143,7 +144,7 @@ Result<modbus::Bytes> TcpChannel::await_reply(const TcpRequest& request, Deadlin
       return no_reply(request, TransportFailure{"the device closed the connection", false, true});
     if (got > 0)
       framer_.filled(static_cast<std::size_t>(got));
-    else if (errno != EAGAIN && errno != EINTR)
+    else if (!would_block())
       return no_reply(request, TransportFailure{std::strerror(errno)});
   }
 }

@@ -10,6 +10,7 @@
 #include "coupler/host/core/channel.hpp"
 #include "coupler/host/modbus/tcp_framer.hpp"
 #include "coupler/host/modbus/tls_socket.hpp"
+#include "coupler/map/map.hpp"
 
 namespace coupler::host {
 

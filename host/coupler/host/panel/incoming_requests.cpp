@@ -2,8 +2,6 @@
 #include "coupler/host/panel/incoming_requests.hpp"
 
 #include <poll.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,16 +10,12 @@
 
 namespace coupler::host {
 
-IncomingRequests::IncomingRequests(Handler handle)
-    : handle_(std::move(handle)),
-      wakeup_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
-      thread_([this] { run(); }) {}
+IncomingRequests::IncomingRequests(Handler handle) : handle_(std::move(handle)), thread_([this] { run(); }) {}
 
 IncomingRequests::~IncomingRequests() {
   ending_ = true;
-  wake();
+  wakeup_.call();
   thread_.join();
-  ::close(wakeup_);
 }
 
 void IncomingRequests::add(std::unique_ptr<RequestStream> stream) {
@@ -29,10 +23,8 @@ void IncomingRequests::add(std::unique_ptr<RequestStream> stream) {
     const std::lock_guard lock(mutex_);
     added_.push_back(std::move(stream));
   }
-  wake();
+  wakeup_.call();
 }
-
-void IncomingRequests::wake() { ::eventfd_write(wakeup_, 1); }
 
 void IncomingRequests::run() {
   while (!ending_) {
@@ -49,7 +41,7 @@ void IncomingRequests::run() {
 
 /// Until bytes of one come, one is to be given up, or another is added.
 void IncomingRequests::wait() {
-  wanted_.assign({{wakeup_, POLLIN, 0}});
+  wanted_.assign({{wakeup_.fd(), POLLIN, 0}});
   Time until = Time::max();
   for (const auto& stream : streams_) {
     wanted_.push_back({stream->socket(), stream->wants(), 0});
@@ -61,8 +53,7 @@ void IncomingRequests::wait() {
     left = static_cast<int>(std::max<std::chrono::milliseconds::rep>(time.count(), 0));
   }
   ::poll(wanted_.data(), wanted_.size(), left);
-  eventfd_t added = 0;
-  ::eventfd_read(wakeup_, &added);
+  wakeup_.clear();
 }
 
 void IncomingRequests::gather() {

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "coupler/host/core/wakeup.hpp"
 #include "coupler/host/panel/request_stream.hpp"
 
 namespace coupler::host {
@@ -37,12 +38,11 @@ class IncomingRequests {
   using Streams = std::vector<std::unique_ptr<RequestStream>>;
 
   void run();
-  void wake();
   void wait();
   void gather();
 
   const Handler handle_;
-  const int wakeup_;            ///< an eventfd
+  Wakeup wakeup_;
   Streams streams_;             ///< the oldest first; of the thread
   std::vector<pollfd> wanted_;  ///< of the thread: wakeup_, and what each of the streams waits for
   std::atomic<bool> ending_{false};

@@ -11,15 +11,14 @@
 #include <chrono>
 #include <cstring>
 
+#include "coupler/base/descriptor.hpp"
+
 namespace coupler::host {
 namespace {
 
 constexpr std::chrono::milliseconds slice{100};          ///< after which `ending` is looked at
 constexpr std::chrono::seconds longest_write{30};        ///< of one that goes on
 constexpr std::size_t largest = std::size_t{20} * 1024;  ///< bytes of a request, with its body
-
-/// Returns whether the call that has just failed would have blocked.
-bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
 using NameOf = int (*)(int, sockaddr*, socklen_t*);
 
