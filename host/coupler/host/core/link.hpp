@@ -56,9 +56,9 @@ struct Trace {
 ///
 /// Several links may share one channel, request by request: writes go first, also those of a unit whose own
 /// read waits for its turn. If a unit stays silent its reply may still come. On a bus that unit is not asked
-/// for a timeout, while the others are; otherwise the channel is closed, and the others open it again and
-/// notice nothing. If the peer ends the connection, or the serial port goes, it is lost for all units: the
-/// devices behind it may have changed.
+/// for a timeout, while the others are; otherwise the shared channel is closed, and the others open it again
+/// and notice nothing. If the peer ends the connection, or the serial port goes, it is lost for all units:
+/// the devices behind it may have changed.
 ///
 /// The object belongs to one thread. Another thread may call reserve(), give_back() and send() while a lock
 /// of its own guarantees that the owner is in wait_until(). Any thread may call interrupt(), wake(),
@@ -122,10 +122,11 @@ class Link {
   void rank(Rank rank);
   enum class Turn { none, read, write };
   /// Waits until a read would be sent at once, or a write if `write_waits`, whichever comes first. That
-  /// request or another call must follow. Returns Turn::none after wake() or at `until`.
+  /// request or another call must follow. Returns Turn::none if it has to wait until wake() or `until`.
   Turn await_turn(Time until, bool write_waits = false);
   /// Waits until send() would not have to wait for another unit's request, or would fail, or until `ends()`
-  /// returns true. `ends()` is called at first and after each wake(). A request or give_back() must follow.
+  /// returns true, which is called where it has to wait, and after each wake(). A request or give_back() must
+  /// follow.
   void await_turn_to_write(const std::function<bool()>& ends);
   /// Returns whether send() would not have to wait. If it returns true, send() or give_back() must follow.
   bool reserve();
