@@ -114,6 +114,17 @@ TEST_F(StreamTest, Its_end_is_told_and_seen) {
   EXPECT_EQ(end.wants, 0);
 }
 
+TEST_F(StreamTest, An_end_in_the_handshake_is_a_failure) {
+  EXPECT_EQ(client_->shake_hands().wants, POLLIN);
+  const char close_notify[] = {0x15, 3, 3, 0, 2, 1, 0};
+  ASSERT_EQ(::send(sockets_[0], close_notify, sizeof close_notify, MSG_NOSIGNAL), 7);
+  const Stream::Progress ended = client_->shake_hands();
+  EXPECT_EQ(ended.bytes, 0);
+  EXPECT_EQ(ended.wants, 0);
+  EXPECT_TRUE(client_->has_failed());
+  EXPECT_NE(client_->problem(), "");
+}
+
 TEST_F(StreamTest, What_is_no_TLS_is_a_failure) {
   ASSERT_GT(::send(sockets_[1], "GET / HTTP/1.1\r\n\r\n", 18, MSG_NOSIGNAL), 0);
   char byte = 0;
