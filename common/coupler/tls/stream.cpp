@@ -36,6 +36,7 @@ Stream::Progress Stream::shake_hands() {
 }
 
 Stream::Progress Stream::read(void* to, std::size_t size) {
+  if (has_failed_) return {};  // OpenSSL 3.5 would wait for more
   ERR_clear_error();
   const Progress got = progress(SSL_read(ssl_.get(), to, at_most(size)));
   if (got.bytes > 0) messages_ = 0;
@@ -43,12 +44,13 @@ Stream::Progress Stream::read(void* to, std::size_t size) {
 }
 
 Stream::Progress Stream::write(const void* from, std::size_t size) {
+  if (has_failed_) return {};
   ERR_clear_error();
   return progress(SSL_write(ssl_.get(), from, at_most(size)));
 }
 
 bool Stream::is_there() {
-  if (has_failed_) return false;  // OpenSSL 3.5 would wait for more
+  if (has_failed_) return false;
   char next = 0;
   ERR_clear_error();
   const Progress peeked = progress(SSL_peek(ssl_.get(), &next, 1));

@@ -109,6 +109,17 @@ TEST_F(WriteResultsTest, What_was_never_sent_is_not_lost) {
   }
 }
 
+TEST_F(WriteResultsTest, After_a_write_that_could_not_be_sent_the_connection_is_used_by_nobody) {
+  start_online();
+  device.fail_send = TransportFailure{"only a part of the request could be sent"};
+  push("r0", 1);
+  EXPECT_FALSE(engine->send_now());
+  device.fail_send.reset();
+  push("r1", 1);
+  EXPECT_FALSE(engine->send_now()) << "before the owner has closed it";
+  EXPECT_EQ(device.values.count({Table::holding_registers, 1}), 0U);
+}
+
 TEST_F(WriteResultsTest, What_takes_a_read_before_waits_for_the_owner) {
   builder.add(Table::holding_registers, "bit", 9, Type::BOOL, [](Point& point) { point.format.bit = 3; });
   builder.head().limits.mask_write = false;

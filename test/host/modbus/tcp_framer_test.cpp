@@ -133,6 +133,26 @@ TEST_F(TcpFramerTest, Before_the_first_reply_another_request_is_answered_to_be_t
   EXPECT_THAT(problem(), testing::HasSubstr("another request"));
 }
 
+TEST_F(TcpFramerTest, A_late_reply_to_a_request_that_was_given_up_is_skipped) {
+  receive_first_reply();
+  for (const int late : {1, 2, 3}) {  // the last one was not given up
+    SCOPED_TRACE(late);
+    framer.reset();
+    receive_first_reply();
+    framer.give_up();
+    framer.give_up();
+    Adu bytes{1, static_cast<std::uint8_t>(4 - late), 0, 0, 0, 7, 5, 3, 4, 0x55, 0x66, 0x77, 0x88};
+    request.set(0x0104, 5, Adu{3, 0, 10, 0, 2});
+    EXPECT_EQ(receive({bytes.begin(), bytes.begin() + 9}), late == 3 ? Outcome::bad : Outcome::nothing);
+    if (late == 3) break;
+    bytes.insert(bytes.end(), {1, 4, 0, 0, 0, 7, 5, 3, 4, 0x11, 0x22, 0x33, 0x44});
+    ASSERT_EQ(receive({bytes.begin() + 9, bytes.end()}), Outcome::reply);
+    EXPECT_THAT(pdu(), testing::ElementsAre(3, 4, 0x11, 0x22, 0x33, 0x44));
+    EXPECT_EQ(noise(), "");
+    ask({3, 0, 10, 0, 2});
+  }
+}
+
 TEST_F(TcpFramerTest, Before_the_answer_to_a_wait_nothing_is_skipped) {
   ask({65, 1, 0, 0, 0, 9, 0, 0, 0, 0});
   EXPECT_EQ(receive({1, 3, 0, 0, 0, 4, 5, 1, 1, 1}), Outcome::bad) << "the reply to the read behind it";

@@ -23,14 +23,14 @@ using std::chrono::milliseconds;
 using testing::AllOf;
 using testing::HasSubstr;
 
-class TlsTransportTest : public testing::Test {
+class TlsChannelTest : public testing::Test {
  protected:
-  TlsTransportTest() {
+  TlsChannelTest() {
     std::string form = (fs::temp_directory_path() / "tls-XXXXXX").string();
     folder_ = ::mkdtemp(form.data());
     write(tls::credentials_of(tls::test_client()));
   }
-  ~TlsTransportTest() override { fs::remove_all(folder_); }
+  ~TlsChannelTest() override { fs::remove_all(folder_); }
 
   /// As the client's files.
   void write(const Credentials& credentials) const {
@@ -56,7 +56,7 @@ class TlsTransportTest : public testing::Test {
   const std::string& text_ = folder_.native();
 };
 
-TEST_F(TlsTransportTest, Reads_and_writes_as_without_it) {
+TEST_F(TlsChannelTest, Reads_and_writes_as_without_it) {
   Link link = make_link(connection());
   ASSERT_EQ(text(link.connect()), "");
   server_.tables().tab_registers[6] = 600;
@@ -70,7 +70,7 @@ TEST_F(TlsTransportTest, Reads_and_writes_as_without_it) {
   EXPECT_EQ(server_.tables().tab_registers[21], 8);
 }
 
-TEST_F(TlsTransportTest, Connects_again_with_the_files_that_are_there_then) {
+TEST_F(TlsChannelTest, Connects_again_with_the_files_that_are_there_then) {
   const tls::Pem other = tls::make_authority("other").value();
   write(tls::credentials_of(tls::test_client(), other));
   Link link = make_link(connection());
@@ -84,7 +84,7 @@ TEST_F(TlsTransportTest, Connects_again_with_the_files_that_are_there_then) {
   EXPECT_EQ(text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
 }
 
-TEST_F(TlsTransportTest, A_device_that_is_not_believed_is_asked_for_nothing) {
+TEST_F(TlsChannelTest, A_device_that_is_not_believed_is_asked_for_nothing) {
   Connection to = connection();
   to.tls.name = "lathe";
   EXPECT_THAT(text(make_link(to).connect()), HasSubstr("another name or address"));
@@ -93,14 +93,14 @@ TEST_F(TlsTransportTest, A_device_that_is_not_believed_is_asked_for_nothing) {
   EXPECT_THAT(text(make_link(to).connect()), HasSubstr("No such file"));
 }
 
-TEST_F(TlsTransportTest, One_without_TLS_says_so) {
+TEST_F(TlsChannelTest, One_without_TLS_says_so) {
   Connection to = connection();
   to.port = server_.port();
   to.timeout = milliseconds(300);
   EXPECT_NE(text(make_link(to).connect()), "");
 }
 
-TEST_F(TlsTransportTest, A_device_that_hangs_up_ends_the_request_in_progress) {
+TEST_F(TlsChannelTest, A_device_that_hangs_up_ends_the_request_in_progress) {
   Link link = make_link(connection());
   ASSERT_EQ(text(link.connect()), "");
   auto waiting = std::async(std::launch::async, [&] { return link.wait_until(Time::max()); });
@@ -110,7 +110,19 @@ TEST_F(TlsTransportTest, A_device_that_hangs_up_ends_the_request_in_progress) {
   EXPECT_NE(text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
 }
 
-TEST_F(TlsTransportTest, An_interrupt_ends_whatever_is_in_progress) {
+TEST_F(TlsChannelTest, A_message_of_TLS_itself_is_neither_a_reply_nor_an_end) {
+  Link link = make_link(connection());
+  ASSERT_EQ(text(link.connect()), "");
+  std::uint16_t value = 0;
+  ASSERT_EQ(text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
+  front_.update_key();
+  EXPECT_EQ(link.wait_until(Time::max()), Woken::by_bytes);
+  EXPECT_EQ(text(link.discard_unasked()), "");
+  EXPECT_EQ(text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
+  EXPECT_EQ(link.discarded(), 0U);
+}
+
+TEST_F(TlsChannelTest, An_interrupt_ends_whatever_is_in_progress) {
   Link link = make_link(connection());
   ASSERT_EQ(text(link.connect()), "");
   auto waiting = std::async(std::launch::async, [&] { return link.wait_until(Time::max()); });

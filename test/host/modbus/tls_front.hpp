@@ -36,6 +36,8 @@ class TlsFront {
   std::uint16_t port() const { return listener_.port(); }
   /// Ends the connection that there is, with or without a word.
   void hang_up() { hangs_up_.set(); }
+  /// Sends a message of TLS itself over the connection that there is.
+  void update_key() { updates_key_.call(); }
 
  private:
   void run() {
@@ -57,12 +59,18 @@ class TlsFront {
         session.carry(plain.get());
       if (session.state() == tls::Session::State::open) session.pump();
       const auto wants = session.wants();
-      std::array<pollfd, 4> wanted{{{wants.socket != 0 ? socket.get() : -1, wants.socket, 0},
+      std::array<pollfd, 5> wanted{{{wants.socket != 0 ? socket.get() : -1, wants.socket, 0},
                                     {wants.plain != 0 ? plain.get() : -1, wants.plain, 0},
                                     {stop_.fd(), POLLIN, 0},
-                                    {hangs_up_.fd(), POLLIN, 0}}};
+                                    {hangs_up_.fd(), POLLIN, 0},
+                                    {updates_key_.fd(), POLLIN, 0}}};
       if (session.state() != tls::Session::State::ended) ::poll(wanted.data(), wanted.size(), -1);
       if (wanted[2].revents != 0) return;
+      if (wanted[4].revents != 0) {
+        updates_key_.clear();
+        SSL_key_update(session.ssl(), SSL_KEY_UPDATE_NOT_REQUESTED);
+        SSL_do_handshake(session.ssl());
+      }
     }
     if (hangs_up_.is_set()) return;
     // What the client has sent meanwhile must not make the kernel throw away what it is to read.
@@ -89,6 +97,7 @@ class TlsFront {
   LoopbackSocket listener_;
   Event stop_;
   Event hangs_up_;
+  Wakeup updates_key_;
   std::thread thread_;
 };
 

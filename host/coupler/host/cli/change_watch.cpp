@@ -56,10 +56,8 @@ Result<> ChangeWatch::wait_until(host::Time time) {
       case host::Woken::by_time: break;
       case host::Woken::by_call: return {};
       case host::Woken::by_bytes:
-        if (!listener_.is_waiting())
-          return host::fail(
-              host::TransportFailure{"the device closed the connection, or sent an unexpected reply"});
-        if (auto heard = listener_.receive(); !heard) return heard;
+        if (auto done = listener_.is_waiting() ? listener_.receive() : link_.discard_unasked(); !done)
+          return done;
     }
   }
   return {};

@@ -243,6 +243,7 @@ Result<> Link::receive_wait() {
     pause_after(now, gap_);
   else
     count(now, &received.error());
+  if (!received) write_trace(&received.error(), sent_at_, [] { return std::string("wait for changes"); });
   hand_over(answer);
   return received;
 }

@@ -74,7 +74,7 @@ std::future<Calls::Answer> Writer::ask_safe() {
 }
 
 bool Writer::send_now() {
-  if (!batch_.empty() || !link_.is_ready()) return false;
+  if (send_error_ || !batch_.empty() || !link_.is_ready()) return false;
   drop_late();
   if (queue_.empty()) return true;     // the owner was faster
   if (!link_.reserve()) return false;  // first: in the queue a newer value may replace it until its turn

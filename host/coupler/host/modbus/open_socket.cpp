@@ -139,4 +139,9 @@ Result<Descriptor> open_socket(const std::string& host, std::uint16_t port, std:
   return connect_to_one(addresses->get(), fmt::format("{} port {}", host, port), deadline, interrupt);
 }
 
+bool is_readable(int fd) {
+  pollfd wanted{fd, POLLIN, 0};
+  return ::poll(&wanted, 1, 0) > 0;
+}
+
 }  // namespace coupler::host

@@ -17,7 +17,10 @@ namespace coupler::host {
 Result<Descriptor> open_socket(const std::string& host, std::uint16_t port, std::chrono::milliseconds timeout,
                                const Event& interrupt);
 
-// Parts of it.
+/// Returns whether there is something to read, or the end, without waiting.
+bool is_readable(int fd);
+
+// Parts of open_socket().
 
 /// The same for addresses that are known, one after the other: each has an equal share of the time that is
 /// left, so that one which is silent does not keep the others from being tried. Errors begin with `where`;

@@ -3,7 +3,6 @@
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -32,11 +31,6 @@ constexpr std::chrono::milliseconds rest_after_hang_up{100};
 constexpr int most_discarded_pieces = 64;
 
 Time now() { return std::chrono::steady_clock::now(); }
-
-bool is_readable(int fd) {
-  pollfd wanted{fd, POLLIN, 0};
-  return ::poll(&wanted, 1, 0) > 0;
-}
 
 bool writes_several(modbus::Bytes pdu) {
   const auto function = static_cast<modbus::Function>(pdu[0]);

@@ -102,7 +102,8 @@ Result<> TcpChannel::discard_unasked() {
     framer_.drop();
     const auto got = take(framer_.room());
     if (got == 0) return failed(TransportFailure{"the device closed the connection"});
-    if (got < 0 && would_block()) return {};
+    if (got < 0 && would_block() && !(tls_socket_ && is_readable(socket_.get()))) return {};
+    if (got < 0 && would_block()) continue;  // a message of TLS itself
     if (got < 0) return failed(TransportFailure{std::strerror(errno)});
     framer_.filled(static_cast<std::size_t>(got));
   }
@@ -137,7 +138,10 @@ Result<modbus::Bytes> TcpChannel::await_reply(const TcpRequest& request, Deadlin
     if (outcome == TcpFramer::Outcome::bad) return tl::make_unexpected(framer_.problem());
     if (waits && std::exchange(has_come, false)) deadline = std::min(deadline, Deadline(timeout_));
     pollfd wanted{socket_.get(), POLLIN, 0};
-    if (waits && ::poll(&wanted, 1, deadline.left()) == 0) return no_reply(request, Timeout{timeout_});
+    if (waits && ::poll(&wanted, 1, deadline.left()) == 0) {
+      framer_.give_up();
+      return no_reply(request, Timeout{timeout_});
+    }
     const auto got = take(framer_.room());
     waits = got <= 0;
     if (got == 0 || (got < 0 && errno == ECONNRESET))
@@ -178,6 +182,11 @@ Result<> TcpChannel::send_wait(const modbus::ChangesRequest& request) {
 
 Result<> TcpChannel::receive_wait() {
   if (!wait_) return fail(NotConnected{"nothing was asked for"});
+  if (tls_socket_ && framer_.is_empty() && !wait_->answer_by.has_passed()) {
+    const auto got = take(framer_.room());
+    if (got < 0 && would_block()) return {};  // it was a message of TLS itself
+    if (got > 0) framer_.filled(static_cast<std::size_t>(got));
+  }
   return take_wait_reply(await_reply(wait_->request, wait_->answer_by, true));
 }
 

@@ -79,10 +79,28 @@ void TcpFramer::reset() {
   buffer_.clear();
   is_first_ = is_trusted_ = true;
   has_noise_ = false;
+  given_up_ = 0;
   skipped_before_ = skipped_;
 }
 
+bool TcpFramer::skip_late_replies(const TcpRequest& request) {
+  for (;;) {
+    const modbus::Bytes adu = rest();
+    if (given_up_ == 0 || adu.size() < 2) return true;
+    const auto before = static_cast<std::uint16_t>(request.transaction() - modbus::get_u16(adu.data()));
+    if (before == 0 || before > given_up_) return true;
+    if (adu.size() <= at_unit) return false;
+    const std::size_t size = modbus::adu_size(adu);
+    if (size == 0) return true;
+    if (adu.size() < size) return false;
+    buffer_.take(size);
+    skipped_ += size;
+    skipped_before_ += size;  // it is no noise
+  }
+}
+
 TcpFramer::Outcome TcpFramer::next(const TcpRequest& request) {
+  if (!skip_late_replies(request)) return Outcome::nothing;
   // Bytes before the answer to a wait can be the reply to the request that was sent after the wait.
   const bool is_wait = request.function() == static_cast<std::uint8_t>(modbus::Function::wait_for_changes);
   if (!is_wait && (is_first_ || has_noise_))
@@ -121,6 +139,7 @@ TcpFramer::Outcome TcpFramer::take(std::size_t bytes) {
   pdu_ = rest().first(bytes).from(modbus::mbap_size);
   buffer_.take(bytes);
   is_first_ = false;
+  given_up_ = 0;
   return Outcome::reply;
 }
 

@@ -36,7 +36,7 @@ class TcpRequest {
 ///
 /// Before the first reply, and once a connection has brought bytes that nobody asked for, the framer skips
 /// what cannot begin the reply: the greeting of a serial server, a heartbeat, a frame for another client.
-/// Otherwise the reply must begin with the first byte.
+/// Otherwise the reply must begin with the first byte, or behind late replies to requests that were given up.
 ///
 /// Write received bytes into room(), call filled() with their number, then next(). The framer needs no
 /// socket.
@@ -65,6 +65,10 @@ class TcpFramer {
   /// next reply begins, so the connection must be closed.
   bool is_trusted() const { return is_trusted_; }
 
+  /// The reply to the last request is not awaited any more. If it comes before another one it is skipped.
+  void give_up() { ++given_up_; }
+  bool is_empty() const { return rest().empty(); }
+
   /// Skips all bytes that have come, because no request is outstanding, and starts a new noise().
   void drop();
   /// The number of bytes that next() and drop() have skipped over all connections. Any thread may call it.
@@ -76,6 +80,8 @@ class TcpFramer {
  private:
   modbus::Bytes rest() const { return buffer_.bytes(); }
   void skip(std::size_t bytes);
+  /// Skips late replies. Returns false if one of them has not come as a whole.
+  bool skip_late_replies(const TcpRequest& request);
   Outcome take(std::size_t bytes);
   Outcome refuse(Error problem);
 
@@ -85,6 +91,7 @@ class TcpFramer {
   bool is_first_ = true;    ///< no reply has come over this connection
   bool has_noise_ = false;  ///< bytes were skipped over this connection
   bool is_trusted_ = true;
+  std::uint16_t given_up_ = 0;  ///< requests since the last reply
   std::atomic<std::uint64_t> skipped_{0};
   std::uint64_t skipped_before_ = 0;             ///< of these, before the last drop()
   std::array<std::uint8_t, 9> first_skipped_{};  ///< since then, to be shown
