@@ -5,10 +5,13 @@
 
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "coupler/host/core/link.hpp"
 #include "coupler/host/modbus/tcp_channel.hpp"
 #include "test/host/modbus/modbus_server.hpp"
 
