@@ -18,7 +18,7 @@ struct Frame {
   Bytes pdu;
 };
 
-// Where the fields of the MBAP header stand, and what follows it.
+// The places of the fields of the MBAP header, and of what follows it.
 constexpr std::size_t at_protocol = 2;
 constexpr std::size_t at_length = 4;
 constexpr std::size_t at_unit = 6;

@@ -75,8 +75,7 @@ Stream::Progress Stream::progress(int result) {
   if (result > 0) return {result, 0};
   if (kind == SSL_ERROR_WANT_READ) return {0, POLLIN};
   if (kind == SSL_ERROR_WANT_WRITE) return {0, POLLOUT};
-  has_ended_ = is_open_ && kind == SSL_ERROR_ZERO_RETURN;
-  if (has_ended_) return {};
+  if (is_open_ && kind == SSL_ERROR_ZERO_RETURN) return {};  // it sends no more
   std::string problem = failure_text(ssl_.get(), result, verification_);
   if (is_open_ && problem == has_left) problem.clear();
   fail(std::move(problem));

@@ -37,14 +37,12 @@ class Stream {
   /// Tells the other side that this was all.
   void close();
 
-  /// The other side has said that it sends no more.
-  bool has_ended() const { return has_ended_; }
   /// A call has failed: nothing works any more.
   bool has_failed() const { return has_failed_; }
   /// Once it has: why, and what to do. Empty if the other side left after the handshake, without a word.
   const std::string& problem() const { return problem_; }
 
-  /// What was found out about the other side.
+  /// The findings about the other side.
   const Verification& verification() const { return verification_; }
   /// The validity of the peer's certificate, once the handshake is over.
   Validity peer_validity() const { return validity_of(SSL_get0_peer_certificate(ssl_.get())); }
@@ -63,7 +61,6 @@ class Stream {
   Verification verification_;
   SslPtr ssl_;
   bool is_open_ = false;  ///< the handshake is over
-  bool has_ended_ = false;
   bool has_failed_ = false;
   int messages_ = 0;
   std::string problem_;

@@ -32,7 +32,7 @@ class TlsChannelTest : public testing::Test {
   }
   ~TlsChannelTest() override { fs::remove_all(folder_); }
 
-  /// As the client's files.
+  /// Writes the client's files.
   void write(const Credentials& credentials) const {
     for (const auto& [name, text] :
          {std::pair("own.pem", &credentials.certificate), std::pair("own.key", &credentials.key),

@@ -107,8 +107,7 @@ Result<> Link::prepare() {
   if (auto selected = channel().select(unit_, timeout_); !selected) return selected;
   if (!shared_->is_open)
     if (auto opened = open(); !opened) return opened;
-  if (delay_ > Duration::zero()) pause_until(shared_->opened + delay_);
-  if (gap_ > Duration::zero()) pause_until(shared_->answered + gap_);
+  pause_until(channel_ready());
   if (interrupted_.is_set()) return given_up();
   return {};
 }
@@ -239,11 +238,12 @@ Result<> Link::receive_wait() {
   shared_->answered = now;
   if (received && !channel().is_trusted()) unanswered();
   release();
-  if (received)
+  if (received) {
     pause_after(now, gap_);
-  else
+  } else {
     count(now, &received.error());
-  if (!received) write_trace(&received.error(), sent_at_, [] { return std::string("wait for changes"); });
+    write_trace(&received.error(), sent_at_, [] { return std::string("wait for changes"); });
+  }
   hand_over(answer);
   return received;
 }

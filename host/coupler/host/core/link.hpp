@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bitset>
@@ -191,6 +192,8 @@ class Link {
 
   /// Opens the channel anew, in its turn.
   Result<> open();
+  /// No request is sent over the channel before. Only for the link that has the turn.
+  Time channel_ready() const { return std::max(shared_->opened + delay_, shared_->answered + gap_); }
   void pause_until(Time time);
   /// The next request of this link is sent no sooner than `pause` after `time`.
   void pause_after(Time time, Duration pause);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which link may use the channel, and what ends its waiting.
-#include <algorithm>
+// A link waits here for its turn on the channel, takes it, and gives it back.
 #include <utility>
 
 #include "coupler/host/core/link.hpp"
@@ -53,8 +52,7 @@ void Link::await_turn_to_write(const std::function<bool()>& ends) {
 
 bool Link::reserve() {
   if (!shared_->turns.try_take(this, Rank::write)) return false;
-  const Time ready = std::max(shared_->opened + delay_, shared_->answered + gap_);
-  has_turn_ = is_connected_ && !is_lost() && shared_->is_open && clock_.now() >= ready &&
+  has_turn_ = is_connected_ && !is_lost() && shared_->is_open && clock_.now() >= channel_ready() &&
               channel().select(unit_, timeout_) && channel().can_send();
   if (!has_turn_) release();
   is_reserved_ = has_turn_;

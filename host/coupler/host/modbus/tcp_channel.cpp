@@ -102,8 +102,10 @@ Result<> TcpChannel::discard_unasked() {
     framer_.drop();
     const auto got = take(framer_.room());
     if (got == 0) return failed(TransportFailure{"the device closed the connection"});
-    if (got < 0 && would_block() && !(tls_socket_ && is_readable(socket_.get()))) return {};
-    if (got < 0 && would_block()) continue;  // a message of TLS itself
+    if (got < 0 && would_block()) {
+      if (!tls_socket_ || !is_readable(socket_.get())) return {};
+      continue;  // it was a message of TLS itself
+    }
     if (got < 0) return failed(TransportFailure{std::strerror(errno)});
     framer_.filled(static_cast<std::size_t>(got));
   }

@@ -46,7 +46,7 @@ class TcpChannel : public Channel {
   /// Builds a request to the selected unit with the next transaction number.
   void build(TcpRequest& request, modbus::Bytes pdu);
   Result<> put(const TcpRequest& request);
-  /// As recv(2).
+  /// Behaves as recv(2).
   ssize_t take(Span<std::uint8_t> room);
   bool has_pending() const { return tls_socket_ && tls_socket_->has_pending(); }
   /// Waits for the reply. Its PDU is valid until the next call. If `has_come`, a part of it has come, and the

@@ -19,7 +19,7 @@ class TlsSocket {
   /// Tells the device that this was all.
   virtual ~TlsSocket() = default;
 
-  /// As recv(2) and send(2) of a non-blocking socket.
+  /// These behave as recv(2) and send(2) of a non-blocking socket.
   virtual ssize_t receive(Span<std::uint8_t> room) = 0;
   virtual ssize_t send(modbus::Bytes bytes) = 0;
   /// Returns whether receive() has bytes that poll(2) does not report, since they have been decrypted.
