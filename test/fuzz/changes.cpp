@@ -165,8 +165,7 @@ class Connection {
   host::DeviceStatistics statistics_;
   host::Link link_{host::test::share(impostor_), {}, {}, &clock_};
   host::NodeOutputs outputs_{witness_, clock_, witness_};
-  host::ChangeListener listener_{
-      std::chrono::milliseconds(100), link_, clock_, statistics_, outputs_, witness_};
+  host::ChangeListener listener_{std::chrono::milliseconds(100), link_, statistics_, outputs_, witness_};
   std::uint32_t number_ = 0;
 };
 

@@ -59,10 +59,6 @@ def run(*arguments):
                           timeout=peer.PATIENCE, check=False)
 
 
-def run_hasty(*arguments):
-    return peer.run_hasty(lambda seconds: [coupler, *map(str, arguments), "--timeout", str(seconds)], encoding="utf-8")
-
-
 def status(*arguments):
     return run("status", "--timeout", "20", *arguments)
 
@@ -99,11 +95,11 @@ def libmodbus_is_read(path):
             return
         at = f"rtu:{line.port}/{UNIT}{SETTINGS}"
         checks.equal("libmodbus: dump", dumped(path, "--at", at), VALUES)
-        found = run_hasty("probe", line.port, "--units", "16-17", "--baud", "115200", "--parity", "none", "--to", "120",
-                          "--rate", "1000")
+        found = run("probe", line.port, "--units", "16-17", "--baud", "115200", "--parity", "none", "--to", "120",
+                    "--rate", "1000", "--timeout", "4")
         checks.equal("libmodbus: probe finds the unit", f"units that answer at 115200 8N1: {UNIT}\n" in found.stdout, True)
         checks.equal("libmodbus: and where its tables end", found.stdout.count("readable: 0 … 99\n"), 4)
-        said = run_hasty("status", at)
+        said = status(at)
         checks.equal("libmodbus: status", (said.returncode, "is a foreign coupler" in said.stderr), (1, True))
 
 

@@ -36,7 +36,7 @@ Session::State Session::shake_hands() {
 
 Session::State Session::pump() {
   socket_wants_ = 0;
-  reads_when_written_ = false;
+  read_needs_write_ = false;
   for (int round = 0; state_ == State::open && round < most_rounds; ++round) {
     bool moved = take();
     moved = send() || moved;
@@ -54,7 +54,7 @@ Session::State Session::pump() {
 Session::Wants Session::wants() const {
   Wants wants{socket_wants_, 0};
   if (state_ != State::open) return wants;
-  const bool reads = !peer_ended_ && !reads_when_written_;
+  const bool reads = !peer_ended_ && !read_needs_write_;
   if (to_plain_.empty() && reads) wants.socket |= POLLIN;
   if (to_peer_.empty() && !plain_ended_) wants.plain |= POLLIN;
   // poll() does not report bytes that OpenSSL has already decrypted.
@@ -72,7 +72,7 @@ bool Session::receive() {
     return true;
   }
   if (is_blocked(got))
-    reads_when_written_ = got.wants == POLLOUT;
+    read_needs_write_ = got.wants == POLLOUT;
   else if (stream_.has_failed())
     state_ = State::ended;
   else

@@ -30,10 +30,10 @@ class Session {
 
   /// Goes on with the handshake.
   State shake_hands();
-  /// The handshake is over: bytes go to and from this connected, non-blocking stream socket. What comes back
-  /// goes to the other side; its end ends the session, after what came before it.
+  /// Call it after the handshake: bytes then go to and from `plain`, a connected, non-blocking stream socket.
+  /// When `plain` ends, the session ends once the bytes that came from it have been sent to the peer.
   void carry(int plain) { plain_ = plain; }
-  /// Goes on with that.
+  /// Carries what can be carried now, without waiting. Returns state().
   State pump();
   Wants wants() const;
   State state() const { return state_; }
@@ -42,13 +42,14 @@ class Session {
   bool is_ending() const { return plain_ended_; }
   /// How many bytes the peer was sent so far.
   std::uint64_t sent() const { return sent_; }
-  /// Once it has ended: why, and what to do; empty: either side ended it in order.
+  /// Why it has ended, and what to do. Empty if it has not, or if a side left after the handshake, with or
+  /// without saying so.
   const std::string& problem() const { return stream_.problem(); }
   /// "TLSv1.3"
   const char* version() const { return SSL_get_version(ssl()); }
   const Verification& verification() const { return stream_.verification(); }
-  /// Why a context would not believe the peer's certificate now, though its time does not count; nullopt: it
-  /// would.
+  /// Returns why `context` would not accept the peer's certificate now, leaving its validity period aside;
+  /// nullopt if it would.
   std::optional<std::string> why_refused_by(const Context& context) const;
   SSL* ssl() const { return stream_.ssl(); }
 
@@ -75,11 +76,11 @@ class Session {
   short socket_wants_;
   Buffer to_plain_;
   Buffer to_peer_;
-  bool peer_ended_ = false;   ///< it sends no more
+  bool peer_ended_ = false;   ///< nothing more is read from the peer: it ended, or plain_ takes no more
   bool plain_ended_ = false;  ///< nothing more comes from there
   bool told_plain_ = false;   ///< that the peer sends no more
-  bool reads_when_written_ =
-      false;  ///< what OpenSSL has to say first does not go out: nothing is read before
+  /// OpenSSL has to send something before it can read on, and the socket takes nothing now.
+  bool read_needs_write_ = false;
   std::uint64_t sent_ = 0;
 };
 

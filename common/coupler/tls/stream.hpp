@@ -26,7 +26,7 @@ class Stream {
     int bytes = 0;    ///< 0: none yet, if `wants` says something; otherwise it has ended, or failed
     short wants = 0;  ///< events of poll(2) after which to try again
   };
-  /// Goes on with the handshake, which read() and write() do, too. One byte: it is over.
+  /// Continues the handshake, as read() and write() also do. Progress::bytes is 1 once it is complete.
   Progress shake_hands();
   Progress read(void* to, std::size_t size);
   Progress write(const void* from, std::size_t size);

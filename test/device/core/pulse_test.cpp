@@ -126,7 +126,7 @@ TEST_F(Pulse, An_end_that_the_hardware_refuses_is_tried_again) {
   pass(length);
   EXPECT_THAT(levels(), ElementsAre(1, 0, 0));
   node.lines.stuck.reset();
-  pass(DurationEnd::retry_period);
+  pass(TimedOutputEnd::retry_period);
   EXPECT_THAT(levels(), ElementsAre(0, 0, 0));
 }
 

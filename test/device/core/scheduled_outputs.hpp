@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "coupler/device/core/duration_end.hpp"
+#include "coupler/device/core/timed_output_end.hpp"
 #include "test/device/core/node_under_test.hpp"
 
 namespace coupler::device {

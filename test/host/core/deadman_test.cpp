@@ -116,7 +116,7 @@ TEST_F(DeadmanTest, A_deadman_value_that_a_safe_value_supersedes_is_written_if_t
     start_online();
     push("speed", 500);
     run_for(milliseconds(100));
-    std::future<Calls::Answer> asked;
+    std::future<CallAnswer> asked;
     during_wait_for_turn([this] { run_for(milliseconds(200)); },
                          [&] {
                            asked = engine->make_safe();

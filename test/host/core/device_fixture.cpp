@@ -45,14 +45,14 @@ void DeviceTest::make_engine(Verify verify, MapLoader load) {
 }
 
 bool DeviceTest::is_turn_free() {
-  const bool is_free = shared->turns.try_take(this, Rank::write);
+  const bool is_free = shared->turns.try_take(this);
   if (is_free) shared->turns.release();
   return is_free;
 }
 
 void DeviceTest::during_wait_for_turn(const std::function<void()>& step,
                                       const std::function<void()>& meanwhile) {
-  ASSERT_TRUE(shared->turns.try_take(this, Rank::write));
+  ASSERT_TRUE(shared->turns.try_take(this));
   std::atomic<bool> is_over{false};
   std::thread other([&] {
     while (!is_over && !shared->turns.is_awaited())

@@ -44,7 +44,7 @@ TEST_F(PriorityTest, Its_writes_go_before_all_others_that_wait) {
 
 TEST_F(PriorityTest, They_go_before_one_that_was_to_be_sent_next) {
   start_online();
-  ASSERT_TRUE(shared->turns.try_take(this, Rank::write));
+  ASSERT_TRUE(shared->turns.try_take(this));
   push("lamp", 1);
   EXPECT_FALSE(engine->send_now());
   shared->turns.release();

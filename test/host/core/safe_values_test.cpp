@@ -32,7 +32,7 @@ struct SafeValuesTest : test::DeviceTest {
     run_for(milliseconds(50));
     device.requests.clear();
   }
-  static bool is_ready(std::future<Calls::Answer>& asked) {
+  static bool is_ready(std::future<CallAnswer>& asked) {
     return asked.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   }
 };
@@ -59,7 +59,7 @@ TEST_F(SafeValuesTest, They_go_before_what_was_to_be_sent_next) {
   start_online();
   clock.advance(milliseconds(100));
   push("lamp", 1);
-  ASSERT_TRUE(shared->turns.try_take(this, Rank::write));
+  ASSERT_TRUE(shared->turns.try_take(this));
   EXPECT_FALSE(engine->send_now());
   shared->turns.release();
   auto asked = engine->make_safe();
@@ -72,7 +72,7 @@ TEST_F(SafeValuesTest, They_go_before_what_was_to_be_sent_next) {
 TEST_F(SafeValuesTest, They_go_before_what_waits_for_its_units_turn) {
   start_online();
   push("lamp", 1);
-  std::future<Calls::Answer> asked;
+  std::future<CallAnswer> asked;
   during_wait_for_turn([this] { engine->step(); }, [&] { asked = engine->make_safe(); });
   ASSERT_TRUE(asked.valid() && is_ready(asked));
   EXPECT_TRUE(asked.get().success);

@@ -75,7 +75,7 @@ TEST_F(WriteResultsTest, A_value_that_a_newer_one_overtakes_is_superseded) {
 
 TEST_F(WriteResultsTest, Of_a_number_that_waits_for_its_units_turn_the_newest_is_sent) {
   start_online();
-  ASSERT_TRUE(shared->turns.try_take(this, Rank::write));
+  ASSERT_TRUE(shared->turns.try_take(this));
   push("r0", 1, &results);
   EXPECT_FALSE(engine->send_now());
   shared->turns.release();

@@ -81,7 +81,7 @@ void Changes::lose(std::uint32_t count) {
 
 std::size_t Changes::reply_to(ClientSession& session, const Rights& rights, TimePoint now,
                               Span<std::uint8_t> pdu) const {
-  modbus::ChangesReply reply = HeardChanges(ring_, rights, session).reply();
+  modbus::ChangesReply reply = ClientChanges(ring_, rights, session).reply();
   reply.arrived = node_time(session.wait->arrived);
   reply.replied = node_time(now);
   return modbus::reply_changes(reply, pdu);

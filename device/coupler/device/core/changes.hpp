@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "coupler/device/core/change_ring.hpp"
+#include "coupler/device/core/client_changes.hpp"
 #include "coupler/device/core/client_session.hpp"
-#include "coupler/device/core/heard_changes.hpp"
 #include "coupler/device/core/image.hpp"
 #include "coupler/device/core/output_schedule.hpp"
 #include "coupler/device/core/rights.hpp"
@@ -48,7 +48,7 @@ class Changes final : public ScheduleSink {
   /// Returns whether the session's wait has to be answered now, because there is something to tell it or its
   /// time is over.
   bool is_due(ClientSession& session, const Rights& rights, TimePoint now) const {
-    return now >= session.wait->until || HeardChanges(ring_, rights, session).has_news();
+    return now >= session.wait->until || ClientChanges(ring_, rights, session).has_news();
   }
   /// Writes the reply PDU that is sent now into `pdu` (at least max_pdu_size bytes); returns its size.
   std::size_t reply_to(ClientSession& session, const Rights& rights, TimePoint now,

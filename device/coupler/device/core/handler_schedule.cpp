@@ -2,8 +2,8 @@
 // Outputs at a time.
 #include <algorithm>
 
-#include "coupler/device/core/duration_end.hpp"
 #include "coupler/device/core/handler.hpp"
+#include "coupler/device/core/timed_output_end.hpp"
 
 namespace coupler::device {
 namespace {
@@ -104,7 +104,7 @@ void Handler::drive(ScheduledOutput& which, TimePoint now) {
 
 void Handler::end(ScheduledOutput& which, TimePoint now) {
   const auto [table, range] = std::pair(which.table, which.range);
-  (void)DurationEnd(map_, image_, hardware_, schedule_, next_).of(which, now);
+  (void)TimedOutputEnd(map_, image_, hardware_, schedule_, next_).of(which, now);
   changes_.set_time(later(now));
   changes_.compare(table, range);
 }
@@ -118,7 +118,7 @@ void Handler::end_schedule(TimePoint now) { schedule_.cancel_all(Reason::reload,
 bool Handler::make_safe(Reason reason, TimePoint now) {
   schedule_.cancel_all(reason, later(now));
   const bool safe = drive_safe(now);
-  const bool ended = DurationEnd(map_, image_, hardware_, schedule_, next_).of_all(now);
+  const bool ended = TimedOutputEnd(map_, image_, hardware_, schedule_, next_).of_all(now);
   changes_.compare_all();
   return safe && ended;
 }

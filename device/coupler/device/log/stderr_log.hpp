@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "coupler/base/descriptor.hpp"
-#include "coupler/base/line_limit.hpp"
+#include "coupler/base/log_line_limit.hpp"
 #include "coupler/device/core/log.hpp"
 #include "coupler/device/supervisor/shared_memory.hpp"
 #include "coupler/map/diagnostic.hpp"
@@ -72,7 +72,7 @@ class StderrLog : public Log {
   };
 
   struct Kind {
-    LineLimit limit;
+    LogLineLimit limit;
     int priority;  ///< of the newest line
   };
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <utility>
 
-#include "coupler/base/line_limit.hpp"
+#include "coupler/base/log_line_limit.hpp"
 #include "coupler/device/supervisor/heartbeat.hpp"
 
 namespace coupler::device {
@@ -152,7 +152,7 @@ void IoService::run(const std::function<bool(TimePoint)>& is_over, const std::fu
     beat();
     next_beat = now_ + heartbeat_period;
   }
-  (void)log_.tick(now_ + LineLimit::usual);  // logs what is still held back
+  (void)log_.tick(now_ + LogLineLimit::usual);  // logs what is still held back
 }
 
 std::vector<OpenConnection> IoService::release() {

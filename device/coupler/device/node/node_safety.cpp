@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "coupler/device/core/duration_end.hpp"
 #include "coupler/device/core/each_point.hpp"
+#include "coupler/device/core/timed_output_end.hpp"
 #include "coupler/device/node/node_runtime.hpp"
 #include "coupler/device/node/output_parts.hpp"
 #include "coupler/device/node/realtime.hpp"
@@ -24,7 +24,7 @@ struct Ending {
   OutputSchedule schedule;
   Hardware hardware;
   std::array<std::uint16_t, modbus::max_scheduled_bits> next{};
-  DurationEnd end;
+  TimedOutputEnd end;
   TimePoint now = TimePoint::clock::now();
 };
 

@@ -15,14 +15,14 @@ constexpr int most_unheard = 2;
 
 }  // namespace
 
-ChangeWatch::ChangeWatch(const Map& map, host::Link& link, host::Clock& clock,
-                         host::DeviceStatistics& statistics, Use use, Note note)
+ChangeWatch::ChangeWatch(const Map& map, host::Link& link, host::DeviceStatistics& statistics, Use use,
+                         Note note)
     : wanted_(map.changes && use),
       link_(link),
-      clock_(clock),
+      clock_(link.clock()),
       use_(std::move(use)),
       note_(std::move(note)),
-      listener_(map.connection.timeout, link, clock, statistics, *this, *this) {}
+      listener_(map.connection.timeout, link, statistics, *this, *this) {}
 
 Result<> ChangeWatch::start(bool is_node) {
   listener_.stop();

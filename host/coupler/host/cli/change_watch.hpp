@@ -18,8 +18,7 @@ class ChangeWatch : private host::ChangeSink, private host::Sink {
 
   /// `use` may be empty: then nothing is asked for. It may be called whenever something is read. Everything
   /// given by reference must outlive it.
-  ChangeWatch(const Map& map, host::Link& link, host::Clock& clock, host::DeviceStatistics& statistics,
-              Use use, Note note);
+  ChangeWatch(const Map& map, host::Link& link, host::DeviceStatistics& statistics, Use use, Note note);
 
   /// A new connection. Asks for changes before anything else is read, so that none is missed. An error means
   /// that the connection can no longer be used.

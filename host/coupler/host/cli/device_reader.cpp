@@ -94,8 +94,7 @@ DeviceReader::DeviceReader(const Map& map, const std::vector<bool>& chosen, host
       planner_(map),
       link_(link),
       clock_(link.clock()),
-      changes_(map_, link_, clock_, statistics_, std::move(use),
-               [this](std::string text) { note(std::move(text)); }),
+      changes_(map_, link_, statistics_, std::move(use), [this](std::string text) { note(std::move(text)); }),
       chosen_(chosen),
       place_(map.points.size()) {
   for (std::uint32_t point = 0; point < map.points.size(); ++point) {

@@ -10,7 +10,7 @@
 #include "coupler/host/cli/change_watch.hpp"
 #include "coupler/host/cli/snapshot.hpp"
 #include "coupler/host/core/link.hpp"
-#include "coupler/host/core/set_aside.hpp"
+#include "coupler/host/core/unanswered_reads.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::cli {
@@ -78,7 +78,7 @@ class DeviceReader {
   Snapshot now_;
 
   std::optional<Unreadable> answered_;  ///< the last request that was
-  host::SetAside aside_;
+  host::UnansweredReads aside_;
   std::vector<std::string> no_reply_;  ///< by reading: what came instead of one, when it was set aside
 
   // Valid for the time of a connection.

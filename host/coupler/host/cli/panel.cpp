@@ -20,7 +20,7 @@
 #include "coupler/cli/live_device.hpp"
 #include "coupler/host/cli/field_map.hpp"
 #include "coupler/host/cli/interruption.hpp"
-#include "coupler/host/cli/only_looking.hpp"
+#include "coupler/host/cli/read_only_map.hpp"
 #include "coupler/host/cli/report_line.hpp"
 #include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/core/named_write.hpp"
@@ -161,7 +161,7 @@ Exit panel(const DeviceArgument& argument, const PanelOptions& options) {
     if (const std::string why = field.emplace(found->map).why_missing(); !why.empty())
       return complain("panel", failed, "--field: " + why, {});
   const Map& original = field ? field->map() : found->map;
-  const OnlyLooking looking(original);
+  const ReadOnlyMap looking(original);
   const Map& map = looking.map();
   host::SteadyClock clock;
   std::atomic<bool> ended{false};

@@ -15,7 +15,7 @@
 #include "coupler/base/never_wait.hpp"
 #include "coupler/cli/live_device.hpp"
 #include "coupler/host/cli/interruption.hpp"
-#include "coupler/host/cli/only_looking.hpp"
+#include "coupler/host/cli/read_only_map.hpp"
 #include "coupler/host/cli/report_line.hpp"
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/device.hpp"
@@ -71,7 +71,7 @@ tl::expected<host::RecordFile, std::string> open_file(const RecordOptions& optio
 }  // namespace
 
 Exit record(const Map& original, const RecordOptions& options) {
-  const OnlyLooking looking(original);
+  const ReadOnlyMap looking(original);
   const Map& map = looking.map();
   auto file = open_file(options);
   if (!file) return complain("record", bad_call, file.error(), {});

@@ -22,9 +22,14 @@ constexpr std::chrono::seconds forgiven(10);
 
 }  // namespace
 
-ChangeListener::ChangeListener(milliseconds timeout, Link& link, Clock& clock, DeviceStatistics& statistics,
+ChangeListener::ChangeListener(milliseconds timeout, Link& link, DeviceStatistics& statistics,
                                ChangeSink& changes, Sink& sink)
-    : timeout_(timeout), link_(link), clock_(clock), statistics_(statistics), changes_(changes), sink_(sink) {
+    : timeout_(timeout),
+      link_(link),
+      clock_(link.clock()),
+      statistics_(statistics),
+      changes_(changes),
+      sink_(sink) {
   link_.listen(*this);
 }
 
@@ -152,7 +157,7 @@ void ChangeListener::map_clock(const modbus::ChangesReply& reply, const WaitAnsw
           : "the node's clock makes no sense: its time stamps are not used");
 }
 
-void ChangeListener::say(LineLimit& lines, Level level, const std::string& text) {
+void ChangeListener::say(LogLineLimit& lines, Level level, const std::string& text) {
   if (const auto line = lines.say(text, clock_.now())) sink_.on_report(level, *line);
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "coupler/base/line_limit.hpp"
+#include "coupler/base/log_line_limit.hpp"
 #include "coupler/host/core/clock_mapping.hpp"
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/link.hpp"
@@ -38,7 +38,7 @@ class ChangeSink {
 class ChangeListener : private WaitListener {
  public:
   /// All references must outlive the listener. `timeout`: see Connection::timeout.
-  ChangeListener(std::chrono::milliseconds timeout, Link& link, Clock& clock, DeviceStatistics& statistics,
+  ChangeListener(std::chrono::milliseconds timeout, Link& link, DeviceStatistics& statistics,
                  ChangeSink& changes, Sink& sink);
 
   /// Starts with a new connection to a node that tells changes. The node's watchdog expires after `watchdog`
@@ -83,7 +83,7 @@ class ChangeListener : private WaitListener {
   Stamp stamp(modbus::NodeTime at, const WaitAnswer& answer) const;
   std::uint16_t wait();
   void pause(Duration at_most);
-  void say(LineLimit& lines, Level level, const std::string& text);
+  void say(LogLineLimit& lines, Level level, const std::string& text);
 
   std::chrono::milliseconds timeout_;
   Link& link_;
@@ -92,8 +92,8 @@ class ChangeListener : private WaitListener {
   ChangeSink& changes_;
   Sink& sink_;
   ClockMapping mapping_;
-  LineLimit jumps_;
-  LineLimit epochs_;
+  LogLineLimit jumps_;
+  LogLineLimit epochs_;
   std::chrono::milliseconds longest_wait_{0};
   bool active_ = false;
   bool waiting_ = false;

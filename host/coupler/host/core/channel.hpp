@@ -43,7 +43,8 @@ class Channel {
  public:
   virtual ~Channel() = default;
 
-  /// Connects, until `interrupt` is set at most. A connection that exists is closed before.
+  /// Connects; gives up when `interrupt` is set. Closes an existing connection first, but not a serial port
+  /// that still works.
   virtual Result<> open(const Event& interrupt) = 0;
   virtual void close() = 0;
   /// Ends the request in progress. open() is possible again.
@@ -54,17 +55,17 @@ class Channel {
 
   /// Sends a request. receive() must follow before any other.
   virtual Result<> send(modbus::Bytes pdu) = 0;
-  /// Waits for the PDU of the reply, until a timeout after the request at most. It is the unit's, but may not
-  /// be right, and is valid until the next call.
+  /// Waits for the reply, at most until the timeout, and returns its PDU, which lives until the next call. It
+  /// is from the selected unit; the caller must still check its content.
   virtual Result<modbus::Bytes> receive() = 0;
   /// Returns whether the last reply came, or was looked at, after the timeout.
   virtual bool is_late() const { return false; }
-  /// Returns false if what comes next may not be the reply to the next request, though the last reply was
-  /// one.
+  /// Returns false if the last reply, though accepted, leaves it unknown where the next reply begins: the
+  /// channel must be closed.
   virtual bool is_trusted() const { return true; }
 
-  /// Returns true if other units can be asked while the reply of one unit is late, because its late reply can
-  /// only be taken for the reply to another request to the same unit.
+  /// Returns true for RTU: a late reply can only be mistaken for another reply of the same unit, so the other
+  /// units can be asked meanwhile.
   virtual bool is_bus() const { return false; }
   /// Returns whether a request to the selected unit would be sent without delay.
   virtual bool can_send() const { return true; }

@@ -65,12 +65,11 @@ Result<bool> has_value(const Step& place, Link& link) {
   return false;
 }
 
-CouplerWatchdog::CouplerWatchdog(const Map& map, Link& link, Clock& clock, DeviceStatistics& statistics,
-                                 Sink& sink)
+CouplerWatchdog::CouplerWatchdog(const Map& map, Link& link, DeviceStatistics& statistics, Sink& sink)
     : map_(map),
       known_(map.coupler_watchdog),
       link_(link),
-      clock_(clock),
+      clock_(link.clock()),
       statistics_(statistics),
       sink_(sink) {}
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "coupler/host/core/calls.hpp"
+#include "coupler/host/core/call_queue.hpp"
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/link.hpp"
 #include "coupler/host/core/sink.hpp"
@@ -39,10 +39,10 @@ Result<bool> has_value(const WatchdogSequences::Write& place, Link& link);
 class CouplerWatchdog {
  public:
   /// All references must outlive the object.
-  CouplerWatchdog(const Map& map, Link& link, Clock& clock, DeviceStatistics& statistics, Sink& sink);
+  CouplerWatchdog(const Map& map, Link& link, DeviceStatistics& statistics, Sink& sink);
 
   /// Resets the watchdog, even if the map wants no automatic reset.
-  std::future<Calls::Answer> ask_reset() { return resets_.ask(); }
+  std::future<CallAnswer> ask_reset() { return resets_.ask(); }
 
   /// Starts with a new connection, before anything is written. An error means that the connection can no
   /// longer be used.

@@ -33,11 +33,11 @@ Device::Device(const Map& map, Verify verify, MapLoader load, Link& link, Sink& 
       clock_(link.clock()),
       sink_(sink),
       qualities_(map),
-      watchdog_(map_, link_, clock_, statistics_, sink),
-      writer_(map_, link_, clock_, statistics_, qualities_, sink),
+      watchdog_(map_, link_, statistics_, sink),
+      writer_(map_, link_, statistics_, qualities_, sink),
       poller_(map_, link_, writer_, statistics_, qualities_, sink),
-      scheduler_(map_, link_, clock_, writer_, poller_.changes(), sink),
-      listener_(map.connection.timeout, link_, clock_, statistics_, scheduler_.changes(), sink) {}
+      scheduler_(map_, link_, writer_, poller_.changes(), sink),
+      listener_(map.connection.timeout, link_, statistics_, scheduler_.changes(), sink) {}
 
 /// On a serial line there is nothing to be kept, and what is only written may not even refuse to be read.
 bool Device::needs_keep_alive() const {

@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 
-#include "coupler/base/line_limit.hpp"
+#include "coupler/base/log_line_limit.hpp"
+#include "coupler/host/core/backoff.hpp"
 #include "coupler/host/core/change_listener.hpp"
 #include "coupler/host/core/coupler_watchdog.hpp"
 #include "coupler/host/core/output_scheduler.hpp"
 #include "coupler/host/core/poller.hpp"
-#include "coupler/host/core/schedule.hpp"
 #include "coupler/host/core/writer.hpp"
 
 namespace coupler::host {
@@ -50,9 +50,9 @@ class Device {
   }
 
   /// Resets the coupler's own watchdog.
-  std::future<Calls::Answer> reset_watchdog() { return watchdog_.ask_reset(); }
+  std::future<CallAnswer> reset_watchdog() { return watchdog_.ask_reset(); }
   /// See Writer::ask_safe().
-  std::future<Calls::Answer> make_safe() { return writer_.ask_safe(); }
+  std::future<CallAnswer> make_safe() { return writer_.ask_safe(); }
   /// See OutputScheduler::ask().
   std::future<ScheduleAnswer> schedule(const ScheduledWrite& what) { return scheduler_.ask(what); }
   /// Returns whether stop() has to send requests because of scheduled outputs.
@@ -81,15 +81,10 @@ class Device {
   /// should have its safe value but does not.
   bool stop();
 
-  /// Sets whether somebody wants the values of a point (index into Map::points). See ToldBits.
+  /// Sets whether somebody wants the values of a point (index into Map::points). See BitChanges.
   void want(std::uint32_t point, bool wanted) { poller_.want(point, wanted); }
 
-  DeviceSnapshot statistics() const {
-    DeviceSnapshot snapshot = statistics_.snapshot();
-    static_cast<RequestCounts&>(snapshot) = link_.counts();
-    snapshot.discarded = link_.discarded();
-    return snapshot;
-  }
+  DeviceSnapshot statistics() const { return {statistics_.counts(), link_.counts(), link_.discarded()}; }
   std::vector<PointQuality> qualities() const { return qualities_.snapshot(clock_.now()); }
   PointQuality quality(std::uint32_t point) const { return qualities_.of(point, clock_.now()); }
   /// A number that changes with qualities() and with the connection in statistics(), but not by the mere
@@ -150,7 +145,7 @@ class Device {
   ChangeListener listener_;
   Backoff backoff_;
 
-  LineLimit lines_{std::chrono::seconds(10), 6};
+  LogLineLimit lines_{std::chrono::seconds(10), 6};
   Level level_ = Level::info;  ///< of the newest line
   bool holds_line_ = false;    ///< a line waits to be logged
   std::atomic<bool> ending_{false};

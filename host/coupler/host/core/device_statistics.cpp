@@ -53,7 +53,7 @@ void DeviceStatistics::offline(const std::string& trouble) {
   ++revision_;
 }
 
-DeviceSnapshot DeviceStatistics::snapshot() const {
+DeviceCounts DeviceStatistics::counts() const {
   const std::lock_guard lock(mutex_);
   return now_;
 }

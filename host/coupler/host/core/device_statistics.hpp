@@ -28,14 +28,13 @@ struct WatchdogStatus {
   std::string error_text;      ///< what is wrong and what to do, while it is expired or could not be armed
 };
 
-/// The state of a device at one moment. Counts are since the program began.
-struct DeviceSnapshot : RequestCounts {
+/// The state of a device, and what was done with it since the program began.
+struct DeviceCounts {
   bool online = false;
   std::string trouble;                        ///< the reason why it is not online
   std::optional<Identity::Verdict> identity;  ///< at the last connect; nullopt: not asked
   identity::Machine machine{};                ///< that of a node at the last connect, as far as it is known
   std::uint64_t connections = 0;              ///< proven ones; all but the first are reconnects
-  std::uint64_t discarded = 0;                ///< Link::discarded()
   std::uint64_t rejected_ranges = 0;
   std::uint64_t overruns = 0;
   std::uint64_t changes = 0;       ///< the number of changes that a node has told
@@ -48,6 +47,11 @@ struct DeviceSnapshot : RequestCounts {
   std::uint64_t written(WriteResult::Outcome outcome) const {
     return writes[static_cast<std::size_t>(outcome)];
   }
+};
+
+/// A device at one moment.
+struct DeviceSnapshot : DeviceCounts, RequestCounts {
+  std::uint64_t discarded = 0;  ///< Link::discarded()
 };
 
 /// Counts what a device does, but not its requests, which Link counts. Any thread may read the counts. Only
@@ -63,13 +67,13 @@ class DeviceStatistics {
   void online(const std::optional<Certificates>& certificates);
   void offline(const std::string& trouble);
 
-  DeviceSnapshot snapshot() const;
+  DeviceCounts counts() const;
   /// A number that changes whenever `online`, `trouble` or `identity` is set.
   std::uint64_t revision() const { return revision_; }
 
  private:
   mutable std::mutex mutex_;
-  DeviceSnapshot now_;
+  DeviceCounts now_;
   std::atomic<std::uint64_t> revision_{0};
 };
 

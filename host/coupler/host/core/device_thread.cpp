@@ -63,13 +63,13 @@ void DeviceThread::want(std::uint32_t point, bool wanted) {
   link_.wake();
 }
 
-std::future<Calls::Answer> DeviceThread::make_safe() {
+std::future<CallAnswer> DeviceThread::make_safe() {
   auto answer = device_.make_safe();
   link_.wake();
   return answer;
 }
 
-std::future<Calls::Answer> DeviceThread::reset_watchdog() {
+std::future<CallAnswer> DeviceThread::reset_watchdog() {
   auto answer = device_.reset_watchdog();
   link_.wake();
   return answer;

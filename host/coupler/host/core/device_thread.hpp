@@ -75,10 +75,10 @@ class DeviceThread {
   /// told was wanted already, it is read soon, because the new reader has seen none of its values.
   void want(std::uint32_t point, bool wanted);
   /// Resets the coupler's own watchdog. The answer comes after a few timeouts at most.
-  std::future<Calls::Answer> reset_watchdog();
+  std::future<CallAnswer> reset_watchdog();
   /// Writes the safe values. The answer comes after the request in flight and these writes, or at once if
   /// there is no connection.
-  std::future<Calls::Answer> make_safe();
+  std::future<CallAnswer> make_safe();
   /// The answer comes a timeout after the end of the writes and requests before it, at the latest, or at once
   /// if there is no connection. The outcome goes to the sink.
   std::future<ScheduleAnswer> schedule(const ScheduledWrite& what);

@@ -55,7 +55,7 @@ Result<> Link::open() {
   Result<> opened = channel().open(interrupted_);
   shared_->is_open = opened.has_value();
   shared_->opened = clock_.now();
-  // Each of the others would wait as long for nothing.
+  // Counts as a loss for all links of the channel: each of them would wait just as long, in vain.
   if (!opened && shared_->opened - begun >= timeout_) ++shared_->losses;
   return opened;
 }
@@ -70,7 +70,7 @@ void Link::close() {
   if (!std::exchange(is_connected_, false) || --shared_->users > 0) return;
   // It does not wait for its turn: a lost unit is to be reported at once. If another unit has the turn, that
   // one goes on with the channel, or closes it.
-  if (shared_->turns.try_take(this, Rank::read)) release();
+  if (shared_->turns.try_take(this)) release();
 }
 
 void Link::interrupt() {
@@ -103,12 +103,12 @@ Result<> Link::begin(Rank rank) {
 
 Result<> Link::prepare() {
   if (!is_connected_) return fail(NotConnected{"not connected"});
-  if (is_lost()) return given_up();
+  if (is_lost()) return give_up_error();
   if (auto selected = channel().select(unit_, timeout_); !selected) return selected;
   if (!shared_->is_open)
     if (auto opened = open(); !opened) return opened;
   pause_until(channel_ready());
-  if (interrupted_.is_set()) return given_up();
+  if (interrupted_.is_set()) return give_up_error();
   return {};
 }
 
@@ -191,7 +191,8 @@ void Link::unanswered() {
     late_until_ = clock_.now() + timeout_;
     return;
   }
-  if (!shared_->has_several_links && channel().is_trusted()) return;  // it is told from the next reply
+  if (!shared_->has_several_links && channel().is_trusted())
+    return;  // a late reply is recognized by its transaction number
   channel().close();
   shared_->is_open = false;
 }

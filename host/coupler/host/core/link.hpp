@@ -15,7 +15,7 @@
 #include "coupler/host/core/channel.hpp"
 #include "coupler/host/core/request_counts.hpp"
 #include "coupler/host/core/stamp.hpp"
-#include "coupler/host/core/turns.hpp"
+#include "coupler/host/core/turn_order.hpp"
 #include "coupler/map/map.hpp"
 #include "coupler/modbus/client.hpp"
 #include "coupler/modbus/range.hpp"
@@ -23,7 +23,8 @@
 
 namespace coupler::host {
 
-/// A channel, and the turns that links take on it. What is not atomic is for the link that has the turn.
+/// A channel, and the turns that links take on it. Only the link that has the turn may use `is_open`,
+/// `opened` and `answered`.
 struct SharedChannel {
   explicit SharedChannel(std::shared_ptr<Channel> of) : channel(std::move(of)) {}
 
@@ -56,9 +57,9 @@ struct Trace {
 /// after a connect, `request_gap` between a reply and the next request.
 ///
 /// Several links may share one channel, request by request: writes go first, also those of a unit whose own
-/// read waits for its turn. If a unit stays silent its reply may still come. On a bus that unit is not asked
-/// for a timeout, while the others are; otherwise the shared channel is closed, and the others open it again
-/// and notice nothing. If the peer ends the connection, or the serial port goes, it is lost for all units:
+/// read waits for its turn. If a unit stays silent its reply may still come.
+/// On a bus that unit rests for a timeout while others are asked; otherwise the shared channel is closed, and
+/// the next request reopens it. If the peer ends the connection, or the port goes, all units have lost it:
 /// the devices behind it may have changed.
 ///
 /// The object belongs to one thread. Another thread may call reserve(), give_back() and send() while a lock
@@ -113,23 +114,25 @@ class Link {
   /// Reads, only to see whether the device answers. An exception is an answer, unless it says that the unit
   /// is away.
   Result<> ask(const Unreadable& place);
-  /// Does the same with the first readable point, or else with coil 0.
+  /// Does the same with the first readable point; if there is none, with the first point; in a map without
+  /// points, with coil 0.
   Result<> keep_alive(const Map& map);
 
   // Turns of links that share a channel.
 
-  /// Sets the rank of the reads that follow. Rank::safe is the rank of writes, too; otherwise they have
-  /// Rank::write.
+  /// Sets the rank of exchange(); send() always has Rank::write. Rank::safe also claims all turns for this
+  /// link, until another rank is set.
   void rank(Rank rank);
   enum class Turn { none, read, write };
   /// Waits until a read would be sent at once, or a write if `write_waits`, whichever comes first. That
-  /// request or another call must follow. Returns Turn::none if it has to wait until wake() or `until`.
+  /// request or another call must follow. Returns Turn::none if no turn was free before wake() or `until`;
+  /// Turn::read, without a turn, if the read would fail at once.
   Turn await_turn(Time until, bool write_waits = false);
-  /// Waits until send() would not have to wait for another unit's request, or would fail, or until `ends()`
-  /// returns true, which is called where it has to wait, and after each wake(). A request or give_back() must
-  /// follow.
+  /// Waits for a turn to write, until `ends()` is true or send() would fail. Calls `ends()` only if it must
+  /// wait: first at once, then at least after each wake(). A request or give_back() must follow.
   void await_turn_to_write(const std::function<bool()>& ends);
-  /// Returns whether send() would not have to wait. If it returns true, send() or give_back() must follow.
+  /// Takes the turn if send() need not wait, and returns whether it did so. After true, send() or give_back()
+  /// must follow.
   bool reserve();
   /// Gives the turn to the other links, because no request follows.
   void give_back();
@@ -170,7 +173,8 @@ class Link {
   Time last_answer() const { return answered_; }
   /// The stamp of the values in the last reply to a read, between the times of request and reply.
   Stamp last_stamp() const { return stamp_between(sent_at_, answered_); }
-  /// The stamp of the last confirmed write, which was carried out between the times of request and reply.
+  /// The stamp of the last write, between the times of its request and reply. If receive() failed, the write
+  /// may not have been carried out.
   Stamp last_write() const { return written_; }
   /// The number of requests that were answered, also by an exception.
   std::uint64_t replies() const { return replies_; }
@@ -185,8 +189,8 @@ class Link {
   bool is_polled() const { return !shared_->has_several_links && !channel().is_bus(); }
 
   // Turns (link_turns.cpp).
-  bool gives_up() const { return interrupted_.is_set() || is_lost(); }
-  tl::unexpected<Error> given_up() const;
+  bool must_give_up() const { return interrupted_.is_set() || is_lost(); }
+  tl::unexpected<Error> give_up_error() const;
   Result<> take_turn(Rank rank);
   void release();
 
@@ -206,7 +210,7 @@ class Link {
   Result<modbus::Bytes> finish(bool is_read);
   Result<modbus::Bytes> receive_checked(bool is_read);
   void end_turn(Time now, const Error* error);
-  /// The reply may still come, and would be taken for that to another request.
+  /// Keeps a reply that may still come from being taken for the reply to a later request.
   void unanswered();
   /// Counts a request that has ended.
   void count(Time now, const Error* error);
@@ -227,7 +231,7 @@ class Link {
 
   Event interrupted_;
   Wakeup wakeup_;
-  std::atomic<bool> is_woken_{false};  ///< since the owner has last looked at what there is to do
+  std::atomic<bool> is_woken_{false};  ///< wake() was called, and the owner has not seen it yet
   Rank rank_ = Rank::read;
   bool is_connected_ = false;
   std::uint64_t losses_at_connect_ = 0;  ///< SharedChannel::losses then
@@ -236,9 +240,9 @@ class Link {
 
   std::array<std::uint8_t, modbus::max_pdu_size> request_{};  ///< the last one
   std::size_t request_size_ = 0;
-  std::array<std::uint8_t, modbus::max_pdu_size> reply_{};  ///< a copy where another link's reply comes next
+  std::array<std::uint8_t, modbus::max_pdu_size> reply_{};  ///< a copy, if links share the channel
   Time ready_ = Time::min();                                ///< no request is sent before
-  Time late_until_{};  ///< its reply to a request that has ended may come
+  Time late_until_{};  ///< on a bus, the unit's late reply may come until then
   Time sent_at_{};     ///< the last request
   Time read_sent_{};
   Time answered_{};

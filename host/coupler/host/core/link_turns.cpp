@@ -8,11 +8,11 @@ namespace coupler::host {
 
 Result<> Link::take_turn(Rank rank) {
   if (std::exchange(has_turn_, false)) return {};
-  if (shared_->turns.take(this, {rank}, Time::max(), [this] { return gives_up(); })) return {};
-  return given_up();
+  if (shared_->turns.take(this, {rank}, Time::max(), [this] { return must_give_up(); })) return {};
+  return give_up_error();
 }
 
-tl::unexpected<Error> Link::given_up() const {
+tl::unexpected<Error> Link::give_up_error() const {
   if (interrupted_.is_set()) return fail(NotConnected{"interrupted"});
   if (is_polled()) return fail(TransportFailure{"the connection has ended"});
   return fail(TransportFailure{
@@ -35,26 +35,29 @@ void Link::rank(Rank rank) {
 Link::Turn Link::await_turn(Time until, bool write_waits) {
   pause_until(ready_);  // before the turn, which others wait for
   if (has_turn_) return Turn::read;
-  const auto give_up = [this] { return is_woken_.exchange(false) || gives_up(); };
+  const auto give_up = [this] { return is_woken_.exchange(false) || must_give_up(); };
   const auto turn = write_waits ? shared_->turns.take(this, {Rank::read, Rank::write}, until, give_up)
                                 : shared_->turns.take(this, {Rank::read}, until, give_up);
   has_turn_ = turn.has_value();
   if (turn) return *turn == Rank::read ? Turn::read : Turn::write;
-  return gives_up() ? Turn::read : Turn::none;  // the read fails, with the reason
+  return must_give_up() ? Turn::read : Turn::none;  // the read fails, with the reason
 }
 
 void Link::await_turn_to_write(const std::function<bool()>& ends) {
   pause_until(ready_);
   if (has_turn_) return;
-  const auto give_up = [&] { return ends() || gives_up(); };
+  const auto give_up = [&] { return ends() || must_give_up(); };
   has_turn_ = shared_->turns.take(this, {Rank::write}, Time::max(), give_up).has_value();
 }
 
 bool Link::reserve() {
-  if (!shared_->turns.try_take(this, Rank::write)) return false;
+  if (!shared_->turns.try_take(this)) return false;
   has_turn_ = is_connected_ && !is_lost() && shared_->is_open && clock_.now() >= channel_ready() &&
               channel().select(unit_, timeout_) && channel().can_send();
-  if (!has_turn_) release();
+  if (has_turn_)
+    shared_->turns.count_write(this);
+  else
+    release();
   is_reserved_ = has_turn_;
   return has_turn_;
 }

@@ -39,15 +39,14 @@ std::string refusal(modbus::Exception code) {
 
 }  // namespace
 
-OutputScheduler::OutputScheduler(const Map& map, Link& link, Clock& clock, Writer& writer, ChangeSink& bits,
-                                 Sink& sink)
+OutputScheduler::OutputScheduler(const Map& map, Link& link, Writer& writer, ChangeSink& bits, Sink& sink)
     : map_(map),
       link_(link),
-      clock_(clock),
+      clock_(link.clock()),
       writer_(writer),
       sink_(sink),
-      by_driver_(link, clock, writer, *this),
-      by_node_(bits, clock, *this) {
+      by_driver_(link, writer, *this),
+      by_node_(bits, clock_, *this) {
   writer.listen(*this);
 }
 

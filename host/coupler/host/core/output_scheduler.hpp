@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "coupler/host/core/calls.hpp"
+#include "coupler/host/core/call_queue.hpp"
 #include "coupler/host/core/change_listener.hpp"
 #include "coupler/host/core/node_outputs.hpp"
 #include "coupler/host/core/scheduled.hpp"
@@ -33,7 +33,7 @@ using ScheduleCalls = CallQueue<AskedSchedule, ScheduleAnswer>;
 class OutputScheduler : private ScheduledListener, private WrittenListener {
  public:
   /// `bits` receives the changes of bits. All references must outlive the object.
-  OutputScheduler(const Map& map, Link& link, Clock& clock, Writer& writer, ChangeSink& bits, Sink& sink);
+  OutputScheduler(const Map& map, Link& link, Writer& writer, ChangeSink& bits, Sink& sink);
 
   /// Schedules a write to a writable point. It is refused while there is no connection, and cancelled if the
   /// connection ends before its time.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "coupler/host/core/schedule.hpp"
+#include "coupler/host/core/poll_deadlines.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::host {

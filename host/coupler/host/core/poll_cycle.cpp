@@ -35,7 +35,7 @@ PollCycle::PollCycle(const Map& map)
       given_up_(map.points.size(), false),
       at_rest_(map.points.size(), false) {
   for (const plan::RateGroup& points : planner_.groups())
-    groups_.push_back({&points, Schedule(period_of(points.rate))});
+    groups_.push_back({&points, PollDeadlines(period_of(points.rate))});
 }
 
 void PollCycle::start(Time now) {
@@ -84,7 +84,7 @@ PollCycle::Group* PollCycle::group_of(std::uint32_t point) {
 Time PollCycle::Group::due() const {
   if (soon && idle()) return Time::min();
   if (steps.empty()) return stale ? Time::min() : Time::max();
-  return schedule.due();
+  return deadlines.due();
 }
 
 Time PollCycle::due() const {
@@ -97,7 +97,7 @@ bool PollCycle::is_overdue(Time now) const {
   return std::any_of(groups_.begin(), groups_.end(), [now](const Group& group) {
     // A request out of turn, and points that are read again after a rest, have no deadline to count from.
     if ((group.soon && group.idle()) || (group.steps.empty() && group.stale)) return true;
-    return !group.steps.empty() && group.schedule.due() + group.schedule.period() <= now;
+    return !group.steps.empty() && group.deadlines.due() + group.deadlines.period() <= now;
   });
 }
 
@@ -209,13 +209,13 @@ std::vector<PollCycle::Status> PollCycle::status() const {
   std::vector<Status> result;
   result.reserve(groups_.size());
   for (const Group& group : groups_)
-    result.push_back({group.points->rate, group.steps.size(), group.schedule.overruns()});
+    result.push_back({group.points->rate, group.steps.size(), group.deadlines.overruns()});
   return result;
 }
 
 std::uint64_t PollCycle::overruns() const {
   std::uint64_t sum = 0;
-  for (const Group& group : groups_) sum += group.schedule.overruns();
+  for (const Group& group : groups_) sum += group.deadlines.overruns();
   return sum;
 }
 
@@ -231,7 +231,7 @@ void PollCycle::replan(Group& group, Time now) {
     const auto last = same == old.end() ? std::nullopt : same->last;
     group.steps.push_back({std::move(span), last});
   }
-  if (old.empty() || group.soon) group.schedule.start(now);
+  if (old.empty() || group.soon) group.deadlines.start(now);
   group.stale = group.soon = false;
 }
 
@@ -246,8 +246,8 @@ void PollCycle::done(Time now) {
   others_first_ = false;
   if (group.next < group.steps.size()) return;
   group.next = 0;
-  cycle_time_ = now - group.schedule.due();
-  group.schedule.advance(now);
+  cycle_time_ = now - group.deadlines.due();
+  group.deadlines.advance(now);
   others_first_ = due() <= now;
   if (!group.parted.empty()) learn(group);
 }

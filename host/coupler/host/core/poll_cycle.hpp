@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "coupler/host/core/error.hpp"
-#include "coupler/host/core/schedule.hpp"
-#include "coupler/host/core/set_aside.hpp"
+#include "coupler/host/core/poll_deadlines.hpp"
+#include "coupler/host/core/unanswered_reads.hpp"
 #include "coupler/map/table.hpp"
 #include "coupler/modbus/range.hpp"
 #include "coupler/plan/planner.hpp"
@@ -77,7 +77,7 @@ class PollCycle {
   /// Notes that current() ended the connection. Over the next connection other requests go before it, if
   /// there are any.
   void ended_connection();
-  /// See SetAside::is_suspected().
+  /// See UnansweredReads::is_suspected().
   bool is_suspected() const { return aside_.is_suspected(current()); }
   /// Notes that current() did not cause the end of the connection.
   void acquit() { aside_.answered(current()); }
@@ -118,7 +118,7 @@ class PollCycle {
   };
   struct Group {
     const plan::RateGroup* points;
-    Schedule schedule;
+    PollDeadlines deadlines;
     std::vector<Step> steps{};
     std::size_t next = 0;
     bool stale = false;            ///< has to be planned anew when no cycle runs
@@ -148,7 +148,7 @@ class PollCycle {
   bool others_first_ = false;                ///< a cycle has ended, so the rates that wait get a request each
   std::vector<Unreadable> rejected_ranges_;  ///< no request for several points contains one of these
   std::vector<RejectedRange> findings_;
-  SetAside aside_;
+  UnansweredReads aside_;
   std::vector<ReadSpan> deferred_;  ///< not sent until another request is answered
   std::optional<Duration> cycle_time_;
 };

@@ -5,12 +5,12 @@
 #include <string>
 #include <string_view>
 
+#include "coupler/host/core/bit_changes.hpp"
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/link.hpp"
 #include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/poll_cycle.hpp"
 #include "coupler/host/core/sink.hpp"
-#include "coupler/host/core/told_bits.hpp"
 #include "coupler/host/core/writer.hpp"
 #include "coupler/modbus/limits.hpp"
 
@@ -19,7 +19,7 @@ namespace coupler::host {
 /// Reads one device: makes the requests of the polling cycle and gives the values to the sink.
 ///
 /// A value that was requested before a newer one was written is not given on: the old one would flicker back.
-/// Neither is one that changes are older than which still come: see ToldBits.
+/// Neither is one that changes are older than which still come: see BitChanges.
 class Poller {
  public:
   /// All references must outlive the poller.
@@ -70,7 +70,7 @@ class Poller {
   PointQualities& qualities_;
   Sink& sink_;
   PollCycle cycle_;
-  ToldBits told_;
+  BitChanges told_;
   std::optional<Unreadable> answered_;
   bool is_node_ = false;  ///< a node knows every function, so exception 01 is about rights
   ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< a member, so that its memory is used again

@@ -13,11 +13,11 @@ namespace coupler::host {
 struct RequestCounts {
   std::uint64_t requests = 0;
   std::uint64_t timeouts = 0;
-  std::uint64_t failures = 0;                   ///< requests that ended the connection in another way
+  std::uint64_t failures = 0;                   ///< requests without a valid reply for another reason
   std::array<std::uint64_t, 256> exceptions{};  ///< by code
   Histogram latency;                            ///< from request to reply
 
-  /// Counts a request. `error` is null if its reply was no exception.
+  /// Counts a request. `error` is null if it got a valid reply that is no exception.
   void add(Duration after, const Error* error) {
     ++requests;
     const ExceptionReply* exception = error != nullptr ? exception_in(*error) : nullptr;

@@ -11,8 +11,8 @@ using Kind = ScheduledOutcome::Result;
 
 }  // namespace
 
-ScheduledWrites::ScheduledWrites(Link& link, Clock& clock, Writer& writer, ScheduledListener& outcomes)
-    : link_(link), clock_(clock), writer_(writer), outcomes_(outcomes) {}
+ScheduledWrites::ScheduledWrites(Link& link, Writer& writer, ScheduledListener& outcomes)
+    : link_(link), clock_(link.clock()), writer_(writer), outcomes_(outcomes) {}
 
 void ScheduledWrites::add(const AcceptedWrite& what) {
   entries_.emplace_back(*this, what);

@@ -22,7 +22,7 @@ namespace coupler::host {
 class ScheduledWrites {
  public:
   /// All references must outlive the object.
-  ScheduledWrites(Link& link, Clock& clock, Writer& writer, ScheduledListener& outcomes);
+  ScheduledWrites(Link& link, Writer& writer, ScheduledListener& outcomes);
 
   void add(const AcceptedWrite& what);
   /// The number of those that wait or are being written.

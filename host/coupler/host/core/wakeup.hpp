@@ -12,7 +12,7 @@
 
 namespace coupler::host {
 
-/// Since the machine was started, with the time for which it was suspended.
+/// The time since boot, including the time for which the machine was suspended.
 inline std::chrono::nanoseconds time_since_boot() {
   timespec now{};
   ::clock_gettime(CLOCK_BOOTTIME, &now);
@@ -31,7 +31,8 @@ class Deadline {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(at_ - now_());
     return static_cast<int>(std::max<std::chrono::milliseconds::rep>(left.count(), 0));
   }
-  /// Whoever was stopped or suspended finds a reply that may be old, however soon it came.
+  /// Time in which the process was stopped or the machine suspended counts: a reply found afterwards may be
+  /// old, even if it came at once.
   bool has_passed() const { return now_() > at_; }
 
  private:

@@ -26,11 +26,11 @@ std::string deadman_value(const Point& point) {
 
 }  // namespace
 
-Writer::Writer(const Map& map, Link& link, Clock& clock, DeviceStatistics& statistics,
-               PointQualities& qualities, Sink& sink)
+Writer::Writer(const Map& map, Link& link, DeviceStatistics& statistics, PointQualities& qualities,
+               Sink& sink)
     : map_(map),
       link_(link),
-      clock_(clock),
+      clock_(link.clock()),
       statistics_(statistics),
       qualities_(qualities),
       sink_(sink),
@@ -67,7 +67,7 @@ void Writer::refuse(const Write& write, std::string_view why) {
   tell(write, {Outcome::refused, std::nullopt, why});
 }
 
-std::future<Calls::Answer> Writer::ask_safe() {
+std::future<CallAnswer> Writer::ask_safe() {
   auto answer = safe_calls_.ask();
   sink_.on_report(Level::info, "safe values were requested");
   return answer;
@@ -277,7 +277,7 @@ void Writer::report(const Write& write, const WriteResult& result) {
 }
 
 void Writer::report_held_back() {
-  for (LineLimit& lines : lines_)
+  for (LogLineLimit& lines : lines_)
     if (const auto line = lines.due(clock_.now())) sink_.on_report(Level::warning, *line);
 }
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "coupler/base/line_limit.hpp"
-#include "coupler/host/core/calls.hpp"
+#include "coupler/base/log_line_limit.hpp"
+#include "coupler/host/core/call_queue.hpp"
 #include "coupler/host/core/deadmen.hpp"
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/link.hpp"
@@ -40,8 +40,7 @@ class WrittenListener {
 class Writer {
  public:
   /// All references must outlive the writer.
-  Writer(const Map& map, Link& link, Clock& clock, DeviceStatistics& statistics, PointQualities& qualities,
-         Sink& sink);
+  Writer(const Map& map, Link& link, DeviceStatistics& statistics, PointQualities& qualities, Sink& sink);
 
   /// Before anything is written.
   void listen(WrittenListener& listener) { written_ = &listener; }
@@ -52,7 +51,7 @@ class Writer {
   void refuse(const Write& write, std::string_view why);
   /// Writes the safe values, whatever `on_shutdown` says, after the request in flight and before all that is
   /// queued. Queued writes to these points are superseded.
-  std::future<Calls::Answer> ask_safe();
+  std::future<CallAnswer> ask_safe();
   /// Logs the lines about writes that were held back because there were too many. Call it now and then.
   void report_held_back();
   bool is_safe_asked() const { return safe_calls_.any(); }
@@ -155,7 +154,7 @@ class Writer {
   bool is_node_ = false;
   bool merges_ = true;  ///< the device takes several values in one request
   std::uint64_t dropped_ = 0;
-  std::array<LineLimit, WriteResult::outcomes> lines_;  ///< by outcome
+  std::array<LogLineLimit, WriteResult::outcomes> lines_;  ///< by outcome
 };
 
 }  // namespace coupler::host

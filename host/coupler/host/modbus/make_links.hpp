@@ -18,8 +18,8 @@ Link make_link(const Connection& connection, const Limits& limits = {});
 /// on one serial port, or with RTU over TCP to the same place, always share one.
 std::vector<std::unique_ptr<Link>> make_links(const std::vector<Map>& maps);
 
-/// Returns which of `maps` are on one line but have different settings of it, and what to do; empty if there
-/// are none.
+/// Returns a message about two of `maps` that share a line or an address but differ in its settings, and what
+/// to do; empty if there are no such maps.
 std::string line_conflict(const std::vector<Map>& maps);
 
 }  // namespace coupler::host

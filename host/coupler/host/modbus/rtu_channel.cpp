@@ -23,8 +23,8 @@ namespace {
 /// After a broadcast, for the units to do what it says: 100 to 200 ms (MSL 2.4.1).
 constexpr std::chrono::milliseconds turnaround{100};
 
-/// The reply to a request that was given up may still come, and meet the next request to another unit. But
-/// who waits for the whole time of a unit that is dead cannot write its own safe values at the end.
+/// The line rests this long after hang_up(), since the reply may still come. It does not rest for the whole
+/// timeout of a dead unit: at shutdown the other units' safe values could not be written meanwhile.
 constexpr std::chrono::milliseconds rest_after_hang_up{100};
 
 /// A line on which something babbles is asked all the same.
@@ -48,7 +48,8 @@ bool is_write(modbus::Bytes pdu) {
 /// Returns what a unit repeats of a write (MAP 6.5, 6.6, 6.11, 6.12, 6.16).
 modbus::Bytes confirmation(modbus::Bytes pdu) { return writes_several(pdu) ? pdu.first(5) : pdu; }
 
-/// A gateway that has gone without a word is noticed although nobody closes the connection for a timeout.
+/// Lets TCP end the connection to a gateway that has vanished: a Timeout does not close it, so it would stay
+/// open.
 void notice_loss(int socket, std::chrono::milliseconds timeout) {
   const auto longest = static_cast<unsigned>(std::max(timeout, std::chrono::milliseconds(3000)).count());
   ::setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &longest, sizeof longest);

@@ -16,12 +16,13 @@ namespace coupler::host {
 /// RTU frames over a serial port or, where a gateway does not translate them, over TCP (MSL 2.5.1).
 ///
 /// There is no transaction number: the reply to a request is the next one of its unit and function that has
-/// its length. After a Timeout a unit is left alone for another one, and what has come meanwhile is
-/// discarded: its late reply could be taken for that to the next request.
+/// its length. After a Timeout that unit is not asked until one more timeout has passed, and what comes
+/// meanwhile is discarded: its late reply could be taken for the reply to its next request.
 ///
 /// A serial port stays open until it has failed: opening it again may restart what is connected.
 ///
-/// Unit 0 are all at once (MSL 2.1): they are written, nobody answers, and the line rests a while after it.
+/// Unit 0 addresses all units at once (MSL 2.1). Only writes can be sent to it, no unit answers them, and the
+/// line then rests for a while.
 ///
 /// The timeout begins when the last character of the request is out, and does not count those of the reply.
 class RtuChannel : public Channel {

@@ -80,7 +80,8 @@ class TcpChannel : public Channel {
   TcpFramer framer_;
   std::optional<Wait> wait_;
   std::optional<WaitAnswer> wait_answer_;  ///< until it is taken
-  /// Between the owner and other threads, of what follows; never held during a request.
+  /// Guards socket_ and certificates_, which other threads use in hang_up() and certificates(). Never held
+  /// during a request.
   mutable std::mutex socket_mutex_;
   Descriptor socket_;
   std::optional<Certificates> certificates_;

@@ -68,7 +68,8 @@ class StreamSocket final : public TlsSocket {
   ssize_t result(const tls::Stream::Progress& progress, short waits_for) {
     if (progress.bytes > 0) return progress.bytes;
     if (progress.wants == 0 && waits_for == POLLIN && stream_.problem().empty()) return 0;
-    // Nobody waits for the other event: the socket would be found ready again and again.
+    // The caller polls for `waits_for` only: after EAGAIN it would find the socket ready and come back here,
+    // without end. So this is an error.
     is_stuck_ |= progress.wants != 0 && progress.wants != waits_for;
     errno = progress.wants == waits_for ? EAGAIN : EPIPE;
     return -1;

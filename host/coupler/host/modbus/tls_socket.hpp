@@ -24,7 +24,8 @@ class TlsSocket {
   virtual ssize_t send(modbus::Bytes bytes) = 0;
   /// Returns whether receive() has bytes that poll(2) does not report, since they have been decrypted.
   virtual bool has_pending() const = 0;
-  /// Once one of them has failed: why, and what to do; empty: either side ended the connection in order.
+  /// Why a call has failed, and what to do. Empty if none has, or if the other side left after the handshake,
+  /// with or without saying so.
   virtual std::string problem() const = 0;
   virtual Certificates certificates() const = 0;
 };

@@ -12,8 +12,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/host/core/backoff.hpp"
 #include "coupler/host/core/node_map.hpp"
-#include "coupler/host/core/schedule.hpp"
 #include "coupler/host/modbus/make_links.hpp"
 #include "coupler/host/ros/diagnostics.hpp"
 #include "coupler/host/ros/place_check.hpp"

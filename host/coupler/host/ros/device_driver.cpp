@@ -134,7 +134,7 @@ bool DeviceDriver::report(Time now, bool force) {
       points[i].state = State::not_wanted;
   if (publish_status_(device, points, now)) status_due_ = now + status_interval;
   thread_.report_held_back();
-  for (LineLimit* const lines : {&refused_lines_, &wall_lines_})
+  for (LogLineLimit* const lines : {&refused_lines_, &wall_lines_})
     if (const auto line = lines->due(now)) log(Level::warning, *line);
   return diagnostics_.update(device, points);
 }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "coupler/base/line_limit.hpp"
+#include "coupler/base/log_line_limit.hpp"
 #include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/ros/device_recording.hpp"
@@ -76,7 +76,7 @@ class DeviceDriver : public Sink {
   SubscriberCounts subscribers_;
   std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
   WallTime wall_;
-  LineLimit wall_lines_;
+  LogLineLimit wall_lines_;
   std::vector<std::unique_ptr<PointPublisher>> stamped_;     ///< by point; null where it is not stamped
   std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of one span, as publishers take them
   std::function<void(bool)> publish_online_;
@@ -91,7 +91,7 @@ class DeviceDriver : public Sink {
   Time stale_from_{};           ///< the first of the good points becomes stale
   Time status_due_{};
   WriteHandler writes_;
-  LineLimit refused_lines_;
+  LogLineLimit refused_lines_;
   std::vector<std::shared_ptr<void>> subscriptions_;
 };
 

@@ -121,7 +121,7 @@ ScheduleAnswer DeviceServices::answer_schedule(const ServiceThread::ScheduleRequ
   return asked.valid() ? asked.get() : ScheduleAnswer{0, "the driver ends"};
 }
 
-Calls::Answer DeviceServices::answer_set(std::uint32_t index, bool on) {
+CallAnswer DeviceServices::answer_set(std::uint32_t index, bool on) {
   const Point& point = map_.points[index];
   const std::uint16_t value =
       holds_bits(point.table) ? std::uint16_t{on} : codec::encode_part(on ? 1 : 0, point.format);
@@ -129,13 +129,13 @@ Calls::Answer DeviceServices::answer_set(std::uint32_t index, bool on) {
   return {outcome.outcome == Outcome::ok, outcome.text};
 }
 
-Calls::Answer DeviceServices::answer_call(std::function<std::future<Calls::Answer>()> Device::*call) {
-  std::future<Calls::Answer> asked;
+CallAnswer DeviceServices::answer_call(std::function<std::future<CallAnswer>()> Device::*call) {
+  std::future<CallAnswer> asked;
   {
     const std::lock_guard lock(mutex_);
     if (device_) asked = ((*device_).*call)();
   }
-  return asked.valid() ? asked.get() : Calls::Answer{false, "the driver ends"};
+  return asked.valid() ? asked.get() : CallAnswer{false, "the driver ends"};
 }
 
 ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {

@@ -34,8 +34,8 @@ class DeviceServices {
   /// The functions that the services call. None of them waits for anything.
   struct Device {
     WriteHandler writes;
-    std::function<std::future<Calls::Answer>()> reset;      ///< of the coupler's own watchdog
-    std::function<std::future<Calls::Answer>()> make_safe;  ///< all outputs
+    std::function<std::future<CallAnswer>()> reset;      ///< of the coupler's own watchdog
+    std::function<std::future<CallAnswer>()> make_safe;  ///< all outputs
     std::function<std::future<ScheduleAnswer>(const ScheduledWrite&)> schedule;
     std::function<DeviceSnapshot()> statistics;
   };
@@ -54,8 +54,8 @@ class DeviceServices {
   WriteTicket::Outcome answer_write(const std::string& name, const std::string& text);
   ScheduleAnswer answer_schedule(const ServiceThread::ScheduleRequest& request);
   ServiceThread::ReadAnswer answer_read(const std::string& name);
-  Calls::Answer answer_set(std::uint32_t index, bool on);
-  Calls::Answer answer_call(std::function<std::future<Calls::Answer>()> Device::*call);
+  CallAnswer answer_set(std::uint32_t index, bool on);
+  CallAnswer answer_call(std::function<std::future<CallAnswer>()> Device::*call);
   std::uint32_t index_of(const Point& point) const {
     return static_cast<std::uint32_t>(&point - map_.points.data());
   }

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "coupler/host/core/calls.hpp"
+#include "coupler/host/core/call_queue.hpp"
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/point_quality.hpp"
@@ -122,9 +122,9 @@ class ServiceThread {
   virtual void offer_read(const std::string& name,
                           std::function<ReadAnswer(const std::string& point)> call) = 0;
   /// std_srvs/SetBool.
-  virtual void offer_set(const std::string& name, std::function<Calls::Answer(bool on)> call) = 0;
+  virtual void offer_set(const std::string& name, std::function<CallAnswer(bool on)> call) = 0;
   /// std_srvs/Trigger.
-  virtual void offer_trigger(const std::string& name, std::function<Calls::Answer()> call) = 0;
+  virtual void offer_trigger(const std::string& name, std::function<CallAnswer()> call) = 0;
 
   virtual void start() = 0;
   /// Takes no more calls.

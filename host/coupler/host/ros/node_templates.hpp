@@ -149,7 +149,7 @@ void fill(Message& message, const ScheduledOutcome& outcome, const WallTime& wal
 
 /// Fills a response of std_srvs/SetBool or std_srvs/Trigger.
 template <class Response>
-void fill(Response& response, const Calls::Answer& answer) {
+void fill(Response& response, const CallAnswer& answer) {
   response.success = answer.success;
   response.message = answer.text;
 }
@@ -226,12 +226,12 @@ class TypedServiceThread : public ServiceThread {
       fill(response, call(request.point));
     });
   }
-  void offer_set(const std::string& name, std::function<Calls::Answer(bool)> call) override {
+  void offer_set(const std::string& name, std::function<CallAnswer(bool)> call) override {
     serve<typename Types::SetBool>(name, [call = std::move(call)](const auto& request, auto& response) {
       fill(response, call(request.data != 0));
     });
   }
-  void offer_trigger(const std::string& name, std::function<Calls::Answer()> call) override {
+  void offer_trigger(const std::string& name, std::function<CallAnswer()> call) override {
     serve<typename Types::Trigger>(
         name, [call = std::move(call)](const auto&, auto& response) { fill(response, call()); });
   }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "coupler/base/line_limit.hpp"
+#include "coupler/base/log_line_limit.hpp"
 #include "coupler/host/ros2/rcl/error.hpp"
 #include "coupler/host/ros2/rcl/inbox.hpp"
 
@@ -56,7 +56,7 @@ class Node {
 
  private:
   Handle<rcl_node_t> node_;
-  LineLimit failures_;
+  LogLineLimit failures_;
   Inbox inbox_;
 };
 

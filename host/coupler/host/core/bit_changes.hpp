@@ -20,16 +20,16 @@ namespace coupler::host {
 ///
 /// An array whose bits change in one step of the node is published once.
 ///
-/// No value flickers back, and no change is left out because of a value that was read. If more changes follow
-/// than one reply holds, a value that is read meanwhile is newer than those changes, and is published only if
-/// it equals the last published value. It is also published after changes were lost; older changes are then
-/// discarded. A change that is older than a value that waits to be written is not published. A change between
-/// the replies to the wait and to the read cannot be ordered, so it is published. A single bit does not
-/// flicker even then, since the value that was read is its old or its new level. An array may flicker.
-class ToldBits : public ChangeSink {
+/// No value flickers back, and no change is left out because of a value that was read. While changes
+/// that did not fit into one reply are to come, a value just read is newer. It is published only if it equals
+/// the last one, or if none is known, as after a loss; older changes are then discarded. A change that is
+/// older than a value that waits to be written is not published. A change between the replies to the wait and
+/// to the read cannot be ordered, so it is published. A single bit does not flicker even then, since the
+/// value that was read is its old or its new level. An array may flicker.
+class BitChanges : public ChangeSink {
  public:
   /// All references must outlive the object.
-  ToldBits(const Map& map, PollCycle& cycle, Writer& writer, PointQualities& qualities, Sink& sink);
+  BitChanges(const Map& map, PollCycle& cycle, Writer& writer, PointQualities& qualities, Sink& sink);
 
   /// Starts with a new connection, after PollCycle::start(). `told`: the device tells changes.
   void start(bool told);
@@ -38,8 +38,8 @@ class ToldBits : public ChangeSink {
   void want(std::uint32_t point, bool wanted);
   /// Returns whether there are points whose values must not be published as they were read.
   bool leaves_out_any() const { return active_ && more_follow_; }
-  /// Returns whether this is such a point of the span. If somebody waits for it, it is read again when all
-  /// changes have come.
+  /// Returns whether the value just read of this point must not be published. Under `publish: on_change` the
+  /// point is read again when all changes have come.
   bool leave_out(std::uint32_t point, const ReadSpan& span, Span<const std::uint8_t> bits);
   /// Notes that these points have been read and will be published. Returns the stamp to publish them with.
   /// The stamp of a point never goes back.
@@ -55,14 +55,14 @@ class ToldBits : public ChangeSink {
  private:
   struct Told {
     std::uint32_t point;
-    std::size_t first;                ///< the index of its first bit
-    bool known = false;               ///< the bits are those of the device
-    bool left_out = false;            ///< a value was not published, and somebody waits for it
+    std::size_t first;      ///< the index of its first bit
+    bool known = false;     ///< the bits are those of the device
+    bool left_out = false;  ///< a value was not published: the point is read again when all changes have come
     std::uint64_t newer_than = 0;     ///< the bits are newer than this change
     Stamp stamp{};                    ///< the last published stamp
     std::optional<Time> repeat_at{};  ///< see Sink; nullopt: has to be asked for
-    /// The node tells bits of an array that change in one step one by one. They are published when all have
-    /// come.
+    /// The stamp of array bits that have changed but are not published yet: those of one step arrive one at a
+    /// time, and are published together.
     std::optional<Stamp> pending{};
     modbus::NodeTime pending_at{};  ///< the time of the step
   };
@@ -89,8 +89,8 @@ class ToldBits : public ChangeSink {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> at_;  ///< place of a bit, index in points_; sorted
   std::vector<std::uint8_t> bits_;
   bool active_ = false;
-  std::uint64_t newest_ = 0;
-  bool more_follow_ = false;                                 ///< more changes follow, up to this number
+  std::uint64_t newest_ = 0;  ///< the number of the node's newest change, as of its last answer
+  bool more_follow_ = false;  ///< changes up to newest_ are still to come
   ReadSpan one_{Table::coils, modbus::Range::of(0, 1), {}};  ///< a member, so that its memory is used again
 };
 

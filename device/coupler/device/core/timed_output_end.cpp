@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/device/core/duration_end.hpp"
+#include "coupler/device/core/timed_output_end.hpp"
 
 #include <algorithm>
 #include <array>
@@ -28,7 +28,7 @@ Registers safe_state_of(const Point& output) {
 
 }  // namespace
 
-bool DurationEnd::goes_back(const Point& point, const ScheduledOutput& which) const {
+bool TimedOutputEnd::goes_back(const Point& point, const ScheduledOutput& which) const {
   if (point.latched.present() || point.counter.present()) return false;
   if (which.safety == Safety::unasked) return true;
   if (!has_hardware(point)) return is_pulsed(point) || !hardware_.has_code();
@@ -36,7 +36,7 @@ bool DurationEnd::goes_back(const Point& point, const ScheduledOutput& which) co
 }
 
 /// Its part of the range; of a register that it shares only its own bits.
-void DurationEnd::put(const Point& point, ScheduledOutput& which) {
+void TimedOutputEnd::put(const Point& point, ScheduledOutput& which) {
   const std::uint16_t mask = own_bits(point);
   const Range own = range(point);
   std::optional<Registers> safe;
@@ -60,7 +60,7 @@ void DurationEnd::put(const Point& point, ScheduledOutput& which) {
 }
 
 /// Neighbours in one step.
-bool DurationEnd::drive(const ScheduledOutput& which, Span<std::uint16_t> cells) {
+bool TimedOutputEnd::drive(const ScheduledOutput& which, Span<std::uint16_t> cells) {
   bool good = true;
   for (std::size_t first = 0; first < cells.size(); ++first) {
     if (!back_[first]) continue;
@@ -76,7 +76,7 @@ bool DurationEnd::drive(const ScheduledOutput& which, Span<std::uint16_t> cells)
   return good;
 }
 
-bool DurationEnd::of(ScheduledOutput& which, TimePoint now) {
+bool TimedOutputEnd::of(ScheduledOutput& which, TimePoint now) {
   const auto cells = image_.find(which.table, which.range);
   std::copy(cells.begin(), cells.end(), next_.begin());
   back_.reset();
@@ -91,7 +91,7 @@ bool DurationEnd::of(ScheduledOutput& which, TimePoint now) {
   return is_over;
 }
 
-bool DurationEnd::of_all(TimePoint now) {
+bool TimedOutputEnd::of_all(TimePoint now) {
   bool good = true;
   schedule_.each_begun([&](ScheduledOutput& which) { good &= of(which, now); });
   return good;

@@ -9,12 +9,12 @@
 namespace coupler::cli {
 
 /// A map without all that a driver does to a device by itself: watchdog, on_reconnect, on_shutdown, deadman.
-class OnlyLooking {
+class ReadOnlyMap {
  public:
   /// The storage of `map` must outlive it.
-  explicit OnlyLooking(const Map& map);
-  OnlyLooking(const OnlyLooking&) = delete;
-  OnlyLooking& operator=(const OnlyLooking&) = delete;
+  explicit ReadOnlyMap(const Map& map);
+  ReadOnlyMap(const ReadOnlyMap&) = delete;
+  ReadOnlyMap& operator=(const ReadOnlyMap&) = delete;
 
   const Map& map() const { return map_; }
 

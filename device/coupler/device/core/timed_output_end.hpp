@@ -14,11 +14,11 @@ namespace coupler::device {
 /// What another duration that began later has driven since goes back at the end of that one. Latches and
 /// counters stay as they are, and so does what is in its safe state since, if that is not `hold`. What was to
 /// go there and could not goes there.
-class DurationEnd {
+class TimedOutputEnd {
  public:
   /// All of them outlive it. `next` has at least modbus::max_scheduled_bits elements, for its own use.
-  DurationEnd(const Map& map, Image& image, Hardware& hardware, OutputSchedule& schedule,
-              Span<std::uint16_t> next)
+  TimedOutputEnd(const Map& map, Image& image, Hardware& hardware, OutputSchedule& schedule,
+                 Span<std::uint16_t> next)
       : map_(map), image_(image), hardware_(hardware), schedule_(schedule), next_(next) {}
 
   /// True: it is over, and its place is free. False: an output cannot be driven; it is due again after this

@@ -15,13 +15,13 @@ namespace coupler {
 
 /// Limits log lines of one kind to one an interval, and `burst` at first. What comes sooner waits; of several
 /// that wait only the newest is logged, with the number of those left out. Any thread may call.
-class LineLimit {
+class LogLineLimit {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   static constexpr auto usual = std::chrono::seconds(1);
 
-  explicit LineLimit(std::chrono::seconds interval = usual, int burst = 1)
+  explicit LogLineLimit(std::chrono::seconds interval = usual, int burst = 1)
       : interval_(interval), ahead_(interval * (burst - 1)) {}
 
   /// The line to log now, if any.

@@ -11,7 +11,7 @@ using std::chrono::milliseconds;
 using testing::ElementsAre;
 using Reason = modbus::Reason;
 
-constexpr milliseconds retry = DurationEnd::retry_period;
+constexpr milliseconds retry = TimedOutputEnd::retry_period;
 
 TEST_F(ScheduledOutputs, An_end_that_the_hardware_refuses_is_tried_until_it_is_done) {
   accept(coils(in(milliseconds(5)), 0, {1}, milliseconds(50)));
@@ -156,7 +156,7 @@ TEST_F(ScheduledOutputs, A_process_that_dies_on_the_way_to_the_safe_state_leaves
   OutputSchedule schedule(next.scheduled);
   Hardware hardware(next.lines);
   std::vector<std::uint16_t> space(modbus::max_scheduled_bits);
-  EXPECT_TRUE(DurationEnd(next.map, next.image, hardware, schedule, space).of_all(in(4 * timeout)));
+  EXPECT_TRUE(TimedOutputEnd(next.map, next.image, hardware, schedule, space).of_all(in(4 * timeout)));
   EXPECT_EQ(next.lines.outputs[2].level, 0) << "not on, as it was before";
 }
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "coupler/device/core/heard_changes.hpp"
+#include "coupler/device/core/client_changes.hpp"
 #include "test/device/core/node_under_test.hpp"
 
 namespace coupler::device {
@@ -18,9 +18,9 @@ using testing::IsEmpty;
 
 constexpr std::uint32_t epoch = 9;
 
-class HeardChangesTest : public testing::Test {
+class ClientChangesTest : public testing::Test {
  protected:
-  HeardChangesTest() { ring_.begin(epoch); }
+  ClientChangesTest() { ring_.begin(epoch); }
 
   /// Coils 0 and 2 may be read, 1 and 3 not.
   void change(std::uint16_t coil) { ring_.add({1, Change::Kind::on, coil, modbus::NodeTime(coil)}); }
@@ -30,12 +30,12 @@ class HeardChangesTest : public testing::Test {
   bool has_news(ClientSession& client, std::uint64_t seen, std::uint32_t of = epoch) {
     client.wait = Wait{{1000, of, seen}};
     const Rights rights(map_->map(), client);
-    return HeardChanges(ring_, rights, client).has_news();
+    return ClientChanges(ring_, rights, client).has_news();
   }
   modbus::ChangesReply ask(ClientSession& client, std::uint64_t seen, std::uint32_t of = epoch) {
     client.wait = Wait{{1000, of, seen}};
     const Rights rights(map_->map(), client);
-    return HeardChanges(ring_, rights, client).reply();
+    return ClientChanges(ring_, rights, client).reply();
   }
   static std::vector<int> of(const modbus::ChangesReply& reply) {
     std::vector<int> all;
@@ -56,7 +56,7 @@ class HeardChangesTest : public testing::Test {
   ClientSession other_;
 };
 
-TEST_F(HeardChangesTest, Begin_with_the_connection_and_count_what_it_may_hear) {
+TEST_F(ClientChangesTest, Begin_with_the_connection_and_count_what_it_may_hear) {
   change(0);
   EXPECT_TRUE(has_news(client_, 0, 0));
   EXPECT_THAT(of(ask(client_, 0, 0)), IsEmpty());
@@ -74,7 +74,7 @@ TEST_F(HeardChangesTest, Begin_with_the_connection_and_count_what_it_may_hear) {
   EXPECT_FALSE(has_news(client_, 2));
 }
 
-TEST_F(HeardChangesTest, Tell_how_many_are_still_to_come) {
+TEST_F(ClientChangesTest, Tell_how_many_are_still_to_come) {
   std::vector<ChangeRing::Entry> many(64);
   ring_ = ChangeRing(many);
   ring_.begin(epoch);
@@ -91,7 +91,7 @@ TEST_F(HeardChangesTest, Tell_how_many_are_still_to_come) {
   EXPECT_EQ(rest.newest, 20U);
 }
 
-TEST_F(HeardChangesTest, Lost_ones_count_as_one_though_they_may_have_been_others) {
+TEST_F(ClientChangesTest, Lost_ones_count_as_one_though_they_may_have_been_others) {
   (void)ask(client_, 0, 0);
   ring_.lose(2);
   EXPECT_TRUE(has_news(client_, 0));
@@ -106,7 +106,7 @@ TEST_F(HeardChangesTest, Lost_ones_count_as_one_though_they_may_have_been_others
   EXPECT_EQ(ask(client_, 2).lost, 1U);
 }
 
-TEST_F(HeardChangesTest, What_follows_lost_ones_may_be_hidden_too) {
+TEST_F(ClientChangesTest, What_follows_lost_ones_may_be_hidden_too) {
   (void)ask(client_, 0, 0);
   ring_.lose(1);
   change(1);
@@ -116,7 +116,7 @@ TEST_F(HeardChangesTest, What_follows_lost_ones_may_be_hidden_too) {
   EXPECT_EQ(reply.newest, 1U);
 }
 
-TEST_F(HeardChangesTest, Those_that_were_overwritten_are_lost) {
+TEST_F(ClientChangesTest, Those_that_were_overwritten_are_lost) {
   (void)ask(client_, 0, 0);
   for (int i = 0; i < 10; ++i) change(0);
   const auto reply = ask(client_, 0);
@@ -125,7 +125,7 @@ TEST_F(HeardChangesTest, Those_that_were_overwritten_are_lost) {
   EXPECT_EQ(reply.newest, 9U);
 }
 
-TEST_F(HeardChangesTest, An_outcome_is_for_the_connection_that_scheduled_it) {
+TEST_F(ClientChangesTest, An_outcome_is_for_the_connection_that_scheduled_it) {
   (void)ask(client_, 0, 0);
   (void)ask(other_, 0, 0);
   outcome(7, other_);
@@ -133,7 +133,7 @@ TEST_F(HeardChangesTest, An_outcome_is_for_the_connection_that_scheduled_it) {
   EXPECT_THAT(of(ask(other_, 0)), ElementsAre(7));
 }
 
-TEST_F(HeardChangesTest, Another_connection_begins_anew_in_the_same_epoch) {
+TEST_F(ClientChangesTest, Another_connection_begins_anew_in_the_same_epoch) {
   (void)ask(client_, 0, 0);
   change(0);
   EXPECT_THAT(of(ask(client_, 0)), ElementsAre(0));
@@ -143,7 +143,7 @@ TEST_F(HeardChangesTest, Another_connection_begins_anew_in_the_same_epoch) {
   EXPECT_EQ(reply.newest, 0U);
 }
 
-TEST_F(HeardChangesTest, What_was_told_once_is_not_told_again) {
+TEST_F(ClientChangesTest, What_was_told_once_is_not_told_again) {
   (void)ask(client_, 0, 0);
   change(0);
   (void)ask(client_, 0);
@@ -153,7 +153,7 @@ TEST_F(HeardChangesTest, What_was_told_once_is_not_told_again) {
   EXPECT_THAT(of(again), IsEmpty());
 }
 
-TEST_F(HeardChangesTest, Without_limits_the_numbers_are_the_nodes) {
+TEST_F(ClientChangesTest, Without_limits_the_numbers_are_the_nodes) {
   map_ = MapBuilder().coil("a", 0).build();
   change(0);
   outcome(7, other_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/cli/only_looking.hpp"
+#include "coupler/host/cli/read_only_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ struct OnlyLookingAt : testing::Test {
 };
 
 TEST_F(OnlyLookingAt, Nothing_of_what_a_driver_does_by_itself_is_left) {
-  const OnlyLooking looking(map);
+  const ReadOnlyMap looking(map);
   EXPECT_EQ(looking.map().on_reconnect, OnReconnect::drop);
   EXPECT_EQ(looking.map().on_shutdown, OnShutdown::hold);
   EXPECT_EQ(looking.map().poll, Poll::all);

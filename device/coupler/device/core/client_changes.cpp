@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/device/core/heard_changes.hpp"
+#include "coupler/device/core/client_changes.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -9,13 +9,13 @@ namespace coupler::device {
 using modbus::ChangesReply;
 using modbus::Function;
 
-bool HeardChanges::has_news() {
+bool ClientChanges::has_news() {
   if (!rights_.are_limited()) return ring_.has_news(request());
   if (begins_anew() || request().seen != session_.heard.number) return true;
   return skip() != nullptr || ring_.newest() > session_.heard.upto;
 }
 
-ChangesReply HeardChanges::reply() {
+ChangesReply ClientChanges::reply() {
   if (!rights_.are_limited()) return ring_.reply_to(request());
   if (begins_anew()) return begin();
   Heard& heard = session_.heard;
@@ -42,12 +42,12 @@ ChangesReply HeardChanges::reply() {
 }
 
 /// Its numbers are of another epoch or another connection.
-bool HeardChanges::begins_anew() const {
+bool ClientChanges::begins_anew() const {
   return !session_.heard.has_begun || request().epoch != ring_.epoch() ||
          request().seen > session_.heard.number;
 }
 
-ChangesReply HeardChanges::begin() const {
+ChangesReply ClientChanges::begin() const {
   Heard& heard = session_.heard;
   heard.has_begun = true;
   heard.upto = ring_.newest();
@@ -57,7 +57,7 @@ ChangesReply HeardChanges::begin() const {
   return reply;
 }
 
-bool HeardChanges::may_hear(const ChangeRing::Entry& entry) const {
+bool ClientChanges::may_hear(const ChangeRing::Entry& entry) const {
   const modbus::Change& change = entry.change;
   if (!change.is_bit()) return entry.owner == &session_;
   const bool is_coil = change.table == static_cast<std::uint8_t>(Function::read_coils);
@@ -67,7 +67,7 @@ bool HeardChanges::may_hear(const ChangeRing::Entry& entry) const {
 
 /// The next change that it may hear, unless the node has lost some before it that nobody saw: then the one
 /// after those. What it may not hear counts as heard.
-const ChangeRing::Entry* HeardChanges::skip() {
+const ChangeRing::Entry* ClientChanges::skip() {
   Heard& heard = session_.heard;
   const ChangeRing::Entry* next = ring_.next_after(heard.upto);
   while (next != nullptr && next->number == heard.upto + 1 && !may_hear(*next)) {
@@ -78,7 +78,7 @@ const ChangeRing::Entry* HeardChanges::skip() {
 }
 
 /// How many it can ask for after this reply.
-std::uint64_t HeardChanges::count_rest() const {
+std::uint64_t ClientChanges::count_rest() const {
   std::uint64_t count = 0;
   std::uint64_t upto = session_.heard.upto;
   for (const ChangeRing::Entry* next = ring_.next_after(upto); next != nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/core/set_aside.hpp"
+#include "coupler/host/core/unanswered_reads.hpp"
 
 #include <algorithm>
 
@@ -16,33 +16,33 @@ void remove(std::vector<Unreadable>& places, const plan::ReadSpan& span) {
 
 }  // namespace
 
-void SetAside::suspect(const plan::ReadSpan& span) {
+void UnansweredReads::suspect(const plan::ReadSpan& span) {
   if (!is_suspected(span)) suspects_.push_back({span.table, span.range});
 }
 
-bool SetAside::is_suspected(const plan::ReadSpan& span) const {
+bool UnansweredReads::is_suspected(const plan::ReadSpan& span) const {
   return std::any_of(suspects_.begin(), suspects_.end(), same_as(span)) ||
          std::any_of(guilty_.begin(), guilty_.end(), [&](const Unreadable& whole) {
            return whole.table == span.table && whole.range.contains(span.range);
          });
 }
 
-void SetAside::convict(const plan::ReadSpan& span) {
+void UnansweredReads::convict(const plan::ReadSpan& span) {
   remove(suspects_, span);
   remove(guilty_, span);
   guilty_.push_back({span.table, span.range});
 }
 
-void SetAside::add(const plan::ReadSpan& span, Time now) {
+void UnansweredReads::add(const plan::ReadSpan& span, Time now) {
   entries_.push_back({{span.table, span.range}, span.points, shortest, now + shortest});
 }
 
-std::vector<SetAside::Entry>::iterator SetAside::find(const plan::ReadSpan& span) {
+std::vector<UnansweredReads::Entry>::iterator UnansweredReads::find(const plan::ReadSpan& span) {
   return std::find_if(entries_.begin(), entries_.end(),
                       [is_same = same_as(span)](const Entry& entry) { return is_same(entry.place); });
 }
 
-bool SetAside::failed_again(const plan::ReadSpan& span, Time now) {
+bool UnansweredReads::failed_again(const plan::ReadSpan& span, Time now) {
   const auto entry = find(span);
   if (entry == entries_.end()) return false;
   entry->pause = std::min(2 * entry->pause, longest);
@@ -51,7 +51,7 @@ bool SetAside::failed_again(const plan::ReadSpan& span, Time now) {
   return true;
 }
 
-bool SetAside::answered(const plan::ReadSpan& span) {
+bool UnansweredReads::answered(const plan::ReadSpan& span) {
   if (suspects_.empty() && entries_.empty()) return false;
   remove(suspects_, span);
   const auto entry = find(span);
@@ -61,20 +61,20 @@ bool SetAside::answered(const plan::ReadSpan& span) {
   return true;
 }
 
-bool SetAside::rests(const plan::ReadSpan& span, Time now) const {
+bool UnansweredReads::rests(const plan::ReadSpan& span, Time now) const {
   return std::any_of(entries_.begin(), entries_.end(), [&, is_same = same_as(span)](const Entry& entry) {
     return is_same(entry.place) && entry.again > now;
   });
 }
 
-Time SetAside::due() const {
+Time UnansweredReads::due() const {
   Time earliest = Time::max();
   for (const Entry& entry : entries_)
     if (!entry.is_tried) earliest = std::min(earliest, entry.again);
   return earliest;
 }
 
-std::vector<std::uint32_t> SetAside::take_due(Time now) {
+std::vector<std::uint32_t> UnansweredReads::take_due(Time now) {
   std::vector<std::uint32_t> points;
   for (Entry& entry : entries_) {
     if (entry.is_tried || entry.again > now) continue;
@@ -84,7 +84,7 @@ std::vector<std::uint32_t> SetAside::take_due(Time now) {
   return points;
 }
 
-std::vector<std::uint32_t> SetAside::take_back() {
+std::vector<std::uint32_t> UnansweredReads::take_back() {
   std::vector<std::uint32_t> points;
   for (Entry& entry : entries_) {
     entry.is_tried = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/core/turns.hpp"
+#include "coupler/host/core/turn_order.hpp"
 
 #include <gtest/gtest.h>
 

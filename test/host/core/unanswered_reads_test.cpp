@@ -12,7 +12,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::ElementsAre;
 
-class SetAsideTest : public test::DeviceTest {
+class UnansweredReadsTest : public test::DeviceTest {
  protected:
   void SetUp() override {
     device.during_read = [this] {
@@ -27,7 +27,7 @@ class SetAsideTest : public test::DeviceTest {
   bool silent = true;
 };
 
-TEST_F(SetAsideTest, It_costs_its_own_points_only_and_is_tried_less_and_less_often) {
+TEST_F(UnansweredReadsTest, It_costs_its_own_points_only_and_is_tried_less_and_less_often) {
   start(MapBuilder().holding("a", 0).holding("b", 5).holding("c", 6), Verify::off);
   run_for(seconds(5));
   EXPECT_THAT(sink->online, ElementsAre(true, false, true)) << "the first time it may have been away";
@@ -51,7 +51,7 @@ TEST_F(SetAsideTest, It_costs_its_own_points_only_and_is_tried_less_and_less_oft
   EXPECT_EQ(sink->reported("c can be read again"), 1);
 }
 
-TEST_F(SetAsideTest, The_first_request_of_all_may_be_the_one) {
+TEST_F(UnansweredReadsTest, The_first_request_of_all_may_be_the_one) {
   start(MapBuilder().holding("b", 5).holding("c", 6).holding("d", 9), Verify::off);
   run_for(seconds(5));
   EXPECT_THAT(sink->online, testing::Contains(true));
@@ -59,7 +59,7 @@ TEST_F(SetAsideTest, The_first_request_of_all_may_be_the_one) {
   EXPECT_EQ(sink->reported("c cannot be read"), 1);
 }
 
-TEST_F(SetAsideTest, Waiting_writes_stay_and_nothing_is_restored) {
+TEST_F(UnansweredReadsTest, Waiting_writes_stay_and_nothing_is_restored) {
   MapBuilder builder;
   builder.holding("a", 0).holding("b", 5).holding("c", 6).head().on_reconnect = OnReconnect::restore;
   start(builder, Verify::off);
@@ -72,7 +72,7 @@ TEST_F(SetAsideTest, Waiting_writes_stay_and_nothing_is_restored) {
   EXPECT_EQ(device.count("write register 0"), 0U);
 }
 
-TEST_F(SetAsideTest, A_device_that_is_silent_is_away_whatever_was_asked) {
+TEST_F(UnansweredReadsTest, A_device_that_is_silent_is_away_whatever_was_asked) {
   start(MapBuilder().holding("a", 0).holding("b", 5).holding("c", 6), Verify::off);
   run_for(seconds(5));
   device.is_mute = true;
@@ -83,7 +83,7 @@ TEST_F(SetAsideTest, A_device_that_is_silent_is_away_whatever_was_asked) {
   EXPECT_TRUE(sink->online.back());
 }
 
-TEST_F(SetAsideTest, Several_silent_requests_before_the_first_good_one_are_found_one_after_the_other) {
+TEST_F(UnansweredReadsTest, Several_silent_requests_before_the_first_good_one_are_found_one_after_the_other) {
   device.during_read = [this] {
     const std::string& asked = device.requests.back();
     if (asked == "read holding_registers 0+1" || asked == "read holding_registers 5+1")
@@ -96,7 +96,7 @@ TEST_F(SetAsideTest, Several_silent_requests_before_the_first_good_one_are_found
   EXPECT_EQ(sink->reported("b cannot be read: no reply"), 1);
 }
 
-TEST_F(SetAsideTest, A_device_that_comes_and_goes_is_told_in_a_few_lines) {
+TEST_F(UnansweredReadsTest, A_device_that_comes_and_goes_is_told_in_a_few_lines) {
   start(MapBuilder().holding("a", 0), Verify::off);
   for (int i = 0; i < 300; ++i) {
     device.next_errors.push_back(TransportFailure{"reset"});

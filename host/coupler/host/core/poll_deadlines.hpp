@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times at which something is due again: at a rate, or after a failure.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "coupler/host/core/clock.hpp"
@@ -16,9 +14,9 @@ inline Duration period_of(double rate) {
 
 /// Deadlines that are `period` apart, counted from the start and not from the last cycle, so that they do not
 /// drift. Deadlines that pass while a cycle runs are left out and counted.
-class Schedule {
+class PollDeadlines {
  public:
-  explicit Schedule(Duration period) : period_(period) {}
+  explicit PollDeadlines(Duration period) : period_(period) {}
 
   /// The first deadline is `now`.
   void start(Time now) { due_ = now; }
@@ -41,22 +39,6 @@ class Schedule {
   Duration period_;
   Time due_{};
   std::uint64_t overruns_ = 0;
-};
-
-/// The time to wait before the next attempt: 0.1 s, doubling up to 5 s.
-class Backoff {
- public:
-  Duration next() {
-    const Duration delay = next_;
-    next_ = std::min<Duration>(2 * next_, longest);
-    return delay;
-  }
-  void reset() { next_ = shortest; }
-
- private:
-  static constexpr Duration shortest = std::chrono::milliseconds(100);
-  static constexpr Duration longest = std::chrono::seconds(5);
-  Duration next_ = shortest;
 };
 
 }  // namespace coupler::host

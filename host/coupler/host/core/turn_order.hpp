@@ -28,8 +28,8 @@ enum class Rank {
 class TurnOrder {
  public:
   using Who = const void*;
-  /// `who` waits now, for a read or a write or, after two calls, for whichever comes first. Its place is at
-  /// the end, or the one that was kept.
+  /// Makes `who` wait for a turn of this rank, in the place that leave() kept or else at the end. After calls
+  /// for two ranks it waits for whichever comes first.
   void come(Who who, Rank rank) {
     const auto kept = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
       return place.who == who && place.rank == rank;
@@ -60,7 +60,7 @@ class TurnOrder {
     const auto place = next_place();
     return place == places_.end() ? nullptr : place->who;
   }
-  /// `who` writes without having waited.
+  /// Notes that `who` writes. Until the next read that counts against its other writes.
   void count_write(Who who) {
     if (!has_written(who)) wrote_.push_back(who);
   }
@@ -111,8 +111,8 @@ class Turns {
  public:
   using Who = TurnOrder::Who;
 
-  /// Waits for a turn of one of these ranks, and returns which it is. nullopt if none has come until `until`,
-  /// or if it has to wait and `give_up()` is true, which is called at first and after each look_again().
+  /// Waits for a turn of one of these ranks, and returns its rank; nullopt if none came before `until`. If it
+  /// must wait, it calls `give_up()` at once and after each change, and returns nullopt if that is true.
   template <class GiveUp>
   std::optional<Rank> take(Who who, std::initializer_list<Rank> ranks, Time until, GiveUp give_up) {
     std::unique_lock lock(mutex_);
@@ -142,13 +142,17 @@ class Turns {
       order_.give_up_claim(who);
     changed_.notify_all();
   }
-  /// Takes the turn if nobody has it or waits for it. Rank::read is for a turn in which nothing is written.
-  bool try_take(Who who, Rank rank) {
+  /// Takes the turn if nobody has it or waits for it.
+  bool try_take(Who who) {
     const std::lock_guard lock(mutex_);
     if (holder_ != nullptr || !order_.is_free_for(who)) return false;
     holder_ = who;
-    if (rank != Rank::read) order_.count_write(who);
     return true;
+  }
+  /// TurnOrder::count_write()
+  void count_write(Who who) {
+    const std::lock_guard lock(mutex_);
+    order_.count_write(who);
   }
   void release() {
     const std::lock_guard lock(mutex_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/base/line_limit.hpp"
+#include "coupler/base/log_line_limit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,17 +9,17 @@ namespace {
 using std::chrono::milliseconds;
 using Line = std::optional<std::string>;
 
-TEST(LineLimit, A_flood_is_one_line_a_second_the_newest_with_a_count) {
-  LineLimit limit;
-  const LineLimit::Time begin{};
+TEST(LogLineLimit, A_flood_is_one_line_a_second_the_newest_with_a_count) {
+  LogLineLimit limit;
+  const LogLineLimit::Time begin{};
   EXPECT_EQ(limit.say("0", begin), Line("0"));
   for (int i = 1; i < 10; ++i) EXPECT_EQ(limit.say(std::to_string(i), begin + milliseconds(100 * i)), Line());
   EXPECT_EQ(limit.say("10", begin + milliseconds(1000)), Line("10 (and 9 more of this kind)"));
 }
 
-TEST(LineLimit, What_was_held_back_is_said_when_the_second_is_over) {
-  LineLimit limit;
-  const LineLimit::Time begin{};
+TEST(LogLineLimit, What_was_held_back_is_said_when_the_second_is_over) {
+  LogLineLimit limit;
+  const LogLineLimit::Time begin{};
   EXPECT_EQ(limit.due(begin), Line());
   limit.say("first", begin);
   limit.say("second", begin);

@@ -12,10 +12,10 @@ namespace coupler::device {
 /// connection has scheduled. With limited rights it has numbers of its own, without gaps where there is
 /// something that it may not hear, and each connection begins anew. Without limits it hears all, and the
 /// numbers are the node's.
-class HeardChanges {
+class ClientChanges {
  public:
   /// The session waits. All of them outlive it.
-  HeardChanges(const ChangeRing& ring, const Rights& rights, ClientSession& session)
+  ClientChanges(const ChangeRing& ring, const Rights& rights, ClientSession& session)
       : ring_(ring), rights_(rights), session_(session) {}
 
   /// Returns whether there is something to tell.

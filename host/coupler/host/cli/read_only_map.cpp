@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/cli/only_looking.hpp"
+#include "coupler/host/cli/read_only_map.hpp"
 
 namespace coupler::cli {
 
-OnlyLooking::OnlyLooking(const Map& map) : points_(map.points.begin(), map.points.end()), map_(map) {
+ReadOnlyMap::ReadOnlyMap(const Map& map) : points_(map.points.begin(), map.points.end()), map_(map) {
   for (Point& point : points_) point.host.deadman = {};
   map_.points = {points_.data(), points_.size()};
   map_.coupler_watchdog = {};

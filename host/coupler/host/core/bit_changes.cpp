@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/core/told_bits.hpp"
+#include "coupler/host/core/bit_changes.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -22,7 +22,8 @@ Stamp not_before(Stamp last, Stamp stamp) {
 
 }  // namespace
 
-ToldBits::ToldBits(const Map& map, PollCycle& cycle, Writer& writer, PointQualities& qualities, Sink& sink)
+BitChanges::BitChanges(const Map& map, PollCycle& cycle, Writer& writer, PointQualities& qualities,
+                       Sink& sink)
     : map_(map),
       cycle_(cycle),
       writer_(writer),
@@ -45,27 +46,27 @@ ToldBits::ToldBits(const Map& map, PollCycle& cycle, Writer& writer, PointQualit
   one_.points.resize(1);
 }
 
-bool ToldBits::rests(const Told& told) const {
+bool BitChanges::rests(const Told& told) const {
   return point_of(told).host.publish == HostOptions::Publish::on_change;
 }
 
-bool ToldBits::repeats(const Told& told) const {
+bool BitChanges::repeats(const Told& told) const {
   return told.known && rests(told) && point_of(told).host.max_interval.count() > 0;
 }
 
-Time ToldBits::repeat_at(Told& told) {
+Time BitChanges::repeat_at(Told& told) {
   if (!told.repeat_at) told.repeat_at = sink_.repeat_at(told.point);
   return *told.repeat_at;
 }
 
-void ToldBits::start(bool told) {
+void BitChanges::start(bool told) {
   active_ = told;
   newest_ = 0;
   more_follow_ = false;
   for (Told& point : points_) forget(point);
 }
 
-void ToldBits::forget(Told& told) {
+void BitChanges::forget(Told& told) {
   told.known = false;
   told.left_out = false;
   told.pending.reset();
@@ -74,7 +75,7 @@ void ToldBits::forget(Told& told) {
   qualities_.told(told.point, false);
 }
 
-void ToldBits::want(std::uint32_t point, bool wanted) {
+void BitChanges::want(std::uint32_t point, bool wanted) {
   cycle_.want(point, wanted);
   if (!active_ || !index_[point]) return;
   Told& told = points_[*index_[point]];
@@ -84,12 +85,12 @@ void ToldBits::want(std::uint32_t point, bool wanted) {
     cycle_.read_soon(point);
 }
 
-const std::uint8_t* ToldBits::in(const ReadSpan& span, Span<const std::uint8_t> bits,
-                                 const Told& told) const {
+const std::uint8_t* BitChanges::in(const ReadSpan& span, Span<const std::uint8_t> bits,
+                                   const Told& told) const {
   return &bits[read_range(point_of(told)).start() - std::size_t{span.range.start()}];
 }
 
-bool ToldBits::leave_out(std::uint32_t point, const ReadSpan& span, Span<const std::uint8_t> bits) {
+bool BitChanges::leave_out(std::uint32_t point, const ReadSpan& span, Span<const std::uint8_t> bits) {
   if (!leaves_out_any() || !holds_bits(span.table)) return false;
   Told& told = points_[*index_[point]];
   if (!told.known) return false;
@@ -100,7 +101,7 @@ bool ToldBits::leave_out(std::uint32_t point, const ReadSpan& span, Span<const s
   return true;
 }
 
-Stamp ToldBits::read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
+Stamp BitChanges::read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
   if (!active_ || !holds_bits(span.table)) return stamp;
   for (const std::uint32_t point : span.points) stamp = not_before(points_[*index_[point]].stamp, stamp);
   for (const std::uint32_t point : span.points) {
@@ -117,7 +118,7 @@ Stamp ToldBits::read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp 
   return stamp;
 }
 
-void ToldBits::on_change(const modbus::Change& change, std::uint64_t number, Stamp stamp) {
+void BitChanges::on_change(const modbus::Change& change, std::uint64_t number, Stamp stamp) {
   if (!change.is_bit()) return;
   const std::uint32_t here = place(change.table, change.address);
   for (auto at = std::lower_bound(at_.begin(), at_.end(), std::pair(here, 0U));
@@ -125,7 +126,7 @@ void ToldBits::on_change(const modbus::Change& change, std::uint64_t number, Sta
     this->change(points_[at->second], change, number, stamp);
 }
 
-void ToldBits::change(Told& told, const modbus::Change& change, std::uint64_t number, Stamp stamp) {
+void BitChanges::change(Told& told, const modbus::Change& change, std::uint64_t number, Stamp stamp) {
   if (!told.known || number <= told.newer_than) return;
   if (told.pending && change.at != told.pending_at) show_pending(told);
   const std::size_t bit = change.address - read_range(point_of(told)).start();
@@ -139,18 +140,18 @@ void ToldBits::change(Told& told, const modbus::Change& change, std::uint64_t nu
   }
 }
 
-void ToldBits::show_pending(Told& told) {
+void BitChanges::show_pending(Told& told) {
   if (told.pending) show_unless_hidden(told, *std::exchange(told.pending, std::nullopt));
 }
 
-void ToldBits::show_unless_hidden(Told& told, Stamp stamp) {
+void BitChanges::show_unless_hidden(Told& told, Stamp stamp) {
   if (writer_.hides(told.point))
     cycle_.rest(told.point, false);  // should the write fail, this is the value
   else
     show(told, stamp);
 }
 
-void ToldBits::show(Told& told, Stamp stamp) {
+void BitChanges::show(Told& told, Stamp stamp) {
   told.stamp = not_before(told.stamp, stamp);
   told.repeat_at.reset();
   one_.table = point_of(told).table;
@@ -161,16 +162,16 @@ void ToldBits::show(Told& told, Stamp stamp) {
 }
 
 /// It may be another map, or other rights.
-void ToldBits::on_new_epoch() { cycle_.try_again(); }
+void BitChanges::on_new_epoch() { cycle_.try_again(); }
 
-void ToldBits::on_gap() {
+void BitChanges::on_gap() {
   for (Told& told : points_) {
     forget(told);
     cycle_.read_soon(told.point);
   }
 }
 
-void ToldBits::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
+void BitChanges::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
   newest_ = newest;
   more_follow_ = !stamp;
   if (!stamp) return leave_out_older_than_writes();
@@ -185,7 +186,7 @@ void ToldBits::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
 
 /// More changes follow, and are older than what waits to be written, too. Without them the bits are not those
 /// of the device: nothing is shown of them until they are read.
-void ToldBits::leave_out_older_than_writes() {
+void BitChanges::leave_out_older_than_writes() {
   if (!writer_.hides_any()) return;
   for (Told& told : points_) {
     if (!told.known || !writer_.hides(told.point)) continue;
@@ -195,12 +196,12 @@ void ToldBits::leave_out_older_than_writes() {
   }
 }
 
-void ToldBits::on_end() {
+void BitChanges::on_end() {
   active_ = false;
   for (Told& told : points_) forget(told);
 }
 
-Time ToldBits::answer_wanted() {
+Time BitChanges::answer_wanted() {
   Time wanted = Time::max();
   for (Told& told : points_)
     if (repeats(told)) wanted = std::min(wanted, repeat_at(told));

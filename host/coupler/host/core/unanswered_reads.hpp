@@ -15,7 +15,7 @@ namespace coupler::host {
 /// an address by silence, or by a malformed reply. Such a request is parted like one that is refused. What is
 /// left of it is set aside and tried again after 10 s, then after twice as long each time, up to 10 minutes.
 /// The list outlives connections, since each new one would be ended again.
-class SetAside {
+class UnansweredReads {
  public:
   /// Notes that the request has ended a connection, perhaps by chance.
   void suspect(const plan::ReadSpan& span);
