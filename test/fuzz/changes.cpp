@@ -103,8 +103,7 @@ class Witness final : public host::ChangeSink, public host::ScheduledListener, p
     look_at(stamp);
   }
 
-  void on_bits(const host::ReadSpan&, Span<const std::uint8_t>, Stamp) override {}
-  void on_registers(const host::ReadSpan&, Span<const std::uint16_t>, Stamp) override {}
+  void on_values(Span<const std::uint32_t>) override {}
   void on_online(bool) override {}
   void on_report(host::Level, const std::string&) override {}
 

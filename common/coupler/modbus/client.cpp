@@ -40,19 +40,16 @@ ReadRequest::ReadRequest(Function function, Range range) {
   bytes_[0] = static_cast<std::uint8_t>(function);
   put_u16(&bytes_[1], range.start());
   put_u16(&bytes_[3], static_cast<std::uint16_t>(range.count()));
-  assert(range.count() <= (function <= Function::read_discrete_inputs ? max_read_bits : max_read_registers));
+  assert(range.count() <= (reads_bits() ? max_read_bits : max_read_registers));
 }
 
-tl::expected<void, ReplyError> take_bits(const ReadRequest& request, Bytes reply, std::uint8_t* bits) {
+tl::expected<void, ReplyError> take_values(const ReadRequest& request, Bytes reply, std::uint16_t* values) {
   if (auto answers = check_reply(request.pdu(), reply); !answers) return answers;
-  for (std::size_t i = 0; i < request.count(); ++i) bits[i] = reply[2 + i / 8] >> i % 8 & 1;
-  return {};
-}
-
-tl::expected<void, ReplyError> take_registers(const ReadRequest& request, Bytes reply,
-                                              std::uint16_t* registers) {
-  if (auto answers = check_reply(request.pdu(), reply); !answers) return answers;
-  for (std::size_t i = 0; i < request.count(); ++i) registers[i] = get_u16(&reply[2 + 2 * i]);
+  const Bytes from = reply.from(2);
+  if (request.reads_bits())
+    for (std::size_t i = 0; i < request.count(); ++i) values[i] = from[i / 8] >> i % 8 & 1;
+  else
+    for (std::size_t i = 0; i < request.count(); ++i) values[i] = get_u16(&from[2 * i]);
   return {};
 }
 

@@ -22,19 +22,15 @@ class ReadRequest {
 
   Bytes pdu() const { return {bytes_.data(), bytes_.size()}; }
   std::uint8_t function() const { return bytes_[0]; }
+  bool reads_bits() const { return bytes_[0] <= static_cast<std::uint8_t>(Function::read_discrete_inputs); }
   std::uint16_t count() const { return get_u16(&bytes_[3]); }
 
  private:
   std::array<std::uint8_t, 5> bytes_{};
 };
 
-/// Takes the values out of a reply to FC 1 or 2: one element a bit, 0 or 1. `bits` has room for all that was
-/// asked for.
-tl::expected<void, ReplyError> take_bits(const ReadRequest& request, Bytes reply, std::uint8_t* bits);
-
-/// Takes the values out of a reply to FC 3 or 4.
-tl::expected<void, ReplyError> take_registers(const ReadRequest& request, Bytes reply,
-                                              std::uint16_t* registers);
+/// Takes the values out of a reply to FC 1 … 4: `values[i]` is a register, or a bit as 0 or 1.
+tl::expected<void, ReplyError> take_values(const ReadRequest& request, Bytes reply, std::uint16_t* values);
 
 /// The PDU of a request that writes.
 class WriteRequest {

@@ -29,8 +29,7 @@ class Reader {
   /// How long the reply takes.
   Nanoseconds read(Table table, modbus::Range range) {
     const auto begin = std::chrono::steady_clock::now();
-    check(holds_bits(table) ? link_.read_bits(table, range, bits_.data())
-                            : link_.read_registers(table, range, registers_.data()));
+    check(link_.read(table, range, values_.data()));
     return std::chrono::steady_clock::now() - begin;
   }
 
@@ -41,8 +40,7 @@ class Reader {
     std::exit(3);
   }
   host::Link link_;
-  std::array<std::uint8_t, modbus::max_read_bits> bits_{};
-  std::array<std::uint16_t, modbus::max_read_registers> registers_{};
+  std::array<std::uint16_t, modbus::max_read_bits> values_{};
 };
 
 Nanoseconds median(std::vector<Nanoseconds> times) {

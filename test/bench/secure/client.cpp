@@ -32,8 +32,7 @@ int main(int argc, char** argv) {
   const auto until =
       began + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::atof(argv[2])));
   for (auto now = began; now < until;) {
-    const auto read =
-        link.read_registers(Table::holding_registers, modbus::Range::of(0, 10), registers.data());
+    const auto read = link.read(Table::holding_registers, modbus::Range::of(0, 10), registers.data());
     if (!read) return give_up(read.error());
     const auto after = Clock::now();
     times.push_back(std::chrono::duration<double, std::micro>(after - now).count());

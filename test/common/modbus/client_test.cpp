@@ -23,13 +23,13 @@ TEST(ReadRequest, The_specifications_examples_are_built_byte_by_byte) {
 
 TEST(ReadRequest, The_specifications_replies_are_taken) {
   const std::uint8_t bits_reply[] = {1, 3, 0xCD, 0x6B, 0x05};
-  std::vector<std::uint8_t> bits(19);
-  ASSERT_TRUE(take_bits(nineteen_coils, bits_reply, bits.data()));
+  std::vector<std::uint16_t> bits(19);
+  ASSERT_TRUE(take_values(nineteen_coils, bits_reply, bits.data()));
   EXPECT_THAT(bits, ElementsAre(1, 0, 1, 1, 0, 0, 1, 1, 1, 1, 0, 1, 0, 1, 1, 0, 1, 0, 1));
 
   const std::uint8_t registers_reply[] = {3, 6, 0x02, 0x2B, 0, 0, 0, 0x64};
   std::vector<std::uint16_t> values(3);
-  ASSERT_TRUE(take_registers(three_registers, registers_reply, values.data()));
+  ASSERT_TRUE(take_values(three_registers, registers_reply, values.data()));
   EXPECT_THAT(values, ElementsAre(0x022B, 0, 0x64));
 }
 
@@ -45,7 +45,7 @@ TEST(ReadRequest, A_reply_of_another_function_or_size_is_none) {
                                                        {0x84, 2}};
   std::vector<std::uint16_t> values(3);
   for (const auto& reply : replies) {
-    const auto taken = take_registers(three_registers, {reply.data(), reply.size()}, values.data());
+    const auto taken = take_values(three_registers, {reply.data(), reply.size()}, values.data());
     ASSERT_FALSE(taken);
     EXPECT_FALSE(taken.error().exception);
   }
@@ -53,8 +53,8 @@ TEST(ReadRequest, A_reply_of_another_function_or_size_is_none) {
 
 TEST(ReadRequest, An_exception_brings_its_code_whatever_it_is) {
   const std::uint8_t reply[] = {0x81, 0x60};
-  std::vector<std::uint8_t> bits(19);
-  const auto taken = take_bits(nineteen_coils, reply, bits.data());
+  std::vector<std::uint16_t> bits(19);
+  const auto taken = take_values(nineteen_coils, reply, bits.data());
   ASSERT_FALSE(taken);
   EXPECT_EQ(taken.error().exception, static_cast<Exception>(0x60));
 }

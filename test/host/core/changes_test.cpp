@@ -258,8 +258,8 @@ TEST_F(ChangesTest, A_change_before_a_write_is_hidden_and_the_point_read_again) 
 TEST_F(ChangesTest, A_told_point_does_not_become_stale) {
   begin(cell());
   run_for(seconds(60));
-  EXPECT_EQ(engine->quality(barrier()).state, PointQuality::State::good);
-  EXPECT_LE(clock.now() - *engine->quality(barrier()).last_good, seconds(2));
+  EXPECT_EQ(table->quality(barrier(), clock.now()).state, PointQuality::State::good);
+  EXPECT_LE(clock.now() - *table->quality(barrier(), clock.now()).last_good, seconds(2));
 }
 
 TEST_F(ChangesTest, When_the_node_is_gone_a_value_is_as_old_as_what_was_heard_last) {
@@ -268,18 +268,18 @@ TEST_F(ChangesTest, When_the_node_is_gone_a_value_is_as_old_as_what_was_heard_la
   device.ignores_waits = true;
   device.refuse_connect = NotConnected{"unplugged"};
   run_for(seconds(10));
-  EXPECT_EQ(engine->quality(barrier()).state, PointQuality::State::offline);
-  EXPECT_LE(clock.now() - *engine->quality(barrier()).last_good, seconds(12));
+  EXPECT_EQ(table->quality(barrier(), clock.now()).state, PointQuality::State::offline);
+  EXPECT_LE(clock.now() - *table->quality(barrier(), clock.now()).last_good, seconds(12));
 }
 
 TEST_F(ChangesTest, When_a_point_is_told_no_more_its_value_is_as_old_as_what_was_heard_last) {
   begin(cell());
   run_for(seconds(60));
   engine->want(barrier(), false);
-  EXPECT_EQ(engine->quality(barrier()).state, PointQuality::State::good);
-  EXPECT_LE(clock.now() - *engine->quality(barrier()).last_good, seconds(2));
+  EXPECT_EQ(table->quality(barrier(), clock.now()).state, PointQuality::State::good);
+  EXPECT_LE(clock.now() - *table->quality(barrier(), clock.now()).last_good, seconds(2));
   run_for(seconds(10));
-  EXPECT_EQ(engine->quality(barrier()).state, PointQuality::State::stale);
+  EXPECT_EQ(table->quality(barrier(), clock.now()).state, PointQuality::State::stale);
 }
 
 TEST_F(ChangesTest, Who_begins_to_listen_gets_a_value_that_is_read_now) {

@@ -44,7 +44,7 @@ struct CouplerWatchdogTest : test::DeviceTest {
     builder.head().polling.rate = 0.1;
     builder.head().coupler_watchdog = known;
     owned = builder.build();
-    sink.emplace(owned->map());
+    make_sink();
     make_engine(Verify::off, nullptr);
   }
 

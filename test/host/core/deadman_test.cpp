@@ -28,7 +28,7 @@ struct DeadmanTest : test::DeviceTest {
       point.values = names;
     });
     owned = builder.build();
-    sink.emplace(owned->map());
+    make_sink();
     make_engine(Verify::off, nullptr);
     run_for(milliseconds(10));
   }

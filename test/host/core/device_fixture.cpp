@@ -33,15 +33,20 @@ DeviceTest::~DeviceTest() = default;
 void DeviceTest::start(const MapBuilder& builder, Verify verify) {
   owned = builder.build();
   device.now = [this] { return clock.now(); };
-  sink.emplace(owned->map());
+  make_sink();
   make_engine(verify, [this](std::string_view, std::string_view) { return LoadResult{served, {}}; });
+}
+
+void DeviceTest::make_sink() {
+  table.emplace(owned->map());
+  sink.emplace(owned->map(), *table);
 }
 
 void DeviceTest::make_engine(Verify verify, MapLoader load) {
   const Map& map = owned->map();
   engine.reset();
   link.emplace(shared, map.connection, map.limits, &clock);
-  engine.emplace(map, verify, std::move(load), *link, *sink);
+  engine.emplace(map, verify, std::move(load), *link, *table, *sink);
 }
 
 bool DeviceTest::is_turn_free() {

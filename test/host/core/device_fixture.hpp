@@ -42,6 +42,8 @@ struct DeviceTest : testing::Test {
   /// What the thread does: steps, and in between waits for what is due.
   void run_for(Duration duration);
   void push(std::string_view point, std::uint16_t value, WriteListener* listener = nullptr);
+  /// Makes the table of `owned`, and the sink.
+  void make_sink();
   /// Makes the engine of `owned`, and its link.
   void make_engine(Verify verify, MapLoader load);
   bool is_turn_free();
@@ -55,6 +57,7 @@ struct DeviceTest : testing::Test {
   std::optional<Link> link;
   MapPtr owned;
   MapPtr served;
+  std::optional<ValueTable> table;
   std::optional<RecordingSink> sink;
   std::optional<Device> engine;
 };

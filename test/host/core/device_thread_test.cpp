@@ -26,11 +26,13 @@ struct WaitingSink : Sink {
   std::promise<void> written;
   bool seen = false;
   bool seen_written = false;
-  void on_bits(const ReadSpan&, Span<const std::uint8_t> bits, Stamp) override {
+  explicit WaitingSink(const Map& map) : values(map) {}
+  ValueTable values;
+  void on_values(Span<const std::uint32_t> points) override {
+    if (points.empty()) return;
     if (!std::exchange(seen, true)) first.set_value();
-    if (bits[0] != 0 && !std::exchange(seen_written, true)) written.set_value();
+    if (*values.registers(points[0]) != 0 && !std::exchange(seen_written, true)) written.set_value();
   }
-  void on_registers(const ReadSpan&, Span<const std::uint16_t>, Stamp) override {}
   void on_online(bool) override {}
   void on_report(Level, const std::string&) override {}
   std::promise<ScheduledOutcome> outcome;
@@ -43,8 +45,8 @@ TEST(DeviceThread, Values_come_and_writes_go_while_it_lives) {
   const auto owned = builder.build();
   FakeDevice device;
   Link link(test::share(device), {}, {});
-  WaitingSink sink;
-  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
+  WaitingSink sink(owned->map());
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
   thread.start();
   ASSERT_EQ(sink.first.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
   Write on;
@@ -57,8 +59,8 @@ TEST(DeviceThread, What_is_scheduled_is_written_though_nothing_else_is_due) {
   const auto owned = MapBuilder().command("a", 1).build();
   FakeDevice device;
   Link link(test::share(device), {}, {});
-  WaitingSink sink;
-  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
+  WaitingSink sink(owned->map());
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
   thread.start();
   ScheduledWrite what;
   what.write.registers[0] = 1;
@@ -71,13 +73,14 @@ TEST(DeviceThread, What_is_scheduled_is_written_though_nothing_else_is_due) {
   EXPECT_GE(outcome.at.at, what.due);
 }
 
-TEST(DeviceThread, With_subscribed_nothing_is_read_before_somebody_wants_it) {
+TEST(DeviceThread, What_nobody_wants_is_not_read) {
   const auto owned = MapBuilder().coil("a", 1).coil("b", 9).build();
   FakeDevice device;
   Link link(test::share(device), {}, {});
-  WaitingSink sink;
+  WaitingSink sink(owned->map());
   {
-    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink, Poll::subscribed);
+    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
+    for (const std::uint32_t point : {0U, 1U}) thread.want(point, false);
     thread.start();
     thread.want(0, true);
     ASSERT_EQ(sink.first.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
@@ -89,12 +92,12 @@ TEST(DeviceThread, A_write_to_an_idle_device_is_sent_by_the_one_who_makes_it) {
   const auto owned = MapBuilder().command("a", 1).build();
   FakeDevice device;
   Link link(test::share(device), {}, {});
-  WaitingSink sink;
+  WaitingSink sink(owned->map());
   WriteTicket ticket;
   Write write;
   write.listener = &ticket;
   {
-    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
+    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
     thread.start();
     for (;;) {  // until it is connected
       WriteTicket first;
@@ -115,12 +118,12 @@ TEST(DeviceThread, Every_write_has_a_result_when_it_ends) {
   FakeDevice device;
   Link link(test::share(device), {}, {});
   device.refuse_connect = NotConnected{"refused"};
-  WaitingSink sink;
+  WaitingSink sink(owned->map());
   WriteTicket ticket;
   Write write;
   write.listener = &ticket;
   {
-    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
+    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
     thread.start();
     thread.write(write);
   }
@@ -132,9 +135,9 @@ TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {
   FakeDevice device;
   Link link(test::share(device), {}, {});
   device.refuse_connect = NotConnected{"refused"};
-  WaitingSink sink;
+  WaitingSink sink(owned->map());
   {
-    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
+    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
     thread.start();
     device.await_idle();
   }
@@ -147,8 +150,8 @@ TEST(DeviceThread, Before_it_starts_and_after_it_has_ended_nothing_is_asked) {
   const auto owned = builder.build();
   FakeDevice device;
   Link link(test::share(device), {}, {});
-  WaitingSink sink;
-  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
+  WaitingSink sink(owned->map());
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
   EXPECT_TRUE(thread.end());
   thread.start();
   EXPECT_TRUE(thread.end());
@@ -174,8 +177,8 @@ TEST(DeviceThread, Who_connects_just_when_it_ends_gets_its_safe_values) {
   const auto is_made_safe = [&owned] {
     SlowToConnect device;
     Link link(test::share(device), {}, {});
-    WaitingSink sink;
-    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink);
+    WaitingSink sink(owned->map());
+    DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
     thread.start();
     device.connects.get_future().wait();
     device.ends.set_value();

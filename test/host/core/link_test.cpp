@@ -53,7 +53,7 @@ class Replying : public Channel {
 
 struct LinkTest : testing::Test {
   LinkTest() { EXPECT_TRUE(link.connect()); }
-  Result<> read() { return link.read_registers(Table::holding_registers, Range::of(1, 1), &word); }
+  Result<> read() { return link.read(Table::holding_registers, Range::of(1, 1), &word); }
   template <class E>
   static bool is(const Result<>& result) {
     return !result && std::holds_alternative<E>(result.error());

@@ -13,8 +13,8 @@ using State = PointQuality::State;
 
 struct QualityTest : DeviceTest {
   PointQuality quality(std::string_view point) const {
-    return engine
-        ->qualities()[static_cast<std::size_t>(find(owned->map(), point) - owned->map().points.begin())];
+    return table->quality(static_cast<std::uint32_t>(find(owned->map(), point) - owned->map().points.begin()),
+                          clock.now());
   }
 };
 

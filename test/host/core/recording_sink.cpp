@@ -5,20 +5,17 @@
 
 namespace coupler::host::test {
 
-RecordingSink::RecordingSink(const Map& map) : map_(map) {}
+RecordingSink::RecordingSink(const Map& map, const ValueTable& table) : map_(map), table_(table) {}
 RecordingSink::~RecordingSink() = default;
 
-void RecordingSink::on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
-  stamps.push_back(stamp);
-  for (const auto i : span.points)
-    values[std::string(map_.points[i].name)].push_back(
-        bits[read_range(map_.points[i]).start() - std::size_t{span.range.start()}]);
+void RecordingSink::on_values(Span<const std::uint32_t> points) {
+  if (points.empty()) return;
+  stamps.push_back(table_.stamp(points[0]));
+  for (const auto i : points) values[std::string(map_.points[i].name)].push_back(*table_.registers(i));
   for (Topic& topic : topics)
-    for (const auto i : span.points) {
-      if (topic.index != i) continue;
-      const std::uint16_t value = values[std::string(map_.points[i].name)].back();
-      if (topic.policy.calls_news(&value, stamp.at)) topic.published.push_back(stamp.at);
-    }
+    if (std::find(points.begin(), points.end(), topic.index) != points.end() &&
+        topic.policy.calls_news(table_.registers(topic.index), table_.stamp(topic.index).at))
+      topic.published.push_back(table_.stamp(topic.index).at);
 }
 
 RecordingSink::Topic& RecordingSink::add_topic(std::string_view point) {
@@ -31,13 +28,6 @@ Time RecordingSink::repeat_at(std::uint32_t point) const {
   for (const Topic& topic : topics)
     if (topic.index == point) at = std::min(at, topic.policy.repeat_at());
   return at;
-}
-
-void RecordingSink::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) {
-  stamps.push_back(stamp);
-  for (const auto i : span.points)
-    values[std::string(map_.points[i].name)].push_back(
-        registers[read_range(map_.points[i]).start() - std::size_t{span.range.start()}]);
 }
 
 int RecordingSink::reported(const std::string& text) const {

@@ -9,6 +9,7 @@
 
 #include "coupler/host/core/publish_policy.hpp"
 #include "coupler/host/core/sink.hpp"
+#include "coupler/host/core/value_table.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::host::test {
@@ -16,7 +17,7 @@ namespace coupler::host::test {
 /// Keeps what it is told.
 class RecordingSink : public Sink {
  public:
-  explicit RecordingSink(const Map& map);
+  RecordingSink(const Map& map, const ValueTable& table);
   ~RecordingSink() override;
 
   std::map<std::string, std::vector<std::uint16_t>>
@@ -35,8 +36,7 @@ class RecordingSink : public Sink {
   std::deque<Topic> topics;
   Topic& add_topic(std::string_view point);
 
-  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override;
-  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override;
+  void on_values(Span<const std::uint32_t> points) override;
   Time repeat_at(std::uint32_t point) const override;
   void on_online(bool now) override { online.push_back(now); }
   std::vector<ScheduledOutcome> outcomes;
@@ -48,6 +48,7 @@ class RecordingSink : public Sink {
 
  private:
   Map map_;
+  const ValueTable& table_;
 };
 
 }  // namespace coupler::host::test

@@ -27,7 +27,7 @@ struct ShutDownTest : test::DeviceTest {
     owned = builder.build();
     for (std::uint32_t i = 0; i < 3; ++i) device.values[{Table::coils, i}] = 1;
     device.values[{Table::coils, 1}] = 0;
-    sink.emplace(owned->map());
+    make_sink();
     make_engine(Verify::off, nullptr);
     run_for(milliseconds(50));
     device.requests.clear();

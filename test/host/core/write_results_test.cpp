@@ -35,7 +35,7 @@ struct WriteResultsTest : test::DeviceTest {
     }
     if (adjust != nullptr) adjust(builder.head());
     owned = builder.build();
-    sink.emplace(owned->map());
+    make_sink();
     make_engine(Verify::off, nullptr);
     run_for(milliseconds(50));
     device.requests.clear();

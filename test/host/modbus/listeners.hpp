@@ -12,8 +12,7 @@ namespace coupler::host {
 
 /// Hears nothing.
 struct DeafSink : Sink {
-  void on_bits(const ReadSpan&, Span<const std::uint8_t>, Stamp) override {}
-  void on_registers(const ReadSpan&, Span<const std::uint16_t>, Stamp) override {}
+  void on_values(Span<const std::uint32_t>) override {}
   void on_online(bool) override {}
   void on_report(Level, const std::string&) override {}
 };

@@ -40,7 +40,7 @@ Octets joined(Octets a, const Octets& b) {
 
 Result<std::uint16_t> read(Link& link, std::uint16_t address) {
   std::uint16_t word = 0;
-  if (auto done = link.read_registers(Table::holding_registers, Range::of(address, 1), &word); !done)
+  if (auto done = link.read(Table::holding_registers, Range::of(address, 1), &word); !done)
     return tl::make_unexpected(done.error());
   return word;
 }

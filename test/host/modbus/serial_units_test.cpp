@@ -38,7 +38,7 @@ class SerialUnits : public ::testing::Test {
   }
   Result<std::uint16_t> read(Link& link) const {
     std::uint16_t word = 0;
-    auto done = link.read_registers(Table::holding_registers, modbus::Range::of(0, 1), &word);
+    auto done = link.read(Table::holding_registers, modbus::Range::of(0, 1), &word);
     return done ? Result<std::uint16_t>(word) : tl::make_unexpected(done.error());
   }
 
@@ -95,12 +95,14 @@ TEST_F(SerialUnits, At_the_end_one_that_is_silent_keeps_no_other_from_its_safe_v
     links = make_links({owned[0]->map(), owned[1]->map()});
     OnlineSink sink;
     DeafSink deaf;
-    DeviceThread healthy(owned[0]->map(), Verify::off, MapLoader(), *links[0], sink);
+    ValueTable values(owned[0]->map());
+    DeviceThread healthy(owned[0]->map(), Verify::off, MapLoader(), *links[0], values, sink);
     healthy.start();
     while (!sink.is_online) std::this_thread::sleep_for(milliseconds(1));
     silent = 2;
     const int before = unanswered;
-    DeviceThread dead(owned[1]->map(), Verify::require, MapLoader(), *links[1], deaf);
+    ValueTable none(owned[1]->map());
+    DeviceThread dead(owned[1]->map(), Verify::require, MapLoader(), *links[1], none, deaf);
     dead.start();
     while (unanswered == before) std::this_thread::sleep_for(milliseconds(1));
     auto dead_ends = std::async(std::launch::async, [&] { return dead.end(); });

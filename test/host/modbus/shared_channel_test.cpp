@@ -106,7 +106,7 @@ TEST_F(SharedChannelTest, The_last_one_that_closes_ends_the_connection) {
   for (const auto& link : links) link->close();
   Link another = make_link(owned[0]->map().connection);  // the gateway serves one at a time
   ASSERT_TRUE(another.connect());
-  EXPECT_TRUE(another.read_registers(Table::holding_registers, Range::of(1, 1), &word));
+  EXPECT_TRUE(another.read(Table::holding_registers, Range::of(1, 1), &word));
 }
 
 TEST_F(SharedChannelTest, A_read_that_waits_for_its_turn_makes_room_when_its_unit_is_woken) {

@@ -66,15 +66,15 @@ TEST_F(TcpChannelTest, Each_table_is_read_with_its_own_function) {
   server.tables().tab_input_bits[4] = 1;
   server.tables().tab_input_registers[5] = 500;
   server.tables().tab_registers[6] = 600;
-  std::uint8_t bits[2]{};
+  std::uint16_t bits[2]{};
   std::uint16_t registers[2]{};
-  ASSERT_TRUE(link.read_bits(Table::coils, Range::of(2, 2), bits));
+  ASSERT_TRUE(link.read(Table::coils, Range::of(2, 2), bits));
   EXPECT_EQ(bits[1], 1);
-  ASSERT_TRUE(link.read_bits(Table::discrete_inputs, Range::of(4, 2), bits));
+  ASSERT_TRUE(link.read(Table::discrete_inputs, Range::of(4, 2), bits));
   EXPECT_EQ(bits[0], 1);
-  ASSERT_TRUE(link.read_registers(Table::input_registers, Range::of(4, 2), registers));
+  ASSERT_TRUE(link.read(Table::input_registers, Range::of(4, 2), registers));
   EXPECT_EQ(registers[1], 500);
-  ASSERT_TRUE(link.read_registers(Table::holding_registers, Range::of(6, 2), registers));
+  ASSERT_TRUE(link.read(Table::holding_registers, Range::of(6, 2), registers));
   EXPECT_EQ(registers[0], 600);
 }
 
@@ -99,16 +99,16 @@ TEST_F(TcpChannelTest, A_mask_write_changes_the_bits_outside_the_and_mask) {
 
 TEST_F(TcpChannelTest, An_exception_is_told_with_its_code_and_the_connection_lives) {
   std::uint16_t word = 0;
-  const auto read = link.read_registers(Table::holding_registers, Range::of(100, 1), &word);
+  const auto read = link.read(Table::holding_registers, Range::of(100, 1), &word);
   ASSERT_TRUE(is<ExceptionReply>(read));
   EXPECT_EQ(exception_in(read.error())->code, modbus::Exception::illegal_data_address);
-  EXPECT_TRUE(link.read_registers(Table::holding_registers, Range::of(99, 1), &word));
+  EXPECT_TRUE(link.read(Table::holding_registers, Range::of(99, 1), &word));
 }
 
 TEST_F(TcpChannelTest, Without_a_connection_a_request_fails) {
   link.close();
   std::uint16_t word = 0;
-  EXPECT_TRUE(is<NotConnected>(link.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+  EXPECT_TRUE(is<NotConnected>(link.read(Table::holding_registers, Range::of(1, 1), &word)));
   EXPECT_TRUE(is<NotConnected>(link.read_file_record(1, 0, {&word, 1})));
 }
 
@@ -163,9 +163,9 @@ TEST(TcpChannel, A_code_that_libmodbus_keeps_to_itself_is_told) {
   Link link = make_link(connection_to(odd.port()));
   ASSERT_TRUE(link.connect());
   std::uint16_t word = 0;
-  std::uint8_t bit = 0;
-  const auto registers = link.read_registers(Table::input_registers, Range::of(1, 1), &word);
-  const auto bits = link.read_bits(Table::discrete_inputs, Range::of(1, 1), &bit);
+  std::uint16_t bit = 0;
+  const auto registers = link.read(Table::input_registers, Range::of(1, 1), &word);
+  const auto bits = link.read(Table::discrete_inputs, Range::of(1, 1), &bit);
   EXPECT_EQ(exception_in(registers.error())->code, static_cast<modbus::Exception>(0x60));
   EXPECT_EQ(exception_in(bits.error())->code, static_cast<modbus::Exception>(0x60));
 }
@@ -195,7 +195,7 @@ TEST(TcpChannel, Silence_is_a_timeout) {
   ASSERT_TRUE(link.connect());
   link.select(1, milliseconds(50));
   std::uint16_t word = 0;
-  EXPECT_TRUE(is<Timeout>(link.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+  EXPECT_TRUE(is<Timeout>(link.read(Table::holding_registers, Range::of(1, 1), &word)));
   EXPECT_TRUE(is<Timeout>(link.read_file_record(1, 0, {&word, 1})));
 }
 
@@ -210,7 +210,7 @@ TEST(TcpChannel, A_device_that_speaks_TLS_at_this_port_is_named) {
   Link link = make_link(connection_to(secure.port()));
   ASSERT_TRUE(link.connect());
   std::uint16_t word = 0;
-  const auto read = link.read_registers(Table::holding_registers, Range::of(1, 1), &word);
+  const auto read = link.read(Table::holding_registers, Range::of(1, 1), &word);
   ASSERT_FALSE(read);
   EXPECT_THAT(to_string(read.error()), testing::HasSubstr("speaks TLS at this port"));
 }
@@ -220,7 +220,7 @@ TEST(TcpChannel, A_reply_to_another_request_is_a_bad_frame) {
   Link link = make_link(connection_to(confused.port()));
   ASSERT_TRUE(link.connect());
   std::uint16_t word = 0;
-  EXPECT_TRUE(is<BadFrame>(link.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+  EXPECT_TRUE(is<BadFrame>(link.read(Table::holding_registers, Range::of(1, 1), &word)));
 }
 
 TEST(TcpChannel, A_reply_whose_header_does_not_fit_is_a_bad_frame) {
@@ -239,7 +239,7 @@ TEST(TcpChannel, A_reply_whose_header_does_not_fit_is_a_bad_frame) {
     Link link = make_link(connection_to(sloppy.port()));
     ASSERT_TRUE(link.connect());
     std::uint16_t word = 0;
-    const auto read = link.read_registers(Table::holding_registers, Range::of(1, 1), &word);
+    const auto read = link.read(Table::holding_registers, Range::of(1, 1), &word);
     EXPECT_TRUE(is<BadFrame>(read));
     EXPECT_EQ(word, 0);
   }
@@ -266,7 +266,7 @@ TEST(TcpChannel, Bytes_that_nobody_asked_for_are_discarded_and_counted) {
   ASSERT_TRUE(link.connect());
   std::uint16_t word = 0;
   for (const std::uint64_t before : {0U, 3U, 6U}) {
-    ASSERT_TRUE(link.read_registers(Table::holding_registers, Range::of(1, 1), &word));
+    ASSERT_TRUE(link.read(Table::holding_registers, Range::of(1, 1), &word));
     EXPECT_EQ(word, 7);
     EXPECT_EQ(link.discarded(), before);
   }
@@ -287,7 +287,7 @@ TEST(TcpChannel, After_an_exception_with_a_wrong_length_the_connection_is_made_a
   ASSERT_TRUE(link.connect());
   std::uint16_t word = 0;
   for (const int before : {0, 1, 2}) {
-    EXPECT_TRUE(is<ExceptionReply>(link.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+    EXPECT_TRUE(is<ExceptionReply>(link.read(Table::holding_registers, Range::of(1, 1), &word)));
     EXPECT_GE(ended, before) << "the server takes one connection at a time";
   }
 }
@@ -297,7 +297,7 @@ TEST(TcpChannel, A_device_that_hangs_up_is_a_transport_failure) {
   Link link = make_link(connection_to(rude.port()));
   ASSERT_TRUE(link.connect());
   std::uint16_t word = 0;
-  EXPECT_TRUE(is<TransportFailure>(link.read_registers(Table::holding_registers, Range::of(1, 1), &word)));
+  EXPECT_TRUE(is<TransportFailure>(link.read(Table::holding_registers, Range::of(1, 1), &word)));
 }
 
 TEST(TcpChannel, An_interrupt_ends_a_request_in_progress_and_every_later_connect) {
@@ -315,7 +315,7 @@ TEST(TcpChannel, An_interrupt_ends_a_request_in_progress_and_every_later_connect
     link.interrupt();
   });
   std::uint16_t word = 0;
-  const auto read = link.read_registers(Table::holding_registers, Range::of(1, 1), &word);
+  const auto read = link.read(Table::holding_registers, Range::of(1, 1), &word);
   EXPECT_FALSE(read || is<Timeout>(read));
   EXPECT_FALSE(link.connect());
   interrupter.join();

@@ -61,7 +61,7 @@ TEST_F(TlsChannelTest, Reads_and_writes_as_without_it) {
   ASSERT_EQ(text(link.connect()), "");
   server_.tables().tab_registers[6] = 600;
   std::uint16_t registers[2]{};
-  ASSERT_EQ(text(link.read_registers(Table::holding_registers, Range::of(6, 2), registers)), "");
+  ASSERT_EQ(text(link.read(Table::holding_registers, Range::of(6, 2), registers)), "");
   EXPECT_EQ(registers[0], 600);
   const std::uint16_t values[] = {7, 8};
   const auto write = modbus::WriteRequest::registers(20, values);
@@ -77,11 +77,11 @@ TEST_F(TlsChannelTest, Connects_again_with_the_files_that_are_there_then) {
   std::uint16_t value = 0;
   // With TLS 1.3 the server refuses after this side's handshake.
   std::string problem = text(link.connect());
-  if (problem.empty()) problem = text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value));
+  if (problem.empty()) problem = text(link.read(Table::holding_registers, Range::of(0, 1), &value));
   EXPECT_THAT(problem, AllOf(HasSubstr("unknown_ca"), HasSubstr("authority")));
   write(tls::credentials_of(tls::test_client()));
   ASSERT_EQ(text(link.connect()), "");
-  EXPECT_EQ(text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
+  EXPECT_EQ(text(link.read(Table::holding_registers, Range::of(0, 1), &value)), "");
 }
 
 TEST_F(TlsChannelTest, A_device_that_is_not_believed_is_asked_for_nothing) {
@@ -107,18 +107,18 @@ TEST_F(TlsChannelTest, A_device_that_hangs_up_ends_the_request_in_progress) {
   front_.hang_up();
   EXPECT_EQ(waiting.get(), Woken::by_bytes);
   std::uint16_t value = 0;
-  EXPECT_NE(text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
+  EXPECT_NE(text(link.read(Table::holding_registers, Range::of(0, 1), &value)), "");
 }
 
 TEST_F(TlsChannelTest, A_message_of_TLS_itself_is_neither_a_reply_nor_an_end) {
   Link link = make_link(connection());
   ASSERT_EQ(text(link.connect()), "");
   std::uint16_t value = 0;
-  ASSERT_EQ(text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
+  ASSERT_EQ(text(link.read(Table::holding_registers, Range::of(0, 1), &value)), "");
   front_.update_key();
   EXPECT_EQ(link.wait_until(Time::max()), Woken::by_bytes);
   EXPECT_EQ(text(link.discard_unasked()), "");
-  EXPECT_EQ(text(link.read_registers(Table::holding_registers, Range::of(0, 1), &value)), "");
+  EXPECT_EQ(text(link.read(Table::holding_registers, Range::of(0, 1), &value)), "");
   EXPECT_EQ(link.discarded(), 0U);
 }
 

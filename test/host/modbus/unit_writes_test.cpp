@@ -4,8 +4,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <deque>
 #include <future>
-#include <memory>
 #include <thread>
 #include <vector>
 
@@ -23,11 +23,12 @@ TEST_F(SharedChannelTest, A_write_waits_for_the_request_in_flight_and_for_no_oth
   constexpr int writes = 20;
   make();
   DeafSink sink;
-  std::vector<std::unique_ptr<DeviceThread>> devices;
+  std::deque<ValueTable> values;
+  std::deque<DeviceThread> devices;
   for (std::size_t i = 0; i < units; ++i)
-    devices.push_back(
-        std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *links[i], sink));
-  for (const auto& device : devices) device->start();
+    devices.emplace_back(owned[i]->map(), Verify::off, MapLoader(), *links[i],
+                         values.emplace_back(owned[i]->map()), sink);
+  for (DeviceThread& device : devices) device.start();
   while (gateway.reads < 10 * units) std::this_thread::sleep_for(milliseconds(10));
   // A write of unit 1 while a read of unit 2 is in flight, which takes so long: its thread has to come
   // meanwhile.
@@ -38,7 +39,7 @@ TEST_F(SharedChannelTest, A_write_waits_for_the_request_in_flight_and_for_no_oth
     WriteTicket ticket;
     Write write;
     write.listener = &ticket;
-    devices[0]->write(write);
+    devices[0].write(write);
     std::this_thread::sleep_for(in_flight);
     gateway.held = -1;
     EXPECT_EQ(ticket.wait().outcome, WriteResult::Outcome::ok);
@@ -55,12 +56,14 @@ TEST_F(SharedChannelTest, At_the_end_a_unit_that_is_silent_keeps_no_other_from_i
     make();
     OnlineSink sink;
     DeafSink deaf;
-    DeviceThread healthy(owned[0]->map(), Verify::off, MapLoader(), unit(1), sink);
+    ValueTable values(owned[0]->map());
+    DeviceThread healthy(owned[0]->map(), Verify::off, MapLoader(), unit(1), values, sink);
     healthy.start();
     while (!sink.is_online) std::this_thread::sleep_for(milliseconds(1));
     gateway.silent = 2;
     const int unanswered = gateway.unanswered;
-    DeviceThread silent(owned[1]->map(), Verify::require, MapLoader(), unit(2), deaf);
+    ValueTable none(owned[1]->map());
+    DeviceThread silent(owned[1]->map(), Verify::require, MapLoader(), unit(2), none, deaf);
     silent.start();
     while (gateway.unanswered == unanswered)
       std::this_thread::sleep_for(milliseconds(1));  // for its identity, 20 s long
@@ -82,20 +85,21 @@ TEST_F(SharedChannelTest, Every_write_has_one_result_while_all_units_write_and_t
   Tally tally;
   std::atomic<int> written{0};
   {
-    std::vector<std::unique_ptr<DeviceThread>> devices;
+    std::deque<ValueTable> values;
+    std::deque<DeviceThread> devices;
     for (std::size_t i = 0; i < units; ++i)
-      devices.push_back(
-          std::make_unique<DeviceThread>(owned[i]->map(), Verify::off, MapLoader(), *links[i], sink));
-    for (const auto& device : devices) device->start();
+      devices.emplace_back(owned[i]->map(), Verify::off, MapLoader(), *links[i],
+                           values.emplace_back(owned[i]->map()), sink);
+    for (DeviceThread& device : devices) device.start();
     std::vector<std::thread> writers;
     writers.reserve(units);
-    for (const auto& device : devices)
+    for (DeviceThread& device : devices)
       writers.emplace_back([&tally, &written, &device] {
         for (int i = 0; i < writes || tally.ok == 0; ++i) {
           Write write;
           write.registers[0] = static_cast<std::uint16_t>(i);
           write.listener = &tally;
-          device->write(write);
+          device.write(write);
           ++written;
           if (i % 10 == 0) std::this_thread::sleep_for(milliseconds(3));
         }

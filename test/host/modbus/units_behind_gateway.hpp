@@ -106,7 +106,7 @@ struct SharedChannelTest : testing::Test {
   }
   Link& unit(int number) { return *links[static_cast<std::size_t>(number - 1)]; }
   Result<> read(int number) {
-    return unit(number).read_registers(Table::holding_registers, modbus::Range::of(1, 1), &word);
+    return unit(number).read(Table::holding_registers, modbus::Range::of(1, 1), &word);
   }
 
   Gateway gateway;

@@ -133,7 +133,7 @@ struct WaitForChangesTest : testing::Test, WaitListener {
   std::shared_ptr<TcpChannel> channel;
   std::optional<Link> link;
   std::optional<WaitAnswer> heard;
-  std::uint8_t bit = 0;
+  std::uint16_t bit = 0;
 };
 
 TEST_F(WaitForChangesTest, The_answer_is_received_when_its_bytes_have_come) {
@@ -147,10 +147,10 @@ TEST_F(WaitForChangesTest, The_answer_is_received_when_its_bytes_have_come) {
 
 TEST_F(WaitForChangesTest, A_read_behind_it_has_its_answer_second) {
   ASSERT_TRUE(wait());
-  ASSERT_TRUE(link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit));
+  ASSERT_TRUE(link->read(Table::discrete_inputs, Range::of(7, 1), &bit));
   EXPECT_EQ(bit, 1);
   expect_change();
-  ASSERT_TRUE(link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit)) << "and one without a wait";
+  ASSERT_TRUE(link->read(Table::discrete_inputs, Range::of(7, 1), &bit)) << "and one without a wait";
   EXPECT_FALSE(take());
 }
 
@@ -180,7 +180,7 @@ TEST_F(WaitForChangesTest, A_scheduled_output_behind_it_has_its_answer_second) {
 TEST_F(WaitForChangesTest, A_reply_that_comes_before_it_is_an_error) {
   node.swaps_replies = true;
   ASSERT_TRUE(wait());
-  const auto read = link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit);
+  const auto read = link->read(Table::discrete_inputs, Range::of(7, 1), &bit);
   ASSERT_FALSE(read);
   EXPECT_TRUE(std::holds_alternative<BadFrame>(read.error()));
 }
@@ -188,7 +188,7 @@ TEST_F(WaitForChangesTest, A_reply_that_comes_before_it_is_an_error) {
 TEST_F(WaitForChangesTest, An_exception_to_it_does_not_concern_the_request_behind) {
   node.refuses_waits = true;
   ASSERT_TRUE(wait());
-  ASSERT_TRUE(link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit));
+  ASSERT_TRUE(link->read(Table::discrete_inputs, Range::of(7, 1), &bit));
   const auto answer = take();
   ASSERT_TRUE(answer);
   ASSERT_FALSE(answer->reply);
@@ -198,7 +198,7 @@ TEST_F(WaitForChangesTest, An_exception_to_it_does_not_concern_the_request_behin
 TEST_F(WaitForChangesTest, A_new_connection_awaits_nothing) {
   ASSERT_TRUE(wait());
   ASSERT_TRUE(link->connect());
-  ASSERT_TRUE(link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit));
+  ASSERT_TRUE(link->read(Table::discrete_inputs, Range::of(7, 1), &bit));
   EXPECT_FALSE(take());
 }
 
@@ -224,7 +224,7 @@ TEST_F(WaitForChangesTest, The_answers_to_the_wait_and_to_the_read_have_one_time
     connect();
     ASSERT_TRUE(wait());
     const Time over = std::chrono::steady_clock::now() + late + connection.timeout;
-    const auto read = link->read_bits(Table::discrete_inputs, Range::of(7, 1), &bit);
+    const auto read = link->read(Table::discrete_inputs, Range::of(7, 1), &bit);
     in_time = std::chrono::steady_clock::now() < over;
     ASSERT_FALSE(read);
     EXPECT_TRUE(std::holds_alternative<Timeout>(read.error()));

@@ -47,6 +47,7 @@ struct WriteStorm : testing::Test {
   test::ModbusServer server;
   MapPtr owned = make_map();
   Link link = make_link(owned->map().connection);
+  ValueTable values{owned->map()};
   DeafSink sink;
 };
 
@@ -57,7 +58,7 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
   Tally tally;
   std::atomic<int> written{0};
   {
-    DeviceThread device(owned->map(), Verify::off, {}, link, sink);
+    DeviceThread device(owned->map(), Verify::off, {}, link, values, sink);
     device.start();
     wait_until_connected(device);
     std::vector<std::thread> writers;
@@ -73,7 +74,7 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
           ++written;
           if (i % 50 == 0) {
             device.statistics();
-            device.qualities();
+            values.qualities(std::chrono::steady_clock::now());
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
           }
         }
@@ -86,7 +87,7 @@ TEST_F(WriteStorm, Every_write_has_one_result_while_many_threads_write_and_conne
 
 TEST_F(WriteStorm, What_was_written_last_stands_in_the_device) {
   {
-    DeviceThread device(owned->map(), Verify::off, {}, link, sink);
+    DeviceThread device(owned->map(), Verify::off, {}, link, values, sink);
     device.start();
     wait_until_connected(device);
     for (std::uint16_t value = 1; value < 100; ++value)

@@ -12,6 +12,7 @@ using codec::Type;
 using fakes::MapBuilder;
 using modbus::Exception;
 using nlohmann::ordered_json;
+using std::chrono::hours;
 using std::chrono::seconds;
 using test::LiveValuesTest;
 using test::Names;
@@ -20,16 +21,16 @@ using test::State;
 TEST_F(LiveValuesTest, A_device_begins_offline) {
   show(MapBuilder().holding("a", 0));
   EXPECT_EQ(news()["device"]["online"], false);
-  values_->on_online(true);
+  set_online(true);
   EXPECT_EQ(news()["device"]["online"], true);
 }
 
 TEST_F(LiveValuesTest, What_a_lost_device_had_is_shown_as_offline) {
   show(MapBuilder().holding("a", 0).holding("b", 1));
-  values_->on_online(true);
+  set_online(true);
   read_registers({"a", "b"}, 0, {5, 6});
   news();
-  values_->on_online(false);
+  set_online(false);
   values_->on_loss("connection lost: no answer");
   const ordered_json told = news();
   EXPECT_EQ(told["device"]["online"], false);
@@ -40,23 +41,23 @@ TEST_F(LiveValuesTest, What_a_lost_device_had_is_shown_as_offline) {
 
 TEST_F(LiveValuesTest, What_was_answered_with_an_exception_is_offline_as_well_when_the_device_is_lost) {
   show(MapBuilder().holding("a", 0).holding("b", 1));
-  values_->on_online(true);
-  judge({{"a", State::exception, Exception::server_device_failure},
-         {"b", State::rejected, Exception::illegal_data_address}});
-  values_->on_online(false);
+  set_online(true);
+  refuse("a", Exception::server_device_failure);
+  reject("b", Exception::illegal_data_address);
+  set_online(false);
   EXPECT_EQ(quality("a"), "offline");
   EXPECT_EQ(quality("b"), "offline");
 }
 
 TEST_F(LiveValuesTest, A_value_is_good_again_when_it_is_read_again_even_the_same_one) {
   show(MapBuilder().holding("a", 0));
-  values_->on_online(true);
+  set_online(true);
   read_registers({"a"}, 0, {5});
   const auto changes = news()["points"]["a"]["changes"].get<int>();
-  values_->on_online(false);
+  set_online(false);
   values_->on_loss("lost");
   news();
-  values_->on_online(true);
+  set_online(true);
   const ordered_json back = news();
   EXPECT_EQ(back["device"]["online"], true);
   EXPECT_EQ(back["device"].value("why", ""), "") << "why it was lost is over";
@@ -68,18 +69,18 @@ TEST_F(LiveValuesTest, A_value_is_good_again_when_it_is_read_again_even_the_same
 
 TEST_F(LiveValuesTest, An_exception_is_told_with_its_code_and_once) {
   show(MapBuilder().holding("a", 0).holding("b", 1));
-  values_->on_online(true);
+  set_online(true);
   read_registers({"a", "b"}, 0, {5, 6});
   news();
-  judge({{"a", State::exception, Exception::server_device_failure}});
+  refuse("a", Exception::server_device_failure);
   const ordered_json told = news();
   EXPECT_EQ(names_of(told["points"]), (Names{"a"}));
   EXPECT_EQ(told["points"]["a"]["quality"], "exception");
   EXPECT_EQ(told["points"]["a"]["exception"], 4);
   EXPECT_EQ(told["points"]["a"]["value"], 5) << "its last value";
-  judge({{"a", State::exception, Exception::server_device_failure}});
+  refuse("a", Exception::server_device_failure);
   EXPECT_EQ(names_of(news()["points"]), Names());
-  judge({{"a", State::exception, Exception::illegal_data_address}});
+  refuse("a", Exception::illegal_data_address);
   EXPECT_EQ(news()["points"]["a"]["exception"], 2);
   read_registers({"a", "b"}, 0, {5, 6}, seconds(1));
   const ordered_json good = news();
@@ -90,29 +91,45 @@ TEST_F(LiveValuesTest, An_exception_is_told_with_its_code_and_once) {
 
 TEST_F(LiveValuesTest, What_the_device_does_not_have_is_rejected) {
   show(MapBuilder().holding("a", 0));
-  values_->on_online(true);
-  judge({{"a", State::rejected, Exception::illegal_data_address}});
+  set_online(true);
+  reject("a", Exception::illegal_data_address);
   const ordered_json point = news()["points"]["a"];
   EXPECT_EQ(point["quality"], "rejected");
   EXPECT_EQ(point["exception"], 2);
   EXPECT_FALSE(point.contains("value"));
 }
 
-TEST_F(LiveValuesTest, Qualities_from_before_the_device_was_lost_are_no_news) {
+TEST_F(LiveValuesTest, The_values_of_a_lost_device_are_offline_however_old_they_are) {
   show(MapBuilder().holding("a", 0));
-  values_->on_online(true);
-  read_registers({"a"}, 0, {5});
-  values_->on_online(false);
-  judge({{"a", State::stale, {}}});
+  set_online(true);
+  read_registers({"a"}, 0, {5}, -hours(1));
+  set_online(false);
   EXPECT_EQ(quality("a"), "offline");
 }
 
 TEST_F(LiveValuesTest, What_is_read_no_more_becomes_stale) {
   show(MapBuilder().holding("a", 0));
-  values_->on_online(true);
+  set_online(true);
+  read_registers({"a"}, 0, {5}, -hours(1));
+  EXPECT_EQ(news()["points"]["a"]["quality"], "stale");
   read_registers({"a"}, 0, {5});
-  judge({{"a", State::stale, {}}});
-  EXPECT_EQ(quality("a"), "stale");
+  EXPECT_EQ(news()["points"]["a"]["quality"], "good");
+}
+
+TEST_F(LiveValuesTest, A_page_that_waits_is_told_when_a_value_becomes_stale) {
+  MapBuilder builder;
+  builder.holding("a", 0);
+  builder.head().connection.timeout = std::chrono::milliseconds(100);
+  builder.head().polling.rate = 20;
+  show(builder);
+  set_online(true);
+  read_registers({"a"}, 0, {5}, std::chrono::steady_clock::now() - start_);
+  const Time until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  ordered_json told = news();
+  if (told["points"]["a"]["quality"] == "good")  // a busy machine may be late
+    told = ordered_json::parse(values_->news(seen_, Time{}, until));
+  EXPECT_EQ(told["points"]["a"]["quality"], "stale");
+  EXPECT_LT(std::chrono::steady_clock::now(), until);
 }
 
 TEST_F(LiveValuesTest, Why_a_device_does_not_answer_is_told_only_while_it_does_not) {
@@ -121,7 +138,7 @@ TEST_F(LiveValuesTest, Why_a_device_does_not_answer_is_told_only_while_it_does_n
   EXPECT_EQ(news()["device"]["why"], "");
   values_->on_loss("connection refused");
   EXPECT_EQ(news()["device"]["why"], "connection refused");
-  values_->on_online(true);
+  set_online(true);
   values_->on_report(Level::warning, "something else");
   EXPECT_EQ(news_again()["device"].value("why", ""), "");
   EXPECT_THAT(reports_, testing::ElementsAre("a write was dropped", "something else"));
@@ -146,7 +163,7 @@ TEST_F(LiveValuesTest, The_device_s_numbers_are_told_with_it) {
 
 TEST_F(LiveValuesTest, When_nobody_reads_any_more_nothing_is_known) {
   show(MapBuilder().holding("a", 0));
-  values_->on_online(true);
+  set_online(true);
   read_registers({"a"}, 0, {5});
   values_->stopped();
   const ordered_json told = news();
@@ -174,7 +191,7 @@ TEST_F(LiveValuesTest, The_loop_check_tells_what_was_seen_of_each_point) {
   EXPECT_EQ(seen("speed"), "yes,no");
   read_registers({"speed"}, 0, {4711});
   EXPECT_EQ(seen("speed"), "yes,yes");
-  values_->on_online(false);
+  set_online(false);
   EXPECT_EQ(seen("both"), "yes,yes") << "since the start";
 }
 
@@ -232,9 +249,9 @@ TEST_F(LiveValuesTest, Of_a_history_the_last_steps_may_be_asked_for) {
 
 TEST_F(LiveValuesTest, A_history_ends_while_the_value_is_not_known) {
   show(MapBuilder().holding("a", 0));
-  values_->on_online(true);
+  set_online(true);
   read_registers({"a"}, 0, {5});
-  values_->on_online(false);
+  set_online(false);
   const auto later = std::chrono::steady_clock::now() + seconds(8);
   EXPECT_TRUE(ordered_json::parse(values_->histories(later))["a"].back().is_null());
 }

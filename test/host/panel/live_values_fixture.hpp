@@ -29,7 +29,8 @@ class LiveValuesTest : public testing::Test {
 
   void show(const fakes::MapBuilder& map) {
     owned_ = map.build();
-    values_ = std::make_unique<LiveValues>(owned_->map(),
+    table_ = std::make_unique<ValueTable>(owned_->map());
+    values_ = std::make_unique<LiveValues>(owned_->map(), *table_,
                                            [&](Level, const std::string& text) { reports_.push_back(text); });
     seen_ = 0;
   }
@@ -71,27 +72,37 @@ class LiveValuesTest : public testing::Test {
     return span;
   }
   void read_registers(const Names& points, std::uint32_t start, const std::vector<std::uint16_t>& words,
-                      std::chrono::milliseconds at = {}, Table table = Table::holding_registers) {
-    values_->on_registers(span(table, start, words.size(), points), words, {start_ + at, {}});
+                      std::chrono::nanoseconds at = {}, Table table = Table::holding_registers) {
+    read(span(table, start, words.size(), points), words, start_ + at);
   }
-  void read_bits(const Names& points, std::uint32_t start, const std::vector<std::uint8_t>& bits) {
+  void read_bits(const Names& points, std::uint32_t start, const std::vector<std::uint16_t>& bits) {
     const Table table = owned_->map().points[index_of(points.front())].table;
-    values_->on_bits(span(table, start, bits.size(), points), bits, {start_, {}});
+    read(span(table, start, bits.size(), points), bits, start_);
   }
-  /// All points but these are good.
-  void judge(const std::vector<std::tuple<std::string, State, std::optional<modbus::Exception>>>& others) {
-    std::vector<PointQuality> qualities(owned_->map().points.size());
-    for (PointQuality& quality : qualities) quality.state = State::good;
-    for (const auto& [name, state, exception] : others) {
-      qualities[index_of(name)].state = state;
-      qualities[index_of(name)].last_exception = exception;
-    }
-    values_->judge(qualities, std::chrono::steady_clock::now());
+  void read(const ReadSpan& span, const std::vector<std::uint16_t>& values, Time at) {
+    table_->store(span, values, {at, {}}, at);
+    values_->on_values(span.points);
+  }
+  /// The point is read, and the answer is an exception.
+  void refuse(const std::string& name, modbus::Exception code) {
+    const std::uint32_t point = index_of(name);
+    table_->exception({&point, 1}, code);
+    values_->on_no_values({&point, 1}, start_);
+  }
+  void reject(const std::string& name, modbus::Exception code) {
+    const std::uint32_t point = index_of(name);
+    table_->rejected({&point, 1}, code);
+    values_->on_no_values({&point, 1}, start_);
+  }
+  void set_online(bool online) {
+    table_->online(online);
+    values_->on_online(online);
   }
 
   const Time start_ = std::chrono::steady_clock::now();
   MapPtr owned_;
   std::vector<std::string> reports_;
+  std::unique_ptr<ValueTable> table_;
   std::unique_ptr<LiveValues> values_;
   std::uint64_t seen_ = 0;
 };

@@ -74,12 +74,22 @@ class RecorderTest : public testing::Test {
   void record(MapPtr map, std::unique_ptr<RecordFormat> format = std::make_unique<ShortFormat>()) {
     owned_ = std::move(map);
     format_ = std::move(format);
-    recorder_.emplace(owned_->map(), "10.0.0.1:502", *format_, start_,
+    values_.emplace(owned_->map());
+    recorder_.emplace(owned_->map(), *values_, "10.0.0.1:502", *format_, start_,
                       [&](Level, const std::string& text) { reports_.push_back(text); });
   }
 
-  void lose(const std::string& why) {
+  void come_online() {
+    values_->connected();
+    values_->online(true);
+    recorder_->on_online(true);
+  }
+  void go_offline() {
+    values_->online(false);
     recorder_->on_online(false);
+  }
+  void lose(const std::string& why) {
+    go_offline();
     recorder_->on_loss(why);
   }
 
@@ -95,25 +105,27 @@ class RecorderTest : public testing::Test {
   }
   void read_registers(const std::vector<std::string>& points, std::uint32_t start, const Words& words,
                       std::chrono::milliseconds at = std::chrono::seconds(1), Duration uncertainty = {}) {
-    recorder_->on_registers(span(Table::holding_registers, start, words.size(), points), words,
-                            {start_ + at, uncertainty});
+    read(span(Table::holding_registers, start, words.size(), points), words, {start_ + at, uncertainty});
   }
-  void read_bits(const std::vector<std::string>& points, std::uint32_t start,
-                 const std::vector<std::uint8_t>& bits) {
-    recorder_->on_bits(span(Table::coils, start, bits.size(), points), bits,
-                       {start_ + std::chrono::seconds(1), {}});
+  void read_bits(const std::vector<std::string>& points, std::uint32_t start, const Words& bits) {
+    read(span(Table::coils, start, bits.size(), points), bits, {start_ + std::chrono::seconds(1), {}});
   }
-  /// All points but these are good.
-  void judge(const std::vector<
-                 std::tuple<std::string, PointQuality::State, std::optional<modbus::Exception>>>& others,
-             std::chrono::milliseconds at = std::chrono::seconds(1)) {
-    std::vector<PointQuality> qualities(owned_->map().points.size());
-    for (PointQuality& quality : qualities) quality.state = PointQuality::State::good;
-    for (const auto& [name, state, exception] : others) {
-      qualities[index_of(name)].state = state;
-      qualities[index_of(name)].last_exception = exception;
-    }
-    recorder_->judge(qualities, start_ + at);
+  void read(const ReadSpan& span, const Words& words, Stamp stamp) {
+    values_->store(span, words, stamp, stamp.at);
+    recorder_->on_values(span.points);
+  }
+  /// The point is read, and the answer is an exception.
+  void refuse(const std::string& name, modbus::Exception code,
+              std::chrono::milliseconds at = std::chrono::seconds(1)) {
+    const std::uint32_t point = index_of(name);
+    values_->exception({&point, 1}, code);
+    recorder_->on_no_values({&point, 1}, start_ + at);
+  }
+  void reject(const std::string& name, modbus::Exception code,
+              std::chrono::milliseconds at = std::chrono::seconds(1)) {
+    const std::uint32_t point = index_of(name);
+    values_->rejected({&point, 1}, code);
+    recorder_->on_no_values({&point, 1}, start_ + at);
   }
   Recorder::Taken take() { return recorder_->take(start_ + std::chrono::seconds(1)); }
   std::vector<std::string> taken() {
@@ -127,6 +139,7 @@ class RecorderTest : public testing::Test {
   MapPtr owned_;
   std::unique_ptr<RecordFormat> format_;
   std::vector<std::string> reports_;
+  std::optional<ValueTable> values_;
   std::optional<Recorder> recorder_;
 };
 

@@ -21,7 +21,7 @@ using testing::IsEmpty;
 TEST_F(RecorderTest, What_the_device_is_stands_where_it_comes_online_and_where_a_file_begins) {
   record(MapBuilder().holding("a", 0));
   recorder_->on_identified(false);
-  recorder_->on_online(true);
+  come_online();
   EXPECT_THAT(taken(), ElementsAre("online, foreign"));
   EXPECT_THAT(lines_of(recorder_->all_values(start_)), ElementsAre("online, foreign"));
   recorder_->on_identified(true);
@@ -92,10 +92,10 @@ TEST_F(RecorderTest, Of_a_shared_register_each_point_has_its_own_bits) {
 
 TEST_F(RecorderTest, After_a_loss_each_value_is_recorded_again) {
   record(MapBuilder().holding("a", 0).holding("b", 1));
-  recorder_->on_online(true);
+  come_online();
   read_registers({"a", "b"}, 0, {5, 6});
   lose("connection lost");
-  recorder_->on_online(true);
+  come_online();
   read_registers({"a", "b"}, 0, {5, 7});
   EXPECT_THAT(taken(), ElementsAre("online", "1000: word a=5±0", "1000: word b=6±0", "lost: connection lost",
                                    "online", "1000: word a=5±0", "1000: word b=7±0"));
@@ -103,7 +103,7 @@ TEST_F(RecorderTest, After_a_loss_each_value_is_recorded_again) {
 
 TEST_F(RecorderTest, While_the_device_is_lost_no_value_is_known) {
   record(MapBuilder().holding("a", 0));
-  recorder_->on_online(true);
+  come_online();
   read_registers({"a"}, 0, {5});
   EXPECT_THAT(lines_of(recorder_->all_values(start_ + seconds(2))),
               ElementsAre("online", "2000: word a=5±0"));
@@ -116,8 +116,8 @@ TEST_F(RecorderTest, Of_the_reasons_why_a_device_is_away_the_first_is_a_line_and
   recorder_->on_report(Level::warning, "a write was dropped");
   recorder_->on_loss("refused");
   recorder_->on_loss("no route");
-  recorder_->on_online(true);
-  recorder_->on_online(false);
+  come_online();
+  go_offline();
   recorder_->on_report(Level::warning, "a write was lost");
   recorder_->on_loss("no route");
   EXPECT_THAT(taken(), ElementsAre("lost: refused", "online", "lost: no route"));
@@ -126,7 +126,7 @@ TEST_F(RecorderTest, Of_the_reasons_why_a_device_is_away_the_first_is_a_line_and
 TEST_F(RecorderTest, All_reports_are_passed_on) {
   record(MapBuilder().holding("a", 0));
   recorder_->on_report(Level::info, "connecting");
-  recorder_->on_online(true);
+  come_online();
   recorder_->on_report(Level::error, "odd");
   recorder_->on_report(Level::error, "odd");
   EXPECT_THAT(reports_, ElementsAre("connecting", "odd", "odd"));
@@ -134,31 +134,22 @@ TEST_F(RecorderTest, All_reports_are_passed_on) {
 
 TEST_F(RecorderTest, An_exception_is_a_line_and_so_is_the_value_behind_it) {
   record(MapBuilder().holding("a", 0).holding("b", 1));
-  recorder_->on_online(true);
+  come_online();
   read_registers({"a", "b"}, 0, {5, 6});
-  judge({{"a", State::exception, Exception::server_device_failure}}, milliseconds(2000));
-  judge({{"a", State::exception, Exception::server_device_failure}}, milliseconds(2100));
-  judge({{"a", State::exception, Exception::server_device_busy}}, milliseconds(2200));
-  judge({{"a", State::rejected, Exception::server_device_busy}}, milliseconds(2300));
+  refuse("a", Exception::server_device_failure, milliseconds(2000));
+  refuse("a", Exception::server_device_failure, milliseconds(2100));
+  refuse("a", Exception::server_device_busy, milliseconds(2200));
+  reject("a", Exception::server_device_busy, milliseconds(2300));
   read_registers({"a", "b"}, 0, {5, 6}, milliseconds(2400));
-  judge({}, milliseconds(2500));
   EXPECT_THAT(taken(), ElementsAre("online", "1000: word a=5±0", "1000: word b=6±0", "2000: a exception 4",
                                    "2200: a exception 6", "2300: a rejected 6", "2400: word a=5±0"));
   EXPECT_EQ(recorder_->counts().changes, 6U);
 }
 
-TEST_F(RecorderTest, An_exception_of_before_a_value_is_none_of_now) {
-  record(MapBuilder().holding("a", 0));
-  recorder_->on_online(true);
-  read_registers({"a"}, 0, {5}, milliseconds(2000));
-  judge({{"a", State::exception, Exception::server_device_failure}}, milliseconds(1999));
-  EXPECT_THAT(taken(), ElementsAre("online", "2000: word a=5±0"));
-}
-
 TEST_F(RecorderTest, An_exception_is_known_until_there_is_a_value) {
   record(MapBuilder().holding("a", 0));
-  recorder_->on_online(true);
-  judge({{"a", State::rejected, Exception::illegal_data_address}});
+  come_online();
+  reject("a", Exception::illegal_data_address);
   EXPECT_THAT(lines_of(recorder_->all_values(start_ + seconds(2))),
               ElementsAre("online", "2000: a rejected 2"));
   read_registers({"a"}, 0, {5});
@@ -168,18 +159,32 @@ TEST_F(RecorderTest, An_exception_is_known_until_there_is_a_value) {
 
 TEST_F(RecorderTest, An_exception_that_is_there_after_a_loss_is_recorded_again) {
   record(MapBuilder().holding("a", 0));
-  recorder_->on_online(true);
-  judge({{"a", State::exception, Exception::server_device_failure}});
-  recorder_->on_online(false);
-  recorder_->on_online(true);
-  judge({{"a", State::exception, Exception::server_device_failure}});
+  come_online();
+  refuse("a", Exception::server_device_failure);
+  go_offline();
+  come_online();
+  refuse("a", Exception::server_device_failure);
   EXPECT_THAT(taken(), ElementsAre("online", "1000: a exception 4", "online", "1000: a exception 4"));
 }
 
-TEST_F(RecorderTest, Qualities_that_the_lines_show_anyway_are_none_of_their_own) {
+TEST_F(RecorderTest, An_exception_that_came_before_the_device_was_online_is_a_line_behind_it) {
   record(MapBuilder().holding("a", 0));
-  for (const State state : {State::good, State::stale, State::never_read, State::offline, State::not_wanted})
-    judge({{"a", state, Exception::server_device_failure}});
+  refuse("a", Exception::server_device_failure);
+  EXPECT_THAT(taken(), IsEmpty());
+  values_->online(true);
+  recorder_->on_online(true);
+  EXPECT_THAT(taken(), ElementsAre("online", testing::EndsWith(": a exception 4")));
+}
+
+TEST_F(RecorderTest, A_value_that_the_beginning_of_a_file_has_is_no_line_behind_it) {
+  record(MapBuilder().holding("a", 0));
+  come_online();
+  read_registers({"a"}, 0, {5});
+  const ReadSpan whole = span(Table::holding_registers, 0, 1, {"a"});
+  values_->store(whole, test::Words{6}, {start_ + milliseconds(3000), {}}, start_ + milliseconds(3000));
+  const Recorder::Turn turn = recorder_->turn(start_ + milliseconds(2900));  // between the table and the sink
+  EXPECT_THAT(lines_of(turn.beginning), ElementsAre("head of device", "online", "3000: word a=6±0"));
+  recorder_->on_values(whole.points);
   EXPECT_THAT(taken(), IsEmpty());
 }
 
@@ -192,7 +197,7 @@ TEST_F(RecorderTest, More_than_the_queue_holds_is_lost_and_said_once) {
   EXPECT_LE(first.lines.size(), Recorder::longest_queue);
   EXPECT_EQ(lines_of(first.lines).size(), 3U);
   EXPECT_THAT(taken(), IsEmpty());
-  recorder_->on_online(true);
+  come_online();
   EXPECT_THAT(taken(), ElementsAre("online")) << "there is room again";
 }
 
@@ -200,7 +205,7 @@ TEST_F(RecorderTest, A_value_that_was_lost_is_among_all_values) {
   record(MapBuilder().holding("a", 0));
   for (const char each : {'a', 'b'}) lose(std::string(Recorder::longest_queue / 2, each));
   lose(std::string(Recorder::longest_queue / 2 - 20, 'c'));
-  recorder_->on_online(true);
+  come_online();
   read_registers({"a"}, 0, {5});
   EXPECT_TRUE(take().lost);
   EXPECT_THAT(lines_of(recorder_->all_values(start_ + seconds(2))),
@@ -211,7 +216,7 @@ TEST_F(RecorderTest, A_file_begins_with_its_head_and_all_that_is_known) {
   record(MapBuilder("press").holding("a", 0).holding("b", 1));
   EXPECT_THAT(lines_of(recorder_->beginning(start_)),
               ElementsAre("head of press", "lost: not connected yet"));
-  recorder_->on_online(true);
+  come_online();
   read_registers({"b"}, 1, {6}, seconds(1), milliseconds(3));
   EXPECT_THAT(lines_of(recorder_->beginning(start_ + seconds(2))),
               ElementsAre("head of press", "online", "2000: word b=6±3"));
@@ -219,7 +224,7 @@ TEST_F(RecorderTest, A_file_begins_with_its_head_and_all_that_is_known) {
 
 TEST_F(RecorderTest, Between_a_file_and_the_next_one_no_change_is_in_both) {
   record(MapBuilder("press").holding("a", 0));
-  recorder_->on_online(true);
+  come_online();
   read_registers({"a"}, 0, {5});
   const Recorder::Turn turn = recorder_->turn(start_ + seconds(2));
   EXPECT_THAT(lines_of(turn.before.lines), ElementsAre("online", "1000: word a=5±0"));
@@ -229,7 +234,7 @@ TEST_F(RecorderTest, Between_a_file_and_the_next_one_no_change_is_in_both) {
 
 TEST_F(RecorderTest, What_comes_of_its_own_end_is_no_loss_of_the_device) {
   record(MapBuilder().holding("a", 0));
-  recorder_->on_online(true);
+  come_online();
   recorder_->end_comes();
   lose("interrupted");
   EXPECT_THAT(taken(), ElementsAre("online"));
@@ -246,12 +251,12 @@ TEST_F(RecorderTest, What_is_missing_counts_from_the_beginning) {
 TEST_F(RecorderTest, Counts_say_how_many_points_have_a_value) {
   record(MapBuilder().holding("a", 0).holding("b", 1).holding("c", 2));
   EXPECT_FALSE(recorder_->counts().was_online);
-  recorder_->on_online(true);
+  come_online();
   read_registers({"a", "b"}, 0, {5, 6});
-  judge({{"b", State::exception, Exception::server_device_failure}});
+  refuse("b", Exception::server_device_failure);
   EXPECT_EQ(recorder_->counts().good, 1U);
   EXPECT_TRUE(recorder_->counts().online);
-  recorder_->on_online(false);
+  go_offline();
   EXPECT_EQ(recorder_->counts().good, 0U);
   EXPECT_FALSE(recorder_->counts().online);
   EXPECT_TRUE(recorder_->counts().was_online);

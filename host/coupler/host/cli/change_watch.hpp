@@ -37,8 +37,7 @@ class ChangeWatch : private host::ChangeSink, private host::Sink {
   void on_end() override {}
   host::Time answer_wanted() override { return host::Time::max(); }
 
-  void on_bits(const host::ReadSpan&, Span<const std::uint8_t>, host::Stamp) override {}
-  void on_registers(const host::ReadSpan&, Span<const std::uint16_t>, host::Stamp) override {}
+  void on_values(Span<const std::uint32_t>) override {}
   void on_online(bool) override {}
   void on_report(host::Level, const std::string& text) override { note_(text); }
 

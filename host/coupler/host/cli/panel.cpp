@@ -10,7 +10,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -37,8 +36,8 @@ using host::WriteTicket;
 
 /// Until a page gives a click up, after 5 s, its request may come: none is written that is older than 8 s.
 constexpr std::chrono::seconds longest_wait{3};
-constexpr std::chrono::milliseconds judge_period{100};
-constexpr int judgements_a_told = 10;  ///< so often the head's numbers are new: once a second
+constexpr std::chrono::milliseconds turn_period{100};
+constexpr int turns_a_report = 10;  ///< the head's numbers are new once a second
 
 /// A terminal that has gone ends no panel.
 void say(host::Level level, const std::string& text) {
@@ -48,13 +47,14 @@ void say(host::Level level, const std::string& text) {
 /// A connection to the device that exists while a page looks.
 class LookedAtDevice final : public host::PanelDevice {
  public:
-  LookedAtDevice(const Map& map, host::LiveValues& values, bool writes)
-      : map_(map), values_(values), writes_(writes) {}
+  LookedAtDevice(const Map& map, host::ValueTable& table, host::LiveValues& values, bool writes)
+      : map_(map), table_(table), values_(values), writes_(writes) {}
 
   void look(bool anybody) override {
     set(nullptr);  // first: the coupler may take one connection only
+    table_.begin();
     if (anybody)
-      set(std::make_shared<Connection>(map_, values_));
+      set(std::make_shared<Connection>(map_, table_, values_));
     else
       values_.stopped();
   }
@@ -72,21 +72,18 @@ class LookedAtDevice final : public host::PanelDevice {
     look(true);
   }
 
-  /// To be called some ten times a second.
-  void judge(bool and_tell) {
-    const auto now = connection();
-    if (now == nullptr) return;
-    values_.judge(now->qualities(), std::chrono::steady_clock::now());
-    if (and_tell) values_.tell(now->statistics());
+  /// Gives the pages the counts of the connection. To be called once a second.
+  void report() {
+    if (const auto now = connection()) values_.tell(now->statistics());
   }
 
  private:
   /// Somebody who waits for the outcome of a write may have it longer than it lasts.
   class Connection {
    public:
-    Connection(const Map& map, host::Sink& sink)
+    Connection(const Map& map, host::ValueTable& table, host::Sink& sink)
         : link_(host::make_link(map.connection, map.limits)),
-          thread_(map, map.verify, load_served_map, link_, sink) {
+          thread_(map, map.verify, load_served_map, link_, table, sink) {
       thread_.start();
     }
 
@@ -103,7 +100,6 @@ class LookedAtDevice final : public host::PanelDevice {
       }
       thread_.end();
     }
-    std::vector<host::PointQuality> qualities() const { return thread_.qualities(); }
     host::DeviceSnapshot statistics() const { return thread_.statistics(); }
 
    private:
@@ -139,6 +135,7 @@ class LookedAtDevice final : public host::PanelDevice {
   }
 
   const Map& map_;
+  host::ValueTable& table_;
   host::LiveValues& values_;
   const bool writes_;
   std::mutex mutex_;
@@ -169,8 +166,9 @@ Exit panel(const DeviceArgument& argument, const PanelOptions& options) {
     ended = true;
     clock.stop();
   });
-  host::LiveValues values(map, say);
-  LookedAtDevice device(map, values, options.write);
+  host::ValueTable table(map);
+  host::LiveValues values(map, table, say);
+  LookedAtDevice device(map, table, values, options.write);
   const std::string warning(watchdog_warning(original));
   if (!warning.empty()) say(host::Level::warning, warning);
   auto server = host::PanelServer::start({options.listen, options.port, options.name}, tls,
@@ -185,8 +183,8 @@ Exit panel(const DeviceArgument& argument, const PanelOptions& options) {
     say(host::Level::warning, "the page's certificate: " + *objection);
   say(host::Level::info, "open that address in a browser; Ctrl-C ends it");
   for (int turn = 0; !ended; ++turn) {
-    clock.sleep_until(clock.now() + judge_period);
-    device.judge(turn % judgements_a_told == 0);
+    clock.sleep_until(clock.now() + turn_period);
+    if (turn % turns_a_report == 0) device.report();
     (*server)->turn(clock.now());
   }
   return ok;

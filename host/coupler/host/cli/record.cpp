@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,7 +17,7 @@
 #include "coupler/host/cli/read_only_map.hpp"
 #include "coupler/host/cli/report_line.hpp"
 #include "coupler/host/core/clock.hpp"
-#include "coupler/host/core/device.hpp"
+#include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/modbus/make_links.hpp"
 #include "coupler/host/record/record_thread.hpp"
 #include "coupler/map/loader/load.hpp"
@@ -49,20 +48,6 @@ std::string progress_text(const host::Recorder::Counts& counts, std::size_t poin
                      points, counts.changes, size_text(file.written()));
 }
 
-/// In the connection's thread.
-void read_on(host::Device& device, host::Link& link, host::Recorder& recorder,
-             const std::atomic<bool>& stopped) {
-  std::uint64_t judged = 0;
-  while (!stopped) {
-    const host::Time next = device.step();
-    if (const std::uint64_t revision = device.revision(); revision != judged) {
-      recorder.judge(device.qualities(), link.clock().now());
-      judged = revision;
-    }
-    if (link.wait_until(next) == host::Woken::by_bytes) device.arrived();
-  }
-}
-
 tl::expected<host::RecordFile, std::string> open_file(const RecordOptions& options) {
   if (options.file == "-") return host::RecordFile::standard_output();
   return host::RecordFile::open(options.file, {options.keep, options.sync});
@@ -83,22 +68,21 @@ Exit record(const Map& original, const RecordOptions& options) {
   std::atomic<bool> stopped{false};
   const auto format = options.csv ? host::csv_format() : host::json_format();
   const host::Time start = clock.now();
-  host::Recorder recorder(map, node_address_text(map.connection), *format, start,
+  host::ValueTable values(map);
+  host::Recorder recorder(map, values, node_address_text(map.connection), *format, start,
                           [&](host::Level level, const std::string& text) {
                             if (!stopped) say(level, text);
                           });
   const Interruption interruption([&] {
     stopped = true;
     recorder.end_comes();
-    link.interrupt();
-    link.wake();
     pause.stop();
   });
   if (const std::string_view warning = watchdog_warning(original); !warning.empty())
     say(host::Level::warning, std::string(warning));
   host::RecordThread writing(recorder, *std::move(file), say);
-  host::Device device(map, map.verify, load_served_map, link, recorder);
-  std::thread reading([&] { read_on(device, link, recorder, stopped); });
+  host::DeviceThread device(map, map.verify, load_served_map, link, values, recorder);
+  device.start();
 
   const auto progress = [&](const host::Recorder::Counts& counts) {
     return progress_text(counts, map.points.size(), writing, clock.now() - start);
@@ -107,10 +91,8 @@ Exit record(const Map& original, const RecordOptions& options) {
     pause.sleep_until(clock.now() + progress_period);
     if (::isatty(STDERR_FILENO) == 1 && !stopped) show("\r\x1b[K" + progress(recorder.counts()));
   }
-  reading.join();
+  device.end();
   const host::Recorder::Counts counts = recorder.counts();
-  device.end_comes();
-  device.stop();
   const bool is_whole = writing.end();
   say(host::Level::info, fmt::format("{}: {}", writing.path().string(), progress(counts)));
   return counts.was_online && is_whole ? ok : failed;

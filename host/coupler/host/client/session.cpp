@@ -107,8 +107,9 @@ std::future<host::ScheduleAnswer> known(host::ScheduleAnswer answer) {
 }  // namespace
 
 struct Session::Engine {
-  Engine(const Map& map, Verify verify, host::Sink& sink)
-      : link(host::make_link(map.connection, map.limits)), thread(map, verify, load_served_map, link, sink) {
+  Engine(const Map& map, Verify verify, host::ValueTable& values, host::Sink& sink)
+      : link(host::make_link(map.connection, map.limits)),
+        thread(map, verify, load_served_map, link, values, sink) {
     thread.start();
   }
 
@@ -131,7 +132,10 @@ PendingWrite refused(std::string_view why) {
 }
 
 Session::Session(const Map& map, Options options)
-    : options_(with_absolute_paths(std::move(options))), map_(moved(map, options_)), values_(map_) {}
+    : options_(with_absolute_paths(std::move(options))),
+      map_(moved(map, options_)),
+      values_(map_),
+      listeners_(map_.points.size()) {}
 
 Session::~Session() { disconnect(); }
 
@@ -141,7 +145,7 @@ void Session::connect() {
   if (engine_) return;
   values_.begin();
   host::Sink& news = *this;
-  engine_ = std::make_unique<Engine>(map_, options_.verify.value_or(map_.verify), news);
+  engine_ = std::make_unique<Engine>(map_, options_.verify.value_or(map_.verify), values_, news);
 }
 
 void Session::disconnect() {
@@ -164,22 +168,16 @@ bool Session::wait_online(std::chrono::milliseconds at_most) const {
   return came_online_.wait_for(lock, at_most, [this] { return online_; });
 }
 
-tl::expected<Session::Sample, NoValue> Session::judge(std::uint32_t point,
-                                                      std::optional<LastValues::Value> value) const {
-  const host::PointQuality known = quality(point);
-  if (!value) return tl::unexpected(NoValue{known.state, known.last_exception});
-  // A value is here a moment before its quality is. The other way round it is one of a connection before.
-  Quality state = known.state == Quality::never_read ? Quality::good : known.state;
-  if (value->earlier && state == Quality::good) state = Quality::stale;
+tl::expected<Session::Sample, NoValue> Session::sample(std::uint32_t point) const {
+  const host::Time now = std::chrono::steady_clock::now();
+  host::ValueTable::Value value = values_.get(point, now);
+  const host::PointQuality& quality = value.quality;
+  if (value.registers.empty()) return tl::unexpected(NoValue{quality.state, quality.last_exception});
   // If a node tells changes, a value is known to be true for longer than since its last change.
-  const bool was_true_then = (state == Quality::good || state == Quality::offline) && known.last_good;
-  const host::Time at = was_true_then ? std::max(value->at, *known.last_good) : value->at;
-  return Sample{std::move(value->registers), state, std::chrono::steady_clock::now() - at};
-}
-
-host::PointQuality Session::quality(std::uint32_t point) const {
-  const std::shared_lock lock(engine_mutex_);
-  return engine_ ? engine_->thread.quality(point) : host::PointQuality{Quality::offline};
+  const bool was_true_then =
+      (quality.state == Quality::good || quality.state == Quality::offline) && quality.last_good;
+  const host::Time at = was_true_then ? std::max(value.stamp.at, *quality.last_good) : value.stamp.at;
+  return Sample{std::move(value.registers), quality.state, std::max<host::Duration>(now - at, {})};
 }
 
 PendingWrite Session::write(host::Write& write) {
@@ -201,14 +199,9 @@ PendingSchedule Session::schedule(const host::ScheduledWrite& what) {
   });
 }
 
-void Session::on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits, host::Stamp stamp) {
-  std::copy(bits.begin(), bits.end(), bits_.begin());
-  on_registers(span, {bits_.data(), bits.size()}, stamp);
-}
-
-void Session::on_registers(const host::ReadSpan& span, Span<const std::uint16_t> registers,
-                           host::Stamp stamp) {
-  values_.set(span, registers, stamp);
+void Session::on_values(Span<const std::uint32_t> points) {
+  for (const std::uint32_t point : points)
+    if (values_.differs(point)) listeners_.call(point, values_.registers(point), values_.stamp(point));
 }
 
 void Session::on_online(bool online) {
@@ -219,8 +212,8 @@ void Session::on_online(bool online) {
 
 void Session::on_report(Level level, const std::string& text) { report(options_, level, text); }
 
-void Session::listen(std::uint32_t point, LastValues::Listener listener) {
-  if (!listener) return values_.listen(point, {});
+void Session::listen(std::uint32_t point, ValueListeners::Listener listener) {
+  if (!listener) return listeners_.set(point, {});
   auto tell = [this, point, told = false](std::string_view what) mutable {
     if (std::exchange(told, true)) return;
     const std::string text =
@@ -229,7 +222,7 @@ void Session::listen(std::uint32_t point, LastValues::Listener listener) {
     report(options_, Level::error, text);
     if (!options_.on_report) print(text);
   };
-  values_.listen(point, [tell = std::move(tell), listener = std::move(listener)](
+  listeners_.set(point, [tell = std::move(tell), listener = std::move(listener)](
                             const std::uint16_t* registers, host::Stamp stamp) mutable {
     try {
       listener(registers, stamp);

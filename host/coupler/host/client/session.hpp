@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -15,9 +14,10 @@
 
 #include <tl/expected.hpp>
 
-#include "coupler/host/client/last_values.hpp"
 #include "coupler/host/client/scheduling.hpp"
+#include "coupler/host/client/value_listeners.hpp"
 #include "coupler/host/core/device_thread.hpp"
+#include "coupler/host/core/value_table.hpp"
 #include "coupler/map/tls_texts.hpp"
 
 namespace coupler::client {
@@ -103,15 +103,12 @@ class Session : private host::Sink {
     Quality quality;
     host::Duration age;
   };
-  tl::expected<Sample, NoValue> judge(std::uint32_t point, std::optional<LastValues::Value> value) const;
-  host::PointQuality quality(std::uint32_t point) const;
-  void listen(std::uint32_t point, LastValues::Listener listener);
+  tl::expected<Sample, NoValue> sample(std::uint32_t point) const;
+  void listen(std::uint32_t point, ValueListeners::Listener listener);
   PendingWrite write(host::Write& write);
   PendingSchedule schedule(const host::ScheduledWrite& what);
 
-  void on_bits(const host::ReadSpan& span, Span<const std::uint8_t> bits, host::Stamp stamp) override;
-  void on_registers(const host::ReadSpan& span, Span<const std::uint16_t> registers,
-                    host::Stamp stamp) override;
+  void on_values(Span<const std::uint32_t> points) override;
   void on_online(bool online) override;
   void on_report(Level level, const std::string& text) override;
   void on_scheduled(const host::ScheduledOutcome& outcome) override { scheduled_.tell(outcome); }
@@ -120,9 +117,9 @@ class Session : private host::Sink {
 
   const Options options_;
   const Map map_;
-  LastValues values_;
+  host::ValueTable values_;
+  ValueListeners listeners_;
   ScheduleResults scheduled_;
-  std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of the connection's thread
   mutable std::mutex online_mutex_;
   mutable std::condition_variable came_online_;
   bool online_ = false;
@@ -142,13 +139,13 @@ class PointHandle {
 
   PointHandle(Session& session, std::uint32_t index) : session_(session), index_(index) {}
 
-  tl::expected<Sample, NoValue> sample() const {
-    return session_.judge(index_, session_.values_.get(index_));
-  }
+  tl::expected<Sample, NoValue> sample() const { return session_.sample(index_); }
   tl::expected<Sample, NoValue> first_sample(std::chrono::milliseconds at_most) const {
-    return session_.judge(index_, session_.values_.wait(index_, at_most));
+    const host::Time deadline = std::chrono::steady_clock::now() + at_most;
+    session_.values_.wait(index_, host::Time::min(), deadline, host::ValueTable::Offline::waits);
+    return session_.sample(index_);
   }
-  void listen(LastValues::Listener listener) { session_.listen(index_, std::move(listener)); }
+  void listen(ValueListeners::Listener listener) { session_.listen(index_, std::move(listener)); }
   /// `registers` as TypedValue encodes them.
   PendingWrite write(const std::uint16_t* registers);
   PendingSchedule write_at(const std::uint16_t* registers, host::Time due,

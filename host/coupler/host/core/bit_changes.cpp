@@ -22,14 +22,8 @@ Stamp not_before(Stamp last, Stamp stamp) {
 
 }  // namespace
 
-BitChanges::BitChanges(const Map& map, PollCycle& cycle, Writer& writer, PointQualities& qualities,
-                       Sink& sink)
-    : map_(map),
-      cycle_(cycle),
-      writer_(writer),
-      qualities_(qualities),
-      sink_(sink),
-      index_(map.points.size()) {
+BitChanges::BitChanges(const Map& map, PollCycle& cycle, Writer& writer, ValueTable& values, Sink& sink)
+    : map_(map), cycle_(cycle), writer_(writer), values_(values), sink_(sink), index_(map.points.size()) {
   for (std::uint32_t i = 0; i < map.points.size(); ++i) {
     const Point& point = map.points[i];
     if (!holds_bits(point.table) || plan::why_not_read(map, point)) continue;
@@ -72,7 +66,7 @@ void BitChanges::forget(Told& told) {
   told.pending.reset();
   told.newer_than = 0;
   cycle_.rest(told.point, false);
-  qualities_.told(told.point, false);
+  values_.told(told.point, false);
 }
 
 void BitChanges::want(std::uint32_t point, bool wanted) {
@@ -85,23 +79,23 @@ void BitChanges::want(std::uint32_t point, bool wanted) {
     cycle_.read_soon(point);
 }
 
-const std::uint8_t* BitChanges::in(const ReadSpan& span, Span<const std::uint8_t> bits,
-                                   const Told& told) const {
+const std::uint16_t* BitChanges::in(const ReadSpan& span, Span<const std::uint16_t> bits,
+                                    const Told& told) const {
   return &bits[read_range(point_of(told)).start() - std::size_t{span.range.start()}];
 }
 
-bool BitChanges::leave_out(std::uint32_t point, const ReadSpan& span, Span<const std::uint8_t> bits) {
+bool BitChanges::leave_out(std::uint32_t point, const ReadSpan& span, Span<const std::uint16_t> bits) {
   if (!leaves_out_any() || !holds_bits(span.table)) return false;
   Told& told = points_[*index_[point]];
   if (!told.known) return false;
-  const std::uint8_t* shown = &bits_[told.first];
+  const std::uint16_t* shown = &bits_[told.first];
   const std::size_t count = read_range(point_of(told)).count();
   if (!told.pending && std::equal(shown, shown + count, in(span, bits, told))) return false;
   told.left_out = rests(told);
   return true;
 }
 
-Stamp BitChanges::read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
+Stamp BitChanges::read(const ReadSpan& span, Span<const std::uint16_t> bits, Stamp stamp) {
   if (!active_ || !holds_bits(span.table)) return stamp;
   for (const std::uint32_t point : span.points) stamp = not_before(points_[*index_[point]].stamp, stamp);
   for (const std::uint32_t point : span.points) {
@@ -113,7 +107,7 @@ Stamp BitChanges::read(const ReadSpan& span, Span<const std::uint8_t> bits, Stam
     told.repeat_at.reset();
     if (!rests(told)) continue;
     cycle_.rest(point, true);
-    qualities_.told(point, true);
+    values_.told(point, true);
   }
   return stamp;
 }
@@ -157,7 +151,8 @@ void BitChanges::show(Told& told, Stamp stamp) {
   one_.table = point_of(told).table;
   one_.range = read_range(point_of(told));
   one_.points.front() = told.point;
-  sink_.on_bits(one_, {&bits_[told.first], one_.range.count()}, told.stamp);
+  values_.store(one_, {&bits_[told.first], one_.range.count()}, told.stamp, told.stamp.at);
+  sink_.on_values(one_.points);
   writer_.shown(one_.points);
 }
 
@@ -175,7 +170,7 @@ void BitChanges::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
   newest_ = newest;
   more_follow_ = !stamp;
   if (!stamp) return leave_out_older_than_writes();
-  qualities_.heard(stamp->at);
+  values_.heard(stamp->at);
   for (Told& told : points_) {
     show_pending(told);
     if (std::exchange(told.left_out, false)) cycle_.read_soon(told.point);

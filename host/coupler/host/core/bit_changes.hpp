@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "coupler/host/core/change_listener.hpp"
-#include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/poll_cycle.hpp"
 #include "coupler/host/core/sink.hpp"
+#include "coupler/host/core/value_table.hpp"
 #include "coupler/host/core/writer.hpp"
 
 namespace coupler::host {
@@ -29,7 +29,7 @@ namespace coupler::host {
 class BitChanges : public ChangeSink {
  public:
   /// All references must outlive the object.
-  BitChanges(const Map& map, PollCycle& cycle, Writer& writer, PointQualities& qualities, Sink& sink);
+  BitChanges(const Map& map, PollCycle& cycle, Writer& writer, ValueTable& values, Sink& sink);
 
   /// Starts with a new connection, after PollCycle::start(). `told`: the device tells changes.
   void start(bool told);
@@ -40,10 +40,10 @@ class BitChanges : public ChangeSink {
   bool leaves_out_any() const { return active_ && more_follow_; }
   /// Returns whether the value just read of this point must not be published. Under `publish: on_change` the
   /// point is read again when all changes have come.
-  bool leave_out(std::uint32_t point, const ReadSpan& span, Span<const std::uint8_t> bits);
+  bool leave_out(std::uint32_t point, const ReadSpan& span, Span<const std::uint16_t> bits);
   /// Notes that these points have been read and will be published. Returns the stamp to publish them with.
   /// The stamp of a point never goes back.
-  Stamp read(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp);
+  Stamp read(const ReadSpan& span, Span<const std::uint16_t> bits, Stamp stamp);
 
   void on_change(const modbus::Change& change, std::uint64_t number, Stamp stamp) override;
   void on_new_epoch() override;
@@ -67,7 +67,7 @@ class BitChanges : public ChangeSink {
     modbus::NodeTime pending_at{};  ///< the time of the step
   };
   /// Takes its bits from what was read.
-  const std::uint8_t* in(const ReadSpan& span, Span<const std::uint8_t> bits, const Told& told) const;
+  const std::uint16_t* in(const ReadSpan& span, Span<const std::uint16_t> bits, const Told& told) const;
   const Point& point_of(const Told& told) const { return map_.points[told.point]; }
   bool rests(const Told& told) const;
   bool repeats(const Told& told) const;
@@ -82,12 +82,12 @@ class BitChanges : public ChangeSink {
   const Map& map_;
   PollCycle& cycle_;
   Writer& writer_;
-  PointQualities& qualities_;
+  ValueTable& values_;
   Sink& sink_;
   std::vector<Told> points_;
   std::vector<std::optional<std::uint32_t>> index_;          ///< by point: the index in points_
   std::vector<std::pair<std::uint32_t, std::uint32_t>> at_;  ///< place of a bit, index in points_; sorted
-  std::vector<std::uint8_t> bits_;
+  std::vector<std::uint16_t> bits_;
   bool active_ = false;
   std::uint64_t newest_ = 0;  ///< the number of the node's newest change, as of its last answer
   bool more_follow_ = false;  ///< changes up to newest_ are still to come

@@ -25,17 +25,17 @@ std::string loss_text(const Map& map, const Error& error, bool was_online) {
 
 }  // namespace
 
-Device::Device(const Map& map, Verify verify, MapLoader load, Link& link, Sink& sink)
+Device::Device(const Map& map, Verify verify, MapLoader load, Link& link, ValueTable& values, Sink& sink)
     : map_(map),
       verify_(map.connection.is_broadcast() ? Verify::off : verify),
       load_(std::move(load)),
       link_(link),
       clock_(link.clock()),
       sink_(sink),
-      qualities_(map),
+      values_(values),
       watchdog_(map_, link_, statistics_, sink),
-      writer_(map_, link_, statistics_, qualities_, sink),
-      poller_(map_, link_, writer_, statistics_, qualities_, sink),
+      writer_(map_, link_, statistics_, values_, sink),
+      poller_(map_, link_, writer_, statistics_, values_, sink),
       scheduler_(map_, link_, writer_, poller_.changes(), sink),
       listener_(map.connection.timeout, link_, statistics_, scheduler_.changes(), sink) {}
 
@@ -190,6 +190,7 @@ bool Device::stop() {
   scheduler_.disconnected("the driver ends");
   watchdog_.disconnected("the driver ends");
   link_.close();
+  values_.online(false);
   if (std::exchange(state_, State::none) == State::online) sink_.on_online(false);
   return is_safe;
 }
@@ -296,7 +297,7 @@ void Device::came_online() {
   last_error_text_.clear();
   const auto certificates = link_.certificates();
   statistics_.online(certificates);
-  qualities_.online(true);
+  values_.online(true);
   sink_.on_online(true);
   const std::string connected = peer_.empty() ? "connected" : "connected to " + peer_;
   if (const std::uint64_t dropped = writer_.take_dropped(); dropped > 0)
@@ -325,7 +326,7 @@ void Device::lost(const Error& error) {
   watchdog_.disconnected(why);
   scheduler_.disconnected(why);
   statistics_.offline(why);
-  qualities_.online(false);
+  values_.online(false);
   if (was_online) {
     identity_suffices_ = link_.replies() > replies_at_connect_;
     sink_.on_online(false);

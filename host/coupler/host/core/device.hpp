@@ -31,12 +31,12 @@ namespace coupler::host {
 /// back. Reads are made while one is outstanding only: its answer says which changes are older than they.
 ///
 /// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), schedule(), has_to_end(), answers(),
-/// end_comes(), statistics() and qualities() may be called from any thread. All else is for the thread that
+/// end_comes() and statistics() may be called from any thread. All else is for the thread that
 /// owns the connection; send_now() is also for another that has made sure that the owner only waits.
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
-  Device(const Map& map, Verify verify, MapLoader load, Link& link, Sink& sink);
+  Device(const Map& map, Verify verify, MapLoader load, Link& link, ValueTable& values, Sink& sink);
 
   /// Queues a write. Its listener gets the result.
   void push(const Write& write) { writer_.push(write); }
@@ -85,11 +85,9 @@ class Device {
   void want(std::uint32_t point, bool wanted) { poller_.want(point, wanted); }
 
   DeviceSnapshot statistics() const { return {statistics_.counts(), link_.counts(), link_.discarded()}; }
-  std::vector<PointQuality> qualities() const { return qualities_.snapshot(clock_.now()); }
-  PointQuality quality(std::uint32_t point) const { return qualities_.of(point, clock_.now()); }
-  /// A number that changes with qualities() and with the connection in statistics(), but not by the mere
-  /// passing of time.
-  std::uint64_t revision() const { return statistics_.revision() + qualities_.revision(); }
+  /// A number that changes with ValueTable::revision() and with the connection in statistics(), but not by
+  /// the mere passing of time.
+  std::uint64_t revision() const { return statistics_.revision() + values_.revision(); }
 
  private:
   /// Each state includes those before it.
@@ -137,7 +135,7 @@ class Device {
   Clock& clock_;
   Sink& sink_;
   DeviceStatistics statistics_;
-  PointQualities qualities_;
+  ValueTable& values_;
   CouplerWatchdog watchdog_;
   Writer writer_;
   Poller poller_;

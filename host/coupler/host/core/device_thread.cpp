@@ -18,13 +18,11 @@ constexpr milliseconds longest_attempt(100);
 
 }  // namespace
 
-DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Link& link, Sink& sink, Poll poll)
+DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Link& link, ValueTable& values,
+                           Sink& sink)
     : link_(link),
-      device_(map, verify, std::move(load), link, sink),
-      ends_safely_(map.on_shutdown == OnShutdown::safe) {
-  if (poll == Poll::subscribed)
-    for (std::uint32_t i = 0; i < map.points.size(); ++i) device_.want(i, false);
-}
+      device_(map, verify, std::move(load), link, values, sink),
+      ends_safely_(map.on_shutdown == OnShutdown::safe) {}
 
 void DeviceThread::start() {
   const std::lock_guard life(life_);

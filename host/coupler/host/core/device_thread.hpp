@@ -48,8 +48,8 @@ class ReadDemand {
 /// wakes the owner. So a write to an idle device needs no switch of threads.
 class DeviceThread {
  public:
-  /// With Poll::subscribed no point is wanted at first. No request is sent before start().
-  DeviceThread(const Map& map, Verify verify, MapLoader load, Link& link, Sink& sink, Poll poll = Poll::all);
+  /// Everything given by reference must outlive it. No request is sent before start().
+  DeviceThread(const Map& map, Verify verify, MapLoader load, Link& link, ValueTable& values, Sink& sink);
   /// Ends the request in progress and waits for the thread. That takes milliseconds. If outputs have to get
   /// their safe values, it takes most of a second at the worst, or a tenth of a second for a device that is
   /// offline.
@@ -63,7 +63,7 @@ class DeviceThread {
   /// safe value but does not.
   bool end();
 
-  // Any thread may call these functions after start(). None of them waits for a request.
+  // Any thread may call these functions after start(), and want() before. None of them waits for a request.
 
   /// Sends a write at once if the connection is idle, or else queues it. The sink may call it.
   void write(const Write& write);
@@ -71,8 +71,9 @@ class DeviceThread {
   void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
   /// See Writer. Call it a few times a second.
   void report_held_back() { device_.report_held_back(); }
-  /// Sets whether somebody wants the values of a point (index into Map::points). If a point whose changes are
-  /// told was wanted already, it is read soon, because the new reader has seen none of its values.
+  /// Sets whether somebody wants the values of a point (index into Map::points). At first all are wanted. If
+  /// a point whose changes are told was wanted already, it is read soon, because the new reader has seen none
+  /// of its values.
   void want(std::uint32_t point, bool wanted);
   /// Resets the coupler's own watchdog. The answer comes after a few timeouts at most.
   std::future<CallAnswer> reset_watchdog();
@@ -83,8 +84,6 @@ class DeviceThread {
   /// if there is no connection. The outcome goes to the sink.
   std::future<ScheduleAnswer> schedule(const ScheduledWrite& what);
   DeviceSnapshot statistics() const { return device_.statistics(); }
-  std::vector<PointQuality> qualities() const { return device_.qualities(); }
-  PointQuality quality(std::uint32_t point) const { return device_.quality(point); }
   std::uint64_t revision() const { return device_.revision(); }
 
  private:

@@ -126,7 +126,6 @@ Result<> Link::put(Rank rank, modbus::Bytes pdu, bool owner_waits) {
 
 Result<modbus::Bytes> Link::exchange(modbus::Bytes pdu) {
   const Result<> sent = put(rank_, pdu);
-  read_sent_ = sent_at_;
   if (sent) return finish(!changes_outputs(pdu));
   count(clock_.now(), &sent.error());
   trace_request(&sent.error());

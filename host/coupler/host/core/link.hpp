@@ -101,11 +101,7 @@ class Link {
 
   // Requests, and what their replies mean (link_requests.cpp).
 
-  /// FC 1 or 2: fills `bits` with `range.count()` (at most 2000) elements of 0 or 1.
-  Result<> read_bits(Table table, modbus::Range range, std::uint8_t* bits);
-  /// FC 3 or 4: fills `registers` with `range.count()` (at most 125) registers.
-  Result<> read_registers(Table table, modbus::Range range, std::uint16_t* registers);
-  /// Calls read_bits() or read_registers(). A bit becomes 0 or 1.
+  /// FC 1 … 4: fills `values` with `range.count()` registers (at most 125), or bits as 0 or 1 (at most 2000).
   Result<> read(Table table, modbus::Range range, std::uint16_t* values);
   /// FC 20 with one group: fills `registers` (1 … 121) from a file.
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers);
@@ -167,8 +163,6 @@ class Link {
 
   /// Returns whether a request needs no pause now.
   bool is_ready() const { return ready_ == Time::min() || clock_.now() >= ready_; }
-  /// The time at which the last exchange() was sent.
-  Time read_sent_at() const { return read_sent_; }
   /// The time of the reply to the last request, or of its failure.
   Time last_answer() const { return answered_; }
   /// The stamp of the values in the last reply to a read, between the times of request and reply.
@@ -244,7 +238,6 @@ class Link {
   Time ready_ = Time::min();                                ///< no request is sent before
   Time late_until_{};  ///< on a bus, the unit's late reply may come until then
   Time sent_at_{};     ///< the last request
-  Time read_sent_{};
   Time answered_{};
   Stamp written_{};
   std::uint64_t replies_ = 0;

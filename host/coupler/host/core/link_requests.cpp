@@ -19,26 +19,11 @@ Result<> result(const Taken& taken, modbus::Bytes asked, modbus::Bytes came) {
 
 }  // namespace
 
-Result<> Link::read_bits(Table table, modbus::Range range, std::uint8_t* bits) {
-  const modbus::ReadRequest request(read_function(table), range);
-  const auto reply = exchange(request.pdu());
-  if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::take_bits(request, *reply, bits), request.pdu(), *reply);
-}
-
-Result<> Link::read_registers(Table table, modbus::Range range, std::uint16_t* registers) {
-  const modbus::ReadRequest request(read_function(table), range);
-  const auto reply = exchange(request.pdu());
-  if (!reply) return tl::make_unexpected(reply.error());
-  return result(modbus::take_registers(request, *reply, registers), request.pdu(), *reply);
-}
-
 Result<> Link::read(Table table, modbus::Range range, std::uint16_t* values) {
-  if (!holds_bits(table)) return read_registers(table, range, values);
-  std::array<std::uint8_t, modbus::max_read_bits> bits{};
-  Result<> answer = read_bits(table, range, bits.data());
-  if (answer) std::copy_n(bits.begin(), range.count(), values);
-  return answer;
+  const modbus::ReadRequest request(read_function(table), range);
+  const auto reply = exchange(request.pdu());
+  if (!reply) return tl::make_unexpected(reply.error());
+  return result(modbus::take_values(request, *reply, values), request.pdu(), *reply);
 }
 
 Result<> Link::read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) {

@@ -9,39 +9,34 @@
 
 namespace coupler::host {
 
-Poller::Poller(const Map& map, Link& link, Writer& writer, DeviceStatistics& statistics,
-               PointQualities& qualities, Sink& sink)
+Poller::Poller(const Map& map, Link& link, Writer& writer, DeviceStatistics& statistics, ValueTable& values,
+               Sink& sink)
     : map_(map),
       link_(link),
       clock_(link.clock()),
       writer_(writer),
       statistics_(statistics),
-      qualities_(qualities),
+      values_(values),
       sink_(sink),
       cycle_(map),
-      told_(map_, cycle_, writer, qualities, sink) {}
+      told_(map_, cycle_, writer, values, sink) {}
 
 void Poller::start(bool is_node, bool told) {
   is_node_ = is_node;
-  qualities_.connected();
+  values_.connected();
   cycle_.start(clock_.now());
   told_.start(told);
-}
-
-Result<> Poller::request(const ReadSpan& span) {
-  return holds_bits(span.table) ? link_.read_bits(span.table, span.range, bits_.data())
-                                : link_.read_registers(span.table, span.range, registers_.data());
 }
 
 Result<> Poller::step(Time until) {
   if (!has_request(clock_.now()) || link_.await_turn(until) != Link::Turn::read) return {};
   const ReadSpan& span = cycle_.current();
-  if (Result<> answer = request(span); !answer) {
+  if (Result<> answer = link_.read(span.table, span.range, read_.data()); !answer) {
     const ExceptionReply* exception = exception_in(answer.error());
     if (exception == nullptr) return answer;
     if (is_unit_away(answer.error())) {
-      qualities_.exception(span.points, exception->code);
-      return answer;
+      values_.exception(span.points, exception->code);
+      return answer;  // the sink learns that the device is lost
     }
     on_exception(exception->code);
   } else {
@@ -64,7 +59,8 @@ void Poller::set_aside(const Error& error) {
       span.range.count(), holds_bits(span.table) ? "bit" : "register", span.range.count() == 1 ? "" : "s");
   for (const std::uint32_t point : cycle_.set_aside(clock_.now())) {
     const std::string why = fmt::format("{} to the request for it ({})", to_string(error), asked);
-    qualities_.set_aside({&point, 1}, why);
+    values_.set_aside({&point, 1}, why);
+    sink_.on_no_values({&point, 1}, clock_.now());
     sink_.on_report(
         Level::warning,
         fmt::format("{} cannot be read: {}, though other requests are answered; it is tried again "
@@ -75,28 +71,22 @@ void Poller::set_aside(const Error& error) {
 }
 
 void Poller::publish(const ReadSpan& span) {
-  const Stamp stamp = link_.last_stamp();
-  const ReadSpan& fresh = writer_.hides_any() || told_.leaves_out_any() ? without_hidden(span) : span;
-  if (holds_bits(span.table))
-    publish_bits(fresh, stamp);
-  else
-    sink_.on_registers(fresh, {registers_.data(), span.range.count()}, stamp);
+  const Span<const std::uint16_t> read(read_.data(), span.range.count());
+  const bool hides = writer_.hides_any() || told_.leaves_out_any();
+  const ReadSpan& fresh = hides ? without_hidden(span) : span;
+  values_.store(fresh, read, told_.read(fresh, read, link_.last_stamp()), link_.last_answer());
+  if (hides) values_.good(span.points, link_.last_answer());
+  sink_.on_values(fresh.points);
   writer_.shown(fresh.points);
-  qualities_.good(span.points, link_.last_answer());  // last: nobody waits for it
-}
-
-void Poller::publish_bits(const ReadSpan& span, Stamp stamp) {
-  const Span<const std::uint8_t> bits(bits_.data(), span.range.count());
-  sink_.on_bits(span, bits, told_.read(span, bits, stamp));
 }
 
 const ReadSpan& Poller::without_hidden(const ReadSpan& span) {
   rest_.table = span.table;
   rest_.range = span.range;
   rest_.points.clear();
-  const Span<const std::uint8_t> bits(bits_.data(), span.range.count());
+  const Span<const std::uint16_t> read(read_.data(), span.range.count());
   for (const std::uint32_t point : span.points)
-    if (!told_.leave_out(point, span, bits) && !writer_.hides(point)) rest_.points.push_back(point);
+    if (!told_.leave_out(point, span, read) && !writer_.hides(point)) rest_.points.push_back(point);
   return rest_;
 }
 
@@ -114,7 +104,8 @@ void Poller::on_exception(modbus::Exception code) {
         return on_rejection(code, "cannot be read: this client has no right to",
                             "it is read again when the node has read its map again");
       statistics_.rejected();
-      qualities_.rejected(span.points, code);
+      values_.rejected(span.points, code);
+      sink_.on_no_values(span.points, clock_.now());
       cycle_.give_up(clock_.now());
       sink_.on_report(Level::warning,
                       fmt::format("{} cannot be read: {}; it is not read again while this connection "
@@ -122,7 +113,8 @@ void Poller::on_exception(modbus::Exception code) {
                                   describe(span), why));
       return;
     default:
-      qualities_.exception(span.points, code);
+      values_.exception(span.points, code);
+      sink_.on_no_values(span.points, clock_.now());
       if (cycle_.answered(code, clock_.now()))
         sink_.on_report(Level::warning, fmt::format("{} cannot be read now: {}", describe(span), why));
   }
@@ -133,7 +125,8 @@ void Poller::on_rejection(modbus::Exception code, std::string_view what, std::st
   statistics_.rejected();
   const std::string why = to_string(Error(ExceptionReply{code}));
   for (const std::uint32_t point : cycle_.rejected(clock_.now())) {
-    qualities_.rejected({&point, 1}, code);
+    values_.rejected({&point, 1}, code);
+    sink_.on_no_values({&point, 1}, clock_.now());
     sink_.on_report(Level::warning, fmt::format("{} {}: {}; {}", map_.points[point].name, what, why, until));
   }
 }

@@ -8,22 +8,22 @@
 #include "coupler/host/core/bit_changes.hpp"
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/link.hpp"
-#include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/poll_cycle.hpp"
 #include "coupler/host/core/sink.hpp"
+#include "coupler/host/core/value_table.hpp"
 #include "coupler/host/core/writer.hpp"
 #include "coupler/modbus/limits.hpp"
 
 namespace coupler::host {
 
-/// Reads one device: makes the requests of the polling cycle and gives the values to the sink.
+/// Reads one device: makes the requests of the polling cycle, stores the values, and tells the sink.
 ///
-/// A value that was requested before a newer one was written is not given on: the old one would flicker back.
+/// A value that was requested before a newer one was written is not stored: the old one would flicker back.
 /// Neither is one that changes are older than which still come: see BitChanges.
 class Poller {
  public:
   /// All references must outlive the poller.
-  Poller(const Map& map, Link& link, Writer& writer, DeviceStatistics& statistics, PointQualities& qualities,
+  Poller(const Map& map, Link& link, Writer& writer, DeviceStatistics& statistics, ValueTable& values,
          Sink& sink);
 
   /// Starts with a new connection. `is_node`: it leads to a node of this project. `told`: the node tells
@@ -53,9 +53,7 @@ class Poller {
   ChangeSink& changes() { return told_; }
 
  private:
-  Result<> request(const ReadSpan& span);
   void publish(const ReadSpan& span);
-  void publish_bits(const ReadSpan& span, Stamp stamp);
   const ReadSpan& without_hidden(const ReadSpan& span);
   void on_exception(modbus::Exception code);
   void on_rejection(modbus::Exception code, std::string_view what, std::string_view until);
@@ -67,15 +65,14 @@ class Poller {
   Clock& clock_;
   Writer& writer_;
   DeviceStatistics& statistics_;
-  PointQualities& qualities_;
+  ValueTable& values_;
   Sink& sink_;
   PollCycle cycle_;
   BitChanges told_;
   std::optional<Unreadable> answered_;
   bool is_node_ = false;  ///< a node knows every function, so exception 01 is about rights
   ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< a member, so that its memory is used again
-  std::array<std::uint8_t, modbus::max_read_bits> bits_{};
-  std::array<std::uint16_t, modbus::max_read_registers> registers_{};
+  std::array<std::uint16_t, modbus::max_read_bits> read_{};   ///< the registers or bits of the last reply
 };
 
 }  // namespace coupler::host

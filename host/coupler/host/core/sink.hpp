@@ -6,11 +6,8 @@
 #include "coupler/base/span.hpp"
 #include "coupler/host/core/scheduled.hpp"
 #include "coupler/host/core/stamp.hpp"
-#include "coupler/plan/read_span.hpp"
 
 namespace coupler::host {
-
-using plan::ReadSpan;
 
 enum class Level { info, warning, error };
 
@@ -19,10 +16,12 @@ enum class Level { info, warning, error };
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// `bits[i]` is the coil or discrete input `span.range.start() + i`, as it was at `stamp`.
-  virtual void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) = 0;
-  /// `registers[i]` is the register `span.range.start() + i`, as it was at `stamp`.
-  virtual void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) = 0;
+  /// Says that the device's ValueTable has new values of these points (indices into Map::points). They may
+  /// equal those before: see ValueTable::differs().
+  virtual void on_values(Span<const std::uint32_t> points) = 0;
+  /// Says that these points could not be read: the table has the exception, or the reason. It may come
+  /// again at each attempt.
+  virtual void on_no_values(Span<const std::uint32_t> /*points*/, Time /*at*/) {}
   /// The time at which the point's value is wanted again even if it has not changed: `max_interval` after it
   /// was published last. Time::max() if there is none.
   virtual Time repeat_at(std::uint32_t /*point*/) const { return Time::max(); }

@@ -96,7 +96,7 @@ Result<> send(const WriteBatch& batch, const Map& map, Link& link) {
   std::uint16_t before = 0;
   const Point& point = map.points[batch.writes().front().point];
   if (needs_read(map, point))
-    if (auto read = link.read_registers(point.table, read_range(point), &before); !read)
+    if (auto read = link.read(point.table, read_range(point), &before); !read)
       return tl::make_unexpected(read.error());
   const modbus::WriteRequest request = batch.request(before);
   return link.send(request);

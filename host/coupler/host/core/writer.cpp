@@ -26,13 +26,12 @@ std::string deadman_value(const Point& point) {
 
 }  // namespace
 
-Writer::Writer(const Map& map, Link& link, DeviceStatistics& statistics, PointQualities& qualities,
-               Sink& sink)
+Writer::Writer(const Map& map, Link& link, DeviceStatistics& statistics, ValueTable& values, Sink& sink)
     : map_(map),
       link_(link),
       clock_(link.clock()),
       statistics_(statistics),
-      qualities_(qualities),
+      values_(values),
       sink_(sink),
       queue_(map),
       deadmen_(map),
@@ -260,7 +259,7 @@ Result<std::vector<RejectedValue>> Writer::write_safe_values() {
 
 void Writer::tell(const Write& write, const WriteResult& result) {
   statistics_.wrote(result.outcome);
-  qualities_.wrote(write.point, result);
+  values_.wrote(write.point, result);
   if (write.listener != nullptr) write.listener->on_result(result);
 }
 

@@ -14,8 +14,8 @@
 #include "coupler/host/core/deadmen.hpp"
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/link.hpp"
-#include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/sink.hpp"
+#include "coupler/host/core/value_table.hpp"
 #include "coupler/host/core/write_queue.hpp"
 
 namespace coupler::host {
@@ -40,7 +40,7 @@ class WrittenListener {
 class Writer {
  public:
   /// All references must outlive the writer.
-  Writer(const Map& map, Link& link, DeviceStatistics& statistics, PointQualities& qualities, Sink& sink);
+  Writer(const Map& map, Link& link, DeviceStatistics& statistics, ValueTable& values, Sink& sink);
 
   /// Before anything is written.
   void listen(WrittenListener& listener) { written_ = &listener; }
@@ -136,7 +136,7 @@ class Writer {
   Link& link_;
   Clock& clock_;
   DeviceStatistics& statistics_;
-  PointQualities& qualities_;
+  ValueTable& values_;
   Sink& sink_;
   WrittenListener* written_ = nullptr;
   WriteQueue queue_;

@@ -13,7 +13,6 @@
 
 #include "coupler/codec/scale.hpp"
 #include "coupler/codec/value.hpp"
-#include "coupler/host/core/own_registers.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/host/record/value_json.hpp"
 #include "coupler/json/json_text.hpp"
@@ -41,45 +40,43 @@ double number_of(const std::uint16_t* registers, const Point& point) {
 
 }  // namespace
 
-LiveValues::LiveValues(const Map& map, Report report)
-    : map_(map), report_(std::move(report)), points_(map.points.size()) {}
+LiveValues::LiveValues(const Map& map, const ValueTable& table, Report report)
+    : map_(map), table_(table), report_(std::move(report)), points_(map.points.size()) {}
 
-void LiveValues::take_number(const Point& point, State& state, Time at) {
-  state.history.take(number_of(state.registers.data(), point), at);
-  const bool is_off = std::all_of(state.registers.begin(), state.registers.end(),
-                                  [](std::uint16_t each) { return each == 0; });
+void LiveValues::take_number(std::uint32_t i, Time at) {
+  const Point& point = map_.points[i];
+  const Span<const std::uint16_t> registers(table_.registers(i), range(point).count());
+  State& state = points_[i];
+  state.history.take(number_of(registers.data(), point), at);
+  const bool is_off =
+      std::all_of(registers.begin(), registers.end(), [](std::uint16_t each) { return each == 0; });
   (is_off ? state.seen_off : state.seen_on) = true;
 }
 
-template <class Element>
-void LiveValues::take(const ReadSpan& span, Span<const Element> values, Stamp stamp) {
+void LiveValues::on_values(Span<const std::uint32_t> points) {
   const std::lock_guard lock(mutex_);
   bool any = false;
-  for (const std::uint32_t i : span.points) {
-    const Point& point = map_.points[i];
-    take_own(span, values, point, next_);
+  for (const std::uint32_t i : points) {
     State& state = points_[i];
-    const bool is_same = state.registers == next_;
-    if (is_same && state.quality == Quality::good) continue;
-    if (!is_same) {
-      if (!state.registers.empty()) ++state.changes;
-      std::swap(state.registers, next_);
-      state.changed_at = stamp.at;
-    }
-    state.quality = Quality::good;
-    take_number(point, state, stamp.at);
+    const std::uint64_t number = table_.number(i);
+    const bool is_new = std::exchange(state.number, number) != number;
+    if (!is_new && state.quality == Quality::good) continue;
+    const Time at = table_.stamp(i).at;
+    if (is_new) state.changed_at = at;
+    if (std::exchange(state.quality, Quality::good) != Quality::good)
+      stale_from_ = std::min(stale_from_, table_.quality(i, at).stale_from);
+    take_number(i, at);
     state.revision = ++revision_;
     any = true;
   }
   if (any) news_.notify_all();
 }
 
-void LiveValues::on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
-  take(span, bits, stamp);
-}
-
-void LiveValues::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) {
-  take(span, registers, stamp);
+void LiveValues::on_no_values(Span<const std::uint32_t> points, Time at) {
+  const std::lock_guard lock(mutex_);
+  bool any = false;
+  for (const std::uint32_t i : points) any |= take_quality(i, table_.quality(i, at), at);
+  if (any) news_.notify_all();
 }
 
 void LiveValues::on_online(bool online) {
@@ -87,14 +84,17 @@ void LiveValues::on_online(bool online) {
     const std::lock_guard lock(mutex_);
     online_ = online;
     device_revision_ = ++revision_;
-    if (online) why_offline_.clear();
     const Time now = std::chrono::steady_clock::now();
-    if (!online)
+    if (online) {
+      why_offline_.clear();
+      take_qualities(now);
+    } else {
       for (State& state : points_) {
         if (state.quality != Quality::never_read) state.quality = Quality::offline;
         state.history.lose(now);
         state.revision = revision_;
       }
+    }
   }
   news_.notify_all();
 }
@@ -108,28 +108,28 @@ void LiveValues::on_loss(const std::string& why) {
   news_.notify_all();
 }
 
-void LiveValues::judge(const std::vector<PointQuality>& qualities, Time now) {
-  bool any = false;
-  {
-    const std::lock_guard lock(mutex_);
-    if (!online_) return;  // these qualities may be from before
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const Quality quality = qualities[i].state;
-      // All else comes with values and the connection.
-      const bool is_refused = quality == Quality::exception || quality == Quality::rejected;
-      if (!is_refused && quality != Quality::stale) continue;
-      const unsigned code = is_refused ? qualities[i].refused_with() : 0;
-      State& state = points_[i];
-      if (state.quality == quality && state.exception == code && state.why == qualities[i].why) continue;
-      state.quality = quality;
-      state.exception = code;
-      state.why = qualities[i].why;
-      state.history.lose(now);
-      state.revision = ++revision_;
-      any = true;
-    }
+/// Returns whether the pages have to be told. All other qualities come with values and with the connection.
+bool LiveValues::take_quality(std::uint32_t i, const PointQuality& now, Time at) {
+  if (!now.is_refused() && now.state != Quality::stale) return false;
+  const unsigned code = now.is_refused() ? now.refused_with() : 0;
+  State& state = points_[i];
+  if (state.quality == now.state && state.exception == code && state.why == now.why) return false;
+  state.quality = now.state;
+  state.exception = code;
+  state.why = now.why;
+  state.history.lose(at);
+  state.revision = ++revision_;
+  return true;
+}
+
+/// Finds the points that have become stale, and those that were refused before the device was online.
+void LiveValues::take_qualities(Time now) {
+  const std::vector<PointQuality> qualities = table_.qualities(now);
+  stale_from_ = Time::max();
+  for (std::uint32_t i = 0; i < points_.size(); ++i) {
+    take_quality(i, qualities[i], now);
+    stale_from_ = std::min(stale_from_, qualities[i].stale_from);
   }
-  if (any) news_.notify_all();
 }
 
 void LiveValues::stopped() { on_online(false); }
@@ -151,6 +151,7 @@ void LiveValues::tell(const DeviceSnapshot& device) {
     errors_ = device.timeouts + device.failures + refused;
     round_trip_ = device.latency.quantile(0.5);
     device_revision_ = ++revision_;
+    take_qualities(std::chrono::steady_clock::now());
   }
   news_.notify_all();
 }
@@ -158,20 +159,26 @@ void LiveValues::tell(const DeviceSnapshot& device) {
 std::string LiveValues::news(std::uint64_t& seen, Time earliest, Time until) {
   std::unique_lock lock(mutex_);
   news_.wait_until(lock, earliest, [&] { return ended_; });
-  news_.wait_until(lock, until, [&] { return ended_ || revision_ > seen; });
-  const Time now = std::chrono::steady_clock::now();
+  Time now = std::chrono::steady_clock::now();
+  while (true) {
+    if (now > stale_from_) take_qualities(now);
+    if (ended_ || revision_ > seen || now >= until) break;
+    news_.wait_until(lock, std::min(until, stale_from_));
+    now = std::chrono::steady_clock::now();
+  }
   ordered_json points = ordered_json::object();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const State& state = points_[i];
     if (state.revision <= seen) continue;
     const Point& point = map_.points[i];
     ordered_json json{{"quality", to_string(state.quality)},
-                      {"changes", state.changes},
+                      {"changes", changes_of(state)},
                       {"on", state.seen_on},
                       {"off", state.seen_off}};
-    if (!state.registers.empty()) {
-      json["value"] = value_json(state.registers.data(), point);
-      json["text"] = format_value(state.registers.data(), point);
+    if (state.number > 0) {
+      const ValueTable::Value value = table_.get(static_cast<std::uint32_t>(i), now);
+      json["value"] = value_json(value.registers.data(), point);
+      json["text"] = format_value(value.registers.data(), point);
       json["age"] = std::chrono::duration<double>(now - state.changed_at).count();
     }
     const bool is_refused = state.quality == Quality::exception || state.quality == Quality::rejected;
@@ -217,7 +224,7 @@ std::string LiveValues::seen_csv() {
   std::string text = "point,seen_off,seen_on,changes\r\n";
   for (std::size_t i = 0; i < points_.size(); ++i)
     text += fmt::format("{},{},{},{}\r\n", map_.points[i].name, points_[i].seen_off ? "yes" : "no",
-                        points_[i].seen_on ? "yes" : "no", points_[i].changes);
+                        points_[i].seen_on ? "yes" : "no", changes_of(points_[i]));
   return text;
 }
 

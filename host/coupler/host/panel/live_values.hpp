@@ -11,26 +11,25 @@
 #include "coupler/host/core/device_statistics.hpp"
 #include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/sink.hpp"
+#include "coupler/host/core/value_table.hpp"
 #include "coupler/host/panel/history.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {
 
-/// The data that a page shows of a device: the last value of each point, with its quality and its last ten
-/// minutes. The connection's thread adds values. Pages wait for news, each at its own pace.
+/// The data that a page shows of a device: the last value of each point, from the device's table, with its
+/// quality, its changes and its last ten minutes. Pages wait for news, each at its own pace.
 class LiveValues : public Sink {
  public:
   using Report = std::function<void(Level, const std::string&)>;
-  /// The storage of `map` must outlive it.
-  LiveValues(const Map& map, Report report);
+  /// The storage of `map`, and the device's table, must outlive it.
+  LiveValues(const Map& map, const ValueTable& table, Report report);
 
-  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override;
-  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override;
+  void on_values(Span<const std::uint32_t> points) override;
+  void on_no_values(Span<const std::uint32_t> points, Time at) override;
   void on_online(bool online) override;
   void on_loss(const std::string& why) override;
   void on_report(Level level, const std::string& text) override { report_(level, text); }
-  /// The device's qualities have changed.
-  void judge(const std::vector<PointQuality>& qualities, Time now);
   /// Nobody reads any more: nothing is known.
   void stopped();
 
@@ -51,27 +50,29 @@ class LiveValues : public Sink {
 
  private:
   struct State {
-    std::vector<std::uint16_t> registers;  ///< empty: not read yet
     PointQuality::State quality = PointQuality::State::never_read;
     unsigned exception = 0;
     std::string why;             ///< in place of an exception
     Time changed_at{};           ///< when it became another one
     std::uint64_t revision = 1;  ///< of the last change that a page is to see
-    std::uint64_t changes = 0;   ///< since the first value
+    std::uint64_t number = 0;    ///< of its value, see ValueTable; 0: it has none
     bool seen_on = false;        ///< or another value than 0
     bool seen_off = false;       ///< or 0
     History history;
   };
-  template <class Element>
-  void take(const ReadSpan& span, Span<const Element> values, Stamp stamp);
-  void take_number(const Point& point, State& state, Time at);
+  /// Since the first value.
+  static std::uint64_t changes_of(const State& state) { return state.number > 0 ? state.number - 1 : 0; }
+  void take_number(std::uint32_t point, Time at);
+  bool take_quality(std::uint32_t point, const PointQuality& quality, Time at);
+  void take_qualities(Time now);
 
   const Map map_;
+  const ValueTable& table_;
   const Report report_;
   std::mutex mutex_;
   std::condition_variable news_;
   std::vector<State> points_;
-  std::vector<std::uint16_t> next_;
+  Time stale_from_ = Time::max();  ///< the first of the good points becomes stale, if nothing new comes
   std::uint64_t revision_ = 1;
   std::uint64_t device_revision_ = 1;
   bool online_ = false;

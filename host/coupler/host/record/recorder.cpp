@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/core/own_registers.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/loader/without_keys.hpp"
 #include "coupler/plan/explain.hpp"
@@ -40,13 +39,15 @@ record::Head head_of(const Map& map, std::string device) {
 
 }  // namespace
 
-Recorder::Recorder(const Map& map, std::string device, const RecordFormat& format, Time start, Report report)
+Recorder::Recorder(const Map& map, const ValueTable& values, std::string device, const RecordFormat& format,
+                   Time start, Report report)
     : map_(map),
+      values_(values),
       format_(format),
       start_(start),
       report_(std::move(report)),
       head_(head_of(map, std::move(device))),
-      points_(map.points.size()) {
+      lines_(map.points.size()) {
   wall_.measure();
 }
 
@@ -61,28 +62,35 @@ void Recorder::queue(const std::string& line) {
     queued_ += line;
 }
 
-template <class Element>
-void Recorder::take_values(const ReadSpan& span, Span<const Element> values, Stamp stamp) {
+void Recorder::on_values(Span<const std::uint32_t> points) {
   const std::lock_guard lock(mutex_);
-  for (const std::uint32_t i : span.points) {
-    take_own(span, values, map_.points[i], next_);
-    State& state = points_[i];
-    state.read_at = stamp.at;
-    if (state.quality == PointQuality::State::good && state.registers == next_) continue;
-    std::swap(state.registers, next_);
-    state.quality = PointQuality::State::good;
-    state.uncertainty = stamp.uncertainty;
+  for (const std::uint32_t i : points) {
+    Line& line = lines_[i];
+    const auto before = std::exchange(line.quality, PointQuality::State::good);
+    const std::uint64_t number = values_.number(i);
+    const bool is_new = std::exchange(line.number, number) != number;
+    if (before == PointQuality::State::good && !is_new) continue;
     ++counts_.changes;
-    queue(line_of(i, moment(stamp.at)));
+    const Stamp stamp = values_.stamp(i);
+    const Point& point = map_.points[i];
+    queue(format_.value(moment(stamp.at), point, {values_.registers(i), range(point).count()},
+                        stamp.uncertainty));
   }
 }
 
-void Recorder::on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
-  take_values(span, bits, stamp);
+void Recorder::on_no_values(Span<const std::uint32_t> points, Time at) {
+  const std::lock_guard lock(mutex_);
+  if (!online_) return;
+  for (const std::uint32_t i : points) queue_exception(i, at);
 }
 
-void Recorder::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) {
-  take_values(span, registers, stamp);
+void Recorder::queue_exception(std::uint32_t i, Time at) {
+  const PointQuality now = values_.quality(i, at);
+  Line& line = lines_[i];
+  if (!now.is_refused() || (line.quality == now.state && line.exception == now.refused_with())) return;
+  line = {now.state, now.refused_with()};
+  ++counts_.changes;
+  queue(format_.no_value(moment(at), map_.points[i], line.quality, line.exception));
 }
 
 void Recorder::on_identified(bool is_node) {
@@ -96,11 +104,14 @@ void Recorder::on_online(bool online) {
   online_ = counts_.online = online;
   counts_.was_online |= online;
   awaits_reason_ = !online;
-  if (online)
-    why_offline_.clear();
-  else  // what was true before may not be any more: each value is recorded again
-    for (State& state : points_) state.quality = PointQuality::State::offline;
-  if (online) queue(device_line(moment(std::chrono::steady_clock::now())));
+  if (!online) {  // the values may have changed since: each is recorded again
+    for (Line& line : lines_) line.quality = PointQuality::State::offline;
+    return;
+  }
+  why_offline_.clear();
+  const Time now = std::chrono::steady_clock::now();
+  queue(device_line(moment(now)));
+  for (std::uint32_t i = 0; i < lines_.size(); ++i) queue_exception(i, now);
 }
 
 /// The reasons for which the next attempts fail are not lines of their own.
@@ -116,31 +127,18 @@ void Recorder::end_comes() {
   ends_ = true;
 }
 
-void Recorder::judge(const std::vector<PointQuality>& qualities, Time now) {
-  using Quality = PointQuality::State;
-  const std::lock_guard lock(mutex_);
-  for (std::uint32_t i = 0; i < points_.size(); ++i) {
-    const Quality quality = qualities[i].state;
-    if (quality != Quality::exception && quality != Quality::rejected) continue;
-    const unsigned code = qualities[i].refused_with();
-    State& state = points_[i];
-    const bool is_newer = state.read_at > now;  // it has been read since
-    if (!online_ || is_newer || (state.quality == quality && state.exception == code)) continue;
-    state.quality = quality;
-    state.exception = code;
-    ++counts_.changes;
-    queue(line_of(i, moment(now)));
-  }
-}
-
-std::string Recorder::line_of(std::uint32_t i, Moment at) const {
-  using Quality = PointQuality::State;
+/// Its value may be newer than its last line: the device has stored it and is about to call on_values().
+std::string Recorder::line_of(std::uint32_t i, Time now) {
   const Point& point = map_.points[i];
-  const State& state = points_[i];
-  if (state.quality == Quality::exception || state.quality == Quality::rejected)
-    return format_.no_value(at, point, state.quality, state.exception);
-  if (state.quality != Quality::good) return {};
-  return format_.value(at, point, {state.registers.data(), state.registers.size()}, state.uncertainty);
+  Line& line = lines_[i];
+  if (line.quality == PointQuality::State::offline || line.quality == PointQuality::State::never_read)
+    return {};
+  if (line.quality != PointQuality::State::good)
+    return format_.no_value(moment(now), point, line.quality, line.exception);
+  const ValueTable::Value value = values_.get(i, now);
+  line.number = value.number;
+  return format_.value(moment(std::max(now, value.stamp.at)), point,
+                       {value.registers.data(), value.registers.size()}, value.stamp.uncertainty);
 }
 
 std::string Recorder::device_line(Moment at) const {
@@ -162,25 +160,23 @@ Recorder::Taken Recorder::take_now(Time now) {
 
 std::string Recorder::beginning(Time now) {
   const std::lock_guard lock(mutex_);
-  const Moment at = moment(now);
-  return format_.head(head_, at) + all_values(at);
+  return format_.head(head_, moment(now)) + all_lines(now);
 }
 
 Recorder::Turn Recorder::turn(Time now) {
   const std::lock_guard lock(mutex_);
   Taken before = take_now(now);
-  const Moment at = moment(now);
-  return {std::move(before), format_.head(head_, at) + all_values(at)};
+  return {std::move(before), format_.head(head_, moment(now)) + all_lines(now)};
 }
 
 std::string Recorder::all_values(Time now) {
   const std::lock_guard lock(mutex_);
-  return all_values(moment(now));
+  return all_lines(now);
 }
 
-std::string Recorder::all_values(Moment at) const {
-  std::string text = device_line(at);
-  for (std::uint32_t i = 0; i < points_.size(); ++i) text += line_of(i, at);
+std::string Recorder::all_lines(Time now) {
+  std::string text = device_line(moment(now));
+  for (std::uint32_t i = 0; i < lines_.size(); ++i) text += line_of(i, now);
   return text;
 }
 
@@ -197,10 +193,9 @@ std::string Recorder::end(Time now) {
 Recorder::Counts Recorder::counts() const {
   const std::lock_guard lock(mutex_);
   Counts counts = counts_;
-  counts.good =
-      static_cast<std::size_t>(std::count_if(points_.begin(), points_.end(), [](const State& state) {
-        return state.quality == PointQuality::State::good;
-      }));
+  counts.good = static_cast<std::size_t>(std::count_if(lines_.begin(), lines_.end(), [](const Line& line) {
+    return line.quality == PointQuality::State::good;
+  }));
   return counts;
 }
 

@@ -10,6 +10,7 @@
 
 #include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/sink.hpp"
+#include "coupler/host/core/value_table.hpp"
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/record/record_format.hpp"
 #include "coupler/map/map.hpp"
@@ -22,12 +23,13 @@ class Recorder : public Sink {
  public:
   using Report = std::function<void(Level, const std::string&)>;
 
-  /// The storage of `map`, and `format`, must outlive it. Time begins at `start`. `report` receives what the
-  /// device reports, in its thread.
-  Recorder(const Map& map, std::string device, const RecordFormat& format, Time start, Report report);
+  /// `values` is the device's table. It, the storage of `map`, and `format` must outlive the recorder. Time
+  /// begins at `start`. `report` receives what the device reports, in its thread.
+  Recorder(const Map& map, const ValueTable& values, std::string device, const RecordFormat& format,
+           Time start, Report report);
 
-  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override;
-  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override;
+  void on_values(Span<const std::uint32_t> points) override;
+  void on_no_values(Span<const std::uint32_t> points, Time at) override;
   void on_identified(bool is_node) override;
   void on_online(bool online) override;
   void on_loss(const std::string& why) override;
@@ -35,8 +37,6 @@ class Recorder : public Sink {
   /// From any thread: who reads is about to end, and a connection that is lost from now on is not the
   /// device's fault.
   void end_comes();
-  /// The device's qualities have changed; they are those at `now`. From any thread.
-  void judge(const std::vector<PointQuality>& qualities, Time now);
 
   /// The lines since the last call, in the order in which they were learnt. Those of longest_queue bytes at
   /// most: `lost` says that there were more, and all_values() is to follow.
@@ -69,23 +69,22 @@ class Recorder : public Sink {
   static constexpr std::size_t longest_queue = std::size_t{16} << 20;
 
  private:
-  struct State {
-    std::vector<std::uint16_t> registers;  ///< empty: not read yet
+  /// The last line of a point.
+  struct Line {
     PointQuality::State quality = PointQuality::State::never_read;
     unsigned exception = 0;
-    Duration uncertainty{};
-    Time read_at = Time::min();
+    std::uint64_t number = 0;  ///< of its value, see ValueTable
   };
-  template <class Element>
-  void take_values(const ReadSpan& span, Span<const Element> values, Stamp stamp);
+  void queue_exception(std::uint32_t point, Time at);
   record::Moment moment(Time at) const;
   void queue(const std::string& line);
-  std::string line_of(std::uint32_t point, record::Moment at) const;
+  std::string line_of(std::uint32_t point, Time now);
   std::string device_line(record::Moment at) const;
   Taken take_now(Time now);
-  std::string all_values(record::Moment at) const;
+  std::string all_lines(Time now);
 
   const Map map_;
+  const ValueTable& values_;
   const RecordFormat& format_;
   const Time start_;
   const Report report_;
@@ -93,8 +92,7 @@ class Recorder : public Sink {
 
   mutable std::mutex mutex_;
   WallTime wall_;
-  std::vector<State> points_;
-  std::vector<std::uint16_t> next_;  ///< kept for its memory
+  std::vector<Line> lines_;  ///< by point
   std::string queued_;
   bool lost_ = false;  ///< there was no room in the queue
   bool online_ = false;

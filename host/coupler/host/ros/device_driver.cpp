@@ -63,6 +63,7 @@ std::unique_ptr<Link> traced(std::unique_ptr<Link> link, std::string device, Nod
 DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> link)
     : node_(node),
       map_(map),
+      values_(map_),
       subscribers_(map.points.size()),
       publishers_(advertise_all(node, map_, subscribers_)),
       stamped_(advertise_stamped(node, map_, subscribers_, wall_)),
@@ -70,15 +71,17 @@ DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> lin
       publish_status_(node.advertise_status(topic(map, "status"), map)),
       publish_scheduled_(advertise_scheduled(node, map_, wall_)),
       diagnostics_(map, node),
-      services_(map, subscribers_),
+      services_(map, values_, subscribers_),
       link_(traced(std::move(link), std::string(map.name), node)),
-      thread_(map, map.verify, load_served_map, *link_, *this, map.poll),
+      thread_(map, map.verify, load_served_map, *link_, values_, *this),
       writes_{[this](const Write& write) { driven().write(write); },
               [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {}
 
 void DeviceDriver::begin(const Followed& followed) {
   if (Shutdown::requested) return;
   start_followers(followed);
+  if (map_.poll == Poll::subscribed)
+    for (std::uint32_t i = 0; i < map_.points.size(); ++i) thread_.want(i, false);
   thread_.start();
   for (std::uint32_t i = 0; i < map_.points.size() && !Shutdown::requested; ++i)
     if (is_writable(map_.points[i]))
@@ -104,8 +107,8 @@ void DeviceDriver::start_followers(const Followed& followed) {
   const auto add = [this](std::unique_ptr<Follower> follower) {
     if (follower) followers_.push_back(std::move(follower));
   };
-  if (followed.recording) add(DeviceRecording::start(map_, *followed.recording, report));
-  if (followed.panel) add(start_panel(map_, *followed.panel, report));
+  if (followed.recording) add(DeviceRecording::start(map_, values_, *followed.recording, report));
+  if (followed.panel) add(start_panel(map_, values_, *followed.panel, report));
 }
 
 void DeviceDriver::end_followers() {
@@ -125,8 +128,8 @@ bool DeviceDriver::report(Time now, bool force) {
   reported_ = revision;
   stale_from_ = Time::max();
   const DeviceSnapshot device = thread_.statistics();
-  std::vector<PointQuality> points = thread_.qualities();
-  for (const auto& follower : followers_) follower->judge(device, points, revision, now);
+  std::vector<PointQuality> points = values_.qualities(now);
+  for (const auto& follower : followers_) follower->report(device, now);
   for (const PointQuality& point : points) stale_from_ = std::min(stale_from_, point.stale_from);
   for (std::uint32_t i = 0; i < points.size(); ++i)
     if (const auto state = points[i].state; is_readable(map_.points[i]) && subscribers_.is_unwanted(i) &&
@@ -139,30 +142,19 @@ bool DeviceDriver::report(Time now, bool force) {
   return diagnostics_.update(device, points);
 }
 
-void DeviceDriver::on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) {
-  std::copy(bits.begin(), bits.end(), bits_.begin());
-  publish(span, {bits_.data(), bits.size()}, stamp);
-  for (const auto& follower : followers_) follower->sink().on_bits(span, bits, stamp);
-}
-
-void DeviceDriver::on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) {
-  publish(span, registers, stamp);
-  for (const auto& follower : followers_) follower->sink().on_registers(span, registers, stamp);
-}
-
-void DeviceDriver::publish(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) {
+void DeviceDriver::on_values(Span<const std::uint32_t> points) {
   bool is_measured = false;  // once, so that the stamps of one read are equal
-  for (const std::uint32_t index : span.points) {
-    const modbus::Range place = read_range(map_.points[index]);
-    const std::uint16_t* value = &registers[place.start() - std::size_t{span.range.start()}];
-    publishers_[index]->publish(value, stamp);
-    if (stamped_[index]) {
-      if (!std::exchange(is_measured, true)) measure_wall();
-      stamped_[index]->publish(value, stamp);
-    }
-    if (services_.value_waiter().waits_for(index))
-      services_.value_waiter().deliver(value, place.count(), std::min(link_->read_sent_at(), stamp.at));
+  for (const std::uint32_t point : points) {
+    publishers_[point]->publish(values_.registers(point), values_.stamp(point));
+    if (!stamped_[point]) continue;
+    if (!std::exchange(is_measured, true)) measure_wall();
+    stamped_[point]->publish(values_.registers(point), values_.stamp(point));
   }
+  for (const auto& follower : followers_) follower->sink().on_values(points);
+}
+
+void DeviceDriver::on_no_values(Span<const std::uint32_t> points, Time at) {
+  for (const auto& follower : followers_) follower->sink().on_no_values(points, at);
 }
 
 void DeviceDriver::measure_wall() {
@@ -192,7 +184,6 @@ void DeviceDriver::on_online(bool online) {
     for (const auto* publishers : {&publishers_, &stamped_})
       for (const auto& publisher : *publishers)
         if (publisher) publisher->renew();
-  services_.value_waiter().set_online(online);
   publish_online_(online);
   for (const auto& follower : followers_) follower->sink().on_online(online);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -11,6 +10,7 @@
 
 #include "coupler/base/log_line_limit.hpp"
 #include "coupler/host/core/device_thread.hpp"
+#include "coupler/host/core/value_table.hpp"
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/ros/device_recording.hpp"
 #include "coupler/host/ros/device_services.hpp"
@@ -54,8 +54,8 @@ class DeviceDriver : public Sink {
   /// once. To be called about ten times a second; without news and without `force` it does nothing.
   bool report(Time now, bool force);
 
-  void on_bits(const ReadSpan& span, Span<const std::uint8_t> bits, Stamp stamp) override;
-  void on_registers(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp) override;
+  void on_values(Span<const std::uint32_t> points) override;
+  void on_no_values(Span<const std::uint32_t> points, Time at) override;
   Time repeat_at(std::uint32_t point) const override;
   void on_identified(bool is_node) override;
   void on_online(bool online) override;
@@ -67,18 +67,17 @@ class DeviceDriver : public Sink {
   void log(Level level, const std::string& text);
   DeviceThread& driven();
   void start_followers(const Followed& followed);
-  void publish(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp);
   void measure_wall();
   void refuse(std::optional<std::uint32_t> point, const std::string& what);
 
   Node& node_;
   Map map_;
+  ValueTable values_;
   SubscriberCounts subscribers_;
   std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
   WallTime wall_;
   LogLineLimit wall_lines_;
-  std::vector<std::unique_ptr<PointPublisher>> stamped_;     ///< by point; null where it is not stamped
-  std::array<std::uint16_t, modbus::max_read_bits> bits_{};  ///< of one span, as publishers take them
+  std::vector<std::unique_ptr<PointPublisher>> stamped_;  ///< by point; null where it is not stamped
   std::function<void(bool)> publish_online_;
   Node::PublishStatus publish_status_;
   Node::PublishScheduled publish_scheduled_;  ///< empty if no point can be written

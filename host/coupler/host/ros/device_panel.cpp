@@ -2,7 +2,6 @@
 #include "coupler/host/ros/device_panel.hpp"
 
 #include <chrono>
-#include <cstdint>
 #include <limits>
 #include <system_error>
 
@@ -19,7 +18,8 @@ constexpr std::chrono::seconds told_period{1};
 
 class DevicePanel final : public Follower {
  public:
-  explicit DevicePanel(const Map& map) : values_(map, [](Level, const std::string&) {}) {}  // it is logged
+  DevicePanel(const Map& map, const ValueTable& table)
+      : values_(map, table, [](Level, const std::string&) {}) {}  // it is logged
 
   /// Empty, or why not.
   std::string serve(const Map& map, unsigned port) {
@@ -37,9 +37,7 @@ class DevicePanel final : public Follower {
   std::string url() const { return server_->url(); }
 
   Sink& sink() override { return values_; }
-  void judge(const DeviceSnapshot& device, const std::vector<PointQuality>& qualities,
-             std::uint64_t /*revision*/, Time now) override {
-    values_.judge(qualities, now);
+  void report(const DeviceSnapshot& device, Time now) override {
     if (now < told_ + told_period) return;
     told_ = now;
     values_.tell(device);
@@ -54,9 +52,9 @@ class DevicePanel final : public Follower {
 
 }  // namespace
 
-std::unique_ptr<Follower> start_panel(const Map& map, unsigned port,
+std::unique_ptr<Follower> start_panel(const Map& map, const ValueTable& table, unsigned port,
                                       const std::function<void(Level, const std::string&)>& report) {
-  auto panel = std::make_unique<DevicePanel>(map);
+  auto panel = std::make_unique<DevicePanel>(map, table);
   if (const std::string problem = panel->serve(map, port); !problem.empty()) {
     report(Level::error, problem + "; there is no panel");
     return nullptr;

@@ -12,7 +12,8 @@
 
 namespace coupler::host {
 
-std::unique_ptr<DeviceRecording> DeviceRecording::start(const Map& map, const std::string& path,
+std::unique_ptr<DeviceRecording> DeviceRecording::start(const Map& map, const ValueTable& values,
+                                                        const std::string& path,
                                                         const Recorder::Report& report) {
   auto file = RecordFile::open(path, {});
   if (!file) {
@@ -20,18 +21,14 @@ std::unique_ptr<DeviceRecording> DeviceRecording::start(const Map& map, const st
     return nullptr;
   }
   report(Level::info, "recording to " + path);
-  return std::unique_ptr<DeviceRecording>(new DeviceRecording(map, *std::move(file), report));
+  return std::unique_ptr<DeviceRecording>(new DeviceRecording(map, values, *std::move(file), report));
 }
 
-DeviceRecording::DeviceRecording(const Map& map, RecordFile file, const Recorder::Report& report)
-    : recorder_(map, node_address_text(map.connection), *format_, std::chrono::steady_clock::now(),
+DeviceRecording::DeviceRecording(const Map& map, const ValueTable& values, RecordFile file,
+                                 const Recorder::Report& report)
+    : recorder_(map, values, node_address_text(map.connection), *format_, std::chrono::steady_clock::now(),
                 [](Level, const std::string&) {}),  // the driver has logged it
       thread_(recorder_, std::move(file), report) {}
-
-void DeviceRecording::judge(const DeviceSnapshot& /*device*/, const std::vector<PointQuality>& qualities,
-                            std::uint64_t revision, Time now) {
-  if (std::exchange(judged_, revision) != revision) recorder_.judge(qualities, now);
-}
 
 std::string recording_path(const std::string& path, std::string_view device, bool is_alone) {
   const std::filesystem::path given(path);

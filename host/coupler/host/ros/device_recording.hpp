@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "coupler/host/record/record_thread.hpp"
 #include "coupler/host/ros/follower.hpp"
@@ -16,23 +14,20 @@ namespace coupler::host {
 class DeviceRecording final : public Follower {
  public:
   /// `path`: the file. Null, after it is reported, if it cannot be one: the device is driven all the same.
-  /// What `map` views must outlive it.
-  static std::unique_ptr<DeviceRecording> start(const Map& map, const std::string& path,
-                                                const Recorder::Report& report);
+  /// What `map` views, and the table, must outlive it.
+  static std::unique_ptr<DeviceRecording> start(const Map& map, const ValueTable& values,
+                                                const std::string& path, const Recorder::Report& report);
 
   Sink& sink() override { return recorder_; }
-  void judge(const DeviceSnapshot& device, const std::vector<PointQuality>& qualities, std::uint64_t revision,
-             Time now) override;
   void end_comes() override { recorder_.end_comes(); }
   void end() override { thread_.end(); }
 
  private:
-  DeviceRecording(const Map& map, RecordFile file, const Recorder::Report& report);
+  DeviceRecording(const Map& map, const ValueTable& values, RecordFile file, const Recorder::Report& report);
 
   std::unique_ptr<RecordFormat> format_ = json_format();
   Recorder recorder_;
   RecordThread thread_;
-  std::uint64_t judged_ = 0;
 };
 
 /// Returns the file of one of several devices: press-NAME.jsonl in place of press.jsonl.

@@ -67,7 +67,7 @@ void DeviceServices::start(Node& node, Device device) {
 void DeviceServices::stop() {
   for (ServiceThread* thread : {calls_.get(), urgent_calls_.get(), read_calls_.get(), timed_calls_.get()})
     if (thread != nullptr) thread->stop();
-  value_waiter_.cancel();
+  values_.end_waits();
   const std::lock_guard lock(mutex_);
   device_.reset();
 }
@@ -151,12 +151,12 @@ ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
     return answer;
   }
   const std::uint32_t index = index_of(point);
-  const auto deadline = std::chrono::steady_clock::now() + answer_timeout(map_, point);
-  const auto value = value_waiter_.wait(index, deadline, [this, index] { subscribers_.add(index); });
+  const auto now = std::chrono::steady_clock::now();
+  subscribers_.add(index);
+  answer.success = values_.wait(index, now, now + answer_timeout(map_, point), ValueTable::Offline::gives_up);
   subscribers_.remove(index);
-  answer.success = value.has_value();
-  if (value)
-    answer.value = format_value(value->data(), point);
+  if (answer.success)
+    answer.value = format_value(values_.get(index, now).registers.data(), point);
   else
     answer.message = why_no_value(point);
   return answer;

@@ -8,9 +8,9 @@
 #include <optional>
 #include <string>
 
+#include "coupler/host/core/value_table.hpp"
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/ros/node.hpp"
-#include "coupler/host/ros/value_waiter.hpp"
 
 namespace coupler::host {
 
@@ -24,8 +24,9 @@ bool can_schedule(const Map& map);
 /// they for it.
 class DeviceServices {
  public:
-  /// The storage of `map`, and the counts, must outlive it.
-  DeviceServices(const Map& map, SubscriberCounts& subscribers) : map_(map), subscribers_(subscribers) {}
+  /// The storage of `map`, the table and the counts must outlive it.
+  DeviceServices(const Map& map, ValueTable& values, SubscriberCounts& subscribers)
+      : map_(map), values_(values), subscribers_(subscribers) {}
   /// Waits for the call in progress. The write that this one waits for must have its result by then.
   ~DeviceServices();
   DeviceServices(const DeviceServices&) = delete;
@@ -45,9 +46,6 @@ class DeviceServices {
   /// The device is not called any more.
   void stop();
 
-  /// The waiter of calls of `read`. It needs to know whether the device is online, and the values.
-  ValueWaiter& value_waiter() { return value_waiter_; }
-
  private:
   WriteTicket::Outcome write(Write write);
   WriteTicket::Outcome refuse(const std::string& name, const std::string& why);
@@ -62,10 +60,10 @@ class DeviceServices {
   std::string why_no_value(const Point& point);
 
   Map map_;
+  ValueTable& values_;
   SubscriberCounts& subscribers_;
   std::mutex mutex_;
-  std::optional<Device> device_;  ///< none after stop()
-  ValueWaiter value_waiter_;
+  std::optional<Device> device_;          ///< none after stop()
   WallTime wall_;                         ///< for the thread of timed_calls_
   std::unique_ptr<ServiceThread> calls_;  // last: they use the others
   std::unique_ptr<ServiceThread> urgent_calls_;

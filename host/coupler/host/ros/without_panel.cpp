@@ -4,7 +4,7 @@
 
 namespace coupler::host {
 
-std::unique_ptr<Follower> start_panel(const Map& /*map*/, unsigned /*port*/,
+std::unique_ptr<Follower> start_panel(const Map& /*map*/, const ValueTable& /*table*/, unsigned /*port*/,
                                       const std::function<void(Level, const std::string&)>& report) {
   report(
       Level::error,

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coupler/base/span.hpp"
+#include "coupler/host/core/point_quality.hpp"
+#include "coupler/host/core/stamp.hpp"
+#include "coupler/map/map.hpp"
+#include "coupler/plan/read_span.hpp"
+
+namespace coupler::host {
+
+using plan::ReadSpan;
+
+/// The last value of each point of a device, how far it can be trusted, and the result of the last write to
+/// the point. The table may outlive a Device and serve the next one.
+///
+/// The device's thread stores, and reads without a lock in Sink::on_values(). Other threads get copies.
+class ValueTable {
+ public:
+  /// A copy of what is known of a point.
+  struct Value {
+    std::vector<std::uint16_t>
+        registers;  ///< as TypedValue encodes them, bits as 0 or 1; empty: no value yet
+    Stamp stamp;
+    std::uint64_t number = 0;  ///< how many different values there were, with this one
+    PointQuality quality;
+  };
+
+  explicit ValueTable(const Map& map);
+
+  /// Begins with another Device: values from before are stale until they are read. A Device that connects
+  /// again by itself does not call it, but connected().
+  void begin();
+
+  // For the device's thread.
+
+  /// Stores the values of the points of `span`, which were good at the time `good_at`. `registers[i]` is the
+  /// register `span.range.start() + i`, or that bit as 0 or 1.
+  void store(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp, Time good_at);
+  /// Notes that the points can be read. Their values are not stored, because a write will replace them.
+  void good(Span<const std::uint32_t> points, Time at);
+  void exception(Span<const std::uint32_t> points, modbus::Exception code);
+  void rejected(Span<const std::uint32_t> points, modbus::Exception code);
+  /// Notes that the request for these points ends the connection, and `why`. They are read seldom, if ever.
+  void set_aside(Span<const std::uint32_t> points, const std::string& why);
+  /// Sets whether the device tells changes of the point. Its value does not become stale then.
+  void told(std::uint32_t point, bool told);
+  /// Notes that the last values of told points were still true at the time `at`.
+  void heard(Time at);
+  /// Forgets what the device rejected over an earlier connection.
+  void connected();
+  void online(bool online);
+
+  // For the device's thread, in Sink::on_values().
+
+  /// The registers of a point that has a value: as many as `range(point).count()`.
+  const std::uint16_t* registers(std::uint32_t point) const { return &registers_[entries_[point].first]; }
+  Stamp stamp(std::uint32_t point) const { return entries_[point].stamp; }
+  std::uint64_t number(std::uint32_t point) const { return entries_[point].number; }
+  /// Returns whether the last value differs from the one before, or is the first one.
+  bool differs(std::uint32_t point) const { return entries_[point].differs; }
+
+  // For any thread.
+
+  void wrote(std::uint32_t point, const WriteResult& result);
+  Value get(std::uint32_t point, Time now) const;
+  enum class Offline { waits, gives_up };
+  /// Waits until the point has a value that came after begin() and was true at the time `since` or later.
+  /// Returns false if it has none at `deadline`, after end_waits(), or, with Offline::gives_up, while the
+  /// device is offline.
+  bool wait(std::uint32_t point, Time since, Time deadline, Offline offline) const;
+  /// Ends all waits, also those to come.
+  void end_waits();
+  /// Returns the quality of each point at the time `now`. Points that can only be written stay never_read.
+  std::vector<PointQuality> qualities(Time now) const;
+  PointQuality quality(std::uint32_t point, Time now) const;
+  /// A number that changes with each state, exception and write in qualities(), but neither by the mere
+  /// passing of time nor with a value.
+  std::uint64_t revision() const { return revision_; }
+
+ private:
+  struct Entry {
+    std::size_t first = 0;     ///< the index of its first register in registers_
+    std::uint16_t count = 0;   ///< of its registers or bits
+    std::uint32_t start = 0;   ///< the address of the first one, where it is read
+    std::uint16_t mask = 0;    ///< the bits of a register that are its own
+    std::uint64_t number = 0;  ///< of its value; 0: it has none
+    bool differs = false;
+    Stamp stamp{};
+    Duration stale_after{};  ///< an older value is stale
+    std::optional<Time> last_good{};
+    std::optional<modbus::Exception> last_exception{};
+    std::optional<WriteResult::Outcome> last_write{};
+    std::string last_write_text{};
+    std::string why{};
+    bool failing = false;
+    bool rejected = false;
+    bool told = false;
+  };
+  void keep(Entry& entry, const std::uint16_t* registers);
+  static void mark_good(Entry& entry, Time at);
+  bool is_since(const Entry& entry, Time since) const;
+  void notify();
+  PointQuality quality_of(const Entry& entry, Time now) const;
+  PointQuality::State state_of(const Entry& entry, Time now) const;
+
+  mutable std::mutex mutex_;
+  std::vector<Entry> entries_;            ///< by point
+  std::vector<std::uint16_t> registers_;  ///< of all points
+  bool online_ = false;
+  Time heard_ = Time::min();
+  std::atomic<std::uint64_t> revision_{0};
+  mutable int waits_ = 0;  ///< threads in wait()
+  mutable std::condition_variable changed_;
+  bool waits_end_ = false;
+};
+
+}  // namespace coupler::host
