@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "coupler/host/cli/device_reader.hpp"
+#include "coupler/host/cli/device_looks.hpp"
+#include "coupler/host/cli/read_only_map.hpp"
+#include "coupler/host/core/device.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_clock.hpp"
 #include "test/host/core/fake_device.hpp"
@@ -18,13 +20,26 @@ using fakes::MapBuilder;
 using host::test::FakeClock;
 using host::test::FakeDevice;
 
-/// A device without a network and what looks at it.
+/// A device without a network, the engine, and what looks at it.
 struct Looking {
-  explicit Looking(const MapBuilder& builder, std::vector<bool> chosen = {})
-      : owned(builder.build()),
-        reader(owned->map(), chosen.empty() ? std::vector<bool>(owned->map().points.size(), true) : chosen,
-               link, [this](std::string_view, std::string_view) { return loads; }) {
+  explicit Looking(const MapBuilder& builder, std::vector<bool> only = {})
+      : Looking(builder.build(), std::move(only)) {}
+  explicit Looking(MapPtr map, std::vector<bool> only = {})
+      : owned(std::move(map)),
+        chosen(only.empty() ? std::vector<bool>(owned->map().points.size(), true) : std::move(only)),
+        engine(
+            read_only.map(), {owned->map().verify, true},
+            [this](std::string_view, std::string_view) { return loads; }, link, values, looks) {
     device.missing.insert({Table::input_registers, identity::reserved.start()});  // foreign
+    for (std::uint32_t point = 0; point < chosen.size(); ++point)
+      if (!chosen[point]) engine.want(point, false);
+  }
+
+  /// Runs the engine until there is a snapshot.
+  Snapshot look() {
+    snapshots.clear();
+    for (host::Time due = engine.step(); snapshots.empty(); due = engine.step()) clock.sleep_until(due);
+    return snapshots.back();
   }
 
   const Map& map() const { return owned->map(); }
@@ -45,8 +60,14 @@ struct Looking {
   LoadResult loads;  ///< what the text of the device's map is
   FakeDevice device;
   FakeClock clock;
+  std::vector<bool> chosen;
+  ReadOnlyMap read_only{owned->map(), std::chrono::seconds(1)};
   host::Link link{host::test::share(device), owned->map().connection, owned->map().limits, &clock};
-  DeviceReader reader;
+  host::ValueTable values{owned->map()};
+  std::vector<Snapshot> snapshots;
+  DeviceLooks looks{read_only.map(), chosen, values, clock,
+                    [this](Snapshot snapshot) { snapshots.push_back(std::move(snapshot)); }};
+  host::Device engine;  // last: it uses the others
 };
 
 constexpr auto identity_question = "read input_registers 65280+13";

@@ -100,7 +100,7 @@ TEST(StatusText, Of_a_foreign_coupler_it_is_the_identification_made_harmless) {
 TEST(StatusJson, Everything_has_a_key) {
   NodeStatus status = node();
   status.certificates = certificates;
-  const auto json = ordered_json::parse(status_json(status, where));
+  const auto report = ordered_json::parse(status_json(status, where));
   const auto expected = ordered_json::parse(R"({
     "device": "tcp://cell:502/1", "time": "1970-01-01T00:00:01.500Z", "trouble": null, "node": true,
     "name": "press", "version": "0.1.0", "fingerprint": "0123456789abcdef",
@@ -114,15 +114,15 @@ TEST(StatusJson, Everything_has_a_key) {
       "device": {"name": "press", "role": null, "ends": "1970-01-01T01:00:00.000Z"}},
     "identification": {"VendorName": "OpenCoupler", "ProductCode": "press", "MajorMinorRevision": "0.1.0",
       "object 80": "x"}})");
-  EXPECT_EQ(json, expected) << json.dump(2);
+  EXPECT_EQ(report, expected) << report.dump(2);
 }
 
 TEST(StatusJson, What_a_node_does_not_have_is_null_or_empty) {
   NodeStatus status = node();
   status.further = {};
-  const auto json = ordered_json::parse(status_json(status, where));
-  EXPECT_TRUE(json.at("watchdog").at("timeout_ms").is_null());
-  EXPECT_EQ(json.at("functions"), ordered_json::array());
+  const auto report = ordered_json::parse(status_json(status, where));
+  EXPECT_TRUE(report.at("watchdog").at("timeout_ms").is_null());
+  EXPECT_EQ(report.at("functions"), ordered_json::array());
 }
 
 TEST(StatusJson, Of_a_device_that_is_no_node_or_does_not_answer_the_keys_are_the_same) {
@@ -130,10 +130,10 @@ TEST(StatusJson, Of_a_device_that_is_no_node_or_does_not_answer_the_keys_are_the
   silent.error = host::Timeout{std::chrono::milliseconds(9)};
   const auto of_node = ordered_json::parse(status_json(node(), where));
   for (const NodeStatus& status : {foreign(), silent}) {
-    const auto json = ordered_json::parse(status_json(status, where));
-    EXPECT_EQ(json.at("node"), false);
-    for (const auto& [key, value] : of_node.items()) EXPECT_TRUE(json.contains(key)) << key;
-    EXPECT_TRUE(json.at("statistics").is_null());
+    const auto report = ordered_json::parse(status_json(status, where));
+    EXPECT_EQ(report.at("node"), false);
+    for (const auto& [key, value] : of_node.items()) EXPECT_TRUE(report.contains(key)) << key;
+    EXPECT_TRUE(report.at("statistics").is_null());
   }
   EXPECT_EQ(ordered_json::parse(status_json(silent, where)).at("trouble"), "no reply within 9 ms");
 }

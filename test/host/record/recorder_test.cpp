@@ -20,11 +20,11 @@ using testing::IsEmpty;
 
 TEST_F(RecorderTest, What_the_device_is_stands_where_it_comes_online_and_where_a_file_begins) {
   record(MapBuilder().holding("a", 0));
-  recorder_->on_identified(false);
+  recorder_->on_identified(Identity::Verdict::foreign);
   come_online();
   EXPECT_THAT(taken(), ElementsAre("online, foreign"));
   EXPECT_THAT(lines_of(recorder_->all_values(start_)), ElementsAre("online, foreign"));
-  recorder_->on_identified(true);
+  recorder_->on_identified(Identity::Verdict::equal);
   EXPECT_THAT(lines_of(recorder_->all_values(start_)), ElementsAre("online, a node"));
 }
 

@@ -6,24 +6,26 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coupler/base/never_wait.hpp"
-#include "coupler/host/cli/device_reader.hpp"
+#include "coupler/host/cli/device_looks.hpp"
 #include "coupler/host/cli/dump_output.hpp"
 #include "coupler/host/cli/interruption.hpp"
 #include "coupler/host/cli/modbus_client.hpp"
-#include "coupler/host/core/backoff.hpp"
-#include "coupler/host/core/clock.hpp"
-#include "coupler/host/core/wall_time.hpp"
+#include "coupler/host/cli/read_only_map.hpp"
+#include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/modbus/make_links.hpp"
 #include "coupler/map/diagnostic.hpp"
 #include "coupler/map/node_address.hpp"
@@ -32,8 +34,8 @@
 namespace coupler::cli {
 namespace {
 
-/// A device that ends each connection is not asked without end.
-constexpr std::chrono::seconds pause_after_loss(1);
+/// Points that the first cycle leaves unknown come in the next one or two.
+constexpr std::chrono::seconds once_period(2);
 
 void put_line(const std::string& line) {
   std::puts(line.c_str());
@@ -78,10 +80,84 @@ void show_changes(const Map& map, const Snapshot* before, const Snapshot& now) {
   for (const std::string& line : change_lines(map, before, now)) put_line(line);
 }
 
-Exit once(const Map& map, const DumpOptions& options) {
-  host::Link link = host::make_link(map.connection, map.limits);
-  DeviceReader reader(map, options.chosen, link, load_served_map);
-  const Snapshot now = reader.look();
+/// The snapshots that wait to be shown, so that the device is read however long that takes.
+class SnapshotQueue {
+ public:
+  void push(Snapshot snapshot) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (waiting_.size() == longest) {
+        waiting_.pop_front();
+        ++missing_;
+      }
+      waiting_.push_back(std::move(snapshot));
+    }
+    changed_.notify_all();
+  }
+  /// Waits for the next one; nullopt after stop().
+  std::optional<Snapshot> next() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return stopped_ || !waiting_.empty(); });
+    if (stopped_) return std::nullopt;
+    Snapshot snapshot = std::move(waiting_.front());
+    waiting_.pop_front();
+    return snapshot;
+  }
+  /// Returns how many there was no room for since the last call.
+  unsigned take_missing() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(missing_, 0);
+  }
+  void stop() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopped_ = true;
+    }
+    changed_.notify_all();
+  }
+
+ private:
+  static constexpr std::size_t longest = 100;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Snapshot> waiting_;
+  unsigned missing_ = 0;
+  bool stopped_ = false;
+};
+
+/// A device that a thread of its own reads.
+class ReadDevice {
+ public:
+  ReadDevice(const Map& map, const std::vector<bool>& chosen, SnapshotQueue& queue)
+      : link_(host::make_link(map.connection, map.limits)),
+        values_(map),
+        looks_(map, chosen, values_, link_.clock(),
+               [&queue](Snapshot snapshot) { queue.push(std::move(snapshot)); }),
+        thread_(map, {map.verify, true}, load_served_map, link_, values_, looks_) {
+    for (std::uint32_t point = 0; point < map.points.size(); ++point)
+      if (!chosen[point]) thread_.want(point, false);
+    thread_.start();
+  }
+
+  /// Ends the connection.
+  void end() { thread_.end(); }
+
+ private:
+  host::Link link_;
+  host::ValueTable values_;
+  DeviceLooks looks_;
+  host::DeviceThread thread_;  // last: it uses the others
+};
+
+Exit once(const Map& original, const DumpOptions& options) {
+  const ReadOnlyMap looking(original, once_period);
+  Map map = looking.map();
+  map.changes = false;
+  SnapshotQueue queue;
+  ReadDevice device(map, options.chosen, queue);
+  const Snapshot now = *queue.next();
+  device.end();
   const bool nothing = std::none_of(now.readings.begin(), now.readings.end(), [](const Reading& reading) {
     return reading.state == Reading::State::good;
   });
@@ -99,101 +175,33 @@ Exit once(const Map& map, const DumpOptions& options) {
 
 using Show = void (*)(const Map& map, const Snapshot* before, const Snapshot& now);
 
-/// Looks again and again, and hears in between of what the device announces.
-class Watch {
- public:
-  Watch(const Map& map, const DumpOptions& options, Show show)
-      : map_(map),
-        every_(*options.every),
-        show_(show),
-        link_(host::make_link(map.connection, map.limits)),
-        interruption_([this] {
-          stopped_ = true;
-          link_.interrupt();
-          link_.wake();
-        }),
-        reader_(map, options.chosen, link_, load_served_map,
-                [this](const modbus::Change& bit, host::Stamp stamp) { take(bit, stamp); }) {}
-
-  /// Until it is interrupted.
-  void run() {
-    while (!stopped_) wait_until(look());
-  }
-
- private:
-  /// Returns when to look again.
-  host::Time look() {
-    const host::Time next = clock_.now() + every_;
-    Snapshot now = reader_.look();
-    if (stopped_) return next;
-    const bool is_online = now.online();
-    if (is_online) {
-      backoff_.reset();
-      if (online_.online() && !online_.readings.empty()) mark_changes(online_, now);
-      online_ = now;
-    }
-    show_if_taken(std::exchange(is_first_, false) ? nullptr : &before_, now);
-    before_ = std::move(now);
-    if (is_online) {
-      was_told_ = false;
-      return next;
-    }
-    const host::Time again = clock_.now() + backoff_.next();
-    return was_told_ ? again : std::max(next, again);  // what comes between two looks is not told meanwhile
-  }
-
-  void wait_until(host::Time next) {
-    was_told_ |= reader_.hears_changes();
-    auto lost = reader_.wait_until(next);
-    if (!lost || stopped_) return;
-    show_if_taken(&before_, *lost);
-    before_ = *std::move(lost);
-    clock_.sleep_until(std::min<host::Time>(next, clock_.now() + pause_after_loss));
-  }
-
-  void take(const modbus::Change& bit, host::Stamp stamp) {
-    if (!before_.online() || !take_change(map_, bit, before_)) return;
-    wall_.measure();
-    before_.at = std::chrono::system_clock::time_point(
-        std::chrono::duration_cast<std::chrono::system_clock::duration>(wall_.of(stamp.at)));
-    online_ = before_;
-    show_if_taken(&before_, before_);
-  }
-
-  /// Lines that nobody reads are not shown, so that the device is read and Ctrl-C is heard all the same.
-  void show_if_taken(const Snapshot* before, const Snapshot& now) {
+/// Shows what is taken. What nobody reads is not shown, so that Ctrl-C is heard all the same.
+void watch(SnapshotQueue& queue, const Map& map, Show show) {
+  std::optional<Snapshot> shown;
+  unsigned missing = 0;
+  while (std::optional<Snapshot> now = queue.next()) {
+    missing += queue.take_missing();
     if (!is_taken()) {
-      ++missing_;
-      is_first_ |= before == nullptr;
-      return;
+      ++missing;
+      continue;
     }
-    if (const unsigned missing = std::exchange(missing_, 0); missing > 0)
-      tell(fmt::format("{} looks are missing here: standard output was blocked", missing));
-    show_(map_, before, now);
+    if (missing > 0) tell(fmt::format("{} looks are missing here: standard output was blocked", missing));
+    missing = 0;
+    show(map, shown ? &*shown : nullptr, *now);
+    shown = *std::move(now);
   }
+}
 
-  const Map& map_;
-  const host::Duration every_;
-  const Show show_;
-  host::Link link_;
-  host::Clock& clock_ = link_.clock();
-  std::atomic<bool> stopped_{false};
-  const Interruption interruption_;
-  host::Backoff backoff_;
-  host::WallTime wall_;
-  Snapshot before_;
-  Snapshot online_;        ///< the last that was
-  bool is_first_ = true;   ///< nothing has been shown
-  unsigned missing_ = 0;   ///< that were not shown since the last one that was
-  bool was_told_ = false;  ///< the device told its changes, until the connection ended
-  DeviceReader reader_;    // last: it uses the others
-};
-
-Exit again_and_again(const Map& map, const DumpOptions& options) {
+Exit again_and_again(const Map& original, const DumpOptions& options) {
   never_wait_for_reader_of(STDERR_FILENO);
+  const ReadOnlyMap looking(original, *options.every);
+  const Map& map = looking.map();
+  SnapshotQueue queue;
+  const Interruption interruption([&] { queue.stop(); });
+  ReadDevice device(map, options.chosen, queue);
   const bool terminal = !options.json && is_screen();
   if (terminal) std::fputs(begin_frames, stdout);
-  Watch(map, options, options.json ? show_json : terminal ? show_frame : show_changes).run();
+  watch(queue, map, options.json ? show_json : terminal ? show_frame : show_changes);
   if (terminal) put_line(end_frames);
   return ok;
 }

@@ -12,6 +12,14 @@ ReadOnlyMap::ReadOnlyMap(const Map& map) : points_(map.points.begin(), map.point
   map_.poll = Poll::all;
 }
 
+ReadOnlyMap::ReadOnlyMap(const Map& map, std::chrono::nanoseconds period) : ReadOnlyMap(map) {
+  for (Point& point : points_) {
+    point.host.rate = 0;
+    point.host.publish = HostOptions::Publish::always;
+  }
+  map_.polling.rate = 1 / std::chrono::duration<double>(period).count();
+}
+
 std::string_view watchdog_warning(const Map& map) {
   if (!map.coupler_watchdog.present() || !map.coupler_watchdog.feed.empty()) return {};
   return "every request feeds the watchdog of this coupler: while this program reads, it does not expire";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +14,8 @@ class ReadOnlyMap {
  public:
   /// The storage of `map` must outlive it.
   explicit ReadOnlyMap(const Map& map);
+  /// The same, and all points have one rate: all of them are read once in each period.
+  ReadOnlyMap(const Map& map, std::chrono::nanoseconds period);
   ReadOnlyMap(const ReadOnlyMap&) = delete;
   ReadOnlyMap& operator=(const ReadOnlyMap&) = delete;
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "coupler/host/core/error.hpp"
 #include "coupler/host/core/identity_check.hpp"
-#include "coupler/modbus/changes.hpp"
 
 namespace coupler::cli {
 
@@ -41,8 +41,5 @@ struct Snapshot {
 
 /// Marks the readings that differ from the last time.
 void mark_changes(const Snapshot& before, Snapshot& now);
-
-/// Puts a bit that has changed since into the readings that hold it: they alone are marked. False: none does.
-bool take_change(const Map& map, const modbus::Change& bit, Snapshot& now);
 
 }  // namespace coupler::cli

@@ -152,7 +152,7 @@ void BitChanges::show(Told& told, Stamp stamp) {
   one_.range = read_range(point_of(told));
   one_.points.front() = told.point;
   values_.store(one_, {&bits_[told.first], one_.range.count()}, told.stamp, told.stamp.at);
-  sink_.on_values(one_.points);
+  sink_.on_told(told.point);
   writer_.shown(one_.points);
 }
 

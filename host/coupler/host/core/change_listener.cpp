@@ -90,11 +90,10 @@ void ChangeListener::on_wait_answer(const WaitAnswer& answer) {
     return;
   }
   active_ = false;
-  sink_.on_report(
-      Level::warning,
-      fmt::format("the node says that it tells changes, but answers with {}; its points are polled "
-                  "while this connection lasts",
-                  to_string(answer.reply.error())));
+  sink_.on_note(Level::warning,
+                fmt::format("the node says that it tells changes, but answers with {}; its points are polled "
+                            "while this connection lasts",
+                            to_string(answer.reply.error())));
   changes_.on_end();
 }
 
@@ -158,13 +157,13 @@ void ChangeListener::map_clock(const modbus::ChangesReply& reply, const WaitAnsw
 }
 
 void ChangeListener::say(LogLineLimit& lines, Level level, const std::string& text) {
-  if (const auto line = lines.say(text, clock_.now())) sink_.on_report(level, *line);
+  if (const auto line = lines.say(text, clock_.now())) sink_.on_note(level, *line);
 }
 
 void ChangeListener::report_held_back() {
   const Time now = clock_.now();
-  if (const auto line = jumps_.due(now)) sink_.on_report(Level::warning, *line);
-  if (const auto line = epochs_.due(now)) sink_.on_report(Level::info, *line);
+  if (const auto line = jumps_.due(now)) sink_.on_note(Level::warning, *line);
+  if (const auto line = epochs_.due(now)) sink_.on_note(Level::info, *line);
 }
 
 /// Nothing that was told has happened after it was received, nor before all was told that had happened. The

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/core/health.hpp"
+#include "coupler/map/node_address.hpp"
 
 namespace coupler::host {
 
@@ -25,9 +26,10 @@ std::string loss_text(const Map& map, const Error& error, bool was_online) {
 
 }  // namespace
 
-Device::Device(const Map& map, Verify verify, MapLoader load, Link& link, ValueTable& values, Sink& sink)
+Device::Device(const Map& map, Purpose purpose, MapLoader load, Link& link, ValueTable& values, Sink& sink)
     : map_(map),
-      verify_(map.connection.is_broadcast() ? Verify::off : verify),
+      verify_(map.connection.is_broadcast() ? Verify::off : purpose.verify),
+      only_looks_(purpose.only_looks),
       load_(std::move(load)),
       link_(link),
       clock_(link.clock()),
@@ -37,10 +39,14 @@ Device::Device(const Map& map, Verify verify, MapLoader load, Link& link, ValueT
       writer_(map_, link_, statistics_, values_, sink),
       poller_(map_, link_, writer_, statistics_, values_, sink),
       scheduler_(map_, link_, writer_, poller_.changes(), sink),
-      listener_(map.connection.timeout, link_, statistics_, scheduler_.changes(), sink) {}
+      listener_(map.connection.timeout, link_, statistics_, scheduler_.changes(), sink) {
+  if (only_looks_) poller_.only_look();
+}
 
-/// On a serial line there is nothing to be kept, and what is only written may not even refuse to be read.
+/// On a serial line there is nothing to be kept, and what is only written may not even refuse to be read. A
+/// program that only looks reads nothing else than it is asked for.
 bool Device::needs_keep_alive() const {
+  if (only_looks_) return false;
   const auto& points = map_.points;
   return !map_.connection.is_rtu() || verify_ != Verify::off ||
          std::any_of(points.begin(), points.end(), [](const Point& point) { return is_readable(point); });
@@ -80,7 +86,13 @@ Result<> Device::do_what_is_due(Time now) {
   else if (keep_alive_due() <= now && link_.await_turn(write_due) == Link::Turn::read)
     answer = poller_.last_answered() ? link_.ask(*poller_.last_answered()) : link_.keep_alive(map_);
   if (answer) answered();
+  if (poller_.take_ended_cycle() && answer) cycle_ended();
   return answer;
+}
+
+void Device::cycle_ended() {
+  if (only_looks_) backoff_.reset();  // not before: a device may answer each time until a certain request
+  sink_.on_cycle();
 }
 
 void Device::answered() {
@@ -109,6 +121,8 @@ Result<> Device::read_or_write() {
 
 Result<> Device::read(Time until) {
   const std::uint64_t replies = link_.replies();
+  if (std::exchange(is_closed_, false))
+    if (auto connected = link_.connect(); !connected) return connected;
   auto answer = poller_.step(until);
   if (link_.replies() != replies) wrote_last_ = false;
   return answer ? answer : go_on_without(answer.error());
@@ -117,10 +131,14 @@ Result<> Device::read(Time until) {
 /// A request to which a foreign device says nothing, or nonsense, ends the connection: what would come next
 /// cannot be trusted. The first time the device may have been away, or started again. If it happens again,
 /// and others are answered before and after, the request costs its own points only: nobody is told that the
-/// device was away, no write is dropped, and nothing is restored.
+/// device was away, no write is dropped, and nothing is restored. A program that only looks does not wait for
+/// the second time: nothing is lost if it was chance.
 Result<> Device::go_on_without(const Error& error) {
-  if (!is_no_reply(error) || is_node_ || ending_) return tl::make_unexpected(error);
-  if (link_.replies() == replies_at_connect_ || !poller_.is_suspected()) {
+  if (is_node_ || ending_) return tl::make_unexpected(error);
+  if (reopens(error)) return {};
+  if (!is_no_reply(error)) return tl::make_unexpected(error);
+  const bool may_be_chance = !only_looks_ && !poller_.is_suspected();
+  if (link_.replies() == replies_at_connect_ || may_be_chance) {
     poller_.ended_connection();
     return tl::make_unexpected(error);
   }
@@ -137,14 +155,25 @@ Result<> Device::go_on_without(const Error& error) {
 /// Some devices end each connection after a number of requests, or for another client's. They answer this
 /// request if it is the first one.
 Result<> Device::ask_alone() {
-  link_.close();
-  const Result<> connected = link_.connect();
+  const Result<> connected = connect_only();
   return connected ? link_.ask(poller_.current()) : connected;
 }
 
-Result<> Device::connect_again() {
+/// Returns whether a program that only looks goes on over a new connection: some devices close it after a
+/// number of requests.
+bool Device::reopens(const Error& error) {
+  if (!only_looks_ || is_node_ || !std::holds_alternative<TransportFailure>(error)) return false;
+  if (std::exchange(replies_at_reopen_, link_.replies()) == link_.replies()) return false;  // or without end
+  return connect_only().has_value();
+}
+
+Result<> Device::connect_only() {
   link_.close();
-  Result<> result = link_.connect();
+  return link_.connect();
+}
+
+Result<> Device::connect_again() {
+  Result<> result = connect_only();
   if (result && verify_ != Verify::off) result = prove_equal();
   if (result && is_node_) result = fail(NotConnected{"the device has become another one"});
   if (result) result = watchdog_.connected();
@@ -179,7 +208,11 @@ void Device::arrived() {
       answered();
     return;
   }
-  if (const auto discarded = link_.discard_unasked(); !discarded) lost(discarded.error());
+  const auto discarded = link_.discard_unasked();
+  if (discarded) return;
+  if (!only_looks_ || is_node_) return lost(discarded.error());
+  link_.close();  // some devices do so when nothing is asked
+  is_closed_ = true;
 }
 
 bool Device::stop() {
@@ -197,7 +230,7 @@ bool Device::stop() {
 
 Time Device::connect() {
   link_.rank(Rank::read);
-  wrote_last_ = false;
+  wrote_last_ = is_closed_ = false;
   node_ = {};
   is_node_ = false;
   Result<> result = state_ == State::open ? Result<>{} : link_.connect();
@@ -217,7 +250,10 @@ Time Device::connect() {
   scheduler_.connected(listener_.is_active() && node_.functions.schedules_outputs);
   poller_.start(is_node_ || map_.connection.tls.present(), listener_.is_active());
   replies_at_connect_ = link_.replies();
-  if (map_.connection.is_broadcast() || (verify_ != Verify::off && identity_suffices_)) came_online();
+  const bool has_nothing_to_read = only_looks_ && poller_.due() == Time::max();
+  if (has_nothing_to_read || map_.connection.is_broadcast() || (verify_ != Verify::off && identity_suffices_))
+    came_online();
+  if (has_nothing_to_read) cycle_ended();
   return due();
 }
 
@@ -229,7 +265,7 @@ void Device::listen() {
   else
     listener_.stop();
   if (!tells || lets_waits_through) return;
-  sink_.on_report(
+  sink_.on_note(
       Level::warning,
       "the node says that it tells changes, but the question for them (function code 65) ended the "
       "last two connections that it was sent on; its points are polled while this connection lasts. Where a "
@@ -244,12 +280,17 @@ Result<> Device::ask_for_watchdog() {
 }
 
 Result<> Device::prove_equal() {
+  if (answers_identity_ == false) return {};
+  const std::uint64_t replies = link_.replies();
   const Result<Identity> identity = check_identity(link_, map_, load_);
+  const bool may_ignore_it = only_looks_ && !answers_identity_ && link_.replies() == replies;
+  if (!identity && may_ignore_it) return treat_as_foreign(identity.error());
   if (!identity) {
     explain_silence(identity.error());
     return tl::make_unexpected(identity.error());
   }
   explains_silence_ = false;
+  answers_identity_ = true;
   Result<identity::Further> further;
   is_node_ = identity->verdict != Identity::Verdict::foreign;
   if (is_node_) further = read_further(link_);
@@ -257,8 +298,31 @@ Result<> Device::prove_equal() {
   node_ = *further;
   peer_ = to_string(node_.machine);
   statistics_.identified(identity->verdict, further->machine);
-  sink_.on_identified(is_node_);
+  sink_.on_identified(identity->verdict);
   return judge(*identity);
+}
+
+/// Some couplers ignore addresses that they do not have. A late answer must not be taken for another.
+Result<> Device::treat_as_foreign(const Error& error) {
+  sink_.on_note(Level::info,
+                fmt::format("the device does not answer the request for its identity ({}): it is "
+                            "read as a foreign coupler",
+                            to_string(error)));
+  answers_identity_ = false;
+  identity_suffices_ = false;
+  return connect_only();
+}
+
+/// Takes effect in poller_.start().
+void Device::leave_out(const Identity& identity) {
+  for (const ForeignPoint& before : left_out_) values_.set_aside({&before.point, 1}, {});
+  left_out_ = foreign_points(map_, identity);
+  std::vector<std::uint32_t> points;
+  for (const ForeignPoint& foreign : left_out_) {
+    values_.set_aside({&foreign.point, 1}, foreign.why);
+    points.push_back(foreign.point);
+  }
+  poller_.leave_out(std::move(points));
 }
 
 void Device::explain_silence(const Error& error) {
@@ -268,9 +332,18 @@ void Device::explain_silence(const Error& error) {
 }
 
 Result<> Device::judge(const Identity& identity) {
+  if (only_looks_) leave_out(identity);
   if (identity.verdict != Identity::Verdict::different) {
     reported_fingerprint_ = 0;
-    if (identity.verdict == Identity::Verdict::superset) sink_.on_report(Level::info, superset_text);
+    if (identity.verdict == Identity::Verdict::superset) sink_.on_note(Level::info, superset_text);
+    return {};
+  }
+  if (only_looks_) {
+    std::string text = difference_text(map_, identity);
+    if (!identity.points.empty())
+      text += "\nOnly points that are the same are read. To read by the device's own map, give " +
+              node_address_text(map_.connection) + " instead of this one";
+    sink_.on_note(Level::warning, text);
     return {};
   }
   const bool refuse = verify_ == Verify::require;
@@ -293,7 +366,7 @@ Result<> Device::judge(const Identity& identity) {
 
 void Device::came_online() {
   if (std::exchange(state_, State::online) == State::online) return;
-  backoff_.reset();
+  if (!only_looks_) backoff_.reset();
   last_error_text_.clear();
   const auto certificates = link_.certificates();
   statistics_.online(certificates);
@@ -327,10 +400,12 @@ void Device::lost(const Error& error) {
   scheduler_.disconnected(why);
   statistics_.offline(why);
   values_.online(false);
+  answers_identity_.reset();  // it may be another device next time
   if (was_online) {
     identity_suffices_ = link_.replies() > replies_at_connect_;
     sink_.on_online(false);
   }
+  if (!ending_) sink_.on_failure(error);
   if (!ending_ && (was_online || why != last_error_text_)) {
     const std::string text = loss_text(map_, error, was_online);
     sink_.on_loss(text);

@@ -16,6 +16,18 @@
 
 namespace coupler::host {
 
+/// The way in which a program uses a device.
+struct Purpose {
+  Purpose(Verify if_different, bool looks = false) : verify(if_different), only_looks(looks) {}
+
+  Verify verify;
+  /// The program shows what can be read, whatever the device is. Of a device with another map it reads the
+  /// points that are the same. A device that ignores the question for its identity is a foreign coupler.
+  /// Points that the device rejects are asked for again in each cycle, and a request that fails is made in
+  /// parts.
+  bool only_looks;
+};
+
 /// One coupler: connects and reconnects by itself, verifies that both sides have the same map, writes first
 /// and reads on schedule. It has no thread of its own: one calls step() again and again.
 ///
@@ -36,7 +48,7 @@ namespace coupler::host {
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
-  Device(const Map& map, Verify verify, MapLoader load, Link& link, ValueTable& values, Sink& sink);
+  Device(const Map& map, Purpose purpose, MapLoader load, Link& link, ValueTable& values, Sink& sink);
 
   /// Queues a write. Its listener gets the result.
   void push(const Write& write) { writer_.push(write); }
@@ -103,6 +115,8 @@ class Device {
   Result<> ask_for_watchdog();
   Result<> prove_equal();
   Result<> judge(const Identity& identity);
+  Result<> treat_as_foreign(const Error& error);
+  void leave_out(const Identity& identity);
   void explain_silence(const Error& error);
   void listen();
   Result<> do_what_is_due(Time now);
@@ -112,6 +126,9 @@ class Device {
   Result<> read(Time until);
   Result<> go_on_without(const Error& error);
   Result<> ask_alone();
+  bool reopens(const Error& error);
+  Result<> connect_only();
+  void cycle_ended();
   Result<> connect_again();
   Result<> serve_watchdog();
   Time due() const;
@@ -129,6 +146,7 @@ class Device {
 
   Map map_;
   Verify verify_;
+  bool only_looks_;
   bool keeps_alive_ = needs_keep_alive();
   MapLoader load_;
   Link& link_;
@@ -149,7 +167,9 @@ class Device {
   std::atomic<bool> ending_{false};
   State state_ = State::none;
   bool wrote_last_ = false;  ///< the last request was a write: an overdue read goes before the next one
-  std::uint64_t replies_at_connect_ = 0;  ///< Link::replies() when the maps were verified
+  bool is_closed_ = false;   ///< by the device, since the last request; the next one connects again
+  std::optional<std::uint64_t> replies_at_reopen_;  ///< Link::replies() then; see reopens()
+  std::uint64_t replies_at_connect_ = 0;            ///< Link::replies() when the maps were verified
   /// A verified device is online at once, unless it answered nothing else the last time: `online` would
   /// flicker.
   bool identity_suffices_ = true;
@@ -157,7 +177,9 @@ class Device {
   /// chance.
   int unheard_waits_ = 0;
   Time retry_at_ = Time::min();
-  std::string last_error_text_;   ///< that of the last attempt; the same text is logged once
+  std::string last_error_text_;           ///< that of the last attempt; the same text is logged once
+  std::optional<bool> answers_identity_;  ///< whether the device answers the question for its identity
+  std::vector<ForeignPoint> left_out_;    ///< see Purpose
   bool explains_silence_ = true;  ///< false once the identity was answered, or silence_text() was logged
   bool is_node_ = false;          ///< the device is a node of this project, as far as it was asked
   identity::Further node_;        ///< what the node says of itself; empty if it is no node

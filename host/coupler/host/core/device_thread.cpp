@@ -18,10 +18,10 @@ constexpr milliseconds longest_attempt(100);
 
 }  // namespace
 
-DeviceThread::DeviceThread(const Map& map, Verify verify, MapLoader load, Link& link, ValueTable& values,
+DeviceThread::DeviceThread(const Map& map, Purpose purpose, MapLoader load, Link& link, ValueTable& values,
                            Sink& sink)
     : link_(link),
-      device_(map, verify, std::move(load), link, values, sink),
+      device_(map, purpose, std::move(load), link, values, sink),
       ends_safely_(map.on_shutdown == OnShutdown::safe) {}
 
 void DeviceThread::start() {

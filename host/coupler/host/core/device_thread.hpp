@@ -49,7 +49,7 @@ class ReadDemand {
 class DeviceThread {
  public:
   /// Everything given by reference must outlive it. No request is sent before start().
-  DeviceThread(const Map& map, Verify verify, MapLoader load, Link& link, ValueTable& values, Sink& sink);
+  DeviceThread(const Map& map, Purpose purpose, MapLoader load, Link& link, ValueTable& values, Sink& sink);
   /// Ends the request in progress and waits for the thread. That takes milliseconds. If outputs have to get
   /// their safe values, it takes most of a second at the worst, or a tenth of a second for a device that is
   /// offline.

@@ -47,6 +47,22 @@ std::string difference_text(const Map& known, const Identity& identity) {
   return text;
 }
 
+std::vector<ForeignPoint> foreign_points(const Map& known, const Identity& identity) {
+  std::vector<ForeignPoint> found;
+  if (identity.verdict != Verdict::different) return found;
+  for (const Difference& difference : identity.points) {
+    if (!is_breaking(difference.kind)) continue;
+    const bool is_missing = difference.kind == Difference::Kind::missing;
+    const auto point = static_cast<std::uint32_t>(find(known, difference.point) - known.points.begin());
+    found.push_back({point, is_missing ? "not in the device's map"
+                                       : "different in the device's map: " + difference.what});
+  }
+  if (identity.points.empty())
+    for (std::uint32_t point = 0; point < known.points.size(); ++point)
+      found.push_back({point, "the device's map cannot be compared"});
+  return found;
+}
+
 std::string line_remedy(const Connection& line) {
   if (!line.serial.present()) return "check power, A and B, 'unit', and the gateway's rate and parity";
   return fmt::format(

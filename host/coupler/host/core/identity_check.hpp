@@ -27,6 +27,14 @@ struct Identity {
 /// Returns a text for people that explains `different`: both fingerprints, then the differences, a line each.
 std::string difference_text(const Map& known, const Identity& identity);
 
+/// A point of the driver's map that the device has not, or has otherwise.
+struct ForeignPoint {
+  std::uint32_t point;  ///< index into Map::points
+  std::string why;
+};
+/// Returns the points of `known` that must not be read from a device with that identity.
+std::vector<ForeignPoint> foreign_points(const Map& known, const Identity& identity);
+
 /// Returns a text for people that explains `superset`.
 constexpr auto superset_text = "the device has more points than this map; those of this map are unchanged";
 

@@ -19,7 +19,7 @@ struct PointQuality {
     stale,       ///< nothing new has come for two periods of its rate and a timeout
     never_read,  ///< not read since the program began
     exception,   ///< the last read was answered with an exception
-    rejected,    ///< the device does not have it; not read again over this connection, or set aside
+    rejected,    ///< the device does not have it, or it is set aside
     offline,     ///< the device does not answer
     not_wanted   ///< not read, because nobody listens to it
   };

@@ -44,6 +44,7 @@ void PollCycle::start(Time now) {
   for (const std::uint32_t point : aside_.take_back()) given_up_[point] = true;
   for (const ReadSpan& span : deferred_)
     for (const std::uint32_t point : span.points) given_up_[point] = true;
+  give_up_left_out();
   at_rest_.assign(at_rest_.size(), false);
   findings_.clear();
   others_first_ = false;
@@ -51,8 +52,18 @@ void PollCycle::start(Time now) {
     group.next = 0;
     group.parted.clear();
     group.joined_again = false;
+    group.has_parts = false;
     group.steps.clear();  // with an empty one replan() begins the deadlines
     replan(group, now);
+  }
+}
+
+/// The device may have anything at their addresses.
+void PollCycle::give_up_left_out() {
+  for (const std::uint32_t point : left_out_) {
+    const Point& left_out = planner_.map().points[point];
+    given_up_[point] = true;
+    rejected_ranges_.push_back({left_out.table, read_range(left_out)});
   }
 }
 
@@ -115,53 +126,94 @@ const ReadSpan* PollCycle::select(Time now) {
   return &current();
 }
 
-void PollCycle::ask_again(Span<const std::uint32_t> points) {
+void PollCycle::ask_again(Span<const std::uint32_t> points, bool soon) {
   for (const std::uint32_t point : points) {
     given_up_[point] = false;
-    if (Group* const group = group_of(point)) group->stale = true;
+    if (Group* const group = group_of(point)) {
+      group->stale = true;
+      group->soon |= soon;
+    }
   }
 }
 
 bool PollCycle::answered(std::optional<modbus::Exception> exception, Time now) {
   Group& group = groups_[current_];
   const bool is_back = aside_.answered(current());
-  for (const ReadSpan& span : std::exchange(deferred_, {})) ask_again(span.points);
+  for (const ReadSpan& span : std::exchange(deferred_, {})) ask_again(span.points, only_looks_);
   const bool news = std::exchange(group.steps[group.next].last, exception) != exception || is_back;
   ++group.next;
   done(now);
   return news;
 }
 
-std::vector<std::uint32_t> PollCycle::rejected(Time now) {
-  Group& group = groups_[current_];
-  const ReadSpan rejected = current();
-  rejected_ranges_.push_back({rejected.table, rejected.range});
-  std::vector<Step> pieces;
-  std::vector<std::uint32_t> given_up;
-  std::optional<modbus::Range> hole;
+PollCycle::Parts PollCycle::parts_of_current() const {
+  const ReadSpan& whole = current();
+  Parts result;
   // If points overlap, a part can be as large as the whole, and need not be read.
-  std::vector<ReadSpan> open{rejected};
+  std::vector<ReadSpan> open{whole};
   while (!open.empty()) {
     const ReadSpan span = std::move(open.back());
     open.pop_back();
-    if (span.range != rejected.range) {
-      pieces.push_back({span, std::nullopt});
+    if (span.range != whole.range) {
+      result.pieces.push_back({span, std::nullopt, step().part_of});
       continue;
     }
     plan::Split parts = split(span, planner_.map());
-    if (parts.pieces.empty()) {
-      given_up.push_back(span.points.front());
-      given_up_[span.points.front()] = true;
-    }
+    if (parts.pieces.empty()) result.alone.push_back(span);
     open.insert(open.end(), parts.pieces.rbegin(), parts.pieces.rend());
-    hole = parts.hole;
+    result.hole = parts.hole;
   }
-  if (given_up.empty()) group.parted.push_back({{rejected.table, rejected.range}, hole});
+  return result;
+}
+
+std::vector<std::uint32_t> PollCycle::Parts::points_alone() const {
+  std::vector<std::uint32_t> points;
+  points.reserve(alone.size());
+  for (const ReadSpan& span : alone) points.push_back(span.points.front());
+  return points;
+}
+
+void PollCycle::replace_current(const Parts& parts, bool keeps_alone) {
+  Group& group = groups_[current_];
+  const auto whole = group.steps[group.next].part_of;
   remove_current();
-  group.steps.insert(group.steps.begin() + static_cast<std::ptrdiff_t>(group.next), pieces.begin(),
-                     pieces.end());
+  if (keeps_alone)
+    for (const ReadSpan& span : parts.alone)
+      group.steps.insert(group.steps.begin() + static_cast<std::ptrdiff_t>(group.next++),
+                         {span, std::nullopt, whole});
+  group.steps.insert(group.steps.begin() + static_cast<std::ptrdiff_t>(group.next), parts.pieces.begin(),
+                     parts.pieces.end());
+}
+
+std::vector<std::uint32_t> PollCycle::rejected(Time now) {
+  Group& group = groups_[current_];
+  const Unreadable whole{current().table, current().range};
+  const auto is_whole = [&](const Unreadable& known) {
+    return known.table == whole.table && known.range == whole.range;
+  };
+  if (std::none_of(rejected_ranges_.begin(), rejected_ranges_.end(), is_whole))
+    rejected_ranges_.push_back(whole);
+  const Parts parts = parts_of_current();
+  std::vector<std::uint32_t> unreadable = parts.points_alone();
+  if (!only_looks_)
+    for (const std::uint32_t point : unreadable) given_up_[point] = true;
+  if (unreadable.empty()) group.parted.push_back({whole, parts.hole});
+  replace_current(parts, only_looks_);
   done(now);
-  return given_up;
+  return unreadable;
+}
+
+std::optional<std::vector<std::uint32_t>> PollCycle::failed(Time now) {
+  Group& group = groups_[current_];
+  Parts parts = parts_of_current();
+  if (parts.pieces.empty()) return std::nullopt;
+  auto& whole = group.steps[group.next].part_of;
+  if (!whole) whole = std::make_shared<const ReadSpan>(current());
+  for (Step& piece : parts.pieces) piece.part_of = whole;
+  replace_current(parts, true);
+  group.has_parts = true;
+  done(now);
+  return parts.points_alone();
 }
 
 std::vector<std::uint32_t> PollCycle::set_aside(Time now) {
@@ -172,8 +224,16 @@ std::vector<std::uint32_t> PollCycle::set_aside(Time now) {
   }
   aside_.convict(span);
   std::vector<std::uint32_t> left = rejected(now);
+  if (only_looks_) ask_no_more(left);
   if (!left.empty()) aside_.add({span.table, span.range, left}, now);
   return left;
+}
+
+void PollCycle::ask_no_more(Span<const std::uint32_t> points) {
+  for (const std::uint32_t point : points) {
+    given_up_[point] = true;
+    if (Group* const group = group_of(point)) group->stale = true;
+  }
 }
 
 void PollCycle::ended_connection() {
@@ -181,8 +241,7 @@ void PollCycle::ended_connection() {
   deferred_.push_back(current());
   std::size_t asked = 0;
   for (const Group& group : groups_)
-    for (const std::uint32_t point : group.points->points)
-      asked += wanted_[point] && !given_up_[point] ? 1 : 0;
+    for (const std::uint32_t point : group.points->points) asked += is_read(point) ? 1 : 0;
   if (current().points.size() >= asked) deferred_.clear();  // there are no others: all of it is silent
 }
 
@@ -197,6 +256,7 @@ void PollCycle::try_again() {
   if (!any && rejected_ranges_.empty()) return;
   given_up_.assign(given_up_.size(), false);
   rejected_ranges_.clear();
+  give_up_left_out();
   for (Group& group : groups_) {
     group.stale = group.soon = true;
     group.joined_again = false;
@@ -222,7 +282,7 @@ std::uint64_t PollCycle::overruns() const {
 void PollCycle::replan(Group& group, Time now) {
   std::vector<std::uint32_t> points;
   for (const std::uint32_t point : group.points->points)
-    if (wanted_[point] && !given_up_[point] && !at_rest_[point]) points.push_back(point);
+    if (is_read(point) && !at_rest_[point]) points.push_back(point);
   const std::vector<Step> old = std::exchange(group.steps, {});
   for (ReadSpan& span : planner_.plan(points, rejected_ranges_)) {
     const auto same = std::find_if(old.begin(), old.end(), [&](const Step& step) {
@@ -250,6 +310,22 @@ void PollCycle::done(Time now) {
   group.deadlines.advance(now);
   others_first_ = due() <= now;
   if (!group.parted.empty()) learn(group);
+  if (std::exchange(group.has_parts, false)) join_parts(group);
+}
+
+/// What was asked for in parts, because it failed, is asked for as a whole in the next cycle.
+void PollCycle::join_parts(Group& group) {
+  std::shared_ptr<const ReadSpan> last;
+  std::vector<Step> steps;
+  for (Step& step : group.steps) {
+    const auto whole = std::exchange(step.part_of, nullptr);
+    if (!whole)
+      steps.push_back(std::move(step));
+    else if (whole != last)
+      steps.push_back({*whole, std::nullopt, nullptr});
+    last = whole;
+  }
+  group.steps = std::move(steps);
 }
 
 /// The parts of all that was rejected have been read. Where no smaller part was rejected, the hole between

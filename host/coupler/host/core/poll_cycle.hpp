@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,10 +40,15 @@ class PollCycle {
   /// The storage of `map` must outlive the cycle. All points are wanted at first.
   explicit PollCycle(const Map& map);
 
+  /// Makes it the cycle of a program that only looks, see Purpose. Call it before start().
+  void only_look() { only_looks_ = true; }
+
   /// Starts with a new connection. Everything is read again except what is set aside, and the first cycle of
   /// each rate is due now.
   void start(Time now);
 
+  /// Leaves out these points, and their addresses in requests for several others, from the next start() on.
+  void leave_out(std::vector<std::uint32_t> points) { left_out_ = std::move(points); }
   /// Sets whether somebody wants the values of a point (index into Map::points). From the next cycle of its
   /// rate on only the requests are sent that the wanted points need.
   void want(std::uint32_t point, bool wanted);
@@ -68,8 +74,12 @@ class PollCycle {
   /// aside.
   bool answered(std::optional<modbus::Exception> exception, Time now);
   /// Notes that the device rejects current(). Smaller requests take its place in this cycle. Returns the
-  /// points that cannot be read at all; they are not read until the next start().
+  /// points that cannot be read at all; they are not read until the next start(), unless it only looks.
   std::vector<std::uint32_t> rejected(Time now);
+  /// Notes that the device answers current() with an exception that may be that of one point. Smaller
+  /// requests take its place in this cycle. Returns the points that none of them reads; nullopt if there are
+  /// no smaller requests, and nothing was changed.
+  std::optional<std::vector<std::uint32_t>> failed(Time now);
   /// Notes that the device does not know the function code of current(). Its points are not read until the
   /// next start().
   void give_up(Time now);
@@ -110,6 +120,8 @@ class PollCycle {
   struct Step {
     ReadSpan span;
     std::optional<modbus::Exception> last;
+    std::shared_ptr<const ReadSpan>
+        part_of{};  ///< the request that failed, in whose place it is in this cycle
   };
   /// A rejected request, and the parts that took its place.
   struct Parted {
@@ -122,6 +134,7 @@ class PollCycle {
     std::vector<Step> steps{};
     std::size_t next = 0;
     bool stale = false;            ///< has to be planned anew when no cycle runs
+    bool has_parts = false;        ///< see Step::part_of
     bool soon = false;             ///< its next cycle is due at once after that
     bool joined_again = false;     ///< was planned anew after what it learned, which is done once
     std::vector<Parted> parted{};  ///< those of the cycle that runs
@@ -130,15 +143,32 @@ class PollCycle {
     bool idle() const { return steps.empty() || next == 0; }
     Time due() const;
   };
+  /// The smaller requests for what current() reads.
+  struct Parts {
+    std::vector<Step> pieces{};
+    std::vector<ReadSpan> alone{};  ///< points that no smaller request reads
+    std::optional<modbus::Range> hole{};
+
+    std::vector<std::uint32_t> points_alone() const;
+  };
+  Parts parts_of_current() const;
+  /// Puts the parts in the place of current(). What is alone was asked for in this cycle.
+  void replace_current(const Parts& parts, bool keeps_alone);
+  bool is_read(std::uint32_t point) const { return wanted_[point] && !given_up_[point]; }
   const Step& step() const { return groups_[current_].steps[groups_[current_].next]; }
   Group* group_of(std::uint32_t point);
   void replan(Group& group, Time now);
   void remove_current();
   void done(Time now);
   void learn(Group& group);
-  void ask_again(Span<const std::uint32_t> points);
+  static void join_parts(Group& group);
+  void ask_again(Span<const std::uint32_t> points, bool soon = false);
+  void ask_no_more(Span<const std::uint32_t> points);
+  void give_up_left_out();
 
   plan::Planner planner_;
+  bool only_looks_ = false;
+  std::vector<std::uint32_t> left_out_{};
   std::vector<bool> wanted_;    ///< by point
   std::vector<bool> given_up_;  ///< by point
   std::vector<bool> at_rest_;   ///< by point

@@ -46,10 +46,16 @@ Result<> Poller::step(Time until) {
     if (cycle_.answered(std::nullopt, clock_.now()))
       sink_.on_report(Level::info, name + " can be read again");
   }
-  if (const auto cycle_time = cycle_.take_cycle_time())
-    statistics_.cycle_ended(*cycle_time, cycle_.overruns());
-  report_rejected_ranges();
+  request_ended();
   return {};
+}
+
+void Poller::request_ended() {
+  report_rejected_ranges();
+  const auto cycle_time = cycle_.take_cycle_time();
+  if (!cycle_time) return;
+  statistics_.cycle_ended(*cycle_time, cycle_.overruns());
+  has_ended_cycle_ = true;
 }
 
 void Poller::set_aside(const Error& error) {
@@ -67,7 +73,7 @@ void Poller::set_aside(const Error& error) {
                     "in 10 s, and then less and less often",
                     map_.points[point].name, why));
   }
-  report_rejected_ranges();
+  request_ended();
 }
 
 void Poller::publish(const ReadSpan& span) {
@@ -106,6 +112,10 @@ void Poller::on_exception(modbus::Exception code) {
       statistics_.rejected();
       values_.rejected(span.points, code);
       sink_.on_no_values(span.points, clock_.now());
+      if (only_looks_) {
+        cycle_.answered(code, clock_.now());
+        return;
+      }
       cycle_.give_up(clock_.now());
       sink_.on_report(Level::warning,
                       fmt::format("{} cannot be read: {}; it is not read again while this connection "
@@ -113,11 +123,22 @@ void Poller::on_exception(modbus::Exception code) {
                                   describe(span), why));
       return;
     default:
+      if (only_looks_ && ask_in_parts(code)) return;
       values_.exception(span.points, code);
       sink_.on_no_values(span.points, clock_.now());
       if (cycle_.answered(code, clock_.now()))
         sink_.on_report(Level::warning, fmt::format("{} cannot be read now: {}", describe(span), why));
   }
+}
+
+/// Returns whether there are smaller requests. Then only the points that none of them reads have failed.
+bool Poller::ask_in_parts(modbus::Exception code) {
+  if (code == modbus::Exception::acknowledge || code == modbus::Exception::server_device_busy) return false;
+  const auto alone = cycle_.failed(clock_.now());
+  if (!alone) return false;
+  values_.exception(*alone, code);
+  sink_.on_no_values(*alone, clock_.now());
+  return true;
 }
 
 /// Handles the exception of a request, parts of which may be good.
@@ -133,7 +154,7 @@ void Poller::on_rejection(modbus::Exception code, std::string_view what, std::st
 
 void Poller::report_rejected_ranges() {
   for (const RejectedRange& range : cycle_.take_rejected_ranges())
-    sink_.on_report(Level::warning, to_string(range));
+    sink_.on_note(Level::warning, to_string(range));
 }
 
 std::string Poller::describe(const ReadSpan& span) const {

@@ -26,6 +26,12 @@ class Poller {
   Poller(const Map& map, Link& link, Writer& writer, DeviceStatistics& statistics, ValueTable& values,
          Sink& sink);
 
+  /// Makes it the poller of a program that only looks, see Purpose. Call it before start().
+  void only_look() {
+    only_looks_ = true;
+    cycle_.only_look();
+  }
+
   /// Starts with a new connection. `is_node`: it leads to a node of this project. `told`: the node tells
   /// changes of its bits.
   void start(bool is_node, bool told);
@@ -48,6 +54,10 @@ class Poller {
   /// The range that was answered last over any connection; nullopt if there is none.
   const std::optional<Unreadable>& last_answered() const { return answered_; }
 
+  /// Returns whether a cycle has ended since the last call.
+  bool take_ended_cycle() { return std::exchange(has_ended_cycle_, false); }
+  /// See PollCycle.
+  void leave_out(std::vector<std::uint32_t> points) { cycle_.leave_out(std::move(points)); }
   void want(std::uint32_t point, bool wanted) { told_.want(point, wanted); }
   /// The receiver of changes.
   ChangeSink& changes() { return told_; }
@@ -56,11 +66,14 @@ class Poller {
   void publish(const ReadSpan& span);
   const ReadSpan& without_hidden(const ReadSpan& span);
   void on_exception(modbus::Exception code);
+  bool ask_in_parts(modbus::Exception code);
+  void request_ended();
   void on_rejection(modbus::Exception code, std::string_view what, std::string_view until);
   void report_rejected_ranges();
   std::string describe(const ReadSpan& span) const;
 
   const Map& map_;
+  bool only_looks_ = false;
   Link& link_;
   Clock& clock_;
   Writer& writer_;
@@ -70,6 +83,7 @@ class Poller {
   PollCycle cycle_;
   BitChanges told_;
   std::optional<Unreadable> answered_;
+  bool has_ended_cycle_ = false;
   bool is_node_ = false;  ///< a node knows every function, so exception 01 is about rights
   ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< a member, so that its memory is used again
   std::array<std::uint16_t, modbus::max_read_bits> read_{};   ///< the registers or bits of the last reply

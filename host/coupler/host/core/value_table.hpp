@@ -40,7 +40,7 @@ class ValueTable {
   /// again by itself does not call it, but connected().
   void begin();
 
-  // For the device's thread.
+  // These calls are for the thread of the device.
 
   /// Stores the values of the points of `span`, which were good at the time `good_at`. `registers[i]` is the
   /// register `span.range.start() + i`, or that bit as 0 or 1.
@@ -59,7 +59,7 @@ class ValueTable {
   void connected();
   void online(bool online);
 
-  // For the device's thread, in Sink::on_values().
+  // These calls are for Sink::on_values(), in that thread.
 
   /// The registers of a point that has a value: as many as `range(point).count()`.
   const std::uint16_t* registers(std::uint32_t point) const { return &registers_[entries_[point].first]; }
@@ -68,7 +68,7 @@ class ValueTable {
   /// Returns whether the last value differs from the one before, or is the first one.
   bool differs(std::uint32_t point) const { return entries_[point].differs; }
 
-  // For any thread.
+  // Any thread may make these calls.
 
   void wrote(std::uint32_t point, const WriteResult& result);
   Value get(std::uint32_t point, Time now) const;

@@ -93,9 +93,9 @@ void Recorder::queue_exception(std::uint32_t i, Time at) {
   queue(format_.no_value(moment(at), map_.points[i], line.quality, line.exception));
 }
 
-void Recorder::on_identified(bool is_node) {
+void Recorder::on_identified(Identity::Verdict verdict) {
   const std::lock_guard lock(mutex_);
-  is_node_ = is_node;
+  is_node_ = verdict != Identity::Verdict::foreign;
 }
 
 void Recorder::on_online(bool online) {

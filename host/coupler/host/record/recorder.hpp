@@ -30,7 +30,7 @@ class Recorder : public Sink {
 
   void on_values(Span<const std::uint32_t> points) override;
   void on_no_values(Span<const std::uint32_t> points, Time at) override;
-  void on_identified(bool is_node) override;
+  void on_identified(Identity::Verdict verdict) override;
   void on_online(bool online) override;
   void on_loss(const std::string& why) override;
   void on_report(Level level, const std::string& text) override { report_(level, text); }

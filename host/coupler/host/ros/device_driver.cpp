@@ -175,8 +175,8 @@ Time DeviceDriver::repeat_at(std::uint32_t point) const {
   return first;
 }
 
-void DeviceDriver::on_identified(bool is_node) {
-  for (const auto& follower : followers_) follower->sink().on_identified(is_node);
+void DeviceDriver::on_identified(Identity::Verdict verdict) {
+  for (const auto& follower : followers_) follower->sink().on_identified(verdict);
 }
 
 void DeviceDriver::on_online(bool online) {

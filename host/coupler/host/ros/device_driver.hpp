@@ -57,7 +57,7 @@ class DeviceDriver : public Sink {
   void on_values(Span<const std::uint32_t> points) override;
   void on_no_values(Span<const std::uint32_t> points, Time at) override;
   Time repeat_at(std::uint32_t point) const override;
-  void on_identified(bool is_node) override;
+  void on_identified(Identity::Verdict verdict) override;
   void on_online(bool online) override;
   void on_scheduled(const ScheduledOutcome& outcome) override;
   void on_loss(const std::string& why) override;

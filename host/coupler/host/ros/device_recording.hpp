@@ -14,7 +14,7 @@ namespace coupler::host {
 class DeviceRecording final : public Follower {
  public:
   /// `path`: the file. Null, after it is reported, if it cannot be one: the device is driven all the same.
-  /// What `map` views, and the table, must outlive it.
+  /// The storage of `map`, and the table, must outlive it.
   static std::unique_ptr<DeviceRecording> start(const Map& map, const ValueTable& values,
                                                 const std::string& path, const Recorder::Report& report);
 

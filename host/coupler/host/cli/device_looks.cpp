@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/cli/device_looks.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "coupler/plan/explain.hpp"
+
+namespace coupler::cli {
+namespace {
+
+using State = Reading::State;
+
+/// Why a point that was asked for has no value.
+std::string refusal_text(const host::PointQuality& quality, bool is_node) {
+  if (!quality.why.empty() || !quality.last_exception) return quality.why;
+  const bool is_right =
+      is_node && *quality.last_exception == modbus::Exception::illegal_function;  // a node knows how to read
+  return host::to_string(host::Error(host::ExceptionReply{*quality.last_exception})) +
+         (is_right ? ": this client has no right to read it" : "");
+}
+
+}  // namespace
+
+DeviceLooks::DeviceLooks(const Map& map, const std::vector<bool>& chosen, const host::ValueTable& values,
+                         const host::Clock& clock, std::function<void(Snapshot)> take)
+    : map_(map), chosen_(chosen), values_(values), clock_(clock), take_(std::move(take)) {}
+
+/// A request that ended the connection before comes in the next cycle.
+void DeviceLooks::on_cycle() {
+  constexpr int longest = 3;
+  if (++cycles_ < longest && !is_whole()) return;
+  Snapshot now = look(std::nullopt);
+  if (!last_.readings.empty()) mark_changes(last_, now);
+  last_ = now;
+  began_ = clock_.now();
+  cycles_ = 0;
+  told_.clear();
+  has_looked_ = has_chance_ = true;
+  take_(std::move(now));
+}
+
+/// A write may hide what was read, which is good all the same.
+bool DeviceLooks::is_from_this_look(const host::ValueTable::Value& value) const {
+  return value.number > 0 && (value.stamp.at > began_ || value.quality.last_good > began_);
+}
+
+bool DeviceLooks::is_whole() const {
+  for (std::uint32_t point = 0; point < map_.points.size(); ++point) {
+    if (!chosen_[point] || plan::why_not_read(map_, map_.points[point])) continue;
+    const host::ValueTable::Value value = values_.get(point, clock_.now());
+    if (!is_from_this_look(value) && !value.quality.is_refused()) return false;
+  }
+  return true;
+}
+
+/// Shows the change alone: what the cycle that runs has read comes at its end.
+void DeviceLooks::on_told(std::uint32_t point) {
+  const auto shown = std::find_if(last_.readings.begin(), last_.readings.end(),
+                                  [point](const Reading& reading) { return reading.point == point; });
+  if (!has_looked_ || shown == last_.readings.end()) return;
+  told_.push_back(point);
+  Reading now = read(point, std::nullopt);
+  if (now.state == shown->state && now.registers == shown->registers) return;
+  for (Reading& reading : last_.readings) reading.changed = false;
+  *shown = std::move(now);
+  shown->changed = true;
+  wall_.measure();
+  last_.at = std::chrono::system_clock::time_point(
+      std::chrono::duration_cast<std::chrono::system_clock::duration>(wall_.of(values_.stamp(point).at)));
+  take_(last_);
+}
+
+/// The first request of a foreign device without a reply may be one that it always ignores: others go first
+/// over the next connection, before that is told.
+void DeviceLooks::on_failure(const host::Error& error) {
+  const bool is_foreign =
+      identity_.value_or(host::Identity::Verdict::foreign) == host::Identity::Verdict::foreign;
+  const bool may_be_a_request = is_no_reply(error) && is_foreign && !has_looked_;
+  if (!may_be_a_request || !std::exchange(has_chance_, false)) {
+    take_(look(error));
+    began_ = clock_.now();
+  }
+  cycles_ = 0;
+  told_.clear();
+  identity_.reset();
+  notes_.clear();
+  has_looked_ = false;
+}
+
+void DeviceLooks::on_note(host::Level /*level*/, const std::string& text) {
+  if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
+}
+
+Snapshot DeviceLooks::look(const std::optional<host::Error>& error) const {
+  Snapshot now{std::chrono::system_clock::now(), error, identity_, notes_, {}};
+  for (std::uint32_t point = 0; point < map_.points.size(); ++point)
+    if (chosen_[point]) now.readings.push_back(read(point, error));
+  return now;
+}
+
+Reading DeviceLooks::read(std::uint32_t point, const std::optional<host::Error>& error) const {
+  Reading reading{point};
+  if (const auto reason = plan::why_not_read(map_, map_.points[point])) {
+    reading.state = State::not_asked;
+    reading.why = plan::words_of(*reason);
+    return reading;
+  }
+  host::ValueTable::Value value = values_.get(point, clock_.now());
+  const host::PointQuality& quality = value.quality;
+  const bool is_told = std::find(told_.begin(), told_.end(), point) != told_.end();
+  if (quality.is_refused() || !quality.why.empty()) {
+    const bool is_node =
+        identity_.value_or(host::Identity::Verdict::foreign) != host::Identity::Verdict::foreign;
+    reading.why = refusal_text(quality, is_node);
+    if (quality.why.empty()) reading.exception = quality.last_exception;
+  } else if (error ? is_from_this_look(value) && !is_told : is_from_this_look(value) || is_told) {
+    reading.state = State::good;
+    reading.registers = std::move(value.registers);
+  } else {
+    reading.why = error ? to_string(*error) : "not asked yet";
+  }
+  return reading;
+}
+
+}  // namespace coupler::cli
