@@ -24,7 +24,12 @@ std::string refusal_text(const host::PointQuality& quality, bool is_node) {
 
 DeviceLooks::DeviceLooks(const Map& map, const std::vector<bool>& chosen, const host::ValueTable& values,
                          const host::Clock& clock, std::function<void(Snapshot)> take)
-    : map_(map), chosen_(chosen), values_(values), clock_(clock), take_(std::move(take)) {}
+    : map_(map),
+      chosen_(chosen),
+      values_(values),
+      clock_(clock),
+      take_(std::move(take)),
+      told_(map.points.size()) {}
 
 /// A request that ended the connection before comes in the next cycle.
 void DeviceLooks::on_cycle() {
@@ -34,8 +39,7 @@ void DeviceLooks::on_cycle() {
   if (!last_.readings.empty()) mark_changes(last_, now);
   last_ = now;
   began_ = clock_.now();
-  cycles_ = 0;
-  told_.clear();
+  begin_look();
   has_looked_ = has_chance_ = true;
   take_(std::move(now));
 }
@@ -54,12 +58,19 @@ bool DeviceLooks::is_whole() const {
   return true;
 }
 
+void DeviceLooks::begin_look() {
+  cycles_ = 0;
+  told_.assign(told_.size(), false);
+}
+
+bool DeviceLooks::is_node() const { return identity_ && *identity_ != host::Identity::Verdict::foreign; }
+
 /// Shows the change alone: what the cycle that runs has read comes at its end.
 void DeviceLooks::on_told(std::uint32_t point) {
   const auto shown = std::find_if(last_.readings.begin(), last_.readings.end(),
                                   [point](const Reading& reading) { return reading.point == point; });
   if (!has_looked_ || shown == last_.readings.end()) return;
-  told_.push_back(point);
+  told_[point] = true;
   Reading now = read(point, std::nullopt);
   if (now.state == shown->state && now.registers == shown->registers) return;
   for (Reading& reading : last_.readings) reading.changed = false;
@@ -74,15 +85,12 @@ void DeviceLooks::on_told(std::uint32_t point) {
 /// The first request of a foreign device without a reply may be one that it always ignores: others go first
 /// over the next connection, before that is told.
 void DeviceLooks::on_failure(const host::Error& error) {
-  const bool is_foreign =
-      identity_.value_or(host::Identity::Verdict::foreign) == host::Identity::Verdict::foreign;
-  const bool may_be_a_request = is_no_reply(error) && is_foreign && !has_looked_;
+  const bool may_be_a_request = is_no_reply(error) && !is_node() && !has_looked_;
   if (!may_be_a_request || !std::exchange(has_chance_, false)) {
     take_(look(error));
     began_ = clock_.now();
   }
-  cycles_ = 0;
-  told_.clear();
+  begin_look();
   identity_.reset();
   notes_.clear();
   has_looked_ = false;
@@ -108,13 +116,10 @@ Reading DeviceLooks::read(std::uint32_t point, const std::optional<host::Error>&
   }
   host::ValueTable::Value value = values_.get(point, clock_.now());
   const host::PointQuality& quality = value.quality;
-  const bool is_told = std::find(told_.begin(), told_.end(), point) != told_.end();
   if (quality.is_refused() || !quality.why.empty()) {
-    const bool is_node =
-        identity_.value_or(host::Identity::Verdict::foreign) != host::Identity::Verdict::foreign;
-    reading.why = refusal_text(quality, is_node);
+    reading.why = refusal_text(quality, is_node());
     if (quality.why.empty()) reading.exception = quality.last_exception;
-  } else if (error ? is_from_this_look(value) && !is_told : is_from_this_look(value) || is_told) {
+  } else if (error ? is_from_this_look(value) && !told_[point] : is_from_this_look(value) || told_[point]) {
     reading.state = State::good;
     reading.registers = std::move(value.registers);
   } else {

@@ -38,6 +38,8 @@ class DeviceLooks : public host::Sink {
   Reading read(std::uint32_t point, const std::optional<host::Error>& error) const;
   bool is_from_this_look(const host::ValueTable::Value& value) const;
   bool is_whole() const;
+  bool is_node() const;
+  void begin_look();
 
   const Map& map_;
   const std::vector<bool>& chosen_;
@@ -47,7 +49,7 @@ class DeviceLooks : public host::Sink {
   host::WallTime wall_;
   host::Time began_ = host::Time::min();             ///< the look
   int cycles_ = 0;                                   ///< of the look
-  std::vector<std::uint32_t> told_;                  ///< the points that have changed since the last look
+  std::vector<bool> told_;                           ///< by point: a change was told since the last look
   bool has_chance_ = true;                           ///< a request without a reply is not told yet
   std::optional<host::Identity::Verdict> identity_;  ///< over this connection
   std::vector<std::string> notes_;                   ///< about this connection

@@ -32,7 +32,8 @@ struct PointQuality {
   std::string last_write_text{};                     ///< to_string() of its result
 
   /// Returns whether the device did not give the value when it was last asked, though it is online.
-  bool is_refused() const { return state == State::exception || state == State::rejected; }
+  bool is_refused() const { return is_refused(state); }
+  static bool is_refused(State state) { return state == State::exception || state == State::rejected; }
   /// The exception of a point that is refused now; 0 if something else came instead of a reply, as `why`
   /// says.
   unsigned refused_with() const {

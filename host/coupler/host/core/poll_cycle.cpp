@@ -155,7 +155,7 @@ PollCycle::Parts PollCycle::parts_of_current() const {
     const ReadSpan span = std::move(open.back());
     open.pop_back();
     if (span.range != whole.range) {
-      result.pieces.push_back({span, std::nullopt, step().part_of});
+      result.pieces.push_back(span);
       continue;
     }
     plan::Split parts = split(span, planner_.map());
@@ -175,17 +175,21 @@ std::vector<std::uint32_t> PollCycle::Parts::points_alone() const {
 
 void PollCycle::replace_current(const Parts& parts, bool keeps_alone) {
   Group& group = groups_[current_];
-  const auto whole = group.steps[group.next].part_of;
+  const auto part_of = step().part_of;
   remove_current();
+  const auto insert = [&](std::size_t at, const ReadSpan& span) {
+    group.steps.insert(group.steps.begin() + static_cast<std::ptrdiff_t>(at), {span, std::nullopt, part_of});
+  };
   if (keeps_alone)
-    for (const ReadSpan& span : parts.alone)
-      group.steps.insert(group.steps.begin() + static_cast<std::ptrdiff_t>(group.next++),
-                         {span, std::nullopt, whole});
-  group.steps.insert(group.steps.begin() + static_cast<std::ptrdiff_t>(group.next), parts.pieces.begin(),
-                     parts.pieces.end());
+    for (const ReadSpan& span : parts.alone) insert(group.next++, span);
+  std::size_t next = group.next;
+  for (const ReadSpan& span : parts.pieces) insert(next++, span);
 }
 
-std::vector<std::uint32_t> PollCycle::rejected(Time now) {
+std::vector<std::uint32_t> PollCycle::rejected(Time now) { return part(only_looks_, now); }
+
+/// Asks for current() in parts from now on. What is alone is given up, or stays in the cycle.
+std::vector<std::uint32_t> PollCycle::part(bool keeps_alone, Time now) {
   Group& group = groups_[current_];
   const Unreadable whole{current().table, current().range};
   const auto is_whole = [&](const Unreadable& known) {
@@ -194,22 +198,21 @@ std::vector<std::uint32_t> PollCycle::rejected(Time now) {
   if (std::none_of(rejected_ranges_.begin(), rejected_ranges_.end(), is_whole))
     rejected_ranges_.push_back(whole);
   const Parts parts = parts_of_current();
-  std::vector<std::uint32_t> unreadable = parts.points_alone();
-  if (!only_looks_)
-    for (const std::uint32_t point : unreadable) given_up_[point] = true;
-  if (unreadable.empty()) group.parted.push_back({whole, parts.hole});
-  replace_current(parts, only_looks_);
+  std::vector<std::uint32_t> alone = parts.points_alone();
+  if (!keeps_alone)
+    for (const std::uint32_t point : alone) given_up_[point] = true;
+  if (alone.empty()) group.parted.push_back({whole, parts.hole});
+  replace_current(parts, keeps_alone);
   done(now);
-  return unreadable;
+  return alone;
 }
 
 std::optional<std::vector<std::uint32_t>> PollCycle::failed(Time now) {
   Group& group = groups_[current_];
-  Parts parts = parts_of_current();
+  const Parts parts = parts_of_current();
   if (parts.pieces.empty()) return std::nullopt;
-  auto& whole = group.steps[group.next].part_of;
-  if (!whole) whole = std::make_shared<const ReadSpan>(current());
-  for (Step& piece : parts.pieces) piece.part_of = whole;
+  if (auto& part_of = group.steps[group.next].part_of; !part_of)
+    part_of = std::make_shared<const ReadSpan>(current());
   replace_current(parts, true);
   group.has_parts = true;
   done(now);
@@ -223,17 +226,9 @@ std::vector<std::uint32_t> PollCycle::set_aside(Time now) {
     return {};
   }
   aside_.convict(span);
-  std::vector<std::uint32_t> left = rejected(now);
-  if (only_looks_) ask_no_more(left);
+  std::vector<std::uint32_t> left = part(false, now);
   if (!left.empty()) aside_.add({span.table, span.range, left}, now);
   return left;
-}
-
-void PollCycle::ask_no_more(Span<const std::uint32_t> points) {
-  for (const std::uint32_t point : points) {
-    given_up_[point] = true;
-    if (Group* const group = group_of(point)) group->stale = true;
-  }
 }
 
 void PollCycle::ended_connection() {

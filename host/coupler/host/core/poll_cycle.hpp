@@ -42,6 +42,7 @@ class PollCycle {
 
   /// Makes it the cycle of a program that only looks, see Purpose. Call it before start().
   void only_look() { only_looks_ = true; }
+  bool only_looks() const { return only_looks_; }
 
   /// Starts with a new connection. Everything is read again except what is set aside, and the first cycle of
   /// each rate is due now.
@@ -145,7 +146,7 @@ class PollCycle {
   };
   /// The smaller requests for what current() reads.
   struct Parts {
-    std::vector<Step> pieces{};
+    std::vector<ReadSpan> pieces{};
     std::vector<ReadSpan> alone{};  ///< points that no smaller request reads
     std::optional<modbus::Range> hole{};
 
@@ -154,6 +155,7 @@ class PollCycle {
   Parts parts_of_current() const;
   /// Puts the parts in the place of current(). What is alone was asked for in this cycle.
   void replace_current(const Parts& parts, bool keeps_alone);
+  std::vector<std::uint32_t> part(bool keeps_alone, Time now);
   bool is_read(std::uint32_t point) const { return wanted_[point] && !given_up_[point]; }
   const Step& step() const { return groups_[current_].steps[groups_[current_].next]; }
   Group* group_of(std::uint32_t point);
@@ -163,7 +165,6 @@ class PollCycle {
   void learn(Group& group);
   static void join_parts(Group& group);
   void ask_again(Span<const std::uint32_t> points, bool soon = false);
-  void ask_no_more(Span<const std::uint32_t> points);
   void give_up_left_out();
 
   plan::Planner planner_;

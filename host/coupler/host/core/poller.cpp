@@ -112,7 +112,7 @@ void Poller::on_exception(modbus::Exception code) {
       statistics_.rejected();
       values_.rejected(span.points, code);
       sink_.on_no_values(span.points, clock_.now());
-      if (only_looks_) {
+      if (cycle_.only_looks()) {
         cycle_.answered(code, clock_.now());
         return;
       }
@@ -123,7 +123,7 @@ void Poller::on_exception(modbus::Exception code) {
                                   describe(span), why));
       return;
     default:
-      if (only_looks_ && ask_in_parts(code)) return;
+      if (cycle_.only_looks() && ask_in_parts(code)) return;
       values_.exception(span.points, code);
       sink_.on_no_values(span.points, clock_.now());
       if (cycle_.answered(code, clock_.now()))

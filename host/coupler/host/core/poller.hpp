@@ -27,10 +27,7 @@ class Poller {
          Sink& sink);
 
   /// Makes it the poller of a program that only looks, see Purpose. Call it before start().
-  void only_look() {
-    only_looks_ = true;
-    cycle_.only_look();
-  }
+  void only_look() { cycle_.only_look(); }
 
   /// Starts with a new connection. `is_node`: it leads to a node of this project. `told`: the node tells
   /// changes of its bits.
@@ -73,7 +70,6 @@ class Poller {
   std::string describe(const ReadSpan& span) const;
 
   const Map& map_;
-  bool only_looks_ = false;
   Link& link_;
   Clock& clock_;
   Writer& writer_;

@@ -61,10 +61,9 @@ bool UnansweredReads::answered(const plan::ReadSpan& span) {
   return true;
 }
 
-bool UnansweredReads::rests(const plan::ReadSpan& span, Time now) const {
-  return std::any_of(entries_.begin(), entries_.end(), [&, is_same = same_as(span)](const Entry& entry) {
-    return is_same(entry.place) && entry.again > now;
-  });
+bool UnansweredReads::has(const plan::ReadSpan& span) const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [is_same = same_as(span)](const Entry& entry) { return is_same(entry.place); });
 }
 
 Time UnansweredReads::due() const {

@@ -34,9 +34,7 @@ class UnansweredReads {
   bool answered(const plan::ReadSpan& span);
 
   /// Returns whether the request is set aside, also while it is being tried again.
-  bool has(const plan::ReadSpan& span) const { return rests(span, Time::min()); }
-  /// Returns whether the request is set aside, and is not to be tried again yet.
-  bool rests(const plan::ReadSpan& span, Time now) const;
+  bool has(const plan::ReadSpan& span) const;
   /// The time at which something is to be tried again; Time::max() if nothing is.
   Time due() const;
   /// Returns the points that are to be tried again now, once until the outcome is known.

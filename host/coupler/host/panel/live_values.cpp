@@ -181,7 +181,7 @@ std::string LiveValues::news(std::uint64_t& seen, Time earliest, Time until) {
       json["text"] = format_value(value.registers.data(), point);
       json["age"] = std::chrono::duration<double>(now - state.changed_at).count();
     }
-    const bool is_refused = state.quality == Quality::exception || state.quality == Quality::rejected;
+    const bool is_refused = PointQuality::is_refused(state.quality);
     if (is_refused && state.exception != 0) json["exception"] = state.exception;
     if (is_refused && !state.why.empty()) json["why"] = state.why;
     points[std::string(point.name)] = std::move(json);
