@@ -20,7 +20,7 @@ using fakes::MapBuilder;
 using host::test::FakeClock;
 using host::test::FakeDevice;
 
-/// A device without a network, the engine, and what looks at it.
+/// A fake device, the engine that reads it, and the snapshots that DeviceLooks makes.
 struct Looking {
   explicit Looking(const MapBuilder& builder, std::vector<bool> only = {})
       : Looking(builder.build(), std::move(only)) {}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a table says of values that were stored, and who is woken. quality_test.cpp has what a device stores.
+// These tests check what a table returns for stored values, and which waits end. quality_test.cpp checks
+// what a device stores.
 #include "coupler/host/core/value_table.hpp"
 
 #include <gtest/gtest.h>

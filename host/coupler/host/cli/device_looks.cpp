@@ -31,7 +31,8 @@ DeviceLooks::DeviceLooks(const Map& map, const std::vector<bool>& chosen, const 
       take_(std::move(take)),
       told_(map.points.size()) {}
 
-/// A request that ended the connection before comes in the next cycle.
+/// A look can take several cycles, because a request that ended an earlier connection is put off until the
+/// next cycle.
 void DeviceLooks::on_cycle() {
   constexpr int longest = 3;
   if (++cycles_ < longest && !is_whole()) return;
@@ -44,7 +45,8 @@ void DeviceLooks::on_cycle() {
   take_(std::move(now));
 }
 
-/// A write may hide what was read, which is good all the same.
+/// A point may have been read although its value was not stored, because older changes are still to come:
+/// see BitChanges.
 bool DeviceLooks::is_from_this_look(const host::ValueTable::Value& value) const {
   return value.number > 0 && (value.stamp.at > began_ || value.quality.last_good > began_);
 }
@@ -65,7 +67,7 @@ void DeviceLooks::begin_look() {
 
 bool DeviceLooks::is_node() const { return identity_ && *identity_ != host::Identity::Verdict::foreign; }
 
-/// Shows the change alone: what the cycle that runs has read comes at its end.
+/// Shows only this change. What the current cycle has read is shown when the cycle ends.
 void DeviceLooks::on_told(std::uint32_t point) {
   const auto shown = std::find_if(last_.readings.begin(), last_.readings.end(),
                                   [point](const Reading& reading) { return reading.point == point; });
@@ -82,8 +84,8 @@ void DeviceLooks::on_told(std::uint32_t point) {
   take_(last_);
 }
 
-/// The first request of a foreign device without a reply may be one that it always ignores: others go first
-/// over the next connection, before that is told.
+/// A foreign device may always ignore one request. So the first time that a reply is missing before a look
+/// has ended, no failure is reported: over the next connection, other requests are sent before that one.
 void DeviceLooks::on_failure(const host::Error& error) {
   const bool may_be_a_request = is_no_reply(error) && !is_node() && !has_looked_;
   if (!may_be_a_request || !std::exchange(has_chance_, false)) {

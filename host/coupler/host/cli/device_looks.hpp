@@ -14,13 +14,13 @@
 
 namespace coupler::cli {
 
-/// Makes snapshots of a device whose points have one rate: after the cycle in which the last of them was read
-/// or refused, after each change that the device tells in between, and when it does not answer. No value
-/// outlives its look.
+/// Makes snapshots of a device whose points all have the same rate. It makes one when each point has been
+/// read or refused, or after three cycles; one for each change that the device announces in between; and
+/// one when the device does not answer. No value is kept for the next look.
 class DeviceLooks : public host::Sink {
  public:
-  /// `map` is that of the device's thread, and `chosen` has an element for each of its points. They, the
-  /// table and the clock must outlive it. `take` gets the snapshots, in the device's thread.
+  /// `map` is the map that the device's thread uses, and `chosen` has an element for each of its points.
+  /// All references must outlive the object. `take` is called with each snapshot in the device's thread.
   DeviceLooks(const Map& map, const std::vector<bool>& chosen, const host::ValueTable& values,
               const host::Clock& clock, std::function<void(Snapshot)> take);
 
@@ -47,14 +47,14 @@ class DeviceLooks : public host::Sink {
   const host::Clock& clock_;
   const std::function<void(Snapshot)> take_;
   host::WallTime wall_;
-  host::Time began_ = host::Time::min();             ///< the look
-  int cycles_ = 0;                                   ///< of the look
+  host::Time began_ = host::Time::min();             ///< the time at which this look began
+  int cycles_ = 0;                                   ///< the number of cycles in this look
   std::vector<bool> told_;                           ///< by point: a change was told since the last look
-  bool has_chance_ = true;                           ///< a request without a reply is not told yet
-  std::optional<host::Identity::Verdict> identity_;  ///< over this connection
-  std::vector<std::string> notes_;                   ///< about this connection
-  bool has_looked_ = false;                          ///< over this connection
-  Snapshot last_;                                    ///< the last one of a device that answered
+  bool has_chance_ = true;                           ///< the next missing reply need not be reported
+  std::optional<host::Identity::Verdict> identity_;  ///< the verdict over this connection
+  std::vector<std::string> notes_;                   ///< the notes about this connection
+  bool has_looked_ = false;                          ///< a look has ended over this connection
+  Snapshot last_;                                    ///< the last snapshot without an error
 };
 
 }  // namespace coupler::cli

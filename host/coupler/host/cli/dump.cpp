@@ -34,7 +34,8 @@
 namespace coupler::cli {
 namespace {
 
-/// Points that the first cycle leaves unknown come in the next one or two.
+/// The period of the cycles in a single look. Points that the first cycle does not read are read in the
+/// next one or two.
 constexpr std::chrono::seconds once_period(2);
 
 void put_line(const std::string& line) {
@@ -80,7 +81,8 @@ void show_changes(const Map& map, const Snapshot* before, const Snapshot& now) {
   for (const std::string& line : change_lines(map, before, now)) put_line(line);
 }
 
-/// The snapshots that wait to be shown, so that the device is read however long that takes.
+/// Holds the snapshots that are still to be shown, so that slow output does not delay the reading of the
+/// device.
 class SnapshotQueue {
  public:
   void push(Snapshot snapshot) {
@@ -175,7 +177,8 @@ Exit once(const Map& original, const DumpOptions& options) {
 
 using Show = void (*)(const Map& map, const Snapshot* before, const Snapshot& now);
 
-/// Shows what is taken. What nobody reads is not shown, so that Ctrl-C is heard all the same.
+/// Shows the snapshots from the queue. While standard output is blocked it skips them, so that the program
+/// does not hang and Ctrl-C still ends it.
 void watch(SnapshotQueue& queue, const Map& map, Show show) {
   std::optional<Snapshot> shown;
   unsigned missing = 0;

@@ -14,7 +14,7 @@ void ValueListeners::call(std::uint32_t point, const std::uint16_t* registers, h
   caller_ = std::this_thread::get_id();
   lock.unlock();
   (*listener)(registers, stamp);
-  listener.reset();  // so that one that was replaced is deleted before it is said to have returned
+  listener.reset();  // a listener that was replaced is destroyed before set() returns
   lock.lock();
   called_.reset();
   returned_.notify_all();

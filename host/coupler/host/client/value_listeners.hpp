@@ -14,7 +14,7 @@
 
 namespace coupler::client {
 
-/// The function of each point that is called with its new values. For any thread.
+/// Holds the listener of each point, which is called with the new values. Any thread may use it.
 class ValueListeners {
  public:
   /// Receives the registers of a value that differs from the one before, and the time at which it was true.

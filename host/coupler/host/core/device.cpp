@@ -42,8 +42,8 @@ Device::Device(const Map& map, Purpose purpose, MapLoader load, Link& link, Valu
   if (only_looks_) poller_.only_look();
 }
 
-/// On a serial line there is nothing to be kept, and what is only written may not even refuse to be read. A
-/// program that only looks reads nothing else than it is asked for.
+/// A serial line has no connection to keep alive, and a device whose points can only be written may not
+/// even answer a read request. A program that only looks reads nothing but the points that it shows.
 bool Device::needs_keep_alive() const {
   if (only_looks_) return false;
   const auto& points = map_.points;
@@ -90,7 +90,8 @@ Result<> Device::do_what_is_due(Time now) {
 }
 
 void Device::cycle_ended() {
-  if (only_looks_) backoff_.reset();  // not before: a device may answer each time until a certain request
+  // The back-off is not reset earlier, because a device may fail at the same request each time.
+  if (only_looks_) backoff_.reset();
   sink_.on_cycle();
 }
 
@@ -130,8 +131,8 @@ Result<> Device::read(Time until) {
 /// A request to which a foreign device says nothing, or nonsense, ends the connection: what would come next
 /// cannot be trusted. The first time the device may have been away, or started again. If it happens again,
 /// and others are answered before and after, the request costs its own points only: nobody is told that the
-/// device was away, no write is dropped, and nothing is restored. A program that only looks does not wait for
-/// the second time: nothing is lost if it was chance.
+/// device was away, no write is dropped, and nothing is restored. A program that only looks does this the
+/// first time, because it does no harm if that was chance.
 Result<> Device::go_on_without(const Error& error) {
   if (is_node_ || ending_) return tl::make_unexpected(error);
   if (reopens(error)) return {};
@@ -158,11 +159,12 @@ Result<> Device::ask_alone() {
   return connected ? link_.ask(poller_.current()) : connected;
 }
 
-/// Returns whether a program that only looks goes on over a new connection: some devices close it after a
-/// number of requests.
+/// Connects again for a program that only looks, because some devices close a connection after a number of
+/// requests. Returns whether the program can go on over the new connection.
 bool Device::reopens(const Error& error) {
   if (!only_looks_ || is_node_ || !std::holds_alternative<TransportFailure>(error)) return false;
-  if (std::exchange(replies_at_reopen_, link_.replies()) == link_.replies()) return false;  // or without end
+  // Without a reply since the last time, connecting again could go on forever.
+  if (std::exchange(replies_at_reopen_, link_.replies()) == link_.replies()) return false;
   return connect_only().has_value();
 }
 

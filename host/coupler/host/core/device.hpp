@@ -21,10 +21,10 @@ struct Purpose {
   Purpose(Verify if_different, bool looks = false) : verify(if_different), only_looks(looks) {}
 
   Verify verify;
-  /// The program shows what can be read, whatever the device is. Of a device with another map it reads the
-  /// points that are the same. A device that ignores the question for its identity is a foreign coupler.
-  /// Points that the device rejects are asked for again in each cycle, and a request that fails is made in
-  /// parts.
+  /// The program only shows what can be read, whatever the device is. If the device has another map, the
+  /// points that are the same in both are read. A device that does not answer the question for its identity
+  /// is treated as a foreign coupler. Points that the device rejects are asked for again in each cycle, and
+  /// a request that fails is split into smaller ones.
   bool only_looks;
 };
 
@@ -43,8 +43,9 @@ struct Purpose {
 /// back. Reads are made while one is outstanding only: its answer says which changes are older than they.
 ///
 /// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), schedule(), has_to_end(), answers(),
-/// end_comes() and statistics() may be called from any thread. All else is for the thread that
-/// owns the connection; send_now() is also for another that has made sure that the owner only waits.
+/// end_comes(), statistics() and revision() may be called from any thread. All other functions are for the
+/// thread that owns the connection. Another thread may call send_now() if it has made sure that the owner
+/// is only waiting.
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
@@ -97,8 +98,8 @@ class Device {
   void want(std::uint32_t point, bool wanted) { poller_.want(point, wanted); }
 
   DeviceSnapshot statistics() const { return {statistics_.counts(), link_.counts(), link_.discarded()}; }
-  /// A number that changes with ValueTable::revision() and with the connection in statistics(), but not by
-  /// the mere passing of time.
+  /// A number that changes when ValueTable::revision() or the connection in statistics() changes. It does
+  /// not change merely because time passes.
   std::uint64_t revision() const { return statistics_.revision() + values_.revision(); }
 
  private:
@@ -167,8 +168,8 @@ class Device {
   std::atomic<bool> ending_{false};
   State state_ = State::none;
   bool wrote_last_ = false;  ///< the last request was a write: an overdue read goes before the next one
-  bool is_closed_ = false;   ///< by the device, since the last request; the next one connects again
-  std::optional<std::uint64_t> replies_at_reopen_;  ///< Link::replies() then; see reopens()
+  bool is_closed_ = false;   ///< the device has closed the connection: the next read connects again
+  std::optional<std::uint64_t> replies_at_reopen_;  ///< Link::replies() at the last call of reopens()
   std::uint64_t replies_at_connect_ = 0;            ///< Link::replies() when the maps were verified
   /// A verified device is online at once, unless it answered nothing else the last time: `online` would
   /// flicker.

@@ -32,7 +32,8 @@ Result<> Device::prove_equal() {
   return judge(*identity);
 }
 
-/// Some couplers ignore addresses that they do not have. A late answer must not be taken for another.
+/// Some couplers do not answer a request for addresses that they do not have. The connection is replaced,
+/// so that a late answer is not taken for the answer to another request.
 Result<> Device::treat_as_foreign(const Error& error) {
   sink_.on_note(Level::info,
                 fmt::format("the device does not answer the request for its identity ({}): it is "

@@ -27,7 +27,8 @@ struct Identity {
 /// Returns a text for people that explains `different`: both fingerprints, then the differences, a line each.
 std::string difference_text(const Map& known, const Identity& identity);
 
-/// A point of the driver's map that the device has not, or has otherwise.
+/// A point of the driver's map that must not be read, because it is missing or different in the device's
+/// map, or because the maps cannot be compared.
 struct ForeignPoint {
   std::uint32_t point;  ///< index into Map::points
   std::string why;

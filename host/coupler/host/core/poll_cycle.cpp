@@ -58,7 +58,8 @@ void PollCycle::start(Time now) {
   }
 }
 
-/// The device may have anything at their addresses.
+/// Gives up the points of leave_out(). No request may include their addresses, because the device may have
+/// something else there.
 void PollCycle::give_up_left_out() {
   for (const std::uint32_t point : left_out_) {
     const Point& left_out = planner_.map().points[point];
@@ -308,7 +309,7 @@ void PollCycle::done(Time now) {
   if (std::exchange(group.has_parts, false)) join_parts(group);
 }
 
-/// What was asked for in parts, because it failed, is asked for as a whole in the next cycle.
+/// Joins the parts of each failed request again, so that the next cycle sends it as a whole.
 void PollCycle::join_parts(Group& group) {
   std::shared_ptr<const ReadSpan> last;
   std::vector<Step> steps;

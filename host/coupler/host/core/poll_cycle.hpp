@@ -48,7 +48,8 @@ class PollCycle {
   /// each rate is due now.
   void start(Time now);
 
-  /// Leaves out these points, and their addresses in requests for several others, from the next start() on.
+  /// Leaves out these points from the next start() on. Requests for several other points do not include
+  /// their addresses either.
   void leave_out(std::vector<std::uint32_t> points) { left_out_ = std::move(points); }
   /// Sets whether somebody wants the values of a point (index into Map::points). From the next cycle of its
   /// rate on only the requests are sent that the wanted points need.
@@ -75,11 +76,12 @@ class PollCycle {
   /// aside.
   bool answered(std::optional<modbus::Exception> exception, Time now);
   /// Notes that the device rejects current(). Smaller requests take its place in this cycle. Returns the
-  /// points that cannot be read at all; they are not read until the next start(), unless it only looks.
+  /// points that cannot be read at all. They are not read until the next start(), unless only_look() was
+  /// called.
   std::vector<std::uint32_t> rejected(Time now);
-  /// Notes that the device answers current() with an exception that may be that of one point. Smaller
-  /// requests take its place in this cycle. Returns the points that none of them reads; nullopt if there are
-  /// no smaller requests, and nothing was changed.
+  /// Notes that the device answers current() with an exception that a single point may cause. Smaller
+  /// requests take its place in this cycle. Returns the points that none of them reads. If there are no
+  /// smaller requests, returns nullopt and changes nothing.
   std::optional<std::vector<std::uint32_t>> failed(Time now);
   /// Notes that the device does not know the function code of current(). Its points are not read until the
   /// next start().
@@ -122,7 +124,7 @@ class PollCycle {
     ReadSpan span;
     std::optional<modbus::Exception> last;
     std::shared_ptr<const ReadSpan>
-        part_of{};  ///< the request that failed, in whose place it is in this cycle
+        part_of{};  ///< the failed request of which this step is a part in this cycle
   };
   /// A rejected request, and the parts that took its place.
   struct Parted {
@@ -153,7 +155,8 @@ class PollCycle {
     std::vector<std::uint32_t> points_alone() const;
   };
   Parts parts_of_current() const;
-  /// Puts the parts in the place of current(). What is alone was asked for in this cycle.
+  /// Replaces current() with its parts. With `keeps_alone`, the requests in `alone` stay in the cycle and
+  /// count as sent.
   void replace_current(const Parts& parts, bool keeps_alone);
   std::vector<std::uint32_t> part(bool keeps_alone, Time now);
   bool is_read(std::uint32_t point) const { return wanted_[point] && !given_up_[point]; }

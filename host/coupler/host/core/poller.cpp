@@ -131,7 +131,8 @@ void Poller::on_exception(modbus::Exception code) {
   }
 }
 
-/// Returns whether there are smaller requests. Then only the points that none of them reads have failed.
+/// Replaces the request that failed with smaller ones. Returns false if there are none, or if the device is
+/// only busy. If it returns true, only the points that no smaller request reads have failed.
 bool Poller::ask_in_parts(modbus::Exception code) {
   if (code == modbus::Exception::acknowledge || code == modbus::Exception::server_device_busy) return false;
   const auto alone = cycle_.failed(clock_.now());

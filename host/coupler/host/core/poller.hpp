@@ -18,8 +18,8 @@ namespace coupler::host {
 
 /// Reads one device: makes the requests of the polling cycle, stores the values, and tells the sink.
 ///
-/// A value that was requested before a newer one was written is not stored: the old one would flicker back.
-/// Neither is one that changes are older than which still come: see BitChanges.
+/// A value is not stored if it was requested before a newer one was written: the old value would flicker
+/// back. Nor is it stored if older changes are still to come: see BitChanges.
 class Poller {
  public:
   /// All references must outlive the poller.

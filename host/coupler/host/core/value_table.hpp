@@ -22,7 +22,8 @@ using plan::ReadSpan;
 /// The last value of each point of a device, how far it can be trusted, and the result of the last write to
 /// the point. The table may outlive a Device and serve the next one.
 ///
-/// The device's thread stores, and reads without a lock in Sink::on_values(). Other threads get copies.
+/// The device's thread stores the values, and may read them without a lock in Sink::on_values(). Other
+/// threads get copies.
 class ValueTable {
  public:
   /// A copy of what is known of a point.
@@ -30,14 +31,14 @@ class ValueTable {
     std::vector<std::uint16_t>
         registers;  ///< as TypedValue encodes them, bits as 0 or 1; empty: no value yet
     Stamp stamp;
-    std::uint64_t number = 0;  ///< how many different values there were, with this one
+    std::uint64_t number = 0;  ///< how often the value has changed, counting the first value
     PointQuality quality;
   };
 
   explicit ValueTable(const Map& map);
 
-  /// Begins with another Device: values from before are stale until they are read. A Device that connects
-  /// again by itself does not call it, but connected().
+  /// Prepares the table for another Device. Values from before are stale until they are read again. A
+  /// Device that reconnects by itself calls connected() instead.
   void begin();
 
   // These calls are for the thread of the device.
@@ -49,9 +50,11 @@ class ValueTable {
   void good(Span<const std::uint32_t> points, Time at);
   void exception(Span<const std::uint32_t> points, modbus::Exception code);
   void rejected(Span<const std::uint32_t> points, modbus::Exception code);
-  /// Notes that the request for these points ends the connection, and `why`. They are read seldom, if ever.
+  /// Notes `why` these points are read seldom, or not at all: for example, because the request for them
+  /// ends the connection, or because the device's map does not have them. An empty `why` takes that back.
   void set_aside(Span<const std::uint32_t> points, const std::string& why);
-  /// Sets whether the device tells changes of the point. Its value does not become stale then.
+  /// Sets whether the device announces changes of the point. As long as it does, the value does not become
+  /// stale.
   void told(std::uint32_t point, bool told);
   /// Notes that the last values of told points were still true at the time `at`.
   void heard(Time at);
@@ -59,7 +62,7 @@ class ValueTable {
   void connected();
   void online(bool online);
 
-  // These calls are for Sink::on_values(), in that thread.
+  // The device's thread may call these functions in Sink::on_values().
 
   /// The registers of a point that has a value: as many as `range(point).count()`.
   const std::uint16_t* registers(std::uint32_t point) const { return &registers_[entries_[point].first]; }
@@ -89,10 +92,10 @@ class ValueTable {
  private:
   struct Entry {
     std::size_t first = 0;     ///< the index of its first register in registers_
-    std::uint16_t count = 0;   ///< of its registers or bits
-    std::uint32_t start = 0;   ///< the address of the first one, where it is read
-    std::uint16_t mask = 0;    ///< the bits of a register that are its own
-    std::uint64_t number = 0;  ///< of its value; 0: it has none
+    std::uint16_t count = 0;   ///< the number of its registers or bits
+    std::uint32_t start = 0;   ///< the address from which the first one is read
+    std::uint16_t mask = 0;    ///< the bits of each register that belong to the point
+    std::uint64_t number = 0;  ///< see Value::number; 0 if the point has no value
     bool differs = false;
     Stamp stamp{};
     Duration stale_after{};  ///< an older value is stale

@@ -108,7 +108,8 @@ void LiveValues::on_loss(const std::string& why) {
   news_.notify_all();
 }
 
-/// Returns whether the pages have to be told. All other qualities come with values and with the connection.
+/// Notes that a point is refused or stale. Returns whether that is news for the pages. All other qualities
+/// follow from new values and from the state of the connection.
 bool LiveValues::take_quality(std::uint32_t i, const PointQuality& now, Time at) {
   if (!now.is_refused() && now.state != Quality::stale) return false;
   const unsigned code = now.is_refused() ? now.refused_with() : 0;

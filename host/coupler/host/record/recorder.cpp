@@ -127,7 +127,8 @@ void Recorder::end_comes() {
   ends_ = true;
 }
 
-/// Its value may be newer than its last line: the device has stored it and is about to call on_values().
+/// The value in the table may be newer than the last line of the point, because the device stores a value
+/// before it calls on_values().
 std::string Recorder::line_of(std::uint32_t i, Time now) {
   const Point& point = map_.points[i];
   Line& line = lines_[i];

@@ -23,8 +23,9 @@ class Recorder : public Sink {
  public:
   using Report = std::function<void(Level, const std::string&)>;
 
-  /// `values` is the device's table. It, the storage of `map`, and `format` must outlive the recorder. Time
-  /// begins at `start`. `report` receives what the device reports, in its thread.
+  /// `values` is the device's table. The table, `format` and the storage of `map` must outlive the
+  /// recorder. Times are counted from `start`. `report` is called in the device's thread with what the
+  /// device reports.
   Recorder(const Map& map, const ValueTable& values, std::string device, const RecordFormat& format,
            Time start, Report report);
 

@@ -11,9 +11,9 @@
 
 namespace coupler::host {
 
-/// Serves the live page of a device that is driven, on this machine; it only shows. Null, after it is
-/// reported, if it cannot be served: the device is driven all the same. What `map`
-/// views, and the table, must outlive it.
+/// Serves a page with the live values of a driven device, for this machine only. The page cannot write. If
+/// it cannot be served, the function reports why and returns null; the device is driven all the same. The
+/// storage of `map` and the table must outlive the page.
 std::unique_ptr<Follower> start_panel(const Map& map, const ValueTable& table, unsigned port,
                                       const std::function<void(Level, const std::string&)>& report);
 
