@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "coupler/formats/exporters.hpp"
-#include "coupler/formats/importers.hpp"
+#include "coupler/tools/formats/exporters.hpp"
+#include "coupler/tools/formats/importers.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "test/fuzz/require.hpp"
 

@@ -5,7 +5,7 @@
 
 namespace coupler {
 
-/// The version of this project. CMakeLists.txt has the same; coupler/cli checks that.
+/// The version of this project. CMakeLists.txt has the same; coupler/tools/main.cpp checks that.
 constexpr std::string_view version = "0.1.0";
 
 }  // namespace coupler

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/options.hpp"
 
-#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,17 +28,17 @@ Options parse_options(std::vector<std::string> arguments, const Dialect& dialect
   command_line::Program app(description, "coupler_driver");
   app.version(fmt::format("coupler_driver {}", version));
   app.footer(std::string(dialect.help));
-  std::array<std::string, setting_keys.size()> texts;
+  const std::vector<SettingKey>& keys = setting_keys();
+  std::vector<std::string> texts(keys.size());
   std::vector<command_line::Option> options;
   options.reserve(texts.size());
   for (std::size_t i = 0; i < texts.size(); ++i)
-    options.push_back(
-        app.add_option(option_names(setting_keys[i]), texts[i], std::string(setting_keys[i].help)));
+    options.push_back(app.add_option(option_names(keys[i]), texts[i], std::string(keys[i].help)));
   result.exit_code = app.parse(std::move(arguments), result.text);
   if (result.exit_code) return result;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     if (!options[i].given()) continue;
-    if (const auto done = set(result.settings, setting_keys[i].key, texts[i]); !done) {
+    if (const auto done = keys[i].set(result.settings, texts[i]); !done) {
       result.exit_code = 2;
       result.text += done.error() + "\n";
     }

@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/settings.hpp"
 
+#include <algorithm>
 #include <string_view>
 
+#include <fmt/format.h>
+
+#include "coupler/map/nearest.hpp"
 #include "coupler/map/tls_texts.hpp"
 
 namespace coupler::host {
 namespace {
 
-template <class T>
-void prefer(std::optional<T>& field, const std::optional<T>& strong) {
-  if (strong) field = strong;
+const SettingKey* find(std::string_view name) {
+  for (const SettingKey& key : setting_keys())
+    if (key.key == name) return &key;
+  return nullptr;
+}
+
+std::string nearest_setting(std::string_view name) {
+  return nearest_or(name, setting_names(), "coupler_driver --help shows them");
 }
 
 void apply(const Settings& settings, Tls& tls) {
@@ -26,6 +35,56 @@ void apply(const Settings& settings, Tls& tls) {
 }
 
 }  // namespace
+
+std::vector<std::string_view> setting_names() {
+  std::vector<std::string_view> names;
+  for (const SettingKey& key : setting_keys()) {
+    names.push_back(key.key);
+    if (!key.alias.empty()) names.push_back(key.alias);
+  }
+  return names;
+}
+
+bool is_setting(std::string_view name) {
+  const auto names = setting_names();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string no_such_setting(std::string_view name) {
+  return "there is no such setting; " + nearest_setting(name);
+}
+
+std::string unknown_parameter(std::string_view parameter, std::string_view name) {
+  return fmt::format("parameter {} is not a setting and does nothing; {}", parameter, nearest_setting(name));
+}
+
+tl::expected<void, std::string> set(Settings& settings, std::string_view name, const std::string& text) {
+  const SettingKey* key = find(name);
+  if (key != nullptr) return key->set(settings, text);
+  return tl::make_unexpected(fmt::format("{}: {}", name, no_such_setting(name)));
+}
+
+std::optional<std::string> text_of(const Settings& settings, std::string_view name) {
+  const SettingKey* key = find(name);
+  return key == nullptr ? std::nullopt : key->text(settings);
+}
+
+tl::expected<Settings, std::string> settings_among(
+    std::string_view prefix,
+    const std::function<ParameterText(const SettingKey& key, const std::string& name)>& text_of) {
+  Settings settings;
+  for (const SettingKey& key : setting_keys()) {
+    for (const std::string_view name : {key.alias, key.key}) {  // the key wins over its alias
+      if (name.empty()) continue;
+      const auto text = text_of(key, std::string(name));
+      if (!text) return tl::make_unexpected(fmt::format("parameter {}{}: {}", prefix, name, text.error()));
+      if (!*text) continue;
+      if (const auto done = key.set(settings, **text); !done)
+        return tl::make_unexpected(fmt::format("parameter {}{}", prefix, done.error()));
+    }
+  }
+  return settings;
+}
 
 Settings overlay(Settings weak, const Settings& strong) {
   if (strong.map || !strong.maps.empty()) {
@@ -44,84 +103,33 @@ Settings overlay(Settings weak, const Settings& strong) {
     weak.stop_bits.reset();
     weak.rs485.reset();
   }
-  prefer(weak.name, strong.name);
-  prefer(weak.address, strong.address);
-  prefer(weak.port, strong.port);
-  prefer(weak.unit, strong.unit);
-  prefer(weak.framing, strong.framing);
-  prefer(weak.serial, strong.serial);
-  prefer(weak.baud, strong.baud);
-  prefer(weak.parity, strong.parity);
-  prefer(weak.stop_bits, strong.stop_bits);
-  prefer(weak.rs485, strong.rs485);
-  prefer(weak.certificate, strong.certificate);
-  prefer(weak.key, strong.key);
-  prefer(weak.ca, strong.ca);
-  prefer(weak.tls_name, strong.tls_name);
-  prefer(weak.pin, strong.pin);
-  prefer(weak.rate, strong.rate);
-  prefer(weak.timeout, strong.timeout);
-  prefer(weak.record, strong.record);
-  prefer(weak.panel, strong.panel);
-  prefer(weak.verify, strong.verify);
-  prefer(weak.poll, strong.poll);
+  for (const SettingKey& key : setting_keys()) key.prefer(weak, strong);
   return weak;
 }
 
 Settings with_map(Settings settings, const Map& map) {
-  settings.name = std::string(map.name);
-  const auto& [address, port, unit, timeout, framing, serial, tls] = map.connection;
-  settings.address = std::string(address);
-  settings.port = port;
-  settings.unit = unit;
-  settings.framing = framing;
-  settings.serial = std::string(serial.device);
-  settings.baud = serial.baud;
-  settings.parity = serial.parity;
-  settings.stop_bits = serial.stop_bits;
-  settings.rs485 = serial.rs485;
-  settings.certificate = std::string(tls.certificate);
-  settings.key = std::string(tls.key);
-  settings.ca = std::string(tls.ca);
-  settings.tls_name = std::string(tls.name);
-  settings.pin = std::string(tls.pin);
-  settings.timeout = timeout;
-  settings.rate = map.polling.rate;
-  settings.verify = map.verify;
-  settings.poll = map.poll;
+  Map copy = map;
+  for (const SettingKey& key : setting_keys())
+    if (key.from_map) key.from_map(settings, copy);
   return settings;
 }
 
 void apply(const Settings& settings, Map& map) {
-  if (settings.name) map.name = *settings.name;
   Connection& connection = map.connection;
   const bool was_rtu = connection.is_rtu();
   const bool had_tls = connection.tls.present();
   if (settings.address) {
-    connection.address = *settings.address;
     connection.framing = Framing::tcp;
     connection.serial.device = {};
   }
-  if (settings.port) connection.port = *settings.port;
-  if (settings.unit) connection.unit = *settings.unit;
-  if (settings.framing) connection.framing = *settings.framing;
-  if (settings.serial) {
-    connection.serial.device = *settings.serial;
-    connection.address = {};
-  }
-  if (settings.baud) connection.serial.baud = *settings.baud;
-  if (settings.parity) connection.serial.parity = *settings.parity;
-  if (settings.stop_bits) connection.serial.stop_bits = *settings.stop_bits;
-  if (settings.rs485) connection.serial.rs485 = *settings.rs485;
+  if (settings.serial) connection.address = {};
+  for (const SettingKey& key : setting_keys())
+    if (key.to_map) key.to_map(settings, map);
   apply(settings, connection.tls);
   if (settings.serial) connection.tls = {};
   if (!had_tls && connection.tls.present() && !settings.port && connection.port == modbus::default_port)
     connection.port = default_tls_port;
-  connection.changed_from(was_rtu);
-  if (settings.timeout) connection.timeout = *settings.timeout;
-  if (settings.rate) map.polling.rate = *settings.rate;
-  if (settings.poll) map.poll = *settings.poll;
-  if (settings.verify) map.verify = *settings.verify;
+  if (!settings.timeout) connection.changed_from(was_rtu);
 }
 
 }  // namespace coupler::host

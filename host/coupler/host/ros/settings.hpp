@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -40,7 +39,8 @@ struct Settings {
   std::optional<std::uint16_t> panel;  ///< port of a live page; above 0
 };
 
-/// One setting by its name, as ROS parameter and as argument (`--key VALUE`).
+/// One setting by its name, as ROS parameter and as argument (`--key VALUE`): all that there is to say about
+/// it.
 struct SettingKey {
   enum class Kind { text, list, integer, real };
 
@@ -51,8 +51,16 @@ struct SettingKey {
   double max;
   std::string_view unit;  ///< follows a number; or empty
   std::string_view help;
+
+  /// Sets it from text. The error says what the value should have been.
+  std::function<tl::expected<void, std::string>(Settings& settings, const std::string& text)> set{};
+  /// See text_of().
+  std::function<std::optional<std::string>(const Settings& settings)> text{};
+  std::function<void(Settings& weak, const Settings& strong)> prefer{};
+  std::function<void(Settings& settings, Map& map)> from_map{};  ///< empty: a map has no such key
+  std::function<void(const Settings& settings, Map& map)> to_map{};
 };
-extern const std::array<SettingKey, 23> setting_keys;
+const std::vector<SettingKey>& setting_keys();
 /// The names of all settings, with the aliases.
 std::vector<std::string_view> setting_names();
 bool is_setting(std::string_view name);

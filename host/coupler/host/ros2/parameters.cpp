@@ -210,14 +210,14 @@ tl::expected<Settings, std::string> settings_among(const std::vector<GivenParame
 }
 
 void declare_settings(ParameterServer& server, const Settings& settings) {
-  for (const SettingKey& key : setting_keys) server.declare(describe(key, ""), value_of(key, settings));
+  for (const SettingKey& key : setting_keys()) server.declare(describe(key, ""), value_of(key, settings));
 }
 
 void declare_devices(ParameterServer& server, const Devices& devices) {
   if (devices.size() == 1)
     return declare_settings(server, with_map(devices.front().settings, devices.front().source.map));
   for (const auto& [settings, source] : devices)
-    for (const SettingKey& key : setting_keys)
+    for (const SettingKey& key : setting_keys())
       if (key.key != "map" && key.key != "maps")
         server.declare(describe(key, fmt::format("{}.", source.map.name)),
                        value_of(key, with_map(settings, source.map)));

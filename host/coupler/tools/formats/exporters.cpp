@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/tools/formats/exporters.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "coupler/map/fields.hpp"
+#include "coupler/map/printable.hpp"
+
+namespace coupler::formats {
+namespace {
+
+constexpr Exporter formats[] = {
+    {"csv", "a table of points, for spreadsheets and for `coupler import csv`", write_csv},
+    {"home-assistant", "the modbus integration's part of configuration.yaml", write_home_assistant},
+    {"st", "types, variables and function blocks in Structured Text, for a PLC that reads the device",
+     write_structured_text},
+    {"telegraf", "a section [[inputs.modbus]] of telegraf.conf", write_telegraf,
+     write_telegraf_with_statistics},
+    {"wireshark", "a dissector (Lua) that names the points in captures", write_wireshark},
+};
+
+std::string list_of(const std::vector<std::string>& points) {
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(points.size(), most); ++i)
+    text += fmt::format("{}{}", i == 0 ? ": " : ", ", points[i]);
+  if (points.size() > most) text += fmt::format(" and {} more", points.size() - most);
+  return text;
+}
+
+bool is_of_the_node(const Point& point) {
+  return point.line.present() || is_analogue(point) || point.counter.present() || point.latched.present() ||
+         !point.initial.empty() || point.safe != Safe::off || is_pulsed(point);
+}
+
+/// The rate is not, and a deadband and a queue for subscribers have no meaning by themselves.
+bool is_of_the_driver(const Point& point) {
+  HostOptions host = point.host;
+  host.rate = 0;
+  host.deadband = 0;
+  host.queue_size = HostOptions{}.queue_size;
+  return !has_defaults(host) || host.deadman.present();
+}
+
+}  // namespace
+
+void ConversionWarnings::add(std::string_view what, std::string_view remedy, std::string_view point) {
+  auto found = std::find_if(warnings_.begin(), warnings_.end(),
+                            [what](const ConversionWarning& warning) { return warning.what == what; });
+  if (found == warnings_.end()) found = warnings_.insert(found, {std::string(what), std::string(remedy), {}});
+  if (point.empty() || (!found->points.empty() && found->points.back() == point)) return;
+  found->points.emplace_back(point);
+}
+
+Diagnostics ConversionWarnings::diagnostics(std::string_view file) const {
+  Diagnostics out;
+  for (const ConversionWarning& warning : warnings_) {
+    Diagnostic diagnostic;
+    diagnostic.severity = Diagnostic::Severity::warning;
+    diagnostic.file = file;
+    diagnostic.what = warning.what + list_of(warning.points);
+    diagnostic.remedy = warning.remedy;
+    out.push_back(std::move(diagnostic));
+  }
+  return out;
+}
+
+Span<const Exporter> exporters() { return formats; }
+
+const Exporter* find_exporter(std::string_view name) {
+  const auto* found = std::find_if(std::begin(formats), std::end(formats),
+                                   [name](const Exporter& exporter) { return exporter.name == name; });
+  return found == std::end(formats) ? nullptr : found;
+}
+
+void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) {
+  if (map.connection.tls.present())
+    warnings.add("the map has TLS, and this format has not",
+                 "name the coupler's port without TLS, where a node lets in whom its 'plain' says");
+  for (const Point& point : map.points) {
+    if (is_of_the_node(point))
+      warnings.add(
+          "lines, channels, counters, initial and safe values and pulses belong to the node and are left out",
+          "no action is needed: the node has the map", point.name);
+    if (is_of_the_driver(point))
+      warnings.add("the driver's options of points are left out",
+                   "look for similar options in the other program", point.name);
+  }
+}
+
+std::string UniqueNames::make(const std::string& name, std::string_view point) {
+  std::string unique = name;
+  for (int n = 2; !taken_.insert(unique).second; ++n) unique = fmt::format("{}_{}", name, n);
+  if (unique != name)
+    warnings_.add("names that would be those of other points get a number", "rename one of the points",
+                  point);
+  return unique;
+}
+
+std::string double_quoted(std::string_view text, std::string_view control, Escapes escapes) {
+  std::string out = "\"";
+  for (std::size_t at = 0; at < text.size();) {
+    const Character c = character_at(text, at);
+    const std::string_view bytes = text.substr(at, c.size);
+    at += c.size;
+    if (bytes == "\"" || bytes == "\\")
+      out.append("\\").append(bytes);
+    else if (!turns_direction(c.code) && c.code >= 0x20 && c.code != 0x7F)
+      out += bytes;
+    else if (escapes == Escapes::characters)
+      out += fmt::format(fmt::runtime(control), static_cast<unsigned>(c.code));
+    else
+      for (const char byte : bytes)
+        out += fmt::format(fmt::runtime(control), static_cast<unsigned>(static_cast<unsigned char>(byte)));
+  }
+  return out + '"';
+}
+
+}  // namespace coupler::formats

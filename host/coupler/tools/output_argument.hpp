@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What --out names: a file or a folder, or standard output.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "coupler/tools/commands.hpp"
+
+namespace coupler::tools {
+
+/// The word that stands for standard output in place of a file.
+constexpr std::string_view standard_output = "-";
+
+/// It is not given, or standard output.
+inline bool names_no_file(const std::string& out) { return out.empty() || out == standard_output; }
+
+/// Writes what a command makes: to standard output if `out` names no file. Returns how the command ends.
+Exit write_out(std::string_view command, const std::string& out, const std::string& text);
+
+/// Writes a file that a command makes of a map: the map itself is refused. `option` named the file.
+Exit write_beside_map(std::string_view command, const std::string& map, std::string_view option,
+                      const std::string& file, const std::string& text);
+
+/// A file is there, not empty, that has none of `marks`: another program or somebody wrote it.
+bool has_none_of(const std::string& file, std::initializer_list<std::string_view> marks);
+
+}  // namespace coupler::tools

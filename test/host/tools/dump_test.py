@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `coupler dump` refuses. What it reads is tried on devices, by test/peers/dump_test.py."""
+import os
+import socket
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PATIENCE = 120  # seconds; no rule, only reached when something is broken
+MAP = """\
+name: cell
+mapping:
+  coils: {lamp: 0}
+"""
+
+
+class Dump(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "cell.yaml").write_text(MAP, encoding="utf-8")
+
+    def dump(self, *arguments):
+        return subprocess.run([os.environ["COUPLER"], "dump", *arguments], cwd=self.folder,
+                              capture_output=True, text=True, encoding="utf-8", check=False, timeout=PATIENCE)
+
+    def refused(self, status, what, *arguments):
+        done = self.dump(*arguments)
+        self.assertEqual(done.returncode, status, done.stderr)
+        self.assertIn(what, done.stderr)
+        self.assertEqual(done.stdout, "")
+
+    def test_a_map_without_address_needs_at(self):
+        self.refused(2, "cell.yaml does not say where the device is; give --at HOST[:PORT][/UNIT]", "cell.yaml")
+
+    def test_a_host_in_place_of_a_file_is_told_how_a_node_is_named(self):
+        missing = "error: the file cannot be read: No such file or directory; give the path of a map"
+        for place, node in (("127.0.0.1:1502", "tcp://127.0.0.1:1502"), ("press.local", "tcp://press.local"),
+                            ("/dev/ttyUSB77", "rtu:/dev/ttyUSB77")):
+            self.refused(1, f"{place}: {missing}; for the map of a node write {node}\n", place)
+        for end in os.openpty():
+            self.addCleanup(os.close, end)
+        line = os.ttyname(end)
+        device = "error: it is a device, not a file; give the path of a map, or - for standard input"
+        self.refused(1, f"{line}: {device}; for the map of a node write rtu:{line}\n", line)
+        self.refused(1, f"/dev/null: {device}\n", "/dev/null")
+        for file in ("press.yaml", "./press", "a b"):
+            self.refused(1, f"{file}: {missing}\n", file)
+
+    def test_a_wrong_place_is_said(self):
+        self.refused(2, "--at: the port '0' is not 1 to 65535; write tcp://HOST", "cell.yaml", "--at", "cell:0")
+        self.refused(2, "--at: the unit id '256'", "cell.yaml", "--at", "tcp://cell/256")
+
+    def test_a_pattern_has_to_match_a_point(self):
+        self.refused(2, "no point matches 'lmap'; `coupler export cell.yaml --to csv` lists their names",
+                     "cell.yaml", "--at", "localhost", "--points", "la*,lmap")
+
+    def test_a_period_is_a_number_of_seconds(self):
+        self.refused(2, "--watch", "cell.yaml", "--at", "localhost", "--watch", "often")
+        self.refused(2, "--watch", "cell.yaml", "--at", "localhost", "--watch", "0")
+
+    def test_a_wrong_map_is_no_reason_to_ask_a_device(self):
+        (self.folder / "cell.yaml").write_text("name: cell\nmapping: {coils: {lamp: -1}}\n", encoding="utf-8")
+        self.refused(1, "cell.yaml:2:", "cell.yaml", "--at", "localhost")
+
+    def test_a_device_that_is_not_there_is_a_failure(self):
+        with socket.socket() as place:
+            place.bind(("127.0.0.1", 0))
+            where = f"127.0.0.1:{place.getsockname()[1]}"
+            self.refused(3, f"tcp://{where}/1: ", "cell.yaml", "--at", where)
+
+    def test_help_has_an_example(self):
+        done = self.dump("--help")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("Example:\n  coupler dump tcp://raspberrypi\n", done.stdout)
+
+
+unittest.main()
