@@ -74,8 +74,7 @@ CouplerWatchdog::CouplerWatchdog(const Map& map, Link& link, DeviceStatistics& s
       sink_(sink) {}
 
 Result<> CouplerWatchdog::connected() {
-  connected_ = known_.present();
-  if (!connected_) return {};
+  if (!known_.present()) return {};
   resets_.open();
   const auto done = bring_up(known_.recovery == Watchdog::Recovery::automatic);
   return done ? Result<>{} : tl::make_unexpected(done.error());
@@ -83,15 +82,15 @@ Result<> CouplerWatchdog::connected() {
 
 void CouplerWatchdog::disconnected(const std::string& why) {
   resets_.close(why);
-  if (!std::exchange(connected_, false)) return;
-  if (status_.state == State::expired) return;  // it still is, as far as we know
+  if (!known_.present() || status_.state == State::expired)
+    return;  // expired: it still is, as far as we know
   status_.state = State::not_fed;
   status_.error_text.clear();
   statistics_.watchdog(status_);
 }
 
 Time CouplerWatchdog::due() const {
-  if (!connected_) return Time::max();
+  if (!known_.present()) return Time::max();
   if (resets_.any()) return Time::min();
   if (status_.state != State::fed) return next_;
   if (known_.refusal && link_.has_seen(*known_.refusal)) return Time::min();

@@ -50,7 +50,7 @@ class CouplerWatchdog {
   /// Answers the resets that wait with `why`, because the connection has ended.
   void disconnected(const std::string& why);
 
-  /// The time at which step() has something to do; Time::max() if there is no watchdog.
+  /// The time at which step() has something to do while connected; Time::max() if there is no watchdog.
   Time due() const;
   /// Feeds the watchdog, or tries to reset it. Returns true if it had expired and is fed again. The outputs
   /// are then as the coupler left them.
@@ -75,7 +75,6 @@ class CouplerWatchdog {
   DeviceStatistics& statistics_;
   Sink& sink_;
   WatchdogStatus status_;
-  bool connected_ = false;
   std::size_t turn_ = 0;  ///< the index of the next write in WatchdogSequences::feed
   Time next_{};           ///< the time to feed, or to try again
   Calls resets_;

@@ -199,7 +199,7 @@ void Device::arrived() {
   if (writer_.awaits_answer()) return;
   if (!is_verified()) {  // the unit was away, and now the gateway is, too
     link_.close();
-    state_ = State::none;
+    note(DeviceEvent::lost);
     return;
   }
   if (listener_.is_waiting()) {
@@ -225,7 +225,7 @@ bool Device::stop() {
   watchdog_.disconnected("the driver ends");
   link_.close();
   values_.online(false);
-  if (std::exchange(state_, State::none) == State::online) sink_.on_online(false);
+  if (note(DeviceEvent::lost) == State::online) sink_.on_online(false);
   return is_safe;
 }
 
@@ -235,7 +235,7 @@ Time Device::connect() {
   node_ = {};
   is_node_ = false;
   Result<> result = state_ == State::open ? Result<>{} : link_.connect();
-  state_ = result ? State::open : State::none;
+  if (result) note(DeviceEvent::connected);
   if (result && verify_ != Verify::off) result = prove_equal();
   writer_.talks_to_node(is_node_ || map_.connection.tls.present());
   if (result) result = watchdog_.connected();
@@ -246,7 +246,7 @@ Time Device::connect() {
     lost(result.error());
     return retry_at_;
   }
-  state_ = State::verified;
+  note(DeviceEvent::verified);
   listen();
   scheduler_.connected(listener_.is_active() && node_.functions.schedules_outputs);
   poller_.start(is_node_ || map_.connection.tls.present(), listener_.is_active());
@@ -281,7 +281,7 @@ Result<> Device::ask_for_watchdog() {
 }
 
 void Device::came_online() {
-  if (std::exchange(state_, State::online) == State::online) return;
+  if (note(DeviceEvent::answered) == State::online) return;
   if (!only_looks_) backoff_.reset();
   last_error_text_.clear();
   const auto certificates = link_.certificates();
@@ -299,15 +299,15 @@ void Device::came_online() {
 }
 
 void Device::lost(const Error& error) {
-  const bool was_online = state_ == State::online;
+  const State before = note(is_unit_away(error) ? DeviceEvent::away : DeviceEvent::lost);
+  const bool was_online = before == State::online;
   if (listener_.has_heard())
     unheard_waits_ = 0;
-  else if (is_verified() && listener_.is_active())
+  else if (before >= State::verified && listener_.is_active())
     ++unheard_waits_;
-  else if (is_verified())
+  else if (before >= State::verified)
     unheard_waits_ = std::min(unheard_waits_, most_unheard_waits - 1);  // to be tried again, once
-  state_ = state_ != State::none && is_unit_away(error) ? State::open : State::none;
-  if (state_ == State::none) link_.close();
+  if (state_ == State::closed) link_.close();
   retry_at_ = clock_.now() + backoff_.next();
   listener_.stop();
   writer_.disconnected(error);

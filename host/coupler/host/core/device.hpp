@@ -5,11 +5,13 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "coupler/base/log_line_limit.hpp"
 #include "coupler/host/core/backoff.hpp"
 #include "coupler/host/core/change_listener.hpp"
 #include "coupler/host/core/coupler_watchdog.hpp"
+#include "coupler/host/core/device_state.hpp"
 #include "coupler/host/core/output_scheduler.hpp"
 #include "coupler/host/core/poller.hpp"
 #include "coupler/host/core/writer.hpp"
@@ -103,14 +105,11 @@ class Device {
   std::uint64_t revision() const { return statistics_.revision() + values_.revision(); }
 
  private:
-  /// Each state includes those before it.
-  enum class State {
-    none,
-    open,      ///< there is a connection, to the device or to its gateway
-    verified,  ///< the maps are equal: reads and writes may go out
-    online     ///< the device has answered
-  };
+  using State = DeviceState;
+
   bool is_verified() const { return state_ >= State::verified; }
+  /// Returns the state before.
+  State note(DeviceEvent event) { return std::exchange(state_, after(state_, event)); }
 
   Time connect();
   Result<> ask_for_watchdog();
@@ -166,7 +165,7 @@ class Device {
   Level level_ = Level::info;  ///< of the newest line
   bool holds_line_ = false;    ///< a line waits to be logged
   std::atomic<bool> ending_{false};
-  State state_ = State::none;
+  State state_ = State::closed;
   bool wrote_last_ = false;  ///< the last request was a write: an overdue read goes before the next one
   bool is_closed_ = false;   ///< the device has closed the connection: the next read connects again
   std::optional<std::uint64_t> replies_at_reopen_;  ///< Link::replies() at the last call of reopens()
