@@ -53,7 +53,17 @@ void DeviceThread::write(const Write& write) {
   device_.push(write);
   if (owner_ == std::this_thread::get_id()) return;  // the step that is being made sees it at its end
   const std::unique_lock turn(turn_, std::try_to_lock);
-  if (!turn || !device_.send_now()) link_.wake();
+  if (!turn || !send_now()) link_.wake();
+}
+
+/// What is thrown here goes to the owner, because only it may close the connection.
+bool DeviceThread::send_now() {
+  try {
+    return device_.send_now();
+  } catch (...) {
+    thrown_ = std::current_exception();
+    return false;
+  }
 }
 
 void DeviceThread::want(std::uint32_t point, bool wanted) {
@@ -79,15 +89,24 @@ std::future<ScheduleAnswer> DeviceThread::schedule(const ScheduledWrite& what) {
   return answer;
 }
 
-Time DeviceThread::step() {
-  const std::lock_guard turn(turn_);
-  demand_.take([this](std::uint32_t point, bool wanted) { device_.want(point, wanted); });
+/// An exception, for lack of memory for what the device sends, for example, costs this device its connection,
+/// and no other.
+template <class Work>
+Time DeviceThread::attempt(Work work) {
   try {
-    return device_.step();
-  } catch (const std::exception&
-               error) {  // no memory is left for what the device sends, say: it costs itself only
+    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+    return work();
+  } catch (const std::exception& error) {
     return device_.give_up(what_failed(error));
   }
+}
+
+Time DeviceThread::step() {
+  const std::lock_guard turn(turn_);
+  return attempt([this] {
+    demand_.take([this](std::uint32_t point, bool wanted) { device_.want(point, wanted); });
+    return device_.step();
+  });
 }
 
 void DeviceThread::run() {
@@ -96,7 +115,10 @@ void DeviceThread::run() {
     if (link_.wait_until(step()) != Woken::by_bytes) continue;
     {
       const std::lock_guard turn(turn_);
-      device_.arrived();
+      attempt([this] {
+        device_.arrived();
+        return Time::min();
+      });
     }
     // If there is only one processor, the thread that sends what the sink received gets it first: the message
     // leaves before the next request is sent.
@@ -105,7 +127,11 @@ void DeviceThread::run() {
   is_ending_ = true;
   {
     const std::lock_guard turn(turn_);
-    ended_safely_ = device_.stop();
+    ended_safely_ = !ends_safely_;
+    attempt([this] {
+      ended_safely_ = device_.stop();
+      return Time::max();
+    });
   }
   stopped_.set_value();
 }

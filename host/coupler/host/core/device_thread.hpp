@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
+#include <functional>
 #include <future>
 #include <mutex>
 #include <thread>
@@ -89,13 +91,17 @@ class DeviceThread {
  private:
   void run();
   Time step();
+  bool send_now();
+  template <class Work>
+  Time attempt(Work work);
   void await_stop();
 
   Link& link_;
   Device device_;
   ReadDemand demand_;
-  bool ends_safely_;  ///< the device writes safe values at the end
-  std::mutex turn_;   ///< held by the thread that uses the connection; only the owner waits for it
+  bool ends_safely_;           ///< the device writes safe values at the end
+  std::mutex turn_;            ///< held by the thread that uses the connection; only the owner waits for it
+  std::exception_ptr thrown_;  ///< by another thread while it held turn_
   std::atomic<bool> stopping_{false};
   std::atomic<bool> is_ending_{false};    ///< the thread only sets outputs to their safe values
   std::atomic<std::thread::id> owner_{};  ///< the thread that holds turn_ while it calls the sink
