@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string_view>
 
+#include "coupler/map/loader/load.hpp"
 #include "coupler/tools/formats/exporters.hpp"
 #include "coupler/tools/formats/importers.hpp"
-#include "coupler/map/loader/load.hpp"
 #include "test/fuzz/require.hpp"
 
 namespace coupler::fuzz {

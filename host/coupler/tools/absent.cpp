@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// In place of what this build lacks, because a library was not there: each command says what to install.
+// Stubs for what this build lacks because a library was missing. Each command says what to install.
 #include <string>
 #include <string_view>
 
@@ -12,10 +12,10 @@
 namespace coupler::tools {
 namespace {
 
-/// `library` as people name it, `packages` as Debian does.
-[[maybe_unused]] void add_absent(Program& program, Exit& exit, const std::string& name,
-                                 const std::string& summary, const std::string& library,
-                                 const std::string& packages) {
+/// Adds a command that only says what is missing. `library` is the name that people use, and `packages` are
+/// the names of the Debian packages.
+void add_absent(Program& program, Exit& exit, const std::string& name, const std::string& summary,
+                const std::string& library, const std::string& packages) {
   auto command = program.add_command(name, fmt::format("{} (not in this build: no {}).", summary, library));
   command.allow_extras();
   command.callback([&exit, name, library, packages] {
@@ -53,8 +53,8 @@ tl::expected<MapPtr, Failure> fetch_live_map(const Connection& /*where*/) {
 
 #ifndef COUPLER_WITH_PANEL
 void add_panel(Program& program, Exit& exit) {
-  add_absent(program, exit, "panel", "A live page of a device", "cpp-httplib or libmodbus",
-             "libcpp-httplib-dev and libmodbus-dev");
+  add_absent(program, exit, "panel", "Show a device's points live, as a page in a browser",
+             "cpp-httplib and/or libmodbus", "libcpp-httplib-dev and libmodbus-dev");
 }
 #endif
 
@@ -69,10 +69,13 @@ CertificateFindings check_certificates(const Map& map) {
 }
 #endif
 
-#if !defined(COUPLER_WITH_TLS) || !defined(COUPLER_WITH_LIBMODBUS)
+#ifndef COUPLER_WITH_TLS
 void add_pin(Program& program, Exit& exit) {
-  add_absent(program, exit, "pin", "Print the pin of a device's certificate", "OpenSSL 3 or libmodbus",
-             "libssl-dev and libmodbus-dev");
+  add_absent(program, exit, "pin", "Print the pin of a device's certificate", "OpenSSL 3", "libssl-dev");
+}
+#elif !defined(COUPLER_WITH_LIBMODBUS)
+void add_pin(Program& program, Exit& exit) {
+  add_absent(program, exit, "pin", "Print the pin of a device's certificate", "libmodbus", "libmodbus-dev");
 }
 #endif
 

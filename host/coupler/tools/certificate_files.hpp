@@ -10,14 +10,16 @@
 
 namespace coupler::tools {
 
-/// The folder is there then, a secret one for its owner only; what a killed call left unfinished in it is
-/// not.
+/// Makes the folder if it does not exist, and deletes what a killed call left unfinished in it. Only its
+/// owner can use a secret folder.
 tl::expected<void, std::string> make_folder(const std::filesystem::path& folder, bool is_secret);
 
-/// Two calls at once would mix their files: the second one gets an error. Held until the program ends.
+/// Locks the folder until the program ends, because two calls at once would mix their files. Returns an error
+/// if another call has locked it.
 tl::expected<void, std::string> lock_folder(const std::filesystem::path& folder);
 
-/// A new file in a folder of make_folder(), whole or not at all; a key can be read by its owner only.
+/// Writes a new file to a folder of make_folder(), whole or not at all. Only its owner can read a secret
+/// file.
 tl::expected<void, std::string> write_new(const std::filesystem::path& path, const std::string& text,
                                           bool is_secret);
 

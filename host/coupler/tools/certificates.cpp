@@ -128,7 +128,8 @@ tl::expected<void, std::string> place_authority(const fs::path& own, const tls::
   return {};
 }
 
-/// DIR/authority, made if it is not there, and if nothing of these subjects is of another one.
+/// Returns the authority in DIR/authority, and makes it if it is not there. Returns an error if one of the
+/// subjects has a certificate of another authority.
 tl::expected<tls::Pem, std::string> authority_in(const fs::path& folder, tls::KeyKind kind,
                                                  const std::vector<tls::Subject>& subjects) {
   const fs::path own = folder / "authority";
@@ -174,8 +175,8 @@ Stems stems_in(const fs::path& folder, const std::string& name, const char* endi
   return stems;
 }
 
-/// With paths from the map beside which the subject's folder is. Each of the roles may read all: a beginning,
-/// which is safe.
+/// Returns the lines for the map beside which the subject's folder will be, with paths from that map. For a
+/// node, they let each role read everything and write nothing, which is a safe start.
 std::string lines_for_map(const tls::Subject& subject, const std::string& stem,
                           const std::vector<std::string>& roles) {
   if (!subject.is_node)
@@ -228,7 +229,7 @@ tl::expected<bool, std::string> is_kept(const fs::path& own, const std::string& 
   return false;
 }
 
-/// One certificate with its key, unless there is one that has more than a third of its life left.
+/// Makes a certificate and its key, unless the subject has one with more than a third of its life left.
 tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subject& subject,
                                         tls::KeyKind kind, const tls::Pem& authority,
                                         const std::vector<std::string>& roles) {

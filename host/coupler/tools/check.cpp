@@ -20,7 +20,8 @@ struct Arguments {
   bool locked = false;
 };
 
-/// A map whose certificates do not fit is none.
+/// Checks the certificates of a map and returns lines about them for people. If there are problems, they
+/// become diagnostics, and the map counts as one that does not load.
 std::vector<std::string> take_certificates(const std::string& file, MapArgument& argument) {
   LoadResult& loaded = argument.loaded;
   if (!loaded.map) return {};

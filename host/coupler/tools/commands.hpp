@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subcommands of `coupler`, and how all of them end. Each add_ function adds one to the program; when the
-// user calls it, it sets `exit`. What a build lacks is in absent.cpp.
+// The subcommands of `coupler`, and how they end. Each add_ function adds one subcommand to the program, and
+// the subcommand sets `exit` when it has run. absent.cpp has stubs for those that a build lacks.
 #pragma once
 
 #include <cstdio>
@@ -26,8 +26,8 @@ enum Exit : int {
   failed = 3,     ///< the network or the device failed
 };
 
-/// Says "coupler COMMAND: error: WHAT; REMEDY" on standard error; returns `exit`. An empty remedy: `what` has
-/// it.
+/// Writes "coupler COMMAND: error: WHAT; REMEDY" to standard error and returns `exit`. `remedy` is empty if
+/// `what` already contains it.
 inline Exit complain(std::string_view command, Exit exit, std::string_view what, std::string_view remedy) {
   const std::string line = fmt::format("coupler {}: error: {}{}{}\n", command, printable_lines(what),
                                        remedy.empty() ? "" : "; ", printable_lines(remedy));
@@ -50,7 +50,7 @@ inline Exit complain(std::string_view command, const Failure& why) {
   return complain(command, why.exit, why.what, why.remedy);
 }
 
-/// To standard output, whole: a NUL does not end it. main() looks whether it was taken.
+/// Writes all of the text to standard output, including any NUL in it. main() checks whether that succeeded.
 inline void put(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
 void add_certificates(Program& program, Exit& exit);

@@ -10,7 +10,8 @@
 namespace coupler::tools {
 namespace {
 
-/// The map of a device, which is found out if it serves none. Says on standard error, as `command`, how.
+/// Returns the map that a device serves, or else one that is found out. Says on standard error, as `command`,
+/// which of the two it is.
 MapArgument find_map(std::string_view command, const std::string& argument, const TlsTexts& tls) {
   const auto place = std::make_shared<const std::string>(node_argument(argument));
   const auto node = parse_node_address(*place);

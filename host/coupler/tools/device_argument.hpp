@@ -10,7 +10,7 @@
 
 namespace coupler::tools {
 
-/// A device and its map, as commands take them that read it. The call of the command must end before it.
+/// The arguments of a command that reads a device. They must outlive the call of the command.
 struct DeviceArgument {
   std::string map;
   std::string at;
@@ -21,12 +21,12 @@ struct DeviceArgument {
 void add_device_options(command_line::Command& command, DeviceArgument& arguments);
 
 struct DeviceMap {
-  MapArgument argument;                   ///< has what `map` views
-  std::shared_ptr<const std::string> at;  ///< and so has this
-  Map map;                                ///< with the connection that the options say
+  MapArgument argument;                   ///< owns the texts that `map` views
+  std::shared_ptr<const std::string> at;  ///< the place of --at, which `map` views, too
+  Map map;                                ///< has the connection that the options give
 };
 
-/// Error: the exit status of `command`, after it is said why.
+/// Returns the map of a device. If there is none, says why, as `command`, and returns the exit status.
 tl::expected<DeviceMap, Exit> get_device(std::string_view command, const DeviceArgument& arguments);
 
 }  // namespace coupler::tools

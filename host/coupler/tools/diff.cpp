@@ -129,8 +129,8 @@ Severity severity_of(const std::string& name) {
   return Severity::documentation;
 }
 
-/// A map from a node is loaded without the part about its own clients. A file beside it is loaded in the same
-/// way, or the map would differ from itself.
+/// Returns the map of one side to compare. A map from a node is loaded without `security` and `tls`. A file
+/// that it is compared with is loaded in the same way, or a map would differ from itself.
 MapPtr comparable(const MapArgument& side, const MapArgument& other) {
   if (side.node || !other.node) return side.loaded.map;
   const MapPtr served = load_served_map(side.loaded.map->map().text, "").map;

@@ -60,19 +60,19 @@ void tell(const std::string& note) {
   std::fputs(fmt::format("coupler dump: note: {}\n", printable_lines(note)).c_str(), stderr);
 }
 
-/// False while whoever reads standard output stands still.
+/// Returns false while standard output is blocked because its reader does not read.
 bool is_taken() {
   pollfd wish{STDOUT_FILENO, POLLOUT, 0};
   return ::poll(&wish, 1, 0) != 0;
 }
 
-/// Rows of the terminal that is standard output.
+/// Returns the number of rows of the terminal that is standard output.
 std::size_t terminal_rows() {
   winsize size{};
   return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 ? size.ws_row : 24;
 }
 
-/// Some terminals know no ANSI sequences.
+/// Returns whether standard output is a terminal that understands ANSI sequences.
 bool is_screen() {
   const char* kind = std::getenv("TERM");
   return ::isatty(STDOUT_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";
@@ -223,7 +223,8 @@ Exit again_and_again(const Map& original, const std::vector<bool>& chosen, bool 
   return ok;
 }
 
-/// By point. Every pattern must match: a misspelt one would leave points out without a word.
+/// Returns for each point whether it is chosen. The error is a pattern that matches no point, because a
+/// misspelt one would silently leave points out.
 tl::expected<std::vector<bool>, std::string> choose(const Map& map,
                                                     const std::vector<std::string>& patterns) {
   std::vector<bool> chosen(map.points.size(), patterns.empty());

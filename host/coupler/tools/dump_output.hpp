@@ -23,13 +23,14 @@ std::vector<std::string> change_lines(const Map& map, const Snapshot* before, co
 
 // A terminal that shows the same lines again and again, by ANSI sequences.
 
-/// Columns do not wrap: a line is one row. To be printed before the first frame …
+/// To be printed before the first frame. It clears the screen and turns line wrapping off, so that each line
+/// is one row.
 constexpr auto begin_frames = "\033[?7l\033[2J";
-/// … and after the last one.
+/// To be printed after the last frame. It turns line wrapping on again.
 constexpr auto end_frames = "\033[?7h";
 
-/// The lines, drawn over those of the frame before. If not all fit into `rows`, the last row says how many
-/// there are.
+/// Returns the text that draws the lines over the previous frame. If they do not all fit into `rows`, the
+/// last row says how many are left out.
 std::string frame(const std::vector<std::string>& lines, std::size_t rows);
 
 /// One line of JSON. docs/commands.md has a table of its fields.

@@ -39,7 +39,8 @@ std::string good_value(const Point& point, const Reading& reading) {
   return point.units.empty() ? text : fmt::format("{} {}", text, printable(point.units));
 }
 
-/// Returns the place where it is read, as the register map of `coupler generate --docs` has it.
+/// Returns the cells of a point's row. Its place is the one at which it is read, written as in the register
+/// map of `coupler generate --docs`.
 Cells cells_of(const Map& map, const Reading& reading) {
   Point point = map.points[reading.point];
   point.address = read_range(point).start();

@@ -79,7 +79,7 @@ std::vector<generate::File> map_pages(const Arguments& arguments, const std::str
   return {{file + ".html", docs::html_page(document)}, {file + ".md", docs::markdown_page(document)}};
 }
 
-/// A file that somebody wrote: all that is generated says by whom.
+/// Returns whether somebody wrote the file by hand: every generated file says that coupler made it.
 bool is_by_hand(const std::string& path) {
   return has_none_of(path, {"by coupler ", "\"made_by\": \"coupler "});
 }
@@ -119,8 +119,8 @@ Exit write_python(const Arguments& arguments, const generate::Provenance& proven
   return write(arguments, {{provenance.name + "_client.py", generate::python_client(map, provenance)}});
 }
 
-/// The key of a node's map that would be lost; empty: none. What is loaded from a node leaves both out. With
-/// TLS, how to reach the node was given.
+/// Returns the key of a node's map that would be lost, or an empty text. A map from a node is loaded without
+/// `security` and `tls`. `tls` is not lost if the call gave TLS options, which replace it.
 std::string_view lost_key(const MapArgument& argument) {
   loader::Problems ignored("");
   const auto root = loader::parse_document(argument.loaded.map->map().text, ignored);

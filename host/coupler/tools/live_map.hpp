@@ -8,12 +8,13 @@
 
 namespace coupler::tools {
 
-/// Asks a node once for the map that it serves, and waits for `where.timeout` at most for each answer.
-/// bad_input: a foreign coupler, or a map that does not load; failed: the network, or no libmodbus.
+/// Returns the map that a node serves. Asks for it once, and waits at most `where.timeout` for each answer.
+/// The exit status of a failure is bad_input for a foreign coupler or a map that does not load, and failed
+/// for the network or a build without libmodbus.
 tl::expected<MapPtr, Failure> fetch_live_map(const Connection& where);
 
-/// Does the same. Returns nullptr for a foreign coupler, also for one that is there and does not answer such
-/// a question.
+/// Does the same, but returns nullptr for a foreign coupler, and for a device that can be reached but does
+/// not answer the question.
 tl::expected<MapPtr, Failure> fetch_map_if_node(const Connection& where);
 
 }  // namespace coupler::tools

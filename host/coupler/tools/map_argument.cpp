@@ -28,8 +28,8 @@ bool ends_in(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
 
-/// An absolute path of a device, but not such as /dev/null or /dev/gpiochip0. A pseudo-terminal has no entry
-/// in /sys.
+/// Returns whether this is the absolute path of a device that can be a serial line, unlike /dev/null or
+/// /dev/gpiochip0. A pseudo-terminal has no entry in /sys.
 bool can_be_a_serial_line(const std::string& path) {
   struct stat status {};
   if (!starts_with(path, "/") || ::stat(path.c_str(), &status) != 0 || !S_ISCHR(status.st_mode)) return false;

@@ -22,28 +22,29 @@ constexpr auto map_help =
 struct MapArgument {
   LoadResult loaded;
   Exit exit = ok;                              ///< how the command ends if there is no map
-  std::optional<NodeAddress> node{};           ///< where it was found, if on a node
-  Tls tls{};                                   ///< by which
-  std::shared_ptr<const std::string> place{};  ///< of which `node` is a view, if not of the argument
+  std::optional<NodeAddress> node{};           ///< the device that the argument names; nullopt: a file
+  Tls tls{};                                   ///< the TLS settings for that device
+  std::shared_ptr<const std::string> place{};  ///< the text that `node` views; null: it views the argument
 
-  /// To be called if there is one. From a node, its connection is the one that was given.
+  /// Returns the map, which must have been loaded. That of a device has the connection that was given.
   Map map() const;
 };
 
 MapArgument no_map(const std::string& argument, const Failure& why);
 
-/// Returns whether an argument can be a device instead of a map. A path, or the name of a map's file, is none if
-/// there is no such file, unless it can be the place of a device.
+/// Returns whether an argument can be a device instead of a map: an address such as tcp://HOST, or a serial
+/// port. If there is no such file, any name can be one, unless it is "-", has the ending of a map's file, or
+/// has a slash and is neither in /dev nor HOST/UNIT.
 bool can_be_a_device(const std::string& argument);
 
-/// Every problem is in the diagnostics. With `renew` a command gives addresses to the new points of a file,
-/// and its lock is written if that changes; with `exact` nothing is written, and a lock that is not up to
-/// date is an error. A lock that cannot be written is an error, too. A node's map has no lock. `tls`, for a
-/// node, outlives the result.
+/// Loads a map; every problem is in the diagnostics. With LockUse::renew, the new points of a file get
+/// addresses, and its lock is written if it changes. With LockUse::exact, nothing is written, and a lock that
+/// is not up to date is an error. A lock that cannot be written is an error, too. The map of a node has no
+/// lock. `tls` is for a node, and must outlive the result.
 MapArgument get_map(const std::string& argument, const TlsTexts& tls, LockUse use = LockUse::read);
 
-/// The same, or REVISION:PATH of git, unless there is a file of that name: `git show` is run,
-/// and what it says is a diagnostic.
+/// Does the same with LockUse::read, and also takes REVISION:PATH of git, unless there is a file of that
+/// name. It runs `git show`, and an error of git becomes a diagnostic.
 MapArgument get_version(const std::string& argument, const TlsTexts& tls);
 
 }  // namespace coupler::tools

@@ -66,14 +66,14 @@ std::string text_of(const Key& /*field*/, std::chrono::duration<Rep, Period> val
   return value.count() == 0 ? "none" : written(value);
 }
 
-/// "queue-size-changed" names `queue_size`.
+/// Returns whether a rule names a key, as "queue-size-changed" names `queue_size`.
 bool names(std::string_view rule, std::string_view key) {
   std::string own(key);
   std::replace(own.begin(), own.end(), '_', '-');
   return rule.find(own) != std::string_view::npos;
 }
 
-/// Several keys may be one change.
+/// Adds the changes of the fields. Neighbouring keys that have the same rule become one change.
 template <class Struct>
 void add_fields(const Struct& older, const Struct& newer, std::string_view point,
                 std::vector<Change>& changes) {

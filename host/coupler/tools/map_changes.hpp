@@ -39,12 +39,12 @@ struct Change {
   std::string newer;
 };
 
-/// Every difference: of the map as a whole, then of the points in the order of the old map, then the added
-/// ones. Points are matched by name; one that is gone and another that stands in its place, with its type, is
-/// renamed. There is a breaking one exactly if !is_subset(older, newer).
+/// Returns every difference: of the map as a whole, then of the points in the order of the old map, then the
+/// added points. Points are matched by name. If one is gone and a new one of its type is in its place, the
+/// point is renamed. One of the changes is breaking exactly if !is_subset(older, newer).
 std::vector<Change> compare(const Map& older, const Map& newer);
 
-/// The worst of them; nullopt: there are none.
+/// Returns the worst severity of the changes, or nullopt if there are none.
 std::optional<Severity> worst(const std::vector<Change>& changes);
 
 }  // namespace coupler::tools

@@ -13,17 +13,19 @@ namespace coupler::tools {
 /// The word that stands for standard output in place of a file.
 constexpr std::string_view standard_output = "-";
 
-/// It is not given, or standard output.
+/// Returns whether --out is not given or is standard output.
 inline bool names_no_file(const std::string& out) { return out.empty() || out == standard_output; }
 
 /// Writes what a command makes: to standard output if `out` names no file. Returns how the command ends.
 Exit write_out(std::string_view command, const std::string& out, const std::string& text);
 
-/// Writes a file that a command makes of a map: the map itself is refused. `option` named the file.
+/// Writes a file that a command makes from a map, but never over the map itself. `option` is the option that
+/// named the file. Returns how the command ends.
 Exit write_beside_map(std::string_view command, const std::string& map, std::string_view option,
                       const std::string& file, const std::string& text);
 
-/// A file is there, not empty, that has none of `marks`: another program or somebody wrote it.
+/// Returns whether the file exists, is not empty, and has none of `marks`: another program or a
+/// person wrote it.
 bool has_none_of(const std::string& file, std::initializer_list<std::string_view> marks);
 
 }  // namespace coupler::tools

@@ -48,12 +48,13 @@ struct Arguments {
 
 using host::WriteTicket;
 
-/// Until a page gives a click up, after 5 s, its request may come: none is written that is older than 8 s.
+/// A page gives a click up after 5 s, and its request may arrive until then. It is written within this time
+/// or not at all, so no click is written that is older than 8 s.
 constexpr std::chrono::seconds longest_wait{3};
 constexpr std::chrono::milliseconds turn_period{100};
 constexpr int turns_a_report = 10;  ///< the head's numbers are new once a second
 
-/// A terminal that has gone ends no panel.
+/// Writes a message to standard error. A terminal that is gone does not end the panel.
 void say(host::Level level, const std::string& text) {
   std::fputs(report_line("panel", level, text).c_str(), stderr);
 }
@@ -92,7 +93,7 @@ class LookedAtDevice final : public host::PanelDevice {
   }
 
  private:
-  /// Somebody who waits for the outcome of a write may have it longer than it lasts.
+  /// A connection to the device. A thread that waits for the outcome of a write may hold it beyond its end.
   class Connection {
    public:
     Connection(const Map& map, host::ValueTable& table, host::Sink& sink)
@@ -101,7 +102,8 @@ class LookedAtDevice final : public host::PanelDevice {
       thread_.start();
     }
 
-    /// False: it has ended. Otherwise the listener hears of it, at the end at the latest.
+    /// Queues a write, whose listener gets the result when the connection ends at the latest. Returns false
+    /// if the connection has already ended.
     bool write(const host::Write& write) {
       const std::lock_guard lock(mutex_);
       if (!has_ended_) thread_.write(write);
@@ -162,7 +164,7 @@ bool is_loopback(std::string_view address) {
                     parse_network("::1")->contains(parsed->address));
 }
 
-/// ok: the page may be served like that. Otherwise it has been said why not.
+/// Returns ok if the page may be served like that. Otherwise says why not, and returns the exit status.
 Exit check(const Arguments& arguments) {
   if (!is_ip_address(arguments.listen))
     return complain("panel", bad_call, "--listen: '" + arguments.listen + "' is not an IP address",

@@ -26,7 +26,7 @@ std::string counted(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// Never as 1e+04.
+/// Returns a number with `at_most` significant digits, or a large one as a whole number, never as 1e+04.
 std::string digits(double value, int at_most) {
   return value < 999 ? fmt::format("{:.{}g}", value, at_most) : fmt::format("{:.0f}", value);
 }

@@ -8,8 +8,9 @@
 
 namespace coupler::tools {
 
-/// With the settings of the line at which a unit has answered: call.connection has them. Its progress is on
-/// standard error; the first SIGINT or SIGTERM ends it.
+/// Scans with each of `call.lines` in turn, until a unit answers. call.connection then has the settings with
+/// which it answered. Shows the progress on standard error. An ending signal (see Interruption) ends the
+/// scan.
 scan::Findings look_at_each_line(ProbeCall& call);
 
 /// Why a device cannot be reached, and what to do.

@@ -84,7 +84,7 @@ std::string usual_file(const Map& map, bool csv) {
   return file;
 }
 
-/// Records every change of the device at `original.connection` until SIGINT or SIGTERM.
+/// Records every change of the device at `original.connection` until an ending signal (see Interruption).
 Exit record(const Map& original, host::RecordFile file, bool csv) {
   const ReadOnlyMap looking(original);
   const Map& map = looking.map();

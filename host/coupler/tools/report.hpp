@@ -18,9 +18,9 @@ std::string rights_table(const Map& map);
 /// Returns the lines that say what was written of a lock; empty if nothing was.
 std::string lock_report(const NewLock& lock);
 
-/// One line of JSON: {file, ok, name, points, fingerprint, lock, diagnostics: [{severity, file, line, column,
-/// what, remedy}]}. name, points and fingerprint are null if there is no map; lock is null unless it was
-/// written, then {file, allocated: [names], retired: [names]}.
+/// Returns one line of JSON: {file, ok, name, points, fingerprint, lock, diagnostics: [{severity, file, line,
+/// column, what, remedy, notes: [{line, column, what}]}]}. name, points and fingerprint are null if there is
+/// no map; lock is null unless it was written, and otherwise {file, allocated: [names], retired: [names]}.
 std::string json_report(const std::string& file, const LoadResult& loaded);
 
 }  // namespace coupler::tools

@@ -30,14 +30,14 @@ void say(std::string_view command, const std::string& text) {
   fmt::print(stderr, "coupler {}: {}\n", command, printable_lines(text));
 }
 
-/// To be typed.
+/// Returns the place as an argument that can be typed in a shell.
 std::string as_argument(const std::string& place) {
   constexpr std::string_view tcp = "tcp://";
   if (place.find_first_of("?&") != std::string::npos) return fmt::format("'{}'", place);
   return place.rfind(tcp, 0) == 0 ? place.substr(tcp.size()) : place;
 }
 
-/// Over TCP it has just been reached.
+/// Scans the device. If it refuses the connection, tries again: over TCP it has just been reached.
 scan::Findings look(ProbeCall& call) {
   scan::Findings findings = look_at_each_line(call);
   for (const milliseconds pause : pauses) {
@@ -113,7 +113,7 @@ tl::expected<FoundMap, Failure> map_of_unknown_device(std::string_view command, 
     if (!served) return tl::make_unexpected(std::move(served.error()));
     if (*served != nullptr) return found_node(command, std::move(*served), connection);
   }
-  say(command, fmt::format("{}: what it answers to is looked for; Ctrl-C ends that", place_text(connection)));
+  say(command, fmt::format("{}: finding out what it answers to; Ctrl-C ends that", place_text(connection)));
   return map_by_a_scan(command, place, *call);
 }
 

@@ -17,11 +17,12 @@ struct FoundMap {
   Connection where;  ///< where the device has answered, without TLS; a view of the place or of the map
 };
 
-/// A map for a device of which nothing is known but its place, as node_argument() completes it: the one that
-/// it serves, else one with the preset of a coupler that its registers tell, else a draft of all that a scan
-/// finds, which may take minutes. Says on standard error, as `command`, which of them it is. Never writes to
-/// the device, and leaves no connection behind. bad_call: no place; bad_input: its map does not load; failed:
-/// the network, or Ctrl-C.
+/// Returns a map for a device of which only the place is known, as node_argument() completes it: the map that
+/// the device serves; otherwise one with the preset of the coupler that its registers show; otherwise a draft
+/// of everything that a scan finds, which may take minutes. Says on standard error, as `command`, which of
+/// them it is. Never writes to the device, and leaves no connection open. The exit status of a failure is
+/// bad_call for a wrong place or wrong TLS options, bad_input for a served map that does not load, and
+/// otherwise failed, as for the network or Ctrl-C.
 tl::expected<FoundMap, Failure> map_of_unknown_device(std::string_view command, const std::string& place,
                                                       const TlsTexts& tls);
 

@@ -224,7 +224,7 @@ class Check(Cli):
         self.assertIn("ok", json.loads(self.coupler("check", "--json", "cell.yaml").stdout))
 
 
-class StandardOutput(Cli):
+class OutDash(Cli):
     """`--out -`."""
 
     def writes(self, *command):

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "coupler/host/core/device.hpp"
 #include "coupler/tools/device_looks.hpp"
 #include "coupler/tools/read_only_map.hpp"
-#include "coupler/host/core/device.hpp"
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/fake_clock.hpp"
 #include "test/host/core/fake_device.hpp"

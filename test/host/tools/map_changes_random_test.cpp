@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "coupler/tools/map_changes.hpp"
 #include "coupler/map/diff.hpp"
 #include "coupler/map/loader/load.hpp"
+#include "coupler/tools/map_changes.hpp"
 #include "test/fakes/random_map.hpp"
 
 namespace coupler::tools {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The settings there are: each is one row, which has its text and its place in the map.
+// The table of settings. Each row says how a setting is read from text, and where it stands in the map.
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -54,7 +54,7 @@ SettingKey real_key(std::string_view key, double min, double max, std::string_vi
   return {key, "", Kind::real, min, max, unit, help};
 }
 
-/// Gives a setting its text. `key` already has what people and ROS see.
+/// Returns the row of a setting that has no place in the map. `key` already has its name, range and help.
 template <class T>
 SettingKey row(SettingKey key, std::optional<T> Settings::*field, const Parse<T>& parse) {
   SettingKey row = key;
@@ -74,7 +74,7 @@ SettingKey row(SettingKey key, std::optional<T> Settings::*field, const Parse<T>
   return row;
 }
 
-/// The same, and its place in the map.
+/// Returns the row of a setting that also has a place in the map.
 template <class T, class Place>
 SettingKey row(SettingKey key, std::optional<T> Settings::*field, const Parse<T>& parse, Place place) {
   SettingKey row = host::row(std::move(key), field, parse);
@@ -85,7 +85,8 @@ SettingKey row(SettingKey key, std::optional<T> Settings::*field, const Parse<T>
   return row;
 }
 
-/// Those of TLS. apply() puts them into the map, because an authority and a pin exclude each other.
+/// Returns the row of a TLS setting. Only apply() writes these to the map, all together, because an authority
+/// and a pin exclude each other.
 SettingKey tls_row(std::string_view key, std::string_view help, std::optional<std::string> Settings::*field,
                    const Parse<std::string>& parse, std::string_view Tls::*place) {
   SettingKey row = host::row(text_key(key, help), field, parse,
@@ -175,7 +176,7 @@ tl::expected<std::string, std::string> device_file(const SettingKey& key, const 
   return wrong(key, text, "a device file, as /dev/ttyUSB0; its unit and baud rate are settings of their own");
 }
 
-/// It begins in the working directory, not beside the map.
+/// Returns the absolute path of a file. A relative one starts in the working directory, not beside the map.
 tl::expected<std::string, std::string> file(const SettingKey& key, const std::string& text) {
   if (text.empty()) return wrong(key, text, "a path; leave the setting out if there is none");
   return std::filesystem::absolute(text).string();
@@ -192,7 +193,8 @@ std::string_view without(std::string_view text, std::string_view front, std::str
   return text.substr(from, text.find_last_not_of(back) - from + 1);
 }
 
-/// "a.yaml,b.yaml", also as YAML has it: [a.yaml, "b.yaml"]. overlay() has the rule of map and maps.
+/// Completes the row of `maps`, a list: "a.yaml,b.yaml", or [a.yaml, "b.yaml"] as in YAML. Its `prefer` does
+/// nothing, because overlay() treats `map` and `maps` as one setting.
 SettingKey maps_row(SettingKey row) {
   row.set = [key = row](Settings& settings, const std::string& text) -> tl::expected<void, std::string> {
     std::string_view rest = without(text, " [", " ]");
@@ -265,8 +267,8 @@ const std::vector<SettingKey>& setting_keys() {
       tls_row("ca", "file of the authority of the coupler's certificate", &Settings::ca, file, &Tls::ca),
       tls_row("tls_name", "name in the coupler's certificate, if not its address", &Settings::tls_name,
               host_name, &Tls::name),
-      tls_row("pin", "of the coupler's certificate, instead of ca: see coupler pin", &Settings::pin, pin,
-              &Tls::pin),
+      tls_row("pin", "pin of the coupler's certificate, instead of ca; `coupler pin` prints it",
+              &Settings::pin, pin, &Tls::pin),
       row<double>(
           real_key("rate", 0.001, 10000, " Hz", "polling rate in Hz"), &Settings::rate, number<double>,
           [](Map & map) -> auto& { return map.polling.rate; }),

@@ -122,9 +122,9 @@ void apply(const Settings& settings, Map& map) {
     connection.framing = Framing::tcp;
     connection.serial.device = {};
   }
-  if (settings.serial) connection.address = {};
   for (const SettingKey& key : setting_keys())
     if (key.to_map) key.to_map(settings, map);
+  if (settings.serial) connection.address = {};
   apply(settings, connection.tls);
   if (settings.serial) connection.tls = {};
   if (!had_tls && connection.tls.present() && !settings.port && connection.port == modbus::default_port)

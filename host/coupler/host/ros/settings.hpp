@@ -39,8 +39,7 @@ struct Settings {
   std::optional<std::uint16_t> panel;  ///< port of a live page; above 0
 };
 
-/// One setting by its name, as ROS parameter and as argument (`--key VALUE`): all that there is to say about
-/// it.
+/// Everything about one setting, which is both a ROS parameter and an argument (`--key VALUE`) of that name.
 struct SettingKey {
   enum class Kind { text, list, integer, real };
 
@@ -54,28 +53,32 @@ struct SettingKey {
 
   /// Sets it from text. The error says what the value should have been.
   std::function<tl::expected<void, std::string>(Settings& settings, const std::string& text)> set{};
-  /// See text_of().
+  /// Returns the text of the setting: see text_of().
   std::function<std::optional<std::string>(const Settings& settings)> text{};
+  /// Copies the setting from `strong` to `weak` if it is set there: see overlay().
   std::function<void(Settings& weak, const Settings& strong)> prefer{};
-  std::function<void(Settings& settings, Map& map)> from_map{};  ///< empty: a map has no such key
+  /// Copies the setting from the map. It is empty if a map has no such key.
+  std::function<void(Settings& settings, Map& map)> from_map{};
+  /// Copies the setting to the map if it is set. It is empty if a map has no such key, or if apply() does it.
   std::function<void(const Settings& settings, Map& map)> to_map{};
 };
 const std::vector<SettingKey>& setting_keys();
-/// The names of all settings, with the aliases.
+/// Returns the names of all settings, including the aliases.
 std::vector<std::string_view> setting_names();
 bool is_setting(std::string_view name);
-/// "there is no such setting; did you mean 'poll'?"
+/// Returns "there is no such setting; did you mean 'poll'?".
 std::string no_such_setting(std::string_view name);
 
-/// "parameter ~/pol is not a setting and does nothing; did you mean 'poll'?"; `name`: without its place.
+/// Returns "parameter ~/pol is not a setting and does nothing; did you mean 'poll'?". `name` is the name of
+/// the parameter without its prefix.
 std::string unknown_parameter(std::string_view parameter, std::string_view name);
 
 /// Sets one setting from text. The error says what the value should have been.
 tl::expected<void, std::string> set(Settings& settings, std::string_view key, const std::string& text);
 
-/// The settings among the parameters of a place. `text_of` returns the text of the parameter of that name,
-/// nullopt where it is not given, or what is wrong with it. The error begins with the parameter's name,
-/// `prefix` before it.
+/// Returns the settings among the parameters that begin with `prefix`. `text_of` returns the text of the
+/// parameter of that name, nullopt if it is not given, or what is wrong with it. The error names the
+/// parameter, including its prefix.
 using ParameterText = tl::expected<std::optional<std::string>, std::string>;
 tl::expected<Settings, std::string> settings_among(
     std::string_view prefix,
@@ -88,10 +91,10 @@ std::optional<std::string> text_of(const Settings& settings, std::string_view ke
 /// do an address and a serial port, each with what belongs to it.
 Settings overlay(Settings weak, const Settings& strong);
 
-/// Makes settings as if all values of the map had been set.
+/// Returns the settings with the values of the map, as if all of them had been set.
 Settings with_map(Settings settings, const Map& map);
 
-/// Overrides the map's fields. The map then views the settings' texts.
+/// Overrides the map's fields with the settings that are set. The map then views their texts.
 void apply(const Settings& settings, Map& map);
 
 }  // namespace coupler::host

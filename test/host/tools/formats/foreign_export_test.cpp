@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "coupler/tools/formats/exporters.hpp"
 #include "coupler/map/loader/load.hpp"
+#include "coupler/tools/formats/exporters.hpp"
 #include "test/host/tools/formats/imported.hpp"
 
 namespace coupler::test {

@@ -3,8 +3,8 @@
 // homeassistant/components/modbus (schemas in __init__.py, validators.py, entity.py) and its documentation.
 #include <gmock/gmock.h>
 
-#include "coupler/tools/formats/exporters.hpp"
 #include "coupler/map/loader/load.hpp"
+#include "coupler/tools/formats/exporters.hpp"
 #include "test/host/tools/formats/imported.hpp"
 
 namespace coupler::test {

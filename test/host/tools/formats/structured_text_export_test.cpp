@@ -3,8 +3,8 @@
 // parser.
 #include <gmock/gmock.h>
 
-#include "coupler/tools/formats/exporters.hpp"
 #include "coupler/map/loader/load.hpp"
+#include "coupler/tools/formats/exporters.hpp"
 #include "test/host/tools/formats/imported.hpp"
 
 namespace coupler::test {
