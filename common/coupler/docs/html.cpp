@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "coupler/docs/assets.hpp"
-#include "coupler/docs/escape.hpp"
 #include "coupler/docs/words.hpp"
+#include "coupler/map/escape.hpp"
 
 namespace coupler::docs {
 namespace {

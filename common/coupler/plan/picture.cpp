@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/map/printable.hpp"
+#include "coupler/map/escape.hpp"
 #include "coupler/plan/explain.hpp"
 #include "coupler/plan/picture_layout.hpp"
 #include "coupler/plan/read_span.hpp"
@@ -51,24 +51,6 @@ constexpr std::string_view patterns = R"(<defs>
 </defs>
 )";
 
-/// Names of points are safe, but a description is any text.
-std::string escaped(std::string_view text) {
-  std::string line(text);
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  std::string out;
-  for (const char c : printable(line)) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
-
 std::string heading(Table table) {
   std::string text(to_string(table));
   std::replace(text.begin(), text.end(), '_', ' ');
@@ -95,7 +77,7 @@ class Picture {
         "height=\"{1:g}\" "
         "role=\"img\" class=\"coupler-plan\">\n<title>{2}: how it is read</title>\n<style>{3}</style>\n{4}"
         "<rect width=\"100%\" height=\"100%\" class=\"paper\"/>\n{5}</svg>\n",
-        width, y_ + margin, escaped(map_.name), style, patterns, out_);
+        width, y_ + margin, html(map_.name), style, patterns, out_);
   }
 
  private:
@@ -191,8 +173,7 @@ class Picture {
         read ? fmt::format(", {:g} Hz", rate_of(map_, point))
              : fmt::format(", not read: {}", to_string(*why_not_read(map_, point))),
         point.description.empty() ? "" : fmt::format("; {}", point.description));
-    if (!options_.link.empty())
-      out_ += fmt::format("<a href=\"{}{}\">\n", escaped(options_.link), point.name);
+    if (!options_.link.empty()) out_ += fmt::format("<a href=\"{}{}\">\n", html(options_.link), point.name);
     bool named = false;
     for (const Box& whole : layout.boxes(place_of)) {
       const Box cell = whole.inset(scale_.names ? 4 : 2.5).part(i, count);
@@ -232,11 +213,11 @@ class Picture {
   void box(const Box& b, std::string_view css, const std::string& attributes, const std::string& title) {
     out_ += fmt::format("<rect x=\"{:.4g}\" y=\"{:.6g}\" width=\"{:.4g}\" height=\"{:.4g}\" class=\"{}\"{}",
                         b.x, b.y, b.width, b.height, css, attributes);
-    out_ += title.empty() ? "/>\n" : fmt::format("><title>{}</title></rect>\n", escaped(title));
+    out_ += title.empty() ? "/>\n" : fmt::format("><title>{}</title></rect>\n", html(title));
   }
 
   void text(double x, double y, std::string_view css, const std::string& what) {
-    out_ += fmt::format("<text x=\"{:.5g}\" y=\"{:.6g}\" class=\"{}\">{}</text>\n", x, y, css, escaped(what));
+    out_ += fmt::format("<text x=\"{:.5g}\" y=\"{:.6g}\" class=\"{}\">{}</text>\n", x, y, css, html(what));
   }
 
   const Map& map_;

@@ -11,6 +11,7 @@
 
 #include "coupler/json/json_text.hpp"
 #include "coupler/map/diagnostic.hpp"
+#include "coupler/map/escape.hpp"
 #include "coupler/map/printable.hpp"
 #include "coupler/tools/commands.hpp"
 #include "coupler/tools/map_argument.hpp"
@@ -56,20 +57,6 @@ std::string what(const Change& change) {
   return change.rule == "point-added" ? change.newer : from_to(change);
 }
 
-/// A cell of a table: marks of Markdown are escaped, and a newline becomes a blank.
-std::string cell(std::string_view text) {
-  std::string out;
-  for (const char c : printable_lines(text)) {
-    if (c == '\n') {
-      out += ' ';
-      continue;
-    }
-    if (std::string_view("|`*_[]<>\\#&").find(c) != std::string_view::npos) out += '\\';
-    out += c;
-  }
-  return out;
-}
-
 std::string_view or_map(const Change& change) {
   return change.point.empty() ? std::string_view("(map)") : change.point;
 }
@@ -103,14 +90,15 @@ std::string diff_json(const Versions& versions, const std::vector<Change>& chang
 
 /// A table for each severity that there is, for reviews.
 std::string diff_markdown(const Versions& versions, const std::vector<Change>& changes) {
-  auto text = fmt::format("**{} → {}**: {}\n", cell(versions.older), cell(versions.newer), counts(changes));
+  auto text =
+      fmt::format("**{} → {}**: {}\n", markdown(versions.older), markdown(versions.newer), counts(changes));
   for (const Severity severity : severities) {
     if (count(changes, severity) == 0) continue;
     text += fmt::format("\n### {}\n| point | rule | old | new |\n|---|---|---|---|\n", to_string(severity));
     for (const Change& change : changes)
       if (change.severity == severity)
-        text += fmt::format("| {} | {} | {} | {} |\n", cell(or_map(change)), change.rule, cell(change.older),
-                            cell(change.newer));
+        text += fmt::format("| {} | {} | {} | {} |\n", markdown(or_map(change)), change.rule,
+                            markdown(change.older), markdown(change.newer));
   }
   return text;
 }

@@ -12,10 +12,10 @@
 #include <fmt/format.h>
 
 #include "coupler/docs/document.hpp"
-#include "coupler/docs/escape.hpp"
 #include "coupler/generate/code.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/generate/python.hpp"
+#include "coupler/map/escape.hpp"
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/problems.hpp"
 #include "coupler/test_vectors/json.hpp"
@@ -65,10 +65,9 @@ std::string url_of_map(const Arguments& arguments) {
   if (arguments.map == "-" || names_a_node(arguments.map)) return {};
   const fs::path map = fs::absolute(arguments.map).lexically_normal();
   if (arguments.source_url.empty())
-    return docs::url_path(
-        map.lexically_relative(fs::absolute(folder_of(arguments)).lexically_normal()).string());
+    return url_path(map.lexically_relative(fs::absolute(folder_of(arguments)).lexically_normal()).string());
   const bool ended = arguments.source_url.back() == '/';
-  return arguments.source_url + (ended ? "" : "/") + docs::url_path(map.filename().string());
+  return arguments.source_url + (ended ? "" : "/") + url_path(map.filename().string());
 }
 
 /// NAME.html and NAME.md. `lines`: of the points, as LoadResult::point_lines.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/docs/escape.hpp"
+#include "coupler/map/escape.hpp"
 
 #include <fmt/format.h>
 
 #include "coupler/map/printable.hpp"
 
-namespace coupler::docs {
+namespace coupler {
 namespace {
 
 /// Calls use(bytes) with each character. Line breaks and other control characters, which would end a cell or
@@ -76,4 +76,4 @@ std::string url_path(std::string_view path) {
   return out;
 }
 
-}  // namespace coupler::docs
+}  // namespace coupler

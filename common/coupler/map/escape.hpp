@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-namespace coupler::docs {
+namespace coupler {
 
-/// Escapes a text for the text and quoted attributes of HTML.
+/// Escapes a text for XML, as SVG, and for the text and quoted attributes of HTML.
 std::string html(std::string_view text);
 
 /// Escapes a text for the inline text of GitHub-flavoured Markdown, also within a cell of a table: a
@@ -15,10 +15,10 @@ std::string html(std::string_view text);
 /// would interpret.
 std::string markdown(std::string_view text);
 
-/// Without line breaks and other control characters, which would end what the text stands in.
+/// Returns a text without line breaks and other control characters, which would end what it stands in.
 std::string one_line(std::string_view text);
 
-/// A path as part of a URL: what is not unreserved becomes %XX (RFC 3986, 2.3), slashes stay.
+/// Returns a path as part of a URL: what is not unreserved becomes %XX (RFC 3986, 2.3), slashes stay.
 std::string url_path(std::string_view path);
 
-}  // namespace coupler::docs
+}  // namespace coupler

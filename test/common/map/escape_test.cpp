@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/docs/escape.hpp"
+#include "coupler/map/escape.hpp"
 
 #include <gtest/gtest.h>
 
-namespace coupler::docs {
+namespace coupler {
 namespace {
 
 TEST(Escape, No_text_opens_an_element_or_ends_an_attribute_of_html) {
@@ -30,4 +30,4 @@ TEST(Escape, A_path_in_a_url_keeps_its_folders_only) {
 }
 
 }  // namespace
-}  // namespace coupler::docs
+}  // namespace coupler
