@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <new>
+
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/device_fixture.hpp"
 
@@ -52,6 +54,32 @@ TEST_F(WriteResultsTest, A_write_that_is_acknowledged_is_ok) {
   engine->step();
   EXPECT_THAT(results.outcomes, ElementsAre(Outcome::ok));
   EXPECT_EQ(written(Outcome::ok), 1U);
+}
+
+struct ThrowingListener : WriteListener {
+  int calls = 0;
+  void on_result(const WriteResult& /*result*/) override {
+    ++calls;
+    throw std::bad_alloc();
+  }
+};
+
+TEST_F(WriteResultsTest, Each_write_has_one_result_though_the_listener_of_another_throws) {
+  start_online();
+  ThrowingListener throwing;
+  Results third;
+  push("r0", 7, &results);
+  push("r1", 7, &throwing);
+  push("r2", 7, &third);
+  EXPECT_THROW(engine->step(), std::bad_alloc);
+  engine->give_up("no memory");
+  device.requests.clear();
+  run_for(std::chrono::seconds(2));
+  EXPECT_THAT(results.outcomes, ElementsAre(Outcome::ok));
+  EXPECT_EQ(throwing.calls, 1);
+  EXPECT_THAT(third.outcomes, ElementsAre(Outcome::lost));
+  EXPECT_FALSE(device.requests.empty()) << "it is connected again";
+  EXPECT_LT(device.requests.size(), 100U) << "and no write is due for ever";
 }
 
 TEST_F(WriteResultsTest, A_burst_becomes_one_request_and_each_write_has_its_result) {

@@ -57,8 +57,8 @@ class Throws : public testing::Test {
   bool serve(int socket) {
     std::array<char, 12> request{};
     if (::recv(socket, request.data(), request.size(), MSG_WAITALL) != 12) return false;
-    ::send(socket, request.data(), request.size(), MSG_NOSIGNAL);
     peer = socket;
+    ::send(socket, request.data(), request.size(), MSG_NOSIGNAL);
     return true;
   }
   MapPtr make_map() const {
@@ -93,7 +93,7 @@ TEST_F(Throws, A_write_that_throws_in_another_thread_has_a_result_and_costs_one_
 TEST_F(Throws, Bytes_that_cannot_be_handled_end_no_thread) {
   write_until_ok();
   channel->discard_throws = true;
-  ::send(peer, "x", 1, MSG_NOSIGNAL);
+  ASSERT_EQ(::send(peer, "x", 1, MSG_NOSIGNAL), 1);
   while (channel->discard_throws) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   write_until_ok();
 }

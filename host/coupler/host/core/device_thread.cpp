@@ -98,6 +98,8 @@ Time DeviceThread::attempt(Work work) {
     return work();
   } catch (const std::exception& error) {
     return device_.give_up(what_failed(error));
+  } catch (...) {
+    return device_.give_up("an exception of an unknown type");
   }
 }
 
@@ -128,6 +130,7 @@ void DeviceThread::run() {
   {
     const std::lock_guard turn(turn_);
     ended_safely_ = !ends_safely_;
+    if (thrown_) attempt([] { return Time::max(); });  // stop() has to report that values are not safe
     attempt([this] {
       ended_safely_ = device_.stop();
       return Time::max();

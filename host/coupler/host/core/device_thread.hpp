@@ -28,14 +28,19 @@ class ReadDemand {
   /// Calls f(point, wanted), in order, for what was set since the last call.
   template <class F>
   void take(F&& f) {
-    if (!any_) return;
+    if (!any_ && taken_.empty()) return;
     {
       const std::lock_guard lock(mutex_);
-      taken_.swap(given_);
+      taken_.insert(taken_.end(), given_.begin(), given_.end());
+      given_.clear();
       any_ = false;
     }
-    for (const auto& [point, wanted] : taken_) f(point, wanted);
+    while (next_ < taken_.size()) {
+      const auto [point, wanted] = taken_[next_++];  // f may throw
+      f(point, wanted);
+    }
     taken_.clear();
+    next_ = 0;
   }
 
  private:
@@ -43,6 +48,7 @@ class ReadDemand {
   std::mutex mutex_;
   std::vector<std::pair<std::uint32_t, bool>> given_;
   std::vector<std::pair<std::uint32_t, bool>> taken_;  ///< a member, so that its memory is used again
+  std::size_t next_ = 0;                               ///< of taken_: those before have been passed on
 };
 
 /// Runs a device in a thread of its own, so that a dead device slows no other. That thread owns the

@@ -152,7 +152,6 @@ Result<> Writer::finish(const Result<>& answer) {
   const ExceptionReply* exception = answer ? nullptr : exception_in(answer.error());
   if (!answer && exception == nullptr) return answer;  // disconnected() tells them
   std::swap(batch_, done_);
-  Result<> connection;
   if (exception != nullptr && done_.writes().size() > 1 && is_wrong(exception->code)) {
     merges_ = false;
     queue_.put_back(done_.writes());
@@ -160,12 +159,33 @@ Result<> Writer::finish(const Result<>& answer) {
                     fmt::format("writes to {} and its neighbours were rejected in one request: {}; they are "
                                 "written one by one while this connection lasts",
                                 name(done_.writes().front().point), to_string(answer.error())));
-  } else {
-    for (const Write& write : done_.writes())
-      if (const auto finished = finish_one(write, answer, connection); !finished) connection = finished;
+    clear_done();
+    return {};
   }
-  done_.clear();
+  Result<> connection = finish_done(answer);
+  clear_done();
   return connection;
+}
+
+/// Each write has exactly one result, whatever throws before it, in its listener, or after it.
+Result<> Writer::finish_done(const Result<>& answer) {
+  Result<> connection;
+  for (; told_ < done_.writes().size(); ++told_) {
+    is_settled_ = false;
+    try {
+      if (const auto finished = finish_one(done_.writes()[told_], answer, connection); !finished)
+        connection = finished;
+    } catch (...) {
+      if (is_settled_) ++told_;
+      throw;
+    }
+  }
+  return connection;
+}
+
+void Writer::clear_done() {
+  done_.clear();
+  told_ = 0;
 }
 
 Result<> Writer::finish_one(const Write& write, const Result<>& answer, const Result<>& connection) {
@@ -264,6 +284,7 @@ void Writer::tell(const Write& write, const WriteResult& result) {
 }
 
 void Writer::settle(const Write& write, const WriteResult& result) {
+  is_settled_ = true;
   queue_.settled(write.point);
   tell(write, result);
   if (result.outcome != Outcome::ok && result.outcome != Outcome::kept) report(write, result);

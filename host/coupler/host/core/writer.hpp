@@ -114,6 +114,9 @@ class Writer {
   void wait_again();
   Result<> not_sent(const Error& why);
   Result<> finish(const Result<>& answer);
+  /// Completes the writes of done_ that have no result yet.
+  Result<> finish_done(const Result<>& answer);
+  void clear_done();
   /// `connection`: the state of the connection after the reply.
   Result<> finish_one(const Write& write, const Result<>& answer, const Result<>& connection = {});
   Result<> verify(const Write& write, const Result<>& connection);
@@ -149,6 +152,8 @@ class Writer {
   std::vector<bool> acknowledged_;   ///< by point: a write was acknowledged, and no value was published since
   WriteBatch batch_;                 ///< in flight
   WriteBatch done_;                  ///< answered; a member, so that its memory is used again
+  std::size_t told_ = 0;             ///< so many of done_ have their result
+  bool is_settled_ = false;          ///< settle() was called since finish_one() began
   bool is_sent_ = false;             ///< batch_ has been sent by send_now()
   std::optional<Error> send_error_;  ///< why send_now() could not send
   bool is_node_ = false;

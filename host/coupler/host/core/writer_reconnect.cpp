@@ -84,10 +84,13 @@ void Writer::disconnected(const Error& why) {
   is_sent_ = false;
   send_error_.reset();
   safe_calls_.close(to_string(why));
+  const Result<> lost = tl::make_unexpected(why);
+  finish_done(lost);  // what an exception has left there
+  clear_done();
   std::swap(batch_, done_);
-  for (const Write& write : done_.writes()) finish_one(write, tl::make_unexpected(why));
+  finish_done(lost);
   suspect(done_.writes(), why);
-  done_.clear();
+  clear_done();
   while (const auto write = queue_.take()) drop(*write);
 }
 
