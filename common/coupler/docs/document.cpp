@@ -63,6 +63,7 @@ FactGroup limits(const Map& map) {
                    {"Write", fmt::format("{} registers, {} bits", limits.write_registers, limits.write_bits)},
                    {"Connections", fmt::to_string(limits.connections)},
                    {"Mask write (FC 22)", limits.mask_write ? "yes" : "not used"}}};
+  if (!limits.transaction_ids) group.facts.push_back({"Transaction ids", "not repeated in replies"});
   if (limits.request_gap.count() > 0)
     group.facts.push_back({"Pause before a request", words(limits.request_gap)});
   if (limits.connect_delay.count() > 0)

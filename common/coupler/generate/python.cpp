@@ -164,7 +164,7 @@ std::string value_classes(const Map& map, const std::vector<std::string>& names)
   return "\n\nclass values:\n    \"\"\"What the map calls the values of its points.\"\"\"\n" + out;
 }
 
-/// Keys of the map that need the driver or the client in C++, which have a thread of their own.
+/// Keys of the map that need the driver or the client in C++.
 std::string keys_left_out(const Map& map) {
   std::string out;
   const auto add = [&](bool has, std::string_view key) {
@@ -176,6 +176,7 @@ std::string keys_left_out(const Map& map) {
   add(map.on_reconnect == OnReconnect::restore, "on_reconnect");
   add(map.on_shutdown == OnShutdown::safe, "on_shutdown");
   add(map.coupler_watchdog.present(), "watchdog (of the coupler)");
+  add(!map.limits.transaction_ids, "transaction_ids (pymodbus compares them)");
   if (out.empty()) return out;
   return "    # The map has keys that this client does not carry out: " + out + ".\n";
 }

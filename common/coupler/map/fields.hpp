@@ -106,7 +106,8 @@ constexpr auto fields_of(const Limits*) {
       field("write_registers", &Limits::write_registers, change),
       field("write_bits", &Limits::write_bits, change), field("request_gap", &Limits::request_gap, change),
       field("connect_delay", &Limits::connect_delay, change),
-      field("connections", &Limits::connections, change), field("mask_write", &Limits::mask_write, change));
+      field("connections", &Limits::connections, change), field("mask_write", &Limits::mask_write, change),
+      field("transaction_ids", &Limits::transaction_ids, change));
 }
 
 /// And `name`, `points`, what has a list of its own, and what a preset or a list fills.

@@ -17,7 +17,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 12;
+constexpr int model_version = 13;
 
 /// The place of the coupler. ROS parameters and arguments override it.
 struct Connection {
@@ -59,6 +59,9 @@ struct Limits {
   std::chrono::milliseconds connect_delay{0};  ///< pause between connecting and the first request
   std::uint16_t connections = 1;
   bool mask_write = false;  ///< the device has FC 22
+  /// Over Modbus/TCP, the device repeats the transaction id of a request in its reply. Otherwise all requests
+  /// have 0, and a request without a reply ends the connection.
+  bool transaction_ids = true;
 };
 
 /// It is read, or the others of its register are before it is written.

@@ -223,6 +223,43 @@ TEST(TcpChannel, A_reply_to_another_request_is_a_bad_frame) {
   EXPECT_TRUE(is<BadFrame>(link.read(Table::holding_registers, Range::of(1, 1), &word)));
 }
 
+TEST(TcpChannel, Without_transaction_ids_requests_have_0_and_silence_ends_the_connection) {
+  std::atomic<int> requests{0};
+  bool is_late = false;  // a reply to the request for 9, which is sent before that to the next one
+  const auto send_word = [](int fd, std::uint8_t word) {
+    const Adu reply{0xEE, 0xEE, 0, 0, 0, 5, 1, 3, 2, 0, word};
+    ::send(fd, reply.data(), reply.size(), MSG_NOSIGNAL);
+  };
+  const test::LoopbackServer gateway([&](int fd) {
+    Adu query(12);
+    if (::recv(fd, query.data(), query.size(), MSG_WAITALL) != 12) {
+      is_late = false;
+      return false;
+    }
+    EXPECT_EQ(query[0] + query[1], 0);
+    ++requests;
+    if (std::exchange(is_late, query[9] == 9)) send_word(fd, 9);
+    if (query[9] != 9) send_word(fd, query[9]);
+    return true;
+  });
+  Limits limits;
+  limits.transaction_ids = false;
+  Link link = make_link(connection_to(gateway.port()), limits);
+  ASSERT_TRUE(link.connect());
+  EXPECT_FALSE(link.can_wait());
+  std::uint16_t word = 0;
+  for (const std::uint16_t address : {std::uint16_t{1}, std::uint16_t{2}}) {
+    ASSERT_TRUE(link.read(Table::holding_registers, Range::of(address, 1), &word));
+    EXPECT_EQ(word, address);
+  }
+  link.select(1, milliseconds(50));
+  EXPECT_TRUE(is<Timeout>(link.read(Table::holding_registers, Range::of(9, 1), &word)));
+  link.select(1, milliseconds(20000));
+  ASSERT_TRUE(link.read(Table::holding_registers, Range::of(3, 1), &word)) << "over a new connection";
+  EXPECT_EQ(word, 3);
+  EXPECT_EQ(requests, 4);
+}
+
 TEST(TcpChannel, A_reply_whose_header_does_not_fit_is_a_bad_frame) {
   struct Case {
     const char* what;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -124,6 +125,15 @@ TEST_F(TcpFramerTest, Before_the_first_reply_all_is_skipped_that_cannot_begin_on
   }
 }
 
+TEST_F(TcpFramerTest, After_the_most_noise_that_is_skipped_a_reply_is_still_one) {
+  for (int i = 0; i < 100; ++i) {
+    const auto outcome = receive(Adu(200, 0xAA));
+    if (outcome == Outcome::bad) break;
+  }
+  EXPECT_THAT(problem(), testing::HasSubstr("none of them begins a reply"));
+  ASSERT_EQ(receive(reply), Outcome::reply);
+}
+
 TEST_F(TcpFramerTest, Before_the_first_reply_another_request_is_answered_to_be_told) {
   EXPECT_EQ(receive({9, 9, 0, 0, 0, 7, 5, 3, 4}), Outcome::bad);
   EXPECT_THAT(problem(), testing::HasSubstr("another request"));
@@ -133,14 +143,88 @@ TEST_F(TcpFramerTest, Before_the_first_reply_another_request_is_answered_to_be_t
   EXPECT_THAT(problem(), testing::HasSubstr("another request"));
 }
 
+TEST_F(TcpFramerTest, A_device_that_does_not_repeat_the_transaction_is_told_from_one_that_is_late) {
+  const Adu other{0, 0, 0, 0, 0, 7, 5, 3, 4, 0x11, 0x22, 0x33, 0x44};
+  EXPECT_EQ(receive(other), Outcome::bad);
+  EXPECT_THAT(problem(), testing::HasSubstr("transaction 0, where 258 was asked. It is the first reply"));
+  EXPECT_THAT(problem(), testing::HasSubstr("`limits: {transaction_ids: false}`"));
+  EXPECT_TRUE(has_remedy(framer.problem()));
+  framer.reset();
+  EXPECT_EQ(receive({1, 1, 0, 0, 0, 7, 5, 3, 4}), Outcome::bad);
+  EXPECT_FALSE(has_remedy(framer.problem())) << "it may be late, of a connection before";
+  framer.reset();
+  framer.give_up(request);
+  EXPECT_EQ(receive(other), Outcome::bad);
+  EXPECT_FALSE(has_remedy(framer.problem())) << "it may be late";
+  framer.reset();
+  receive_first_reply();
+  EXPECT_EQ(receive(other), Outcome::bad);
+  EXPECT_FALSE(has_remedy(framer.problem()));
+}
+
+TEST_F(TcpFramerTest, Without_transactions_a_reply_is_known_by_its_unit_function_and_length) {
+  const Adu other{9, 9, 0, 0, 0, 7, 5, 3, 4, 0x11, 0x22, 0x33, 0x44};
+  request.set(std::nullopt, 5, Adu{3, 0, 10, 0, 2});
+  EXPECT_EQ(request.transaction(), 0);
+  Adu greeted{'h', 'i'};
+  greeted.insert(greeted.end(), other.begin(), other.end());
+  for (const Adu& bytes : {other, greeted, reply}) {
+    framer.reset();
+    ASSERT_EQ(receive(bytes), Outcome::reply);
+    EXPECT_THAT(pdu(), testing::ElementsAre(3, 4, 0x11, 0x22, 0x33, 0x44));
+    EXPECT_TRUE(framer.is_trusted());
+  }
+  EXPECT_EQ(receive({9, 9, 0, 0, 0, 7, 6, 3, 4}), Outcome::bad);
+  EXPECT_THAT(problem(), testing::EndsWith("unit 6 answered a request to unit 5"));
+}
+
+TEST_F(TcpFramerTest, Without_transactions_a_reply_that_is_awaited_no_more_ends_the_trust) {
+  framer.give_up(request);
+  EXPECT_TRUE(framer.is_trusted());
+  request.set(std::nullopt, 5, Adu{3, 0, 10, 0, 2});
+  framer.give_up(request);
+  EXPECT_FALSE(framer.is_trusted());
+  framer.reset();
+  EXPECT_TRUE(framer.is_trusted());
+}
+
+TEST_F(TcpFramerTest, Without_transactions_two_replies_to_one_request_end_the_trust) {
+  request.set(std::nullopt, 5, Adu{3, 0, 10, 0, 2});
+  Adu twice = reply;
+  twice.insert(twice.end(), reply.begin(), reply.end());
+  ASSERT_EQ(receive(twice), Outcome::reply);
+  EXPECT_FALSE(framer.is_trusted());
+  framer.reset();
+  ASSERT_EQ(receive({1, 2, 0, 0, 0, 3, 5, 0x83, 0x0B}), Outcome::reply);
+  EXPECT_FALSE(framer.is_trusted()) << "the unit's own reply may follow";
+  framer.reset();
+  ASSERT_EQ(receive({1, 2, 0, 0, 0, 3, 5, 0x83, 2}), Outcome::reply);
+  EXPECT_TRUE(framer.is_trusted());
+}
+
+TEST_F(TcpFramerTest, Without_transactions_noise_is_told_and_has_an_end) {
+  request.set(std::nullopt, 5, Adu{3, 0, 10, 0, 2});
+  EXPECT_EQ(receive({'l', 'o', 'g', 'i', 'n', ':', ' '}), Outcome::nothing);
+  EXPECT_THAT(noise(), testing::HasSubstr("7 bytes have come"));
+  auto outcome = Outcome::nothing;
+  for (int i = 0; i < 100 && outcome == Outcome::nothing; ++i) outcome = receive(Adu(200, 0xFF));
+  EXPECT_EQ(outcome, Outcome::bad);
+}
+
+TEST_F(TcpFramerTest, Unit_0_is_no_advice_where_a_gateway_says_it_of_all_units) {
+  EXPECT_EQ(receive({1, 2, 0, 0, 0, 7, 0, 3, 4}), Outcome::bad);
+  EXPECT_THAT(problem(),
+              testing::HasSubstr("if the device takes requests to unit 0, set `unit: 0`; otherwise"));
+}
+
 TEST_F(TcpFramerTest, A_late_reply_to_a_request_that_was_given_up_is_skipped) {
   receive_first_reply();
   for (const int late : {1, 2, 3}) {  // the last one was not given up
     SCOPED_TRACE(late);
     framer.reset();
     receive_first_reply();
-    framer.give_up();
-    framer.give_up();
+    framer.give_up(request);
+    framer.give_up(request);
     Adu bytes{1, static_cast<std::uint8_t>(4 - late), 0, 0, 0, 7, 5, 3, 4, 0x55, 0x66, 0x77, 0x88};
     request.set(0x0104, 5, Adu{3, 0, 10, 0, 2});
     EXPECT_EQ(receive({bytes.begin(), bytes.begin() + 9}), late == 3 ? Outcome::bad : Outcome::nothing);

@@ -293,6 +293,9 @@ constexpr Key keys[] = {
         .otherwise("1")
         .within(1, 65535),
     project("mask_write", S::limits, K::boolean, "true", "the device has FC 22").otherwise("false"),
+    project("transaction_ids", S::limits, K::boolean, "false",
+            "replies have the transaction id of the request")
+        .otherwise("true"),
     // `sim:`
     project("from", S::wire, K::text, "valve", "the coil that drives the wire"),
     project("to", S::wire, K::text, "valve_is_open", "the discrete input at its end").needed(),

@@ -57,7 +57,7 @@ void Device::leave_out(const Identity& identity) {
 }
 
 void Device::explain_silence(const Error& error) {
-  const bool silent = is_no_reply(error) || is_unit_away(error);
+  const bool silent = (is_no_reply(error) || is_unit_away(error)) && !has_remedy(error);
   if (silent && std::exchange(explains_silence_, false))
     sink_.on_report(Level::warning, silence_text(map_, error));
 }

@@ -50,7 +50,9 @@ bool is_closed(const Error& error) {
 bool has_remedy(const Error& error) {
   const auto* none = std::get_if<NotConnected>(&error);
   const auto* broken = std::get_if<TransportFailure>(&error);
-  return (none != nullptr && none->has_remedy) || (broken != nullptr && broken->has_remedy);
+  const auto* bad = std::get_if<BadFrame>(&error);
+  return (none != nullptr && none->has_remedy) || (broken != nullptr && broken->has_remedy) ||
+         (bad != nullptr && bad->has_remedy);
 }
 
 std::string to_string(const Error& error) { return std::visit(Text{}, error); }

@@ -39,6 +39,7 @@ struct ExceptionReply {
 /// A reply that is not an answer to the request.
 struct BadFrame {
   std::string why;
+  bool has_remedy = false;  ///< `why` says what to do
 };
 
 /// How a request can fail.

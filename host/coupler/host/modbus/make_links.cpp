@@ -21,12 +21,13 @@ namespace {
 struct Gateway {
   std::size_t units = 0;
   std::size_t connections = std::numeric_limits<std::size_t>::max();  ///< that it allows
+  bool transaction_ids = true;                                        ///< all its maps say so
   std::shared_ptr<SharedChannel> shared;
 };
 
-std::shared_ptr<SharedChannel> make_channel(const Connection& connection) {
+std::shared_ptr<SharedChannel> make_channel(const Connection& connection, bool transaction_ids) {
   if (connection.is_rtu()) return std::make_shared<SharedChannel>(std::make_shared<RtuChannel>(connection));
-  return std::make_shared<SharedChannel>(std::make_shared<TcpChannel>(connection));
+  return std::make_shared<SharedChannel>(std::make_shared<TcpChannel>(connection, transaction_ids));
 }
 
 using Place = std::pair<std::string, std::uint16_t>;
@@ -68,7 +69,7 @@ std::string line_conflict(const std::vector<Map>& maps) {
 }
 
 Link make_link(const Connection& connection, const Limits& limits) {
-  return Link(make_channel(connection), connection, limits);
+  return Link(make_channel(connection, limits.transaction_ids), connection, limits);
 }
 
 std::vector<std::unique_ptr<Link>> make_links(const std::vector<Map>& maps) {
@@ -77,13 +78,14 @@ std::vector<std::unique_ptr<Link>> make_links(const std::vector<Map>& maps) {
     Gateway& gateway = gateways[place_of(map.connection)];
     ++gateway.units;
     gateway.connections = std::min<std::size_t>(gateway.connections, map.limits.connections);
+    gateway.transaction_ids = gateway.transaction_ids && map.limits.transaction_ids;
   }
   std::vector<std::unique_ptr<Link>> links;
   for (const Map& map : maps) {
     Gateway& gateway = gateways[place_of(map.connection)];
     const bool shares =
         map.connection.is_rtu() || gateway.units > std::max<std::size_t>(gateway.connections, 1);
-    auto shared = gateway.shared ? gateway.shared : make_channel(map.connection);
+    auto shared = gateway.shared ? gateway.shared : make_channel(map.connection, gateway.transaction_ids);
     if (shares) gateway.shared = shared;
     shared->has_several_links = gateway.units > 1 && shares;
     links.push_back(std::make_unique<Link>(std::move(shared), map.connection, map.limits));

@@ -26,12 +26,13 @@ bool is_tcp_unit(std::uint8_t unit) { return unit == 0 || is_rtu_unit(unit) || u
 
 }  // namespace
 
-TcpChannel::TcpChannel(const Connection& connection)
+TcpChannel::TcpChannel(const Connection& connection, bool transaction_ids)
     : host_(connection.address),
       port_(connection.port),
       unit_(connection.unit),
       tls_(connection.tls.present() ? std::optional(TlsTexts::of(connection.tls)) : std::nullopt),
       timeout_(connection.timeout),
+      transaction_ids_(transaction_ids),
       // The first number is not that of other programs, so that bytes for others do not look like a reply.
       transaction_(static_cast<std::uint16_t>(std::chrono::steady_clock::now().time_since_epoch().count())) {}
 
@@ -108,6 +109,10 @@ Result<> TcpChannel::discard_unasked() {
     }
     if (got < 0) return failed(TransportFailure{std::strerror(errno)});
     framer_.filled(static_cast<std::size_t>(got));
+    if (!transaction_ids_ && !framer_.is_first())
+      return fail(
+          BadFrame{"bytes have come that nobody asked for: without transaction ids they could be taken "
+                   "for the next reply"});
   }
   return fail(BadFrame{"bytes come without end, and nothing was asked"});
 }
@@ -121,7 +126,10 @@ Woken TcpChannel::wait_until(Time time, Wakeup& wakeup, const Event& interrupted
   return has_pending() ? Woken::by_bytes : wait_for(wakeup, &interrupted, socket_.get(), time);
 }
 
-void TcpChannel::build(TcpRequest& request, modbus::Bytes pdu) { request.set(++transaction_, unit_, pdu); }
+void TcpChannel::build(TcpRequest& request, modbus::Bytes pdu) {
+  ++transaction_;
+  request.set(transaction_ids_ ? std::optional(transaction_) : std::nullopt, unit_, pdu);
+}
 
 /// It never waits: what does not go out at once is an error.
 Result<> TcpChannel::put(const TcpRequest& request) {
@@ -141,7 +149,7 @@ Result<modbus::Bytes> TcpChannel::await_reply(const TcpRequest& request, Deadlin
     if (waits && std::exchange(has_come, false)) deadline = std::min(deadline, Deadline(timeout_));
     pollfd wanted{socket_.get(), POLLIN, 0};
     if (waits && ::poll(&wanted, 1, deadline.left()) == 0) {
-      framer_.give_up();
+      framer_.give_up(request);
       return no_reply(request, Timeout{timeout_});
     }
     const auto got = take(framer_.room());

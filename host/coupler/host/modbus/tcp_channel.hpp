@@ -18,7 +18,8 @@ namespace coupler::host {
 /// libmodbus does not do this.
 class TcpChannel : public Channel {
  public:
-  explicit TcpChannel(const Connection& connection);
+  /// `transaction_ids`: the device repeats the transaction id of a request in its reply.
+  explicit TcpChannel(const Connection& connection, bool transaction_ids = true);
   ~TcpChannel() override;
   TcpChannel(const TcpChannel&) = delete;
   TcpChannel& operator=(const TcpChannel&) = delete;
@@ -31,7 +32,8 @@ class TcpChannel : public Channel {
   Result<modbus::Bytes> receive() override;
   bool is_late() const override { return answer_by_.has_passed(); }
   bool is_trusted() const override { return wait_ || framer_.is_trusted(); }
-  bool can_wait() const override { return true; }
+  /// The answer to a wait and the reply to another request are told apart by their transactions.
+  bool can_wait() const override { return transaction_ids_; }
   Result<> send_wait(const modbus::ChangesRequest& request) override;
   Result<> receive_wait() override;
   std::optional<Certificates> certificates() const override;
@@ -74,6 +76,7 @@ class TcpChannel : public Channel {
   std::uint8_t unit_;
   std::optional<TlsTexts> tls_;  ///< nullopt: plain Modbus/TCP
   std::chrono::milliseconds timeout_{0};
+  bool transaction_ids_;
   std::uint16_t transaction_;  ///< of the last request
   TcpRequest sent_;            ///< its answer is awaited
   Deadline answer_by_{std::chrono::milliseconds(0)};

@@ -36,7 +36,7 @@ bool is_tls_alert(modbus::Bytes adu) {
 bool begins_reply(modbus::Bytes bytes, const TcpRequest& request) {
   if (bytes.size() < 2) return false;
   const std::uint16_t begin = modbus::get_u16(bytes.data());
-  return begin == request.transaction() || begin == tls_alert;
+  return begin == tls_alert || (request.has_transaction() && begin == request.transaction());
 }
 
 /// Returns whether `bytes` may be the beginning of a reply to this request, or to another request with the
@@ -54,23 +54,46 @@ bool may_begin_reply(modbus::Bytes bytes, const TcpRequest& request) {
   return !is_read(function) || bytes.size() <= at_count || length == at_count + 1 - at_unit + bytes[at_count];
 }
 
-std::optional<BadFrame> mismatch(modbus::Bytes adu, const TcpRequest& request) {
+/// After one of these the unit's own reply may come (MAP 7).
+bool may_be_followed(modbus::Bytes exception) {
+  const auto code = exception.size() > at_count ? exception[at_count] : std::uint8_t{0};
+  return code == static_cast<std::uint8_t>(modbus::Exception::gateway_path_unavailable) ||
+         code == static_cast<std::uint8_t>(modbus::Exception::gateway_target_failed_to_respond);
+}
+
+/// A gateway may hand the late replies to so many requests of a connection to the next one.
+constexpr int most_late_replies = 16;
+
+/// `is_first`: no reply has come over this connection, and none is late.
+std::optional<BadFrame> mismatch(modbus::Bytes adu, const TcpRequest& request, bool is_first) {
   const std::uint16_t transaction = modbus::get_u16(adu.data());
-  if (transaction != request.transaction())
-    return BadFrame{fmt::format("the reply to another request: transaction {}, where {} was asked",
-                                transaction, request.transaction())};
-  if (adu[at_unit] != request.unit())
+  if (request.has_transaction() && transaction != request.transaction()) {
+    std::string what = fmt::format("the reply to another request: transaction {}, where {} was asked",
+                                   transaction, request.transaction());
+    const auto before = static_cast<std::uint16_t>(request.transaction() - transaction);
+    if (!is_first || before <= most_late_replies) return BadFrame{std::move(what)};
     return BadFrame{
-        fmt::format("unit {0} answered a request to unit {1}; if the device is unit {0}, "
-                    "set `unit: {0}`",
-                    adu[at_unit], request.unit())};
-  return std::nullopt;
+        what +
+            ". It is the first reply over this connection, so it is not a late one. If the device "
+            "does not repeat transaction ids, set `limits: {transaction_ids: false}` in the map",
+        true};
+  }
+  const unsigned unit = adu[at_unit];
+  if (unit == request.unit()) return std::nullopt;
+  std::string what = fmt::format("unit {} answered a request to unit {}", unit, request.unit());
+  if (!request.has_transaction() && !is_first) return BadFrame{std::move(what)};  // for another client
+  if (unit == 0)
+    return BadFrame{what +
+                    "; if the device takes requests to unit 0, set `unit: 0`; otherwise ask its maker for a "
+                    "gateway that repeats the unit id"};
+  return BadFrame{fmt::format("{}; if the device is unit {}, set `unit: {}`", what, unit, unit)};
 }
 
 }  // namespace
 
-void TcpRequest::set(std::uint16_t transaction, std::uint8_t unit, modbus::Bytes pdu) {
-  modbus::put_header({transaction, unit, {}}, pdu.size(), adu_.data());
+void TcpRequest::set(std::optional<std::uint16_t> transaction, std::uint8_t unit, modbus::Bytes pdu) {
+  has_transaction_ = transaction.has_value();
+  modbus::put_header({transaction.value_or(0), unit, {}}, pdu.size(), adu_.data());
   std::copy(pdu.begin(), pdu.end(), adu_.begin() + modbus::mbap_size);
   size_ = modbus::mbap_size + pdu.size();
 }
@@ -86,7 +109,7 @@ void TcpFramer::reset() {
 bool TcpFramer::skip_late_replies(const TcpRequest& request) {
   for (;;) {
     const modbus::Bytes adu = rest();
-    if (given_up_ == 0 || adu.size() < 2) return true;
+    if (given_up_ == 0 || !request.has_transaction() || adu.size() < 2) return true;
     const auto before = static_cast<std::uint16_t>(request.transaction() - modbus::get_u16(adu.data()));
     if (before == 0 || before > given_up_) return true;
     if (adu.size() <= at_unit) return false;
@@ -105,22 +128,25 @@ TcpFramer::Outcome TcpFramer::next(const TcpRequest& request) {
   const bool is_wait = request.function() == static_cast<std::uint8_t>(modbus::Function::wait_for_changes);
   if (!is_wait && (is_first_ || has_noise_))
     while (!rest().empty() && !may_begin_reply(rest(), request)) skip(1);
-  if (skipped_ - skipped_before_ > most_skipped) return refuse(*noise(request));
+  if (skipped_ - skipped_before_ > most_skipped)
+    if (auto wrong = noise(request)) return refuse(request, *std::move(wrong));
 
   const modbus::Bytes adu = rest();
   if (adu.size() <= at_unit) return Outcome::nothing;
   if (is_tls_alert(adu))
     return refuse(
+        request,
         NotConnected{"the device speaks TLS at this port; reach it by tls:// (docs/security.md)", true});
   const std::size_t size = modbus::adu_size(adu);
-  if (size == 0) return refuse(BadFrame{"not Modbus/TCP: " + shown_bytes(adu)});
-  if (auto wrong = mismatch(adu, request)) return refuse(*std::move(wrong));
+  if (size == 0) return refuse(request, BadFrame{"not Modbus/TCP: " + shown_bytes(adu)});
+  if (auto wrong = mismatch(adu, request, is_first_ && given_up_ == 0))
+    return refuse(request, *std::move(wrong));
 
   if (adu.size() <= at_function) return Outcome::nothing;
   if (adu[at_function] == (request.function() | modbus::exception_bit)) {
     if (adu.size() < std::min(size, exception_size)) return Outcome::nothing;
-    is_trusted_ = size == exception_size;
-    return take(std::min(size, exception_size));
+    is_trusted_ = size == exception_size && (request.has_transaction() || !may_be_followed(adu));
+    return take(request, std::min(size, exception_size));
   }
   // If header and byte count contradict each other, the missing bytes may never come: this is an error now,
   // not a timeout later.
@@ -128,23 +154,25 @@ TcpFramer::Outcome TcpFramer::next(const TcpRequest& request) {
     if (adu.size() <= at_count) return Outcome::nothing;
     const std::size_t left = size - at_count - 1;
     if (adu[at_count] != left)
-      return refuse(
-          bad_reply(fmt::format("the byte count is {}, where the header leaves {}", adu[at_count], left),
-                    request.pdu(), adu.first(std::min(adu.size(), size))));
+      return refuse(request, bad_reply(fmt::format("the byte count is {}, where the header leaves {}",
+                                                   adu[at_count], left),
+                                       request.pdu(), adu.first(std::min(adu.size(), size))));
   }
-  return adu.size() < size ? Outcome::nothing : take(size);
+  return adu.size() < size ? Outcome::nothing : take(request, size);
 }
 
-TcpFramer::Outcome TcpFramer::take(std::size_t bytes) {
+TcpFramer::Outcome TcpFramer::take(const TcpRequest& request, std::size_t bytes) {
   pdu_ = rest().first(bytes).from(modbus::mbap_size);
   buffer_.take(bytes);
+  if (!request.has_transaction() && !rest().empty()) is_trusted_ = false;  // one of the two was another's
   is_first_ = false;
   given_up_ = 0;
   return Outcome::reply;
 }
 
-TcpFramer::Outcome TcpFramer::refuse(Error problem) {
+TcpFramer::Outcome TcpFramer::refuse(const TcpRequest& request, Error problem) {
   problem_ = std::move(problem);
+  give_up(request);
   return Outcome::bad;
 }
 
@@ -164,7 +192,10 @@ void TcpFramer::drop() {
 
 std::optional<BadFrame> TcpFramer::noise(const TcpRequest& request) const {
   const std::uint64_t skipped = skipped_ - skipped_before_;
-  if (skipped == 0 || begins_reply(rest(), request)) return std::nullopt;
+  const bool begins = request.has_transaction()
+                          ? begins_reply(rest(), request)
+                          : rest().size() > at_function && may_begin_reply(rest(), request);
+  if (skipped == 0 || begins) return std::nullopt;
   const auto shown = std::min<std::uint64_t>(skipped, first_skipped_.size());
   return BadFrame{fmt::format("{} bytes have come, and none of them begins a reply: {}",
                               skipped + rest().size(),

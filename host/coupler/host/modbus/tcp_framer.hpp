@@ -18,11 +18,13 @@ namespace coupler::host {
 /// The ADU of a request over Modbus/TCP: the MBAP header and the PDU (TCP 3.1).
 class TcpRequest {
  public:
-  /// `pdu` has 1 … 253 bytes.
-  void set(std::uint16_t transaction, std::uint8_t unit, modbus::Bytes pdu);
+  /// `pdu` has 1 … 253 bytes. Without a transaction, which is 0 then, the reply may have any: it is
+  /// recognized by its unit, function code and length.
+  void set(std::optional<std::uint16_t> transaction, std::uint8_t unit, modbus::Bytes pdu);
 
   modbus::Bytes adu() const { return modbus::Bytes(adu_).first(size_); }
   modbus::Bytes pdu() const { return adu().from(modbus::mbap_size); }
+  bool has_transaction() const { return has_transaction_; }
   std::uint16_t transaction() const { return modbus::get_u16(adu_.data()); }
   std::uint8_t unit() const { return adu_[modbus::mbap_size - 1]; }
   std::uint8_t function() const { return adu_[modbus::mbap_size]; }
@@ -30,6 +32,7 @@ class TcpRequest {
  private:
   std::array<std::uint8_t, modbus::max_adu_size> adu_{};
   std::size_t size_ = 0;
+  bool has_transaction_ = true;
 };
 
 /// Finds replies in what comes over one Modbus/TCP connection, by transaction, unit and length.
@@ -61,13 +64,19 @@ class TcpFramer {
   /// A BadFrame, or NotConnected if the device speaks TLS.
   const Error& problem() const { return problem_; }
 
-  /// Returns false after an exception whose length is not that in its header. It is not known then where the
-  /// next reply begins, so the connection must be closed.
+  /// Returns false after an exception whose length is not that in its header, because it is not known then
+  /// where the next reply begins. Returns false after a request without a transaction that had no good reply,
+  /// or may have another one, because that would be taken for the next reply. The connection must be closed.
   bool is_trusted() const { return is_trusted_; }
 
-  /// The reply to the last request is not awaited any more. If it comes before another one it is skipped.
-  void give_up() { ++given_up_; }
+  /// Notes that the reply is not awaited any more. If it comes before another one it is skipped.
+  void give_up(const TcpRequest& request) {
+    ++given_up_;
+    if (!request.has_transaction()) is_trusted_ = false;
+  }
   bool is_empty() const { return rest().empty(); }
+  /// Returns whether no reply has come over this connection.
+  bool is_first() const { return is_first_; }
 
   /// Skips all bytes that have come, because no request is outstanding, and starts a new noise().
   void drop();
@@ -82,8 +91,8 @@ class TcpFramer {
   void skip(std::size_t bytes);
   /// Skips late replies. Returns false if one of them has not come as a whole.
   bool skip_late_replies(const TcpRequest& request);
-  Outcome take(std::size_t bytes);
-  Outcome refuse(Error problem);
+  Outcome take(const TcpRequest& request, std::size_t bytes);
+  Outcome refuse(const TcpRequest& request, Error problem);
 
   modbus::ReceiveBuffer<2 * modbus::max_adu_size> buffer_;  ///< a wait and a read may be answered at once
   modbus::Bytes pdu_;

@@ -80,6 +80,9 @@ void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) 
   if (map.connection.tls.present())
     warnings.add("the map has TLS, and this format has not",
                  "name the coupler's port without TLS, where a node lets in whom its 'plain' says");
+  if (!map.limits.transaction_ids)
+    warnings.add("the device does not repeat transaction ids, and other programs compare them",
+                 "look for a gateway that repeats them, or an option of the other program");
   for (const Point& point : map.points) {
     if (is_of_the_node(point))
       warnings.add(

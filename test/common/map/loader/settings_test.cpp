@@ -26,6 +26,7 @@ TEST(Settings, What_the_map_does_not_say_has_the_origins_defaults) {
   EXPECT_EQ(map.limits.write_bits, 1968);
   EXPECT_EQ(map.limits.connections, 1);
   EXPECT_FALSE(map.limits.mask_write);
+  EXPECT_TRUE(map.limits.transaction_ids);
 }
 
 TEST(Settings, A_bare_timeout_means_seconds) {
@@ -45,7 +46,7 @@ TEST(Settings, The_rate_may_be_a_fraction) {
 TEST(Settings, All_limits_are_read) {
   const MapPtr owned = test::load_with(
       "limits: {read_registers: 64, read_bits: 512, write_registers: 32, write_bits: 256, request_gap: 5ms, "
-      "connect_delay: 0.1s, connections: 4, mask_write: true}");
+      "connect_delay: 0.1s, connections: 4, mask_write: true, transaction_ids: false}");
   const Limits& limits = owned->map().limits;
   EXPECT_EQ(limits.read_registers, 64);
   EXPECT_EQ(limits.read_bits, 512);
@@ -55,6 +56,7 @@ TEST(Settings, All_limits_are_read) {
   EXPECT_EQ(limits.connect_delay, 100ms);
   EXPECT_EQ(limits.connections, 4);
   EXPECT_TRUE(limits.mask_write);
+  EXPECT_FALSE(limits.transaction_ids);
 }
 
 TEST(Settings, Wires_of_the_simulated_chip_lead_to_inputs) {
