@@ -15,7 +15,7 @@ import threading
 
 import peer
 
-MAP = "name: dev\ntimeout: 1\nverify: off\nmapping: {holding_registers: {a: 0, b: 10}}\n"
+MAP = "name: dev\ntimeout: 1\nverify: off\nmapping: {holding_registers: {a: {address: 0, type: UINT}, b: {address: 10, type: UINT}}}\n"
 KEY = "limits: {transaction_ids: false}\n"
 VALUES = {0: 100, 10: 200}
 # The id of the reply by that of the request; None: there is no reply.

@@ -60,7 +60,7 @@ TEST(Table, Wires_of_the_simulated_chip_are_rows) {
 TEST(Table, Connection_polling_and_limits_are_in_it) {
   EXPECT_THAT(source(), AllOf(HasSubstr(R"({"cell.local", 1502, 7, 250ms, Framing::tcp, {}, {}})"),
                               HasSubstr("{2.5, true, 65, false, 13}"),
-                              HasSubstr("{100, 1000, 90, 900, 2ms, 3ms, 4, true}")));
+                              HasSubstr("{100, 1000, 90, 900, 2ms, 3ms, 4, true, true}")));
 }
 
 TEST(Table, Counters_and_latches_follow_the_units) {

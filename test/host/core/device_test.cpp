@@ -83,6 +83,14 @@ TEST_F(DeviceTest, A_refused_connection_is_tried_again_with_growing_waits_and_re
   EXPECT_TRUE(sink->online.empty());
 }
 
+TEST_F(DeviceTest, A_malformed_reply_is_reported_once_though_its_bytes_differ) {
+  for (int i = 0; i < 4; ++i)
+    device.next_errors.push_back(BadFrame{"transaction 0, where " + std::to_string(i) + " was asked"});
+  start(MapBuilder().holding("a", 5), Verify::off);
+  run_for(milliseconds(800));
+  EXPECT_EQ(sink->reported("was asked"), 1);
+}
+
 TEST_F(DeviceTest, After_a_timeout_the_connection_is_closed_and_made_anew) {
   start(MapBuilder().holding("a", 5));
   run_for(milliseconds(50));

@@ -23,6 +23,12 @@ std::string loss_text(const Map& map, const Error& error, bool was_online) {
                     : fmt::format("not connected: {}; trying again", why);
 }
 
+/// Returns the part of an error's text that tells it from others: the ids and bytes of a malformed reply
+/// differ each time.
+std::string_view kind_of(const Error& error, std::string_view text) {
+  return std::holds_alternative<BadFrame>(error) ? text.substr(0, text.find_first_of("0123456789")) : text;
+}
+
 }  // namespace
 
 Device::Device(const Map& map, Purpose purpose, MapLoader load, Link& link, ValueTable& values, Sink& sink)
@@ -283,7 +289,7 @@ Result<> Device::ask_for_watchdog() {
 void Device::came_online() {
   if (note(DeviceEvent::answered) == State::online) return;
   if (!only_looks_) backoff_.reset();
-  last_error_text_.clear();
+  last_error_kind_.clear();
   const auto certificates = link_.certificates();
   statistics_.online(certificates);
   values_.online(true);
@@ -322,12 +328,13 @@ void Device::lost(const Error& error) {
     sink_.on_online(false);
   }
   if (!ending_) sink_.on_failure(error);
-  if (!ending_ && (was_online || why != last_error_text_)) {
+  const std::string_view kind = kind_of(error, why);
+  if (!ending_ && (was_online || kind != last_error_kind_)) {
     const std::string text = loss_text(map_, error, was_online);
     sink_.on_loss(text);
     tell(Level::warning, text);
   }
-  last_error_text_ = why;
+  last_error_kind_ = kind;
 }
 
 void Device::tell(Level level, std::string text) {

@@ -177,7 +177,7 @@ class Device {
   /// chance.
   int unheard_waits_ = 0;
   Time retry_at_ = Time::min();
-  std::string last_error_text_;           ///< that of the last attempt; the same text is logged once
+  std::string last_error_kind_;           ///< that of the last attempt; the same kind is logged once
   std::optional<bool> answers_identity_;  ///< whether the device answers the question for its identity
   std::vector<ForeignPoint> left_out_;    ///< see Purpose
   bool explains_silence_ = true;  ///< false once the identity was answered, or silence_text() was logged
