@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
 #include <new>
@@ -41,6 +42,9 @@ class Throws : public testing::Test {
     device.want(0, false);  // no request comes but the writes
     device.start();
   }
+  ~Throws() override {
+    if (peer >= 0) ::close(peer);
+  }
 
   WriteResult::Outcome write() {
     WriteTicket ticket;
@@ -57,7 +61,7 @@ class Throws : public testing::Test {
   bool serve(int socket) {
     std::array<char, 12> request{};
     if (::recv(socket, request.data(), request.size(), MSG_WAITALL) != 12) return false;
-    peer = socket;
+    if (peer < 0) peer = ::dup(socket);
     ::send(socket, request.data(), request.size(), MSG_NOSIGNAL);
     return true;
   }
@@ -70,7 +74,7 @@ class Throws : public testing::Test {
     return builder.build();
   }
 
-  std::atomic<int> peer{-1};  ///< the server's side of the connection
+  std::atomic<int> peer{-1};  ///< the server's side of the first connection, a descriptor of the test's own
   test::LoopbackServer server{[this](int socket) { return serve(socket); }};
   MapPtr owned = make_map();
   const Map& map = owned->map();
