@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a thread of a device does when memory runs out.
+// The thread of a device goes on when memory runs out.
 #include "coupler/host/core/device_thread.hpp"
 
 #include <gtest/gtest.h>

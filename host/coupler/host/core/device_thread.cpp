@@ -56,7 +56,7 @@ void DeviceThread::write(const Write& write) {
   if (!turn || !send_now()) link_.wake();
 }
 
-/// What is thrown here goes to the owner, because only it may close the connection.
+/// Keeps an exception for the owner, because only the owner may close the connection.
 bool DeviceThread::send_now() {
   try {
     return device_.send_now();
@@ -93,9 +93,17 @@ std::future<ScheduleAnswer> DeviceThread::schedule(const ScheduledWrite& what) {
 /// and no other.
 template <class Work>
 Time DeviceThread::attempt(Work work) {
+  if (thrown_) give_up(std::exchange(thrown_, nullptr));
   try {
-    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
     return work();
+  } catch (...) {
+    return give_up(std::current_exception());
+  }
+}
+
+Time DeviceThread::give_up(const std::exception_ptr& thrown) {
+  try {
+    std::rethrow_exception(thrown);
   } catch (const std::exception& error) {
     return device_.give_up(what_failed(error));
   } catch (...) {
@@ -130,7 +138,6 @@ void DeviceThread::run() {
   {
     const std::lock_guard turn(turn_);
     ended_safely_ = !ends_safely_;
-    if (thrown_) attempt([] { return Time::max(); });  // stop() has to report that values are not safe
     attempt([this] {
       ended_safely_ = device_.stop();
       return Time::max();

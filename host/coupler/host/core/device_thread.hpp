@@ -100,6 +100,8 @@ class DeviceThread {
   bool send_now();
   template <class Work>
   Time attempt(Work work);
+  /// Closes the connection. Returns when to call step() again.
+  Time give_up(const std::exception_ptr& thrown);
   void await_stop();
 
   Link& link_;
