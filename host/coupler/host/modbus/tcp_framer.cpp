@@ -54,11 +54,10 @@ bool may_begin_reply(modbus::Bytes bytes, const TcpRequest& request) {
   return !is_read(function) || bytes.size() <= at_count || length == at_count + 1 - at_unit + bytes[at_count];
 }
 
-/// After one of these the unit's own reply may come (MAP 7).
+/// After such an exception the unit's own reply may come.
 bool may_be_followed(modbus::Bytes exception) {
-  const auto code = exception.size() > at_count ? exception[at_count] : std::uint8_t{0};
-  return code == static_cast<std::uint8_t>(modbus::Exception::gateway_path_unavailable) ||
-         code == static_cast<std::uint8_t>(modbus::Exception::gateway_target_failed_to_respond);
+  return exception.size() > at_count &&
+         is_unit_away(ExceptionReply{static_cast<modbus::Exception>(exception[at_count])});
 }
 
 /// A gateway may hand the late replies to so many requests of a connection to the next one.
