@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +13,9 @@
 
 #include "coupler/generate/output.hpp"
 #include "coupler/map/loader/load.hpp"
+#include "coupler/map/loader/preset.hpp"
+#include "coupler/map/loader/scalar.hpp"
+#include "coupler/plan/explain.hpp"
 #include "coupler/tools/commands.hpp"
 #include "coupler/tools/output_argument.hpp"
 #include "coupler/tools/report.hpp"
@@ -25,8 +31,9 @@ struct Starter {
   std::string name;     ///< of the device
   std::string address;  ///< of a coupler; empty: an example. A node has none in its map
   std::string preset;   ///< the coupler's kind; empty: any
-  bool node = false;    ///< a board with GPIO lines that coupler-node serves
-  std::string schema;   ///< what an editor checks it with, as seen from the map's folder
+  std::string addressing = "zero_based";
+  bool node = false;   ///< a board with GPIO lines that coupler-node serves
+  std::string schema;  ///< what an editor checks it with, as seen from the map's folder
 };
 
 constexpr std::string_view board_points = R"(mapping:
@@ -95,8 +102,35 @@ const SerialKind* serial_kind(std::string_view preset) {
 
 constexpr std::string_view orders = R"(
 # How wide values stand in registers. If a value is absurd, try `order: ABCD`, CDAB, BADC or DCBA at its point.
-# Addresses are zero-based. For the numbers of a manual (40001 ...), write: addressing: modicon
 )";
+
+constexpr std::string_view zero_based =
+    "# Addresses are zero-based. For the numbers of a manual (40001 ...), write: addressing: modicon\n";
+
+/// Returns the line of a point with the number of a manual in place of its zero-based address.
+std::string with_modicon_number(const std::string& line, Table table) {
+  constexpr std::string_view key = "address: ";
+  const std::size_t named = line.find(key);
+  const std::size_t from = named == std::string::npos ? line.find(": ") + 2 : named + key.size();
+  const std::size_t to = std::min(line.find_first_of(" ,}", from), line.size());
+  const auto address = loader::parse_unsigned(line.substr(from, to - from));
+  if (!address) return line;
+  return line.substr(0, from) + plan::modicon(table, static_cast<std::uint32_t>(*address)) + line.substr(to);
+}
+
+std::string with_modicon_numbers(std::string_view points) {
+  std::string text;
+  std::optional<Table> table;
+  std::istringstream lines{std::string(points)};
+  for (std::string line; std::getline(lines, line);) {
+    std::optional<Table> begins;
+    for (const Table each : tables)
+      if (line.rfind(fmt::format("  {}:", to_string(each)), 0) == 0) begins = each;
+    text += (begins || !table ? line : with_modicon_number(line, *table)) + '\n';
+    if (begins) table = begins;
+  }
+  return text;
+}
 
 std::string explained(const std::string& line, std::string_view comment) {
   return fmt::format("{:<40} # {}\n", line, comment);
@@ -112,8 +146,13 @@ std::string starter_map(const Starter& starter) {
   else
     text += fmt::format("# A {} coupler. `coupler_driver` makes each point a topic.\n",
                         has_address ? "Modbus/TCP" : "Modbus RTU");
+  const bool is_modicon = starter.addressing == "modicon";
+  const auto numbered = [&](std::string_view points) {
+    return is_modicon ? with_modicon_numbers(points) : std::string(points);
+  };
   text += fmt::format("name: {}\n", starter.name);
-  if (starter.node) return text + std::string(board_head) + std::string(board_points);
+  if (is_modicon) text += explained("addressing: modicon", "addresses are the numbers of manuals: 40001 ...");
+  if (starter.node) return text + std::string(board_head) + numbered(board_points);
   if (has_address)
     text += fmt::format("address: {}\n", starter.address.empty() ? "192.168.1.17" : starter.address);
   else
@@ -121,17 +160,21 @@ std::string starter_map(const Starter& starter) {
   text += explained("rate: 10", "polls a second");
   if (!starter.preset.empty())
     text += explained("preset: " + starter.preset, "what is true of all couplers of this kind");
-  if (serial != nullptr) return text + std::string(serial->points);
-  return text + std::string(orders) + "\n" + std::string(coupler_points);
+  if (serial != nullptr) return text + numbered(serial->points);
+  return text + std::string(orders) + (is_modicon ? "" : std::string(zero_based)) + "\n" +
+         numbered(coupler_points);
 }
 
 struct Arguments {
-  Starter starter{"device", {}, {}, false, schema_name};
+  Starter starter{"device", {}, {}, "zero_based", false, schema_name};
   std::string out;
   bool force = false;
 };
 
-Exit init(const Arguments& arguments) {
+Exit init(const Arguments& given) {
+  Arguments arguments = given;
+  if (const auto preset = loader::preset_of_model(given.starter.preset); !preset.empty())
+    arguments.starter.preset = preset;
   const bool to_file = arguments.out != standard_output;
   const std::filesystem::path map =
       names_no_file(arguments.out) ? arguments.starter.name + ".yaml" : arguments.out;
@@ -166,11 +209,16 @@ void add_init(Program& program, Exit& exit) {
       .type_name("");
   auto address = command.add_option("--address", arguments->starter.address, "Host name or IP address")
                      .type_name("HOST");
-  auto preset = command
-                    .add_option("--preset", arguments->starter.preset,
-                                "The coupler's kind: wago_750, beckhoff_bk9000, moxa_e1200 or plc; on a "
-                                "serial line robotiq_2f or waveshare_io_8ch")
-                    .type_name("PRESET");
+  auto preset =
+      command
+          .add_option("--preset", arguments->starter.preset,
+                      "The coupler's kind: wago_750, beckhoff_bk9000, moxa_e1200 or plc; on a "
+                      "serial line robotiq_2f or waveshare_io_8ch; or its maker's name, such as 750-352")
+          .type_name("PRESET");
+  command
+      .add_option("--addressing", arguments->starter.addressing,
+                  "What the addresses count: zero_based, or modicon for the numbers of manuals (40001 ...)")
+      .one_of({"zero_based", "modicon"});
   command.add_flag("--node", arguments->starter.node, "For a board with GPIO lines, served by coupler-node")
       .excludes(address)
       .excludes(preset);

@@ -41,6 +41,30 @@ class Init(unittest.TestCase):
         for line in ("name: press", "address: plc-7.local", "preset: plc"):
             self.assertIn(line, text)
 
+    def test_a_preset_is_found_by_the_makers_name(self):
+        for model, preset in (("750-352", "wago_750"), ("WAGO 750-8212", "wago_750"), ("BK9050", "beckhoff_bk9000"),
+                              ("ioLogik E1212", "moxa_e1200"), ("2F-85", "robotiq_2f"), ("Hand-E", "robotiq_2f"),
+                              ("Modbus RTU IO 8CH", "waveshare_io_8ch"), ("plc", "plc")):
+            self.assertEqual(self.coupler("init", "press", "--force", "--preset", model).returncode, 0)
+            self.assertIn(f"preset: {preset} ", (self.folder / "press.yaml").read_text(encoding="utf-8"))
+        (self.folder / "other.yaml").write_text("name: other\npreset: 750-352\nmapping: {coils: {a: 0}}\n")
+        self.assertIn("write 'wago_750', which is for it", self.coupler("check", "other.yaml").stderr)
+
+    def test_addresses_may_be_the_numbers_of_manuals(self):
+        for kind in KINDS:
+            with self.subTest(kind):
+                prints = []
+                for addressing in ("zero_based", "modicon"):
+                    self.coupler("init", "press", "--force", "--addressing", addressing, *kind)
+                    prints.append(self.coupler("check", "press.yaml").stdout)
+                self.assertRegex(prints[0], "fingerprint [0-9a-f]{16}")
+                self.assertEqual(*prints)
+        self.coupler("init", "press", "--force", "--addressing", "modicon")
+        text = (self.folder / "press.yaml").read_text(encoding="utf-8")
+        for part in ("addressing: modicon", "valve: {address: 00001,", "door: 10001 ", "pressure: {address: 30001,",
+                     "speed: {address: 40001,"):
+            self.assertIn(part, text)
+
     def test_a_coupler_on_a_serial_line_has_a_port_unless_an_address_is_given(self):
         for kind, line in ((), "serial: {device: /dev/ttyUSB0}"), (("--address", "gateway"), "address: gateway"):
             self.coupler("init", "grip", "--force", "--preset", "robotiq_2f", *kind)

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/codec/type_name.hpp"
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/nearest.hpp"
 
@@ -68,6 +69,10 @@ tl::expected<Preset, std::string> parse_preset(const PresetFile& file) {
       preset.watchdog = *watchdog;
       continue;
     }
+    if (entry.key == "models") {
+      for (const Entry& model : entry.children) preset.models.push_back(model.text);
+      continue;
+    }
     for (const Entry& element : entry.children) {
       const auto area = area_of(element);
       const auto offset = word(element, "offset");
@@ -82,6 +87,16 @@ tl::expected<Preset, std::string> parse_preset(const PresetFile& file) {
   return preset;
 }
 
+std::string_view preset_of_model(std::string_view model) {
+  const std::string folded = codec::folded_type_name(model);
+  for (const PresetFile& file : preset_files()) {
+    const Preset preset = parse_preset(file).value();
+    for (const std::string& part : preset.models)
+      if (folded.find(codec::folded_type_name(part)) != std::string::npos) return file.name;
+  }
+  return {};
+}
+
 std::optional<Preset> read_preset(const Entry& root, const Context& context) {
   const Entry* entry = child(root, "preset");
   if (entry == nullptr) return std::nullopt;
@@ -90,8 +105,10 @@ std::optional<Preset> read_preset(const Entry& root, const Context& context) {
     names.push_back(file.name);
     if (file.name == entry->text) return parse_preset(file).value();
   }
+  const std::string_view of_model = preset_of_model(entry->text);
   context.problems.error(entry->at, fmt::format("no preset is called {}", shown(*entry)),
-                         suggestion(entry->text, names));
+                         of_model.empty() ? suggestion(entry->text, names)
+                                          : fmt::format("write '{}', which is for it", of_model));
   return std::nullopt;
 }
 

@@ -59,7 +59,8 @@ struct Preset {
   };
 
   std::string_view name;
-  Entry map;  ///< keys that hold unless the map has them
+  std::vector<std::string> models;  ///< parts of the makers' names of couplers of this kind
+  Entry map;                        ///< keys that hold unless the map has them
   std::vector<Area> areas;
   std::vector<ReadBack> read_back;
   PresetWatchdog watchdog;
@@ -67,6 +68,9 @@ struct Preset {
 
 /// The error says what is wrong with the file.
 tl::expected<Preset, std::string> parse_preset(const PresetFile& file);
+
+/// Returns the name of the preset for a maker's name such as "750-352"; empty if there is none.
+std::string_view preset_of_model(std::string_view model);
 
 /// `preset:` of the map; nothing if it has none, or no known one.
 std::optional<Preset> read_preset(const Entry& root, const Context& context);
